@@ -1,0 +1,192 @@
+#include "cl/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <optional>
+
+#include "cl/kernel_source.hpp"
+#include "error.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr std::string_view kLanesSuffix = ",lanes=";
+
+struct FoundDevice {
+  cl::Platform platform;
+  cl::Device device;
+  DeviceDescription description;
+};
+
+/// OpenCL strings may carry their terminator and blanks along.
+std::string trimmed(std::string text) {
+  while (!text.empty() && (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back()))))
+    text.pop_back();
+  return text;
+}
+
+int nativeLanes(const cl::Device& device) {
+  if (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) return 1;
+  const unsigned width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+  return width >= 16 ? 16 : width >= 8 ? 8 : width >= 4 ? 4 : 1;
+}
+
+std::vector<FoundDevice> findDevices() {
+  std::vector<FoundDevice> found;
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return found;  // the loader reports "no platform" as an error
+  }
+  for (const cl::Platform& platform : platforms) {
+    std::vector<cl::Device> devices;
+    try {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      for (const cl::Device& device : devices)
+        found.push_back({platform, device,
+                         {trimmed(platform.getInfo<CL_PLATFORM_NAME>()), trimmed(device.getInfo<CL_DEVICE_NAME>()),
+                          trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device)}});
+    } catch (const cl::Error&) {
+      continue;  // a platform without usable devices
+    }
+  }
+  return found;
+}
+
+std::string lowered(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::optional<std::size_t> parseNumber(std::string_view text) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+MachineError deviceError(const cl::Error& error, const std::string& device) {
+  if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_HOST_MEMORY ||
+      error.err() == CL_OUT_OF_RESOURCES || error.err() == CL_INVALID_BUFFER_SIZE)
+    return MachineError(fmt::format("{}: out of memory ({})", device, error.what()));
+  return MachineError(fmt::format("{}: {} failed with OpenCL error {}", device, error.what(), error.err()));
+}
+
+}  // namespace
+
+std::vector<DeviceDescription> listDevices() {
+  std::vector<DeviceDescription> descriptions;
+  for (FoundDevice& found : findDevices()) descriptions.push_back(std::move(found.description));
+  return descriptions;
+}
+
+std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::string& selector) {
+  if (devices.empty())
+    throw MachineError("no OpenCL device: install one, for example PoCL for the CPU (apt install pocl-opencl-icd)");
+  const std::string wanted = lowered(selector.substr(0, selector.find(kLanesSuffix)));
+  if (wanted.empty()) {
+    for (std::size_t i = 0; i < devices.size(); ++i)
+      if (devices[i].platform == "Portable Computing Language") return i;
+    return 0;
+  }
+  if (const auto number = parseNumber(wanted)) {
+    if (*number < devices.size()) return *number;
+    throw InputError(fmt::format("--device {}: there are {} devices, counted from 0 (see luciole devices)", selector,
+                                 devices.size()));
+  }
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    if (lowered(devices[i].platform + " " + devices[i].name).find(wanted) != std::string::npos) return i;
+  throw InputError(fmt::format("--device {}: no device has this in its name (see luciole devices)", selector));
+}
+
+void openDevice(const std::string& selector, Device& device) {
+  const std::vector<FoundDevice> found = findDevices();
+  std::vector<DeviceDescription> descriptions;
+  for (const FoundDevice& one : found) descriptions.push_back(one.description);
+  const FoundDevice& chosen = found[selectDevice(descriptions, selector)];
+  device.description = chosen.description;
+  if (const std::size_t suffix = selector.find(kLanesSuffix); suffix != std::string::npos) {
+    const auto lanes = parseNumber(std::string_view(selector).substr(suffix + kLanesSuffix.size()));
+    if (lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)
+      throw InputError(fmt::format("--device {}: lanes must be 1, 4, 8 or 16", selector));
+    device.description.lanes = static_cast<int>(*lanes);
+  }
+  try {
+    device.device = chosen.device;
+    device.context = cl::Context(chosen.device);
+    device.queue = cl::CommandQueue(device.context, chosen.device);
+    device.shares_host_memory = (chosen.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+cl::Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
+  return makeKernelFromSource(device, kernelSource(file), name, defines);
+}
+
+cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name, const std::string& defines) {
+  const std::string options = fmt::format("-cl-std=CL1.2 -cl-mad-enable -cl-denorms-are-zero -DLANES={} {}",
+                                          device.description.lanes, defines);
+  const std::string key = options + source;
+  const std::lock_guard lock(device.programs_mutex);
+  try {
+    auto place = device.programs.find(key);
+    if (place == device.programs.end()) {
+      cl::Program program(device.context, source);
+      program.build({device.device}, options.c_str());
+      place = device.programs.emplace(key, std::move(program)).first;
+    }
+    return cl::Kernel(place->second, name);
+  } catch (const cl::BuildError& error) {
+    std::string log;
+    for (const auto& [where, text] : error.getBuildLog()) log += text;
+    std::replace(log.begin(), log.end(), '\n', ' ');
+    throw MachineError(fmt::format("{}: kernel '{}' does not compile: {}", device.description.name, name, log.substr(0, 1000)));
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+cl::Buffer inputBuffer(Device& device, const void* data, std::size_t bytes) {
+  if (bytes == 0) return deviceBuffer(device, sizeof(cl_float4));
+  try {
+    const cl_mem_flags how = device.shares_host_memory ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    return cl::Buffer(device.context, CL_MEM_READ_ONLY | how, bytes, const_cast<void*>(data));
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+cl::Buffer deviceBuffer(Device& device, std::size_t bytes) {
+  try {
+    return cl::Buffer(device.context, CL_MEM_READ_WRITE, std::max(bytes, sizeof(cl_float4)));
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  try {
+    device.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, data);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+void launch(Device& device, cl::Kernel& kernel, std::size_t items, std::size_t group) {
+  if (items == 0) return;
+  try {
+    device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
+    device.queue.finish();
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+}  // namespace luciole

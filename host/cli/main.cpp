@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+
+#include "cli/commands.hpp"
+#include "error.hpp"
+
+namespace {
+
+using namespace luciole;
+
+std::string joinedArguments(int count, char** arguments) {
+  std::string line = "luciole";
+  for (int i = 1; i < count; ++i) line += std::string(" ") + arguments[i];
+  return line;
+}
+
+const CLI::App& findCommand(CLI::App& app, const std::string& name) {
+  const auto named = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+  if (named.empty()) throw InputError(fmt::format("{}: no such command (see luciole help)", name));
+  return *named.front();
+}
+
+int fail(const std::string& message, int status) {
+  fmt::print(stderr, "luciole: {}\n", message);
+  return status;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  CommandContext context{joinedArguments(argument_count, arguments)};
+  CLI::App app{"Luciole lights scenes with as many lights as there are fireflies, deferred, on OpenCL."};
+  app.set_version_flag("--version", "luciole " LUCIOLE_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  app.footer(
+      "luciole test sets up, builds and runs every test (through the launcher beside the README).\n"
+      "Exit status: 0 done, 1 the comparison failed, 2 wrong input or arguments, 3 the machine can't.");
+  addRenderCommand(app, context);
+  addGBufferCommand(app, context);
+  addShadeCommand(app, context);
+  addCompareCommand(app, context);
+  addGenerateCommand(app, context);
+  addDevicesCommand(app, context);
+  std::string topic;
+  CLI::App* help = app.add_subcommand("help", "what a command does and its options");
+  help->add_option("COMMAND", topic, "the command to explain");
+  help->callback([&] {
+    if (topic.empty()) {
+      // Not app.help(), which would explain the command that runs: this one.
+      fmt::print("{}", app.get_formatter()->make_help(&app, "luciole", CLI::AppFormatMode::Normal));
+      return;
+    }
+    fmt::print("{}", findCommand(app, topic).help());
+  });
+
+  try {
+    if (argument_count > 1 && arguments[1][0] != '-') findCommand(app, arguments[1]);
+    app.parse(argument_count, arguments);
+    return context.status;
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // --help and --version
+  } catch (const CLI::ParseError& error) {
+    return fail(fmt::format("{} (see luciole help)", error.what()), kWrongInput);
+  } catch (const InputError& error) {
+    return fail(error.what(), kWrongInput);
+  } catch (const MachineError& error) {
+    return fail(error.what(), kMachineFailed);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", kMachineFailed);
+  } catch (const std::exception& error) {
+    return fail(fmt::format("internal error: {}", error.what()), kMachineFailed);
+  }
+}

@@ -1,0 +1,186 @@
+#include "cli/picture_options.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "error.hpp"
+#include "image/write_file.hpp"
+#include "scene/json_scene.hpp"
+
+namespace luciole {
+namespace {
+
+const std::map<std::string, Aov> kAovs{{"position", Aov::kPosition}, {"normal", Aov::kNormal},
+                                       {"depth", Aov::kDepth},       {"diffuse", Aov::kDiffuse},
+                                       {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
+                                       {"shadow", Aov::kShadow}};
+
+/// Host and device bytes that a pixel takes while it is rendered: visibility, at most 20 G-buffer planes, colours.
+constexpr double kBytesPerPixel = 130;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+std::vector<Aov> parseAovs(const std::string& text) {
+  std::vector<Aov> aovs;
+  if (text.empty()) return aovs;
+  for (const std::string& name : split(text, ',')) {
+    const auto found = kAovs.find(name);
+    if (found == kAovs.end())
+      throw InputError(fmt::format(
+          "--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, shadow", name));
+    if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
+  }
+  return aovs;
+}
+
+const Camera& findCamera(const Scene& scene, const std::string& wanted) {
+  if (wanted.empty()) return scene.cameras.front();
+  for (const Camera& camera : scene.cameras)
+    if (camera.name == wanted) return camera;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+  if (error == std::errc() && end == wanted.data() + wanted.size() && index < scene.cameras.size())
+    return scene.cameras[index];
+  std::string names;
+  for (const Camera& camera : scene.cameras) names += (names.empty() ? "" : ", ") + camera.name;
+  throw InputError(fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
+                               scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
+                               names.empty() ? "unnamed" : names));
+}
+
+void checkMemory(glm::ivec2 size) {
+  const double needed = kBytesPerPixel * size.x * size.y;
+  const double machine = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  if (needed > 0.9 * machine)
+    throw MachineError(fmt::format("a picture of {}x{} pixels needs about {:.0f} GiB of memory, and the machine has {:.0f}",
+                                   size.x, size.y, needed / (1 << 30), machine / (1 << 30)));
+}
+
+}  // namespace
+
+std::vector<int> parseInts(const std::string& text, char separator, std::size_t count, const std::string& option,
+                           const std::string& expected) {
+  std::vector<int> numbers;
+  for (const std::string& part : split(text, separator)) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (error != std::errc() || end != part.data() + part.size()) break;
+    numbers.push_back(number);
+  }
+  if (numbers.size() != count || split(text, separator).size() != count)
+    throw InputError(fmt::format("{} {}: expected {}", option, text, expected));
+  return numbers;
+}
+
+void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
+  command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")->required();
+  if (groups & kViewOptions) {
+    command.add_option("--size", options.size, "WxH pixels (default: the scene's, or 1280x720)");
+    command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
+    command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
+    command.add_option("--shading", options.shading, "what is interpolated over a triangle: nothing, colours, normals")
+        ->check(CLI::IsMember({"flat", "gouraud", "phong"}))
+        ->capture_default_str();
+  }
+  if (groups & kShadeOptions) {
+    command.add_option("--model", options.model, "the specular lobe: (R.V)^n or (N.H)^n")
+        ->check(CLI::IsMember({"phong", "blinn-phong"}))
+        ->capture_default_str();
+    command.add_option("--culling", options.culling, "which lights a pixel goes through; never changes the picture")
+        ->check(CLI::IsMember({"none", "tiles", "auto"}))
+        ->capture_default_str();
+    command.add_option("--shadows", options.shadows, "how shadow maps are looked up")
+        ->check(CLI::IsMember({"off", "hard", "pcf"}))
+        ->capture_default_str();
+    command.add_option("--aov", options.aovs,
+                       "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,shadow");
+    command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
+  }
+  if ((groups & kViewOptions) && (groups & kShadeOptions))
+    command.add_option("--samples", options.samples, "samples per pixel, against jagged edges")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+  command.add_option("--device", options.device, "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
+  command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
+  command.add_flag("--quiet", options.quiet, "say nothing but errors");
+}
+
+RenderSettings renderSettings(const PictureOptions& options, const Scene& scene) {
+  RenderSettings settings;
+  if (!options.size.empty()) {
+    const std::vector<int> size = parseInts(options.size, 'x', 2, "--size", "WxH, such as 1280x720");
+    settings.size = {size[0], size[1]};
+    checkPictureSize(settings.size, "--size");
+  } else if (scene.size) {
+    settings.size = *scene.size;
+  }
+  settings.camera = findCamera(scene, options.camera);
+  if (!options.crop.empty()) {
+    const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");
+    settings.crop = Crop{crop[0], crop[1], crop[2], crop[3]};
+    checkMemory({crop[2], crop[3]});
+  } else {
+    checkMemory(settings.size);
+  }
+  settings.samples = options.samples;
+  settings.shading = options.shading == "flat"      ? Shading::kFlat
+                     : options.shading == "gouraud" ? Shading::kGouraud
+                                                    : Shading::kPhong;
+  settings.shade.blinn = options.model == "blinn-phong";
+  settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
+  settings.shade.shadows = options.shadows == "off"    ? ShadowMethod::kOff
+                           : options.shadows == "hard" ? ShadowMethod::kHard
+                                                       : ShadowMethod::kPcf;
+  settings.aovs = parseAovs(options.aovs);
+  if (!(std::abs(options.exposure) <= 100)) throw InputError("--exposure: expected stops between -100 and 100");
+  settings.exposure = float(options.exposure);
+  settings.count_lights = !options.stats.empty();
+  return settings;
+}
+
+void checkOutput(const PictureOptions& options) {
+  checkWritable(options.output);
+  if (!parseAovs(options.aovs).empty() && std::filesystem::path(options.output).extension() != ".exr")
+    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  if (!options.stats.empty() && options.stats == options.output)
+    throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+}
+
+Metadata pictureMetadata(const std::string& command_line, const Device* device) {
+  Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", command_line}};
+  if (device)
+    metadata.emplace_back("luciole:device", fmt::format("{}, {}, driver {}, {} lanes", device->description.name,
+                                                        device->description.platform, device->description.version,
+                                                        device->description.lanes));
+  return metadata;
+}
+
+void reportStats(const PictureOptions& options, const Stats& stats) {
+  if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
+  if (options.quiet) return;
+  std::string stages;
+  double total = 0;
+  for (const auto& [name, milliseconds] : stats.stages) {
+    total += milliseconds;
+    if (milliseconds >= 0.5) stages += fmt::format("{}{} {:.0f}", stages.empty() ? "" : ", ", name, milliseconds);
+  }
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {:.0f} ms ({})\n", options.output, stats.width, stats.height,
+             stats.triangles, stats.lights, total, stages);
+}
+
+}  // namespace luciole

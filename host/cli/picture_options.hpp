@@ -1,0 +1,51 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "cl/device.hpp"
+#include "image/image.hpp"
+#include "render/render.hpp"
+
+namespace luciole {
+
+/// The options that the picture commands share, as typed.
+struct PictureOptions {
+  std::string output;
+  std::string size;
+  std::string camera;
+  int samples = 1;
+  std::string crop;
+  std::string shading = "phong";
+  std::string model = "phong";
+  std::string culling = "auto";
+  std::string shadows = "pcf";
+  std::string aovs;
+  double exposure = 0;
+  std::string device;
+  std::string stats;
+  bool quiet = false;
+};
+
+/// Which of them a command takes.
+enum OptionGroup : unsigned { kViewOptions = 1, kShadeOptions = 2 };
+void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
+
+/// Turns them into settings for this scene: the picture's size from --size, the scene or 1280x720; the camera by name or
+/// index. Throws InputError naming the option.
+RenderSettings renderSettings(const PictureOptions& options, const Scene& scene);
+
+/// Checks what can be checked of the output before any work is done: extension, folder, layers. Throws InputError.
+void checkOutput(const PictureOptions& options);
+
+/// Text attributes for the picture: software, command and device.
+Metadata pictureMetadata(const std::string& command_line, const Device* device);
+
+/// Writes --stats, if asked for, and unless --quiet one line on standard error that says what was made and what it cost.
+void reportStats(const PictureOptions& options, const Stats& stats);
+
+/// Parses "a<separator>b…" into exactly `count` whole numbers. Throws InputError naming `option`.
+std::vector<int> parseInts(const std::string& text, char separator, std::size_t count, const std::string& option,
+                           const std::string& expected);
+
+}  // namespace luciole

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "image/image.hpp"
+
+namespace luciole {
+
+/// How B differs from A, over all pixels and colour channels, in linear units unless said otherwise.
+/// Equal values, infinities of one sign and NaN with NaN among them, differ by 0. Values of which one is not
+/// finite and the other isn't the same count in `nonfinite` and as an infinite difference in max_abs, the
+/// percentiles and `over`; means leave them out.
+struct ImageDifference {
+  double max_abs = 0;
+  double mean_abs = 0;
+  double mean_signed = 0;  ///< mean of B − A: a bias hides from every other figure
+  double rmse = 0;
+  double psnr = 0;     ///< dB, peak 1; infinite for equal pictures
+  double relmse = 0;   ///< mean of (B − A)² / (A² + 10⁻²)
+  double p99_abs = 0;  ///< over pixels, of the largest difference of a pixel's channels: the smallest d such
+                       ///< that 99 % of the pixels differ by at most d
+  double p999_abs = 0;
+  std::uint64_t nonfinite =
+      0;  ///< values that are NaN or infinite in one picture and not the same in the other
+  std::array<std::uint64_t, 3> over{};  ///< pixels with any channel differing by more than kOverLimits[i]
+  std::array<int, 2> worst_pixel{};     ///< x, y of max_abs
+};
+/// Half, one and four 8-bit steps of a linear [0,1] range.
+inline constexpr std::array<double, 3> kOverLimits{0.5 / 255, 1.0 / 255, 4.0 / 255};
+
+/// Compares the channels both pictures have under the same names (R, G, B for pictures), except A, the
+/// coverage; sizes must be equal. Throws InputError when sizes or channels don't match.
+ImageDifference compareImages(const Image& a, const Image& b);
+
+/// |B − A| × gain of the same channels as a picture to look at; +inf where only one is not finite.
+/// Throws as compareImages does.
+Image differencePicture(const Image& a, const Image& b, float gain);
+
+}  // namespace luciole

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace luciole {
+
+/// A picture in memory: linear float, row-major, channels interleaved, pixel (0,0) top left.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::string> channels;  ///< names as EXR has them: "R", "G", "B", "normal.X" …
+  std::vector<float> pixels;          ///< width × height × channels.size()
+};
+
+/// Text attributes to store with a picture, by the names OpenImageIO gives them ("Software",
+/// "ImageDescription" …).
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+/// Reads any picture OpenImageIO reads; 8- and 16-bit integer files are taken as sRGB and linearized (alpha
+/// apart), unless the file says that it is linear. Colours are as the file has them: never multiplied or
+/// divided by alpha. Sizes are checked before anything is allocated. Throws InputError.
+Image readImage(const std::string& path);
+
+/// Writes by the extension. Integer formats (png, tga, jpg, bmp, ppm) take the R, G, B channels (and A: png,
+/// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B.
+/// The file appears whole or not at all (written beside, then renamed). "-" writes a PNG to standard output.
+/// Throws InputError (unknown extension, no such folder, read-only folder) or MachineError (disk full).
+void writeImage(const Image& image, const std::string& path, const Metadata& metadata);
+
+/// Throws the InputError that writing to `path` would meet, before any work is done: an unknown extension, a
+/// folder that isn't there or can't be written to, a folder in the file's place.
+void checkWritable(const std::string& path);
+
+}  // namespace luciole

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+// What the sources of this folder share of OpenImageIO. Nothing outside the folder includes this.
+namespace luciole {
+
+/// A nameless file in memory that any library can open by its path. Formats OpenImageIO can't read from or
+/// write to memory work through it, and what a disk does to a write is seen here, not by codecs of which some
+/// end the program.
+class MemoryFile {
+ public:
+  MemoryFile();  ///< throws MachineError
+  explicit MemoryFile(std::span<const std::byte> content);
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::string path() const;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+/// An OpenImageIO message as one line.
+std::string oneLine(std::string message);
+
+/// Opens the first picture of a file whose colours are not to be multiplied by its alpha, and checks its size
+/// (65536 pixels a side, 2³¹ values, no more than a file of its length can hold) before anything is
+/// allocated. `name` is for messages. Throws InputError.
+std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std::string& name);
+
+/// Reads the open picture as `type` into `values`, width × height × channels of them. Throws InputError.
+void readValues(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, void* values);
+
+/// Whether colours are stored as linear light: float formats, and integer ones that say so.
+bool isLinear(const OIIO::ImageSpec& spec);
+
+/// How a file of some extension stores pictures.
+struct FileFormat {
+  const char* extension;  ///< in lower case, without the dot
+  bool is_float;
+  int max_channels;  ///< 3: R G B; 4: and A; more: any channels under any names
+};
+
+/// The format of a file to write, by its extension; PNG for "-". Throws InputError for an unknown one.
+const FileFormat& outputFormat(const std::string& path);
+
+/// Puts a finished file at its path, whole or not at all, or on standard output for "-". Throws InputError
+/// (no such folder, read-only folder) or MachineError (disk full).
+void deliver(const MemoryFile& file, const std::string& path);
+
+/// Encodes the pixels and puts the file in place, whole or not at all; "-" is standard output.
+/// Throws as writeImage does.
+void writePicture(const std::string& path, const OIIO::ImageSpec& spec, const void* values);
+
+}  // namespace luciole

@@ -1,0 +1,95 @@
+#include "image/read_texture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "error.hpp"
+#include "image/build_mips.hpp"
+#include "image/oiio.hpp"
+#include "image/srgb.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr int kNone = -1;
+
+/// Where R, G, B and A of a texel lie in a pixel of the file; A may be kNone.
+std::array<int, 4> channelPlaces(const OIIO::ImageSpec& spec, const std::string& name) {
+  const int alpha = spec.alpha_channel;
+  const auto place = [&](const char* channel) { return spec.channelindex(channel); };
+  if (place("R") >= 0 && place("G") >= 0 && place("B") >= 0)
+    return {place("R"), place("G"), place("B"), alpha};
+  std::vector<int> colors;
+  for (int i = 0; i < spec.nchannels; ++i) {
+    if (i != alpha) colors.push_back(i);
+  }
+  if (colors.size() == 1) return {colors[0], colors[0], colors[0], alpha};
+  if (colors.size() >= 3) return {colors[0], colors[1], colors[2], alpha};
+  throw InputError(fmt::format("{}: channels '{}', expected grey or R G B, and A", name,
+                               fmt::join(spec.channelnames, " ")));
+}
+
+std::uint16_t toCode(float unit) { return std::uint16_t(unit * 65535.0f + 0.5f); }
+float clampUnit(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
+
+/// Float pictures, and integer ones that say they are linear.
+std::vector<std::uint16_t> texelsOfLinear(OIIO::ImageInput& input, const std::string& name,
+                                          const std::array<int, 4>& places) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const std::size_t pixels = std::size_t(spec.width) * spec.height;
+  std::vector<float> values(pixels * spec.nchannels);
+  readValues(input, name, OIIO::TypeDesc::FLOAT, values.data());
+  const bool multiplied = places[3] != kNone && !spec.get_int_attribute("oiio:UnassociatedAlpha");
+  std::vector<std::uint16_t> texels(pixels * 4);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const float* value = &values[p * spec.nchannels];
+    const float alpha = places[3] == kNone ? 1.0f : clampUnit(value[places[3]]);
+    const float scale = multiplied && alpha > 0.0f ? 1.0f / alpha : 1.0f;
+    for (int c = 0; c < 3; ++c) texels[p * 4 + c] = toCode(encodeSrgb(value[places[c]] * scale));
+    texels[p * 4 + 3] = toCode(alpha);
+  }
+  return texels;
+}
+
+std::vector<std::uint16_t> texelsOfCodes(OIIO::ImageInput& input, const std::string& name,
+                                         const std::array<int, 4>& places) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const std::size_t pixels = std::size_t(spec.width) * spec.height;
+  std::vector<std::uint16_t> values(pixels * spec.nchannels);
+  readValues(input, name, OIIO::TypeDesc::UINT16, values.data());
+  if (spec.nchannels == 4 && places == std::array<int, 4>{0, 1, 2, 3}) return values;
+  std::vector<std::uint16_t> texels(pixels * 4);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const std::uint16_t* value = &values[p * spec.nchannels];
+    for (int c = 0; c < 4; ++c) texels[p * 4 + c] = places[c] == kNone ? 65535 : value[places[c]];
+  }
+  return texels;
+}
+
+Texture read(const std::string& path, const std::string& name) {
+  const auto input = openPicture(path, name);
+  const OIIO::ImageSpec& spec = input->spec();
+  const std::array<int, 4> places = channelPlaces(spec, name);
+  const bool linear = isLinear(spec);
+  MipLevel finest{spec.width, spec.height, {}};
+  finest.texels = linear ? texelsOfLinear(*input, name, places) : texelsOfCodes(*input, name, places);
+  Texture texture{name, {}};
+  texture.levels.push_back(std::move(finest));
+  buildMips(texture);
+  return texture;
+}
+
+}  // namespace
+
+Texture readTexture(const std::string& path) { return read(path, path); }
+
+Texture readTexture(std::span<const std::byte> file, const std::string& name) {
+  const MemoryFile in_memory(file);
+  return read(in_memory.path(), name);
+}
+
+}  // namespace luciole

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace luciole {
+
+/// The transfer function of IEC 61966-2-1, both ways. Decoding takes a code in [0,1].
+inline double decodeSrgb(double code) {
+  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
+}
+/// Clamps to [0,1]; NaN gives 0.
+inline float encodeSrgb(float linear) {
+  if (!(linear > 0.0f)) return 0.0f;
+  if (linear >= 1.0f) return 1.0f;
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+/// Linear values of all 65536 codes of 16 bits. An 8-bit code c is the 16-bit code 257 c.
+const std::vector<float>& linearOfSrgb16();
+
+}  // namespace luciole

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "raster/setup.hpp"
+#include "raster/view.hpp"
+
+namespace luciole {
+
+constexpr int kBinSize = 64;  ///< pixels a side
+
+/// For every square of kBinSize² pixels that the crop touches, the triangles whose bounding boxes touch it,
+/// in order. Bins are aligned to the whole picture, so that a crop only takes some of them.
+struct Bins {
+  glm::ivec2 first;                      ///< bin of the whole picture: the top left one here
+  glm::ivec2 count;                      ///< columns and rows
+  std::vector<std::size_t> starts;       ///< of each bin's list, row by row, and the end of the last
+  std::vector<std::uint32_t> triangles;  ///< indices into the triangles given
+
+  int size() const { return count.x * count.y; }
+  glm::ivec2 origin(int bin) const { return (first + glm::ivec2(bin % count.x, bin / count.x)) * kBinSize; }
+  std::span<const std::uint32_t> list(int bin) const {
+    return std::span(triangles).subspan(starts[bin], starts[bin + 1] - starts[bin]);
+  }
+};
+
+Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view);
+
+}  // namespace luciole

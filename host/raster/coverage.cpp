@@ -1,0 +1,151 @@
+#include "raster/coverage.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+namespace luciole {
+namespace {
+
+constexpr int kLanes = 16;  ///< pixels that are drawn side by side; a row of one holds several such groups
+
+/// Three functions, each ≥ 0 at the samples on the inner side of an edge, those on the edge itself only where
+/// it is a left or a top edge, so that triangles sharing the edge never both cover a sample (Pineda, "A
+/// parallel algorithm for polygon rasterization", 1988).
+///
+/// E(x, y) = dx · (y − y_a) − dy · (x − x_a) in 1/256 pixel needs 46 bits. But from one sample to another it
+/// changes by multiples of 256, so E ≥ 0 exactly if ⌊E / 256⌋ ≥ 0 there, and that changes by dx and dy. Both
+/// are at most 2²³ inside the guard band, so within a bin of 64 pixels by less than 2³⁰; a value beyond ±2³⁰
+/// at the bin's origin keeps its sign all over the bin and can as well be ±2³⁰. So 32 bits are enough, for a
+/// triangle of any size.
+struct EdgeFunctions {
+  std::int32_t origin[3];  ///< at the bin's first sample
+  std::int32_t step_x[3];
+  std::int32_t step_y[3];
+};
+
+EdgeFunctions edgeFunctions(const RasterTriangle& triangle, glm::ivec2 bin_origin) {
+  EdgeFunctions edges;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1;
+    const std::int32_t dx = triangle.x[j] - triangle.x[i];
+    const std::int32_t dy = triangle.y[j] - triangle.y[i];
+    const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
+    const std::int64_t value = std::int64_t(dx) * (bin_origin.y * kSubpixels - triangle.y[i]) -
+                               std::int64_t(dy) * (bin_origin.x * kSubpixels - triangle.x[i]) -
+                               (left_or_top ? 0 : 1);
+    constexpr std::int64_t kFar = std::int64_t(1) << 30;
+    edges.origin[i] = std::int32_t(std::clamp(value >> kSubpixelBits, -kFar, kFar));
+    edges.step_x[i] = -dy;
+    edges.step_y[i] = dx;
+  }
+  return edges;
+}
+
+/// The pixels of a bin that one triangle is drawn to.
+struct Target {
+  const RasterTriangle& triangle;
+  EdgeFunctions edges;
+  glm::ivec2 bin_origin;
+
+  /// The edge functions at the first pixel of a group.
+  std::array<std::int32_t, 3> edgesAt(int x, int y) const {
+    return {edges.origin[0] + edges.step_x[0] * x + edges.step_y[0] * y,
+            edges.origin[1] + edges.step_x[1] * x + edges.step_y[1] * y,
+            edges.origin[2] + edges.step_x[2] * x + edges.step_y[2] * y};
+  }
+  /// The depth there; the pixels of a group add float steps to it, which their nearness keeps exact enough.
+  float depthAt(int x, int y) const {
+    return float(triangle.depth + triangle.depth_dx * (bin_origin.x + x) +
+                 triangle.depth_dy * (bin_origin.y + y));
+  }
+};
+
+/// Draws an opaque triangle to a box of the bin's pixels; returns whether it covers a sample.
+template <bool kWithTriangle>
+bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
+  const float step = float(target.triangle.depth_dx);
+  const float low = target.triangle.depth_low;
+  const float high = target.triangle.depth_high;
+  const std::uint32_t number = target.triangle.triangle;
+  const std::int32_t* step_x = target.edges.step_x;
+  std::int32_t covered = 0;
+  for (int y = box.first.y; y <= box.last.y; ++y) {
+    for (int x = box.first.x / kLanes * kLanes; x <= box.last.x; x += kLanes) {
+      const auto [e0, e1, e2] = target.edgesAt(x, y);
+      const float start = target.depthAt(x, y);
+      float* depth = pixels.depth.data() + y * kBinSize + x;
+      std::uint32_t* triangle = pixels.triangle.data() + y * kBinSize + x;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const std::int32_t inside =
+            ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
+        const float z = std::min(std::max(start + step * float(lane), low), high);
+        const bool seen = inside & std::int32_t(z > depth[lane]);
+        covered |= inside;
+        depth[lane] = seen ? z : depth[lane];
+        if (kWithTriangle) triangle[lane] = seen ? number : triangle[lane];
+      }
+    }
+  }
+  return covered != 0;
+}
+
+/// The same for a triangle with holes, pixel by pixel.
+template <bool kWithTriangle>
+bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes, BinPixels& pixels) {
+  const Surface surface = makeSurface(holes.scene, holes.geometry, target.triangle.triangle, holes.plane);
+  const float step = float(target.triangle.depth_dx);
+  bool covered = false;
+  for (int y = box.first.y; y <= box.last.y; ++y) {
+    for (int x = box.first.x; x <= box.last.x; ++x) {
+      const auto [e0, e1, e2] = target.edgesAt(x, y);
+      if ((e0 | e1 | e2) < 0) continue;
+      covered = true;
+      const int lane = x % kLanes;
+      const float z =
+          std::min(std::max(target.depthAt(x - lane, y) + step * float(lane), target.triangle.depth_low),
+                   target.triangle.depth_high);
+      const int i = y * kBinSize + x;
+      if (!(z > pixels.depth[i])) continue;
+      if (isHole(holes.scene, holes.varying_alpha, surface, holes.plane, target.bin_origin.x + x,
+                 target.bin_origin.y + y))
+        continue;
+      pixels.depth[i] = z;
+      if (kWithTriangle) pixels.triangle[i] = target.triangle.triangle;
+    }
+  }
+  return covered;
+}
+
+template <bool kWithTriangle>
+void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
+          std::span<std::uint8_t> covering, BinPixels& pixels) {
+  pixels.depth.fill(0.0f);
+  if (kWithTriangle) pixels.triangle.fill(kNoTriangle);
+  const glm::ivec2 origin = bins.origin(bin);
+  for (const std::uint32_t index : bins.list(bin)) {
+    const RasterTriangle& triangle = triangles[index];
+    const PixelBox whole = pixelBox(triangle);
+    const PixelBox box{glm::max(whole.first - origin, glm::ivec2(0)),
+                       glm::min(whole.last - origin, glm::ivec2(kBinSize - 1))};
+    const Target target{triangle, edgeFunctions(triangle, origin), origin};
+    const bool covered = triangle.masked ? drawMasked<kWithTriangle>(target, box, holes, pixels)
+                                         : drawOpaque<kWithTriangle>(target, box, pixels);
+    // Several bins may say so at once.
+    if (kWithTriangle && covered)
+      std::atomic_ref(covering[triangle.triangle]).store(1, std::memory_order_relaxed);
+  }
+}
+
+}  // namespace
+
+void drawBin(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
+             std::span<std::uint8_t> covering, BinPixels& pixels) {
+  draw<true>(triangles, bins, bin, holes, covering, pixels);
+}
+
+void drawBinDepth(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
+                  BinPixels& pixels) {
+  draw<false>(triangles, bins, bin, holes, {}, pixels);
+}
+
+}  // namespace luciole

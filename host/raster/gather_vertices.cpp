@@ -1,0 +1,73 @@
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+#include "raster/geometry.hpp"
+#include "raster/planes.hpp"
+#include "raster/rasterize.hpp"
+
+namespace luciole {
+namespace {
+
+/// For each vertex of an object, the material of the first triangle that uses it; null where none does.
+std::vector<const Material*> vertexMaterials(const Scene& scene, const PlacedObject& object) {
+  std::vector<const Material*> materials(object.mesh->positions.size());
+  for (std::uint32_t i = 0; i < object.mesh->triangles.size(); ++i) {
+    const glm::uvec3& corners = object.mesh->triangles[i];
+    for (int corner = 0; corner < 3; ++corner) {
+      const Material*& material = materials[corners[corner]];
+      if (!material) material = &materialOf(scene, object, i);
+    }
+  }
+  return materials;
+}
+
+void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Material& material,
+                  bool perspective, GBuffer& gbuffer) {
+  const Mesh& mesh = *object.mesh;
+  const glm::dvec3 position(object.object_to_view * glm::dvec4(mesh.positions[vertex], 1.0));
+  const glm::dvec3 sum = object.normal_to_view * glm::dvec3(mesh.normals[vertex]);
+  const double length = glm::length(sum);
+  glm::dvec3 normal = length > 0.0 && std::isfinite(length) ? sum / length : glm::dvec3(0.0, 0.0, 1.0);
+  if (material.double_sided && !eyeInFront(normal, position, perspective)) normal = -normal;
+  const glm::vec3 color = mesh.colors.empty() ? glm::vec3(1.0f) : glm::vec3(mesh.colors[vertex]);
+
+  const std::size_t place = object.first_vertex + vertex;
+  const std::size_t stride = gbuffer.pixels();
+  storePixel(glm::vec3(position), place, stride, gbuffer.position);
+  storePixel(glm::vec3(normal), place, stride, gbuffer.normal);
+  storePixel(material.diffuse * color, place, stride, gbuffer.diffuse);
+  if (!gbuffer.ambient.empty()) storePixel(material.ambient * color, place, stride, gbuffer.ambient);
+  if (!gbuffer.emission.empty()) storePixel(material.emission, place, stride, gbuffer.emission);
+  if (!gbuffer.specular.empty()) {
+    storePixel(material.specular, place, stride, gbuffer.specular);
+    gbuffer.specular[3 * stride + place] = material.shininess;
+  }
+}
+
+}  // namespace
+
+GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                       PlaneSet planes) {
+  const std::vector<PlacedObject> placed = placeObjects(scene, objects, view.world_to_view);
+  const std::size_t vertices =
+      placed.empty() ? 0 : placed.back().first_vertex + placed.back().mesh->positions.size();
+  GBuffer gbuffer;
+  gbuffer.tiles_x = int((vertices + kTilePixels - 1) / kTilePixels);
+  gbuffer.tiles_y = 1;
+  gbuffer.width = gbuffer.tiles_x * kTileSize;
+  gbuffer.height = kTileSize;
+  gbuffer.camera = viewCamera(view);
+  gbuffer.picture_size = {gbuffer.width, gbuffer.height};
+  allocatePlanes(planes, gbuffer);
+  tbb::parallel_for(std::size_t(0), placed.size(), [&](std::size_t i) {
+    const PlacedObject& object = placed[i];
+    const std::vector<const Material*> materials = vertexMaterials(scene, object);
+    for (std::uint32_t vertex = 0; vertex < materials.size(); ++vertex)
+      if (materials[vertex]) gatherVertex(object, vertex, *materials[vertex], isPerspective(view), gbuffer);
+  });
+  return gbuffer;
+}
+
+}  // namespace luciole

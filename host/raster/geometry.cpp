@@ -1,0 +1,118 @@
+#include "raster/geometry.hpp"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+#include "error.hpp"
+#include "raster/clip.hpp"
+
+namespace luciole {
+namespace {
+
+/// The matrix that carries normals: the inverse transpose times the absolute determinant (its cofactors),
+/// which a matrix that flattens the object has too.
+glm::dmat3 normalMatrix(const glm::dmat3& m, double determinant) {
+  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return determinant < 0.0 ? -cofactors : cofactors;
+}
+
+void transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume, std::size_t i,
+                     Geometry& geometry) {
+  const glm::dvec4 clip = view.projection * glm::dvec4(position, 1.0);
+  unsigned place = 0;
+  if (clip.z > clip.w) place |= kBehindNear;
+  if (clip.z < 0.0) place |= kBeyondFar;
+  if (clip.x < -clip.w) place |= kLeftOf;
+  if (clip.x > clip.w) place |= kRightOf;
+  if (clip.y < -clip.w) place |= kBelow;
+  if (clip.y > clip.w) place |= kAbove;
+  if (std::abs(clip.x) > volume.guard.x * clip.w || std::abs(clip.y) > volume.guard.y * clip.w)
+    place |= kOutsideGuard;
+  const double largest = std::abs(position.x) + std::abs(position.y) + std::abs(position.z);
+  if (!(largest <= std::numeric_limits<float>::max()) || !std::isfinite(clip.x + clip.y + clip.z + clip.w))
+    place |= kUnusable;
+  geometry.positions[i] = position;
+  geometry.screen[i] = toScreen(clip, view);
+  geometry.places[i] = std::uint16_t(place);
+}
+
+}  // namespace
+
+ScreenVertex toScreen(const glm::dvec4& clip, const View& view) {
+  const double inverse_w = 1.0 / clip.w;
+  return {(0.5 + 0.5 * (clip.x * inverse_w)) * view.size.x - view.sample.x,
+          (0.5 - 0.5 * (clip.y * inverse_w)) * view.size.y - view.sample.y, clip.z * inverse_w};
+}
+
+std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
+                                       const glm::dmat4& world_to_view) {
+  std::vector<PlacedObject> placed;
+  placed.reserve(objects.size());
+  std::size_t vertices = 0;
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t index : objects) {
+    const Object& object = scene.objects[index];
+    const Mesh& mesh = scene.meshes[object.mesh];
+    PlacedObject& place = placed.emplace_back();
+    place.mesh = &mesh;
+    place.material = object.material;
+    place.first_vertex = vertices;
+    place.first_triangle = std::uint32_t(triangles);
+    // The product in double first: far from the origin the translations cancel here, before positions are
+    // rounded.
+    place.object_to_view = world_to_view * object.object_to_world;
+    const double determinant = glm::determinant(glm::dmat3(place.object_to_view));
+    place.mirrored = determinant < 0.0;
+    place.normal_to_view = normalMatrix(glm::dmat3(place.object_to_view), determinant);
+    vertices += mesh.positions.size();
+    triangles += mesh.triangles.size();
+    if (triangles >= kNoTriangle)
+      throw InputError(fmt::format("{}: objects: {} triangles or more, expected fewer than {}", scene.name,
+                                   triangles, kNoTriangle));
+  }
+  return placed;
+}
+
+Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view) {
+  Geometry geometry;
+  geometry.objects = placeObjects(scene, objects, view.world_to_view);
+  std::size_t vertices = 0;
+  if (!geometry.objects.empty()) {
+    const PlacedObject& last = geometry.objects.back();
+    vertices = last.first_vertex + last.mesh->positions.size();
+    geometry.triangle_count = last.first_triangle + std::uint32_t(last.mesh->triangles.size());
+  }
+  geometry.positions.resize(vertices);
+  geometry.screen.resize(vertices);
+  geometry.places.resize(vertices);
+  const ClipVolume volume = clipVolume(view);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices, 4096), [&](const auto& range) {
+    std::size_t i = range.begin();
+    auto object = std::upper_bound(geometry.objects.begin(), geometry.objects.end(), i,
+                                   [](std::size_t v, const PlacedObject& o) { return v < o.first_vertex; }) -
+                  1;
+    for (; i < range.end(); ++object) {
+      const std::vector<glm::vec3>& positions = object->mesh->positions;
+      const std::size_t end = std::min(range.end(), object->first_vertex + positions.size());
+      for (; i < end; ++i) {
+        const glm::dvec3 position(object->object_to_view *
+                                  glm::dvec4(positions[i - object->first_vertex], 1.0));
+        transformVertex(position, view, volume, i, geometry);
+      }
+    }
+  });
+  return geometry;
+}
+
+const PlacedObject& objectOfTriangle(const Geometry& geometry, std::uint32_t triangle) {
+  return *(std::upper_bound(
+               geometry.objects.begin(), geometry.objects.end(), triangle,
+               [](std::uint32_t t, const PlacedObject& object) { return t < object.first_triangle; }) -
+           1);
+}
+
+}  // namespace luciole

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "raster/view.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// An object among those to draw. Vertices and triangles are numbered through all of them, in order.
+struct PlacedObject {
+  const Mesh* mesh = nullptr;
+  int material = -1;  ///< as in Object
+  std::size_t first_vertex = 0;
+  std::uint32_t first_triangle = 0;
+  bool mirrored = false;  ///< its transform turns counter-clockwise triangles clockwise
+  glm::dmat4 object_to_view{1.0};
+  glm::dmat3 normal_to_view{1.0};  ///< gives the direction, not the length
+};
+
+/// In the place of a triangle's number: none.
+constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+
+/// Throws InputError where triangles are more than a 32-bit number can tell apart.
+std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
+                                       const glm::dmat4& world_to_view);
+
+/// A vertex on the picture: pixels from the sample of the whole picture's pixel (0,0), x right, y down;
+/// reversed depth.
+struct ScreenVertex {
+  double x;
+  double y;
+  double depth;
+};
+
+/// Where a vertex lies.
+enum VertexPlace : std::uint16_t {
+  kBehindNear = 1,
+  kBeyondFar = 2,
+  kLeftOf = 4,
+  kRightOf = 8,
+  kBelow = 16,
+  kAbove = 32,
+  kOutsideVolume = 63,  ///< any of the above
+  kOutsideGuard = 64,   ///< see clip.hpp
+  kUnusable = 128,      ///< not finite, or not so as a float
+};
+
+/// All vertices of the objects to draw, seen by a view.
+struct Geometry {
+  std::vector<PlacedObject> objects;
+  std::uint32_t triangle_count = 0;
+  std::vector<glm::dvec3> positions;  ///< view space
+  std::vector<ScreenVertex> screen;   ///< meaningless behind the near plane
+  std::vector<std::uint16_t> places;  ///< VertexPlace bits
+};
+
+/// Perspective division and viewport; w > 0.
+ScreenVertex toScreen(const glm::dvec4& clip, const View& view);
+
+Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view);
+
+/// The object that a triangle belongs to, by the triangle's number among all.
+const PlacedObject& objectOfTriangle(const Geometry& geometry, std::uint32_t triangle);
+
+/// The material of a mesh's triangle.
+inline const Material& materialOf(const Scene& scene, const PlacedObject& object, std::uint32_t in_mesh) {
+  return scene.materials[object.material >= 0 ? std::uint32_t(object.material)
+                                              : object.mesh->triangle_materials[in_mesh]];
+}
+
+/// Whether the eye of a view lies on the side of a plane that its normal points to; `point` lies in the
+/// plane. It holds for triangles that reach behind the eye too (the homogeneous test of Olano and Greer,
+/// "Triangle scan conversion using 2D homogeneous coordinates", 1997, in view space).
+inline bool eyeInFront(const glm::dvec3& normal, const glm::dvec3& point, bool perspective) {
+  return perspective ? glm::dot(normal, point) < 0.0 : normal.z > 0.0;
+}
+
+inline bool isPerspective(const View& view) { return view.projection[2][3] != 0.0; }
+
+}  // namespace luciole

@@ -1,0 +1,48 @@
+#include "raster/opacity.hpp"
+
+#include "image/srgb.hpp"
+
+namespace luciole {
+namespace {
+
+bool alphaVaries(const Texture& texture) {
+  const std::vector<std::uint16_t>& texels = texture.levels[0].texels;
+  for (std::size_t i = 3; i < texels.size(); i += 4)
+    if (texels[i] != texels[3]) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<bool> findVaryingAlpha(const Scene& scene) {
+  std::vector<bool> varying(scene.textures.size());
+  for (const Material& material : scene.materials) {
+    if (material.alpha_cutoff == 0.0f) continue;
+    for (const int map : {material.diffuse_map.texture, material.alpha_map.texture})
+      if (map >= 0 && !varying[map]) varying[map] = alphaVaries(scene.textures[map]);
+  }
+  return varying;
+}
+
+bool isHole(const Scene& scene, const std::vector<bool>& varying_alpha, const Surface& surface,
+            const ViewPlane& plane, int x, int y) {
+  const Material& material = *surface.material;
+  const Weights weights = weightsInside(surface, plane.at(x, y));
+  float opacity = material.alpha * vertexColor(surface, weights).a;
+  const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;
+  if (textured && !surface.object->mesh->uvs.empty()) {
+    const TexturePlace place = texturePlace(surface, plane, x, y, weights);
+    const int diffuse = material.diffuse_map.texture;
+    if (diffuse >= 0)
+      opacity *= varying_alpha[diffuse] ? lookUp(scene, material.diffuse_map, place).a
+                                        : scene.textures[diffuse].levels[0].texels[3] / 65535.0f;
+    if (material.alpha_map.texture >= 0) {
+      const glm::vec4 map = lookUp(scene, material.alpha_map, place);
+      // An opacity map in grey is a picture of numbers: its codes count, not the light they would stand for.
+      opacity *= varying_alpha[material.alpha_map.texture] ? map.a : encodeSrgb(map.r);
+    }
+  }
+  return opacity < material.alpha_cutoff;
+}
+
+}  // namespace luciole

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "raster/surface.hpp"
+
+namespace luciole {
+
+/// For every texture, whether its alpha differs between texels. Looked at only for the maps of materials with
+/// holes: the others read as false.
+std::vector<bool> findVaryingAlpha(const Scene& scene);
+
+/// Whether the surface has a hole where the pixel looks. Its material's alpha_cutoff is > 0.
+bool isHole(const Scene& scene, const std::vector<bool>& varying_alpha, const Surface& surface,
+            const ViewPlane& plane, int x, int y);
+
+}  // namespace luciole

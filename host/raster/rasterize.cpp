@@ -1,0 +1,106 @@
+#include "raster/rasterize.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "error.hpp"
+#include "raster/bins.hpp"
+#include "raster/clip.hpp"
+#include "raster/coverage.hpp"
+#include "raster/planes.hpp"
+#include "raster/resolve.hpp"
+#include "raster/setup.hpp"
+
+namespace luciole {
+namespace {
+
+void checkView(const View& view) {
+  constexpr int kLargest = 2 * kGuardPixels;
+  const auto& [size, origin, crop] = std::tie(view.size, view.crop_origin, view.crop_size);
+  if (size.x < 1 || size.y < 1 || size.x > kLargest || size.y > kLargest)
+    throw InputError(
+        fmt::format("size: a picture of {}x{} pixels, expected 1 to {} a side", size.x, size.y, kLargest));
+  if (origin.x < 0 || origin.y < 0 || crop.x < 1 || crop.y < 1 || crop.x > size.x - origin.x ||
+      crop.y > size.y - origin.y)
+    throw InputError(fmt::format("crop: {}x{} pixels at {},{}, expected a part of the picture of {}x{}",
+                                 crop.x, crop.y, origin.x, origin.y, size.x, size.y));
+}
+
+GBuffer emptyGBuffer(const View& view, PlaneSet planes) {
+  GBuffer gbuffer;
+  gbuffer.width = view.crop_size.x;
+  gbuffer.height = view.crop_size.y;
+  gbuffer.tiles_x = (gbuffer.width + kTileSize - 1) / kTileSize;
+  gbuffer.tiles_y = (gbuffer.height + kTileSize - 1) / kTileSize;
+  gbuffer.camera = viewCamera(view);
+  gbuffer.picture_size = view.size;
+  gbuffer.crop_origin = view.crop_origin;
+  allocatePlanes(planes, gbuffer);
+  return gbuffer;
+}
+
+}  // namespace
+
+GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                  Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors,
+                  RasterCounts* counts) {
+  checkView(view);
+  const Geometry geometry = transformObjects(scene, objects, view);
+  const RasterSetup setup = setupTriangles(scene, geometry, view, FaceCulling::kBackFaces);
+  const Bins bins = binTriangles(setup.triangles, view);
+
+  const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
+  planes.emission |= lit_vertices;
+  GBuffer gbuffer = emptyGBuffer(view, planes);
+  const ViewPlane plane = viewPlane(view);
+  const std::vector<bool> varying_alpha = findVaryingAlpha(scene);
+  const HoleTest holes{scene, geometry, plane, varying_alpha};
+  const ResolveInput input{scene, geometry, plane, shading, vertex_colors};
+  std::vector<std::uint8_t> covering(geometry.triangle_count);
+  tbb::parallel_for(0, bins.size(), [&](int bin) {
+    if (bins.list(bin).empty()) return;
+    BinPixels pixels;
+    drawBin(setup.triangles, bins, bin, holes, covering, pixels);
+    resolveBin(input, pixels, bins.origin(bin), gbuffer);
+  });
+
+  if (counts) {
+    const auto covered = std::uint64_t(std::count(covering.begin(), covering.end(), 1));
+    *counts = {geometry.triangle_count, setup.back_facing,
+               geometry.triangle_count - setup.back_facing - covered};
+  }
+  return gbuffer;
+}
+
+DepthMap rasterizeDepth(const Scene& scene, std::span<const std::uint32_t> objects, const View& view) {
+  checkView(view);
+  const Geometry geometry = transformObjects(scene, objects, view);
+  const RasterSetup setup = setupTriangles(scene, geometry, view, FaceCulling::kNone);
+  const Bins bins = binTriangles(setup.triangles, view);
+
+  DepthMap map{view.crop_size.x, view.crop_size.y, {}};
+  map.depth.resize(std::size_t(map.width) * map.height);
+  const ViewPlane plane = viewPlane(view);
+  const std::vector<bool> varying_alpha = findVaryingAlpha(scene);
+  const HoleTest holes{scene, geometry, plane, varying_alpha};
+  tbb::parallel_for(0, bins.size(), [&](int bin) {
+    if (bins.list(bin).empty()) return;
+    BinPixels pixels;
+    drawBinDepth(setup.triangles, bins, bin, holes, pixels);
+    const glm::ivec2 origin = bins.origin(bin);
+    const glm::ivec2 first = glm::max(origin, view.crop_origin);
+    const glm::ivec2 end = glm::min(origin + kBinSize, view.crop_origin + view.crop_size);
+    for (int y = first.y; y < end.y; ++y) {
+      const float* row = pixels.depth.data() + (y - origin.y) * kBinSize;
+      std::copy(row + (first.x - origin.x), row + (end.x - origin.x),
+                map.depth.begin() + std::ptrdiff_t(y - view.crop_origin.y) * map.width +
+                    (first.x - view.crop_origin.x));
+    }
+  });
+  return map;
+}
+
+}  // namespace luciole

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+#include "raster/coverage.hpp"
+#include "raster/gbuffer.hpp"
+#include "raster/rasterize.hpp"
+
+namespace luciole {
+
+/// What a picture's pixels are made of.
+struct ResolveInput {
+  const Scene& scene;
+  const Geometry& geometry;
+  const ViewPlane& plane;
+  Shading shading;
+  std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
+};
+
+/// Fills in a bin's pixels: the attributes, once a pixel, of the triangle that each of them sees.
+/// `bin_origin` counts pixels of the whole picture.
+void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 bin_origin, GBuffer& gbuffer);
+
+}  // namespace luciole

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "raster/geometry.hpp"
+
+namespace luciole {
+
+/// A triangle ready to be drawn. Pixels are counted from the sample of the whole picture's pixel (0,0),
+/// whatever the crop, so that a crop computes the same numbers.
+struct RasterTriangle {
+  std::int32_t x[3];  ///< corners in 1/256 pixel; clockwise as seen on the picture (y down), area > 0
+  std::int32_t y[3];
+  float depth_low;  ///< the corners' range of reversed depth
+  float depth_high;
+  double depth;  ///< reversed depth at pixel (0,0), and its steps a pixel
+  double depth_dx;
+  double depth_dy;
+  std::uint32_t triangle;  ///< number among all; several pieces may have the same
+  bool masked;             ///< its material has holes
+};
+static_assert(sizeof(RasterTriangle) == 64);
+
+constexpr int kSubpixelBits = 8;
+constexpr int kSubpixels = 1 << kSubpixelBits;
+
+enum class FaceCulling : std::uint8_t { kNone, kBackFaces };
+
+struct RasterSetup {
+  std::vector<RasterTriangle> triangles;  ///< in object and triangle order
+  std::uint64_t back_facing = 0;
+};
+
+/// Culls, clips, projects and snaps. What is left may cover a sample of the view's crop.
+RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
+                           FaceCulling culling);
+
+/// The pixels whose samples a triangle may cover: those in its bounding box, `last` included. A sample on the
+/// right or bottom edge belongs to the neighbour.
+struct PixelBox {
+  glm::ivec2 first;
+  glm::ivec2 last;
+};
+inline PixelBox pixelBox(const RasterTriangle& triangle) {
+  const std::int32_t* x = triangle.x;
+  const std::int32_t* y = triangle.y;
+  constexpr int kUp = kSubpixels - 1;
+  return {{(std::min(std::min(x[0], x[1]), x[2]) + kUp) >> kSubpixelBits,
+           (std::min(std::min(y[0], y[1]), y[2]) + kUp) >> kSubpixelBits},
+          {(std::max(std::max(x[0], x[1]), x[2]) - 1) >> kSubpixelBits,
+           (std::max(std::max(y[0], y[1]), y[2]) - 1) >> kSubpixelBits}};
+}
+
+}  // namespace luciole

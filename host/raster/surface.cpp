@@ -1,0 +1,107 @@
+#include "raster/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raster/sample_texture.hpp"
+
+namespace luciole {
+namespace {
+
+/// The row of dot(d, v), d the pixel's direction, and v what it is in a view from the origin; in a parallel
+/// view v depends on the ray's origin (x, y), by d·v = d·v0 + slope·(x, y).
+glm::dvec3 row(const glm::dvec3& v, const glm::dvec2& slope, bool perspective) {
+  return perspective ? glm::dvec3(v.x, v.y, -v.z) : glm::dvec3(slope, -v.z);
+}
+
+/// Not held inside the triangle.
+Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
+  const double scale = 1.0 / glm::dot(surface.determinant, p);
+  const double b1 = glm::dot(surface.weight1, p) * scale;
+  const double b2 = glm::dot(surface.weight2, p) * scale;
+  return {1.0 - b1 - b2, b1, b2};
+}
+
+glm::dvec2 interpolateUv(const Surface& surface, const Weights& weights) {
+  const std::vector<glm::vec2>& uvs = surface.object->mesh->uvs;
+  return weights[0] * glm::dvec2(uvs[surface.corners[0]]) + weights[1] * glm::dvec2(uvs[surface.corners[1]]) +
+         weights[2] * glm::dvec2(uvs[surface.corners[2]]);
+}
+
+glm::vec2 finiteOrZero(const glm::dvec2& step) {
+  const glm::vec2 rounded(step);
+  return std::isfinite(rounded.x) && std::isfinite(rounded.y) ? rounded : glm::vec2(0.0f);
+}
+
+}  // namespace
+
+ViewPlane viewPlane(const View& view) {
+  const glm::dmat4& projection = view.projection;
+  ViewPlane plane;
+  plane.perspective = isPerspective(view);
+  const glm::dvec2 focus(projection[0][0], projection[1][1]);
+  const glm::dvec2 shift = plane.perspective ? glm::dvec2(projection[2]) : -glm::dvec2(projection[3]);
+  // Normalized device coordinates are −1 + 2 · pixel / width, and 1 − 2 · pixel / height, since rows count
+  // downwards.
+  const glm::dvec2 step = glm::dvec2(2.0, -2.0) / glm::dvec2(view.size);
+  plane.scale = step / focus;
+  plane.offset = (glm::dvec2(-1.0, 1.0) + step * view.sample + shift) / focus;
+  return plane;
+}
+
+Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t triangle,
+                    const ViewPlane& plane) {
+  Surface surface;
+  const PlacedObject& object = objectOfTriangle(geometry, triangle);
+  const std::uint32_t in_mesh = triangle - object.first_triangle;
+  surface.object = &object;
+  surface.material = &materialOf(scene, object, in_mesh);
+  surface.corners = object.mesh->triangles[in_mesh];
+  const glm::dvec3* positions = geometry.positions.data() + object.first_vertex;
+  const glm::dvec3 a = positions[surface.corners[0]];
+  const glm::dvec3 edge1 = positions[surface.corners[1]] - a;
+  const glm::dvec3 edge2 = positions[surface.corners[2]] - a;
+  const glm::dvec3 cross = glm::cross(edge1, edge2);
+  surface.corner = a;
+  surface.edge1 = edge1;
+  surface.edge2 = edge2;
+  surface.weight1 = row(glm::cross(edge2, a), {-edge2.y, edge2.x}, plane.perspective);
+  surface.weight2 = row(glm::cross(a, edge1), {edge1.y, -edge1.x}, plane.perspective);
+  surface.determinant = row(cross, {0.0, 0.0}, plane.perspective);
+  surface.front_facing = eyeInFront(cross, a, plane.perspective) != object.mirrored;
+  const double length = glm::length(cross);
+  surface.normal = length > 0.0 && std::isfinite(length) ? cross / (object.mirrored ? -length : length)
+                                                         : glm::dvec3(0.0, 0.0, 1.0);
+  return surface;
+}
+
+Weights weightsInside(const Surface& surface, const glm::dvec3& p) {
+  Weights weights = weightsInPlane(surface, p);
+  if (weights[0] >= 0.0 && weights[1] >= 0.0 && weights[2] >= 0.0) return weights;
+  // A triangle seen edge on may have no finite weights; its middle stands for it then.
+  for (int i = 0; i < 3; ++i) weights[i] = std::clamp(weights[i], 0.0, 1.0);
+  const double sum = weights[0] + weights[1] + weights[2];
+  return sum > 0.0 ? weights / sum : Weights(1.0 / 3.0);
+}
+
+TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,
+                          const Weights& weights) {
+  const glm::dvec2 here = interpolateUv(surface, weightsInPlane(surface, plane.at(x, y)));
+  const glm::dvec2 right = interpolateUv(surface, weightsInPlane(surface, plane.at(x + 1, y)));
+  const glm::dvec2 below = interpolateUv(surface, weightsInPlane(surface, plane.at(x, y + 1)));
+  return {glm::vec2(interpolateUv(surface, weights)), finiteOrZero(right - here), finiteOrZero(below - here)};
+}
+
+glm::vec4 lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place) {
+  return sampleTexture(scene.textures[map.texture], map.wrap_u, map.wrap_v, place.uv, place.duv_dx,
+                       place.duv_dy);
+}
+
+glm::vec4 vertexColor(const Surface& surface, const Weights& weights) {
+  const std::vector<glm::vec4>& colors = surface.object->mesh->colors;
+  if (colors.empty()) return glm::vec4(1.0f);
+  return float(weights[0]) * colors[surface.corners[0]] + float(weights[1]) * colors[surface.corners[1]] +
+         float(weights[2]) * colors[surface.corners[2]];
+}
+
+}  // namespace luciole

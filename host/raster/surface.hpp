@@ -1,0 +1,72 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "raster/geometry.hpp"
+#include "raster/view.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// Where pixels look. A perspective view looks from the origin along (x, y, −1), a parallel one from (x, y,
+/// 0) along (0, 0, −1), with (x, y) affine in the pixel.
+struct ViewPlane {
+  bool perspective;
+  glm::dvec2 scale;
+  glm::dvec2 offset;
+
+  /// (x, y, 1) for a pixel of the whole picture.
+  glm::dvec3 at(int x, int y) const { return {offset + scale * glm::dvec2(x, y), 1.0}; }
+};
+ViewPlane viewPlane(const View& view);
+
+/// A triangle as its pixels see it: uncut, in view space, in double. A pixel's ray meets the triangle's plane
+/// at corner + b1 · edge1 + b2 · edge2 with b = dot(weight row, p) / dot(determinant row, p), p as in
+/// ViewPlane::at (Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, with the ray
+/// taken out). Every row is built of edges, so that a small triangle far away keeps its digits.
+struct Surface {
+  const PlacedObject* object = nullptr;
+  const Material* material = nullptr;
+  glm::uvec3 corners{0};  ///< indices into the mesh's vertices
+  glm::dvec3 corner{0.0};
+  glm::dvec3 edge1{0.0};
+  glm::dvec3 edge2{0.0};
+  glm::dvec3 weight1{0.0};
+  glm::dvec3 weight2{0.0};
+  glm::dvec3 determinant{0.0};
+  glm::dvec3 normal{0.0};  ///< unit, on the front side; (0, 0, 1) where the triangle has no area
+  bool front_facing = true;
+};
+Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t triangle,
+                    const ViewPlane& plane);
+
+/// Shares of the three corners in a value at a point.
+using Weights = glm::dvec3;
+
+/// What the pixel that looks at `p` sees, on the triangle: snapping lets a triangle cover samples up to 1/256
+/// pixel beside it, which show a point of its edge instead of its plane's continuation.
+Weights weightsInside(const Surface& surface, const glm::dvec3& p);
+
+/// Texture coordinates at a pixel, and their steps to the next pixel right and down (zero where not finite).
+struct TexturePlace {
+  glm::vec2 uv;
+  glm::vec2 duv_dx;
+  glm::vec2 duv_dy;
+};
+TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,
+                          const Weights& weights);
+
+/// A map's value there: linear RGB and alpha.
+glm::vec4 lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place);
+
+/// The vertex colour at a point; 1 where the mesh has none.
+glm::vec4 vertexColor(const Surface& surface, const Weights& weights);
+
+/// A per-vertex array's value at a point.
+template <class T>
+glm::dvec3 interpolate(const T* values, const glm::uvec3& corners, const Weights& weights) {
+  return weights[0] * glm::dvec3(values[corners[0]]) + weights[1] * glm::dvec3(values[corners[1]]) +
+         weights[2] * glm::dvec3(values[corners[2]]);
+}
+
+}  // namespace luciole

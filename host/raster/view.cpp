@@ -1,0 +1,70 @@
+#include "raster/view.hpp"
+
+#include <cmath>
+
+namespace luciole {
+
+glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, double far) {
+  const double scale = 1.0 / std::tan(0.5 * fov_y);
+  glm::dmat4 projection(0.0);
+  projection[0][0] = scale / aspect;
+  projection[1][1] = scale;
+  projection[2][2] = near / (far - near);
+  projection[2][3] = -1.0;
+  projection[3][2] = near * far / (far - near);
+  return projection;
+}
+
+glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near,
+                                  double far) {
+  glm::dmat4 projection(0.0);
+  projection[0][0] = 2.0 / (right - left);
+  projection[1][1] = 2.0 / (top - bottom);
+  projection[2][2] = 1.0 / (far - near);
+  projection[3][0] = -(right + left) / (right - left);
+  projection[3][1] = -(top + bottom) / (top - bottom);
+  projection[3][2] = far / (far - near);
+  projection[3][3] = 1.0;
+  return projection;
+}
+
+View cameraView(const Camera& camera, glm::ivec2 size) {
+  View view;
+  // The inverse of a rigid motion, written out so that it is rigid to the last bit.
+  const glm::dmat3 to_view = glm::transpose(glm::dmat3(camera.camera_to_world));
+  view.world_to_view = glm::dmat4(to_view);
+  view.world_to_view[3] = glm::dvec4(-(to_view * glm::dvec3(camera.camera_to_world[3])), 1.0);
+  const double aspect = double(size.x) / size.y;
+  if (camera.orthographic) {
+    const double half_width = camera.half_height * aspect;
+    view.projection = orthographicProjection(-half_width, half_width, -camera.half_height, camera.half_height,
+                                             camera.near, camera.far);
+  } else {
+    view.projection = perspectiveProjection(camera.fov_y, aspect, camera.near, camera.far);
+  }
+  view.size = size;
+  view.crop_size = size;
+  return view;
+}
+
+Camera viewCamera(const View& view) {
+  Camera camera;
+  const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.world_to_view));
+  camera.camera_to_world = glm::dmat4(to_world);
+  camera.camera_to_world[3] = glm::dvec4(-(to_world * glm::dvec3(view.world_to_view[3])), 1.0);
+  const glm::dmat4& projection = view.projection;
+  const double scale = projection[2][2];
+  const double offset = projection[3][2];
+  camera.orthographic = projection[2][3] == 0.0;
+  camera.far = offset / scale;
+  if (camera.orthographic) {
+    camera.half_height = 1.0 / projection[1][1];
+    camera.near = (offset - 1.0) / scale;
+  } else {
+    camera.fov_y = 2.0 * std::atan(1.0 / projection[1][1]);
+    camera.near = offset / (1.0 + scale);
+  }
+  return camera;
+}
+
+}  // namespace luciole

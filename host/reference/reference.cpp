@@ -1,0 +1,161 @@
+#include "reference/reference.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace luciole {
+namespace {
+
+/// What a light sends to a point: the way to it and the share of its colours that arrives, before shadows.
+struct Incoming {
+  glm::dvec3 to_light{0.0};  ///< unit; zero at the light's own place
+  double share = 1.0;
+};
+
+glm::dvec3 unitOrZero(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : glm::dvec3(0.0);
+}
+
+double rangeWindow(const Light& light, double distance) {
+  if (distance >= light.range) return 0;
+  const double fade = 1 - std::pow(distance / light.range, 4);
+  return light.window == RangeWindow::kSmooth ? fade * fade : fade;
+}
+
+double attenuation(const Light& light, double distance) {
+  const glm::dvec3 k(light.attenuation);
+  // Finite where the polynomial vanishes, which it can only at the light's own place.
+  return 1 / std::max(k.x + k.y * distance + k.z * distance * distance, std::exp2(-100.0));
+}
+
+/// cosine: of the angle between the spot's axis and the way from it to the point.
+double spotEffect(const Light& light, double cosine) {
+  const double edge = std::cos(light.cutoff);
+  if (cosine < edge) return 0;
+  if (light.falloff == SpotFalloff::kExponent) return std::pow(std::max(cosine, 0.0), double(light.exponent));
+  const double width = std::cos(light.inner_cone) - edge;
+  if (width <= 0) return 1;
+  const double ramp = std::min((cosine - edge) / width, 1.0);
+  return ramp * ramp;
+}
+
+Incoming incomingLight(const Light& light, const glm::dvec3& position) {
+  if (light.kind == LightKind::kDirectional) return {unitOrZero(-light.direction), 1.0};
+  const glm::dvec3 way = light.position - position;
+  const double distance = glm::length(way);
+  Incoming incoming{unitOrZero(way), attenuation(light, distance) * rangeWindow(light, distance)};
+  if (light.kind == LightKind::kSpot)
+    incoming.share *= spotEffect(light, glm::dot(-incoming.to_light, unitOrZero(light.direction)));
+  return incoming;
+}
+
+/// The specular lobe; 0^0 = 1.
+double highlight(const glm::dvec3& normal, const glm::dvec3& to_light, const glm::dvec3& to_eye,
+                 double shininess, bool blinn) {
+  const double cosine = blinn ? glm::dot(normal, unitOrZero(to_light + to_eye))
+                              : glm::dot(2 * glm::dot(normal, to_light) * normal - to_light, to_eye);
+  return std::pow(std::clamp(cosine, 0.0, 1.0), shininess);
+}
+
+glm::dvec3 eyePosition(const Camera& camera) { return glm::dvec3(camera.camera_to_world[3]); }
+glm::dvec3 backward(const Camera& camera) { return glm::dvec3(camera.camera_to_world[2]); }
+
+/// Share of the surface's colour that gets through the fog.
+double fogShare(const Fog& fog, double density, double distance) {
+  double share = 1;
+  switch (fog.mode) {
+    case FogMode::kNone:
+      return 1;
+    case FogMode::kLinear:
+      share = (fog.end - distance) / (double(fog.end) - fog.start);
+      break;
+    case FogMode::kExp:
+      share = std::exp(-density * distance);
+      break;
+    case FogMode::kExp2:
+      share = std::exp(-density * distance * density * distance);
+      break;
+  }
+  // 0/0, at the one distance where fog of no depth begins and ends, counts as fogged.
+  return share > 0 ? std::min(share, 1.0) : 0.0;
+}
+
+/// Reads three planes of a group at one place; zero where the group is absent.
+glm::dvec3 triple(const Plane& group, std::size_t stride, std::size_t place) {
+  if (group.empty()) return glm::dvec3(0.0);
+  return {group[place], group[place + stride], group[place + 2 * stride]};
+}
+
+glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, std::size_t place, bool blinn) {
+  const std::size_t stride = gbuffer.pixels();
+  const glm::dvec3 view_position = triple(gbuffer.position, stride, place);
+  if (!std::isfinite(view_position.z)) return scene.background;
+  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
+  SurfacePoint point;
+  point.position = glm::dvec3(to_world * glm::dvec4(view_position, 1));
+  point.normal = glm::dmat3(to_world) * triple(gbuffer.normal, stride, place);
+  point.diffuse = triple(gbuffer.diffuse, stride, place);
+  point.specular = triple(gbuffer.specular, stride, place);
+  point.ambient = triple(gbuffer.ambient, stride, place);
+  point.emission = triple(gbuffer.emission, stride, place);
+  point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
+  return referenceFog(scene.fog, gbuffer.camera, point.position,
+                      referenceRadiance(scene, gbuffer.camera, point, blinn));
+}
+
+}  // namespace
+
+// The lighting equation of OpenGL 1.x (The OpenGL Graphics System: A Specification, section "Lighting") with
+// a local viewer, which is Phong's (CACM 18(6), 1975) or, with the half vector, Blinn's (SIGGRAPH 1977).
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point,
+                             bool blinn) {
+  if (!scene.lighting) return point.emission + point.diffuse;
+  // Unit again in double: a power of 10⁶ would make 10 % of the last bit of a float normal.
+  const glm::dvec3 normal = unitOrZero(point.normal);
+  const glm::dvec3 to_eye =
+      unitOrZero(camera.orthographic ? backward(camera) : eyePosition(camera) - point.position);
+  glm::dvec3 radiance = point.emission + glm::dvec3(scene.ambient) * point.ambient;
+  for (const Light& light : scene.lights) {
+    const Incoming incoming = incomingLight(light, point.position);
+    if (incoming.share == 0) continue;
+    glm::dvec3 reflected = glm::dvec3(light.ambient) * point.ambient;
+    const double n_dot_l = glm::dot(normal, incoming.to_light);
+    if (n_dot_l > 0) {
+      reflected += glm::dvec3(light.diffuse) * point.diffuse * n_dot_l;
+      reflected += glm::dvec3(light.specular) * point.specular *
+                   highlight(normal, incoming.to_light, to_eye, point.shininess, blinn);
+    }
+    radiance += reflected * incoming.share;
+  }
+  return radiance;
+}
+
+glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& position,
+                        const glm::dvec3& radiance) {
+  const glm::dvec3 from_eye = position - eyePosition(camera);
+  const double distance = fog.radial ? glm::length(from_eye) : -glm::dot(from_eye, backward(camera));
+  glm::dvec3 seen;
+  for (int c = 0; c < 3; ++c) {
+    const double share = fogShare(fog, fog.density[c], distance);
+    seen[c] = share * radiance[c] + (1 - share) * fog.color[c];
+  }
+  return seen;
+}
+
+Image referenceShade(const Scene& scene, const GBuffer& gbuffer, bool blinn) {
+  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
+  image.pixels.resize(std::size_t(gbuffer.width) * gbuffer.height * 3);
+  tbb::parallel_for(0, gbuffer.height, [&](int y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      const glm::dvec3 color = shadePixel(scene, gbuffer, gbuffer.index(x, y), blinn);
+      for (int c = 0; c < 3; ++c)
+        image.pixels[(std::size_t(y) * gbuffer.width + x) * 3 + c] = static_cast<float>(color[c]);
+    }
+  });
+  return image;
+}
+
+}  // namespace luciole

@@ -1,0 +1,113 @@
+#include "render/features.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "shadow/shadow_maps.hpp"
+
+namespace luciole {
+
+const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
+    {"POINT_LIGHTS", "point lights", "lights with a place"},
+    {"DIRECTIONAL_LIGHTS", "directional lights", "lights with a direction only"},
+    {"SPOT_LIGHTS", "spot lights", "lights with a place and a cone"},
+    {"SPOT_EXPONENT", "spot exponent", "OpenGL's cosine power inside a spot"},
+    {"SPOT_CONE", "spot cone", "glTF's ramp between two cones"},
+    {"ATTENUATION", "attenuation", "constant, linear and quadratic attenuation"},
+    {"SMOOTH_WINDOW", "smooth window", "ranges that fade as (1 - (d/r)^4)^2"},
+    {"KHR_WINDOW", "KHR window", "ranges that fade as 1 - (d/r)^4"},
+    {"PHONG_SPECULAR", "Phong specular", "(R.V)^n"},
+    {"BLINN_SPECULAR", "Blinn specular", "(N.H)^n"},
+    {"AMBIENT", "ambient", "ambient reflection"},
+    {"LIGHT_AMBIENT", "light ambient", "ambient light of single lights"},
+    {"EMISSION", "emission", "surfaces that glow"},
+    {"PLANAR_SHADOWS", "planar shadows", "shadow maps of directional lights and narrow spots"},
+    {"CUBE_SHADOWS", "cube shadows", "shadow maps of point lights and wide spots"},
+    {"PCF", "PCF", "filtered shadow lookups"},
+    {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
+    {"FOG_EXP", "exp fog", "exp(-density z)"},
+    {"FOG_EXP2", "exp2 fog", "exp(-(density z)^2)"},
+    {"FOG_PER_CHANNEL", "fog per channel", "a density for each colour channel"},
+    {"FOG_RADIAL", "radial fog", "fog by distance instead of depth"},
+    {"PARALLEL_VIEW", "parallel view", "an orthographic camera's constant view vector"},
+    {"LIGHT_LISTS", "light lists", "a list of lights per tile instead of all lights"},
+    {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
+}};
+
+SurfaceTraits materialTraits(const Scene& scene) {
+  SurfaceTraits traits;
+  for (const Material& material : scene.materials) {
+    traits.specular |= material.specular != glm::vec3(0.0f);
+    traits.emission |= material.emission != glm::vec3(0.0f);
+  }
+  return traits;
+}
+
+FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
+                          const ShadeSettings& settings) {
+  FeatureSet features;
+  features.set(Feature::kEmission, surfaces.emission);
+  features.set(Feature::kParallelView, camera.orthographic);
+  switch (scene.fog.mode) {
+    case FogMode::kNone: break;
+    case FogMode::kLinear: features.set(Feature::kFogLinear); break;
+    case FogMode::kExp: features.set(Feature::kFogExp); break;
+    case FogMode::kExp2: features.set(Feature::kFogExp2); break;
+  }
+  if (scene.fog.mode != FogMode::kNone) {
+    const glm::vec3 density = scene.fog.density;
+    features.set(Feature::kFogRadial, scene.fog.radial);
+    features.set(Feature::kFogPerChannel, scene.fog.mode != FogMode::kLinear &&
+                                              (density.x != density.y || density.x != density.z));
+  }
+  if (!scene.lighting) {
+    features.set(Feature::kAmbient);  // unlit: diffuse colour under an ambient light of 1
+    return features;
+  }
+  bool light_specular = false, any_cone = false, any_exponent = false;
+  for (const Light& light : scene.lights) {
+    features.set(light.kind == LightKind::kPoint         ? Feature::kPointLights
+                 : light.kind == LightKind::kDirectional ? Feature::kDirectionalLights
+                                                         : Feature::kSpotLights);
+    if (light.kind == LightKind::kSpot) {
+      (light.falloff == SpotFalloff::kCone ? any_cone : any_exponent) = true;
+      if (light.exponent != 0) features.set(Feature::kSpotExponent);
+    }
+    if (light.kind != LightKind::kDirectional) {
+      if (light.attenuation != glm::vec3(1, 0, 0)) features.set(Feature::kAttenuation);
+      if (std::isfinite(light.range))
+        features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);
+    }
+    if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
+    light_specular |= light.specular != glm::vec3(0.0f);
+    if (light.shadow && settings.shadows != ShadowMethod::kOff) {
+      features.set(usesCubeMap(light) ? Feature::kCubeShadows : Feature::kPlanarShadows);
+      features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
+      features.set(Feature::kOutputShadow, settings.shadow_layer);
+    }
+  }
+  features.set(Feature::kSpotCone, any_cone);
+  // Beside cones, an exponent of 0 must be told apart from a cone at run time.
+  if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
+  features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
+  if (surfaces.specular && light_specular)
+    features.set(settings.blinn ? Feature::kBlinnSpecular : Feature::kPhongSpecular);
+  features.set(Feature::kLightLists, settings.culling == Culling::kTiles && !scene.lights.empty());
+  return features;
+}
+
+PlaneSet neededPlanes(const FeatureSet& features) {
+  return {.specular = features.specular(),
+          .ambient = features.has(Feature::kAmbient),
+          .emission = features.has(Feature::kEmission)};
+}
+
+std::string featureDefines(const FeatureSet& features) {
+  std::string options;
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    options += fmt::format("-D{}={} ", kFeatureTable[i].define, int(features.has(static_cast<Feature>(i))));
+  return options;
+}
+
+}  // namespace luciole

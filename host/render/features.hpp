@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <string>
+
+#include "raster/rasterize.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// What a scene may use and a program may compile. A program is built for one set of them.
+enum class Feature : unsigned {
+  kPointLights,
+  kDirectionalLights,
+  kSpotLights,
+  kSpotExponent,
+  kSpotCone,
+  kAttenuation,
+  kSmoothWindow,
+  kKhrWindow,
+  kPhongSpecular,
+  kBlinnSpecular,
+  kAmbient,
+  kLightAmbient,
+  kEmission,
+  kPlanarShadows,
+  kCubeShadows,
+  kPcf,
+  kFogLinear,
+  kFogExp,
+  kFogExp2,
+  kFogPerChannel,
+  kFogRadial,
+  kParallelView,
+  kLightLists,
+  kOutputShadow,
+  kCount
+};
+inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::kCount);
+
+/// The feature table: row i describes Feature i. kernels/features.clh has a fallback for each define.
+struct FeatureRow {
+  const char* define;   ///< the kernels' macro, 0 or 1
+  const char* name;     ///< in --stats
+  const char* meaning;  ///< what the compiled code does
+};
+extern const std::array<FeatureRow, kFeatureCount> kFeatureTable;
+
+class FeatureSet {
+ public:
+  bool has(Feature feature) const { return bits_[static_cast<std::size_t>(feature)]; }
+  void set(Feature feature, bool on = true) { bits_[static_cast<std::size_t>(feature)] = on; }
+  bool operator==(const FeatureSet&) const = default;
+  bool specular() const { return has(Feature::kPhongSpecular) || has(Feature::kBlinnSpecular); }
+  bool shadows() const { return has(Feature::kPlanarShadows) || has(Feature::kCubeShadows); }
+
+ private:
+  std::bitset<kFeatureCount> bits_;
+};
+
+/// What surfaces bring along, whether they come from materials or from a G-buffer file.
+struct SurfaceTraits {
+  bool specular = false;
+  bool emission = false;
+};
+SurfaceTraits materialTraits(const Scene& scene);
+
+enum class ShadowMethod : std::uint8_t { kOff, kHard, kPcf };
+enum class Culling : std::uint8_t { kNone, kTiles };
+
+/// How to light a G-buffer, apart from the scene.
+struct ShadeSettings {
+  bool blinn = false;  ///< Blinn's N·H instead of Phong's R·V
+  Culling culling = Culling::kTiles;
+  ShadowMethod shadows = ShadowMethod::kPcf;
+  bool shadow_layer = false;  ///< also write the share of shadowed lights that reaches each pixel
+};
+
+/// The features that this scene's lights, fog and surfaces need, seen by this camera.
+FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces, const ShadeSettings& settings);
+
+/// The G-buffer groups that a program with these features reads.
+PlaneSet neededPlanes(const FeatureSet& features);
+
+/// -D options for every row of the table.
+std::string featureDefines(const FeatureSet& features);
+
+}  // namespace luciole

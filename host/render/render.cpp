@@ -1,0 +1,292 @@
+#include "render/render.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.hpp"
+#include "raster/view.hpp"
+#include "render/fog_cull.hpp"
+#include "render/lighting.hpp"
+
+namespace luciole {
+namespace {
+
+bool wants(const RenderSettings& settings, Aov aov) {
+  return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
+}
+
+View settingsView(const RenderSettings& settings) {
+  View view = cameraView(settings.camera, settings.size);
+  if (settings.crop) {
+    const Crop& crop = *settings.crop;
+    if (crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1 || crop.width > settings.size.x - crop.x ||
+        crop.height > settings.size.y - crop.y)
+      throw InputError(fmt::format("--crop {},{},{},{}: not inside the picture of {}x{} pixels", crop.x, crop.y, crop.width,
+                                   crop.height, settings.size.x, settings.size.y));
+    view.crop_origin = {crop.x, crop.y};
+    view.crop_size = {crop.width, crop.height};
+  }
+  return view;
+}
+
+ShadeSettings shadeSettings(const RenderSettings& settings) {
+  ShadeSettings shade = settings.shade;
+  shade.shadow_layer = wants(settings, Aov::kShadow);
+  return shade;
+}
+
+void clearFog(FeatureSet& features) {
+  for (const Feature fog : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial})
+    features.set(fog, false);
+}
+
+/// Features of the pass that fogs colours which are lit already, and stand in the emission planes.
+FeatureSet fogOnly(const FeatureSet& features) {
+  FeatureSet fog;
+  fog.set(Feature::kEmission);
+  for (const Feature kept : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial})
+    fog.set(kept, features.has(kept));
+  return fog;
+}
+
+/// The scene's vertices, lit without fog (Gouraud's way).
+std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene, const std::vector<std::uint32_t>& objects,
+                                     const View& view, const Lighting& lighting, Stats& stats) {
+  FeatureSet features = lighting.features;
+  clearFog(features);
+  features.set(Feature::kOutputShadow, false);
+  const GBuffer vertices =
+      timed(stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
+  const LitPlanes lit = lightGBuffer(device, lighting, features, vertices, false, stats);
+  std::vector<glm::vec3> colors(vertices.pixels());
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    colors[i] = {lit.color[i], lit.color[i + colors.size()], lit.color[i + 2 * colors.size()]};
+  return colors;
+}
+
+void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats) {
+  stats.triangles = 0;
+  for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
+  stats.lights = scene.lights.size();
+  stats.features.clear();
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);
+}
+
+std::uint64_t coveredPixels(const GBuffer& gbuffer) {
+  const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
+  return std::count_if(depth, depth + gbuffer.pixels(),
+                       [](float z) { return z > -std::numeric_limits<float>::infinity(); });
+}
+
+void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
+  for (auto& [known, sum] : stats.counts) {
+    if (known == name) {
+      sum += count;
+      return;
+    }
+  }
+  stats.counts.emplace_back(name, count);
+}
+
+void countPass(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
+  addCount(stats, "pixels_lit", coveredPixels(gbuffer));
+  addCount(stats, "pixel_lights_evaluated", lit.evaluated);
+  addCount(stats, "list_entries", lit.list_entries);
+  if (lit.light_count.empty()) return;
+  double in_range = 0;
+  for (const float count : lit.light_count) in_range += count;
+  addCount(stats, "pixel_lights_in_range", static_cast<std::uint64_t>(in_range));
+}
+
+/// A channel of the finished picture.
+struct Layer {
+  std::string name;
+  const float* plane;  ///< in the G-buffer's layout
+};
+
+std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group, std::initializer_list<const char*> names) {
+  std::vector<Layer> layers;
+  std::size_t component = 0;
+  for (const char* name : names)
+    if (!group.empty()) layers.push_back({name, group.data() + gbuffer.pixels() * component++});
+  return layers;
+}
+
+/// World-space positions or normals and depths, from the view-space planes.
+struct WorldPlanes {
+  Plane position, normal, depth;
+};
+
+WorldPlanes worldPlanes(const GBuffer& gbuffer) {
+  const std::size_t n = gbuffer.pixels();
+  WorldPlanes world{Plane(3 * n), Plane(3 * n), Plane(n)};
+  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const glm::dvec3 p(gbuffer.position[i], gbuffer.position[i + n], gbuffer.position[i + 2 * n]);
+    const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]);
+    const bool covered = std::isfinite(p.z);
+    const glm::dvec3 world_p = covered ? glm::dvec3(to_world * glm::dvec4(p, 1)) : glm::dvec3(0);
+    const glm::dvec3 world_n = glm::dmat3(to_world) * normal;
+    for (int c = 0; c < 3; ++c) {
+      world.position[i + c * n] = float(world_p[c]);
+      world.normal[i + c * n] = float(world_n[c]);
+    }
+    world.depth[i] = float(-p.z);
+  });
+  return world;
+}
+
+/// The finished picture: averaged colour with exposure, and the layers asked for.
+Image assemble(const GBuffer& gbuffer, const LitPlanes& first, const Plane& color_sum, const RenderSettings& settings) {
+  const std::size_t n = gbuffer.pixels();
+  std::vector<Layer> layers{{"R", color_sum.data()}, {"G", color_sum.data() + n}, {"B", color_sum.data() + 2 * n}};
+  const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
+  WorldPlanes world;
+  if (wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth))
+    world = worldPlanes(gbuffer);
+  for (const Aov aov : settings.aovs) {
+    switch (aov) {
+      case Aov::kPosition: append(groupLayers(gbuffer, world.position, {"P.X", "P.Y", "P.Z"})); break;
+      case Aov::kNormal: append(groupLayers(gbuffer, world.normal, {"N.X", "N.Y", "N.Z"})); break;
+      case Aov::kDepth: append({{"Z", world.depth.data()}}); break;
+      case Aov::kDiffuse: append(groupLayers(gbuffer, gbuffer.diffuse, {"diffuse.R", "diffuse.G", "diffuse.B"})); break;
+      case Aov::kMaterial:
+        append(groupLayers(gbuffer, gbuffer.specular, {"specular.R", "specular.G", "specular.B", "shininess"}));
+        append(groupLayers(gbuffer, gbuffer.ambient, {"ambient.R", "ambient.G", "ambient.B"}));
+        append(groupLayers(gbuffer, gbuffer.emission, {"emission.R", "emission.G", "emission.B"}));
+        break;
+      case Aov::kLightCount: append({{"light_count", first.light_count.data()}}); break;
+      case Aov::kShadow:
+        // Without shadowed lights there is no such plane: everything is visible.
+        if (first.color.size() == 4 * n) append({{"shadow", first.color.data() + 3 * n}});
+        break;
+    }
+  }
+  Image image{gbuffer.width, gbuffer.height, {}, {}};
+  for (const Layer& layer : layers) image.channels.push_back(layer.name);
+  image.pixels.resize(std::size_t(image.width) * image.height * layers.size());
+  const float scale = std::exp2(settings.exposure) / float(settings.samples);
+  tbb::parallel_for(0, image.height, [&](int y) {
+    float* out = image.pixels.data() + std::size_t(y) * image.width * layers.size();
+    for (int x = 0; x < image.width; ++x) {
+      const std::size_t place = gbuffer.index(x, y);
+      for (std::size_t c = 0; c < layers.size(); ++c) *out++ = layers[c].plane[place] * (c < 3 ? scale : 1.0f);
+    }
+  });
+  return image;
+}
+
+}  // namespace
+
+glm::dvec2 samplePoint(int index, int count) {
+  // Radical inverse in base 2 (van der Corput); both coordinates are moved by half of their finest step.
+  double inverse = 0, step = 0.5;
+  for (int bits = index; bits > 0; bits >>= 1, step /= 2)
+    if (bits & 1) inverse += step;
+  double finest = 1;
+  while (finest > 1.0 / count) finest /= 2;
+  return {(index + 0.5) / count, inverse + finest / 2};
+}
+
+Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+  View view = settingsView(settings);
+  const ShadeSettings shade = shadeSettings(settings);
+  const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), shade);
+  const bool gouraud = settings.shading == Shading::kGouraud;
+  const FeatureSet pixel_features = gouraud ? fogOnly(features) : features;
+  compileKernels(device, pixel_features, stats);
+  const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
+  Lighting lighting;
+  prepareLighting(device, scene, settings.camera, view, features, shade.blinn, lighting, stats);
+  std::vector<glm::vec3> vertex_colors;
+  if (gouraud) vertex_colors = lightVertices(device, scene, objects, view, lighting, stats);
+
+  describeScene(scene, features, stats);
+  stats.width = view.crop_size.x;
+  stats.height = view.crop_size.y;
+  stats.samples = settings.samples;
+  PlaneSet planes = neededPlanes(pixel_features);
+  if (wants(settings, Aov::kMaterial)) planes = {true, true, true};
+  if (!scene.lighting) planes.ambient = false;  // diffuse takes its place
+
+  GBuffer first_gbuffer;
+  LitPlanes first;
+  Plane sum;
+  for (int sample = 0; sample < settings.samples; ++sample) {
+    view.sample = samplePoint(sample, settings.samples);
+    RasterCounts raster_counts;
+    GBuffer gbuffer = timed(stats, "rasterize", [&] {
+      return rasterize(scene, objects, view, settings.shading, planes, vertex_colors, &raster_counts);
+    });
+    gbuffer.camera = settings.camera;
+    const bool count = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount));
+    LitPlanes lit = lightGBuffer(device, lighting, pixel_features, gbuffer, count, stats);
+    countPass(gbuffer, lit, stats);
+    addCount(stats, "triangles_submitted", raster_counts.submitted);
+    addCount(stats, "triangles_back_facing", raster_counts.back_facing);
+    addCount(stats, "triangles_outside", raster_counts.outside);
+    timed(stats, "resolve", [&] {
+      if (sample == 0) {
+        sum = lit.color;
+        first_gbuffer = std::move(gbuffer);
+        first = std::move(lit);
+      } else {
+        tbb::parallel_for(std::size_t(0), 3 * first_gbuffer.pixels(), [&](std::size_t i) { sum[i] += lit.color[i]; });
+      }
+    });
+    if (settings.on_sample) settings.on_sample(sample + 1, settings.samples);
+  }
+  addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
+  return timed(stats, "resolve", [&] { return assemble(first_gbuffer, first, sum, settings); });
+}
+
+GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+  const View view = settingsView(settings);
+  const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
+  const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
+  describeScene(scene, features, stats);
+  stats.width = view.crop_size.x;
+  stats.height = view.crop_size.y;
+  std::vector<glm::vec3> vertex_colors;
+  if (settings.shading == Shading::kGouraud) {
+    Lighting lighting;
+    prepareLighting(*device, scene, settings.camera, view, features, settings.shade.blinn, lighting, stats);
+    vertex_colors = lightVertices(*device, scene, objects, view, lighting, stats);
+  }
+  RasterCounts counts;
+  GBuffer gbuffer = timed(stats, "rasterize", [&] {
+    return rasterize(scene, objects, view, settings.shading, {true, true, true}, vertex_colors, &counts);
+  });
+  gbuffer.camera = settings.camera;
+  addCount(stats, "pixels_lit", coveredPixels(gbuffer));
+  addCount(stats, "triangles_submitted", counts.submitted);
+  addCount(stats, "triangles_back_facing", counts.back_facing);
+  addCount(stats, "triangles_outside", counts.outside);
+  addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
+  return gbuffer;
+}
+
+Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings, Stats& stats) {
+  const ShadeSettings shade = shadeSettings(settings);
+  const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty()};
+  const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);
+  compileKernels(device, features, stats);
+  Lighting lighting;
+  const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
+  prepareLighting(device, scene, gbuffer.camera, view, features, shade.blinn, lighting, stats);
+  describeScene(scene, features, stats);
+  stats.width = gbuffer.width;
+  stats.height = gbuffer.height;
+  const bool count = settings.count_lights || wants(settings, Aov::kLightCount);
+  const LitPlanes lit = lightGBuffer(device, lighting, features, gbuffer, count, stats);
+  countPass(gbuffer, lit, stats);
+  RenderSettings one_sample = settings;
+  one_sample.samples = 1;
+  return timed(stats, "resolve", [&] { return assemble(gbuffer, lit, lit.color, one_sample); });
+}
+
+}  // namespace luciole

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cl/device.hpp"
+#include "image/image.hpp"
+#include "raster/gbuffer.hpp"
+#include "raster/rasterize.hpp"
+#include "render/features.hpp"
+#include "render/stats.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// Part of a picture, in pixels from its top left corner.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Extra layers of an EXR.
+enum class Aov : std::uint8_t { kPosition, kNormal, kDepth, kDiffuse, kMaterial, kLightCount, kShadow };
+
+struct RenderSettings {
+  glm::ivec2 size{1280, 720};
+  Camera camera;
+  std::optional<Crop> crop;
+  int samples = 1;  ///< per pixel, at the points of a Hammersley set
+  Shading shading = Shading::kPhong;
+  ShadeSettings shade;
+  std::vector<Aov> aovs;  ///< of the first sample
+  float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
+  bool count_lights = false;  ///< also count the lights in range of every pixel, for the statistics
+  std::function<void(int done, int samples)> on_sample;  ///< called after each sample, if set
+};
+
+/// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is the centre.
+glm::dvec2 samplePoint(int index, int count);
+
+/// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G B, then the
+/// layers). Fills in the statistics. Throws InputError for a crop outside the picture, MachineError.
+Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats);
+
+/// The first half of it: the G-buffer with every group. For Shading::kGouraud, whose vertices are lit, `device` is needed;
+/// otherwise it may be null.
+GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats);
+
+/// The second half: lights a G-buffer by the scene's lights, ambient and fog, with shadows cast by its objects. Of the
+/// settings, `shade`, `aovs`, `exposure` and `count_lights` count.
+Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings, Stats& stats);
+
+}  // namespace luciole

@@ -1,0 +1,41 @@
+#include "render/shade.hpp"
+
+namespace luciole {
+namespace {
+
+/// Work-items of one tile: they share its light list.
+std::size_t rowsPerTile(const Device& device) { return kTilePixels / static_cast<std::size_t>(device.description.lanes); }
+
+}  // namespace
+
+void shade(Device& device, const std::string& defines, const ShadeArguments& arguments) {
+  cl::Kernel kernel = makeKernel(device, "shade.cl", "shade", defines);
+  kernel.setArg(0, arguments.frame);
+  kernel.setArg(1, arguments.gbuffer.position);
+  kernel.setArg(2, arguments.gbuffer.normal);
+  kernel.setArg(3, arguments.gbuffer.diffuse);
+  kernel.setArg(4, arguments.gbuffer.specular);
+  kernel.setArg(5, arguments.gbuffer.ambient);
+  kernel.setArg(6, arguments.gbuffer.emission);
+  kernel.setArg(7, arguments.lights);
+  kernel.setArg(8, arguments.lists.starts);
+  kernel.setArg(9, arguments.lists.list);
+  kernel.setArg(10, arguments.shadow_maps);
+  kernel.setArg(11, arguments.shadow_depths);
+  kernel.setArg(12, arguments.image);
+  launch(device, kernel, arguments.frame.plane_stride / device.description.lanes, rowsPerTile(device));
+}
+
+void countInRange(Device& device, const std::string& defines, const CountInRangeArguments& arguments) {
+  cl::Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", defines);
+  kernel.setArg(0, arguments.position);
+  kernel.setArg(1, static_cast<cl_uint>(arguments.plane_stride));
+  kernel.setArg(2, arguments.lights);
+  kernel.setArg(3, static_cast<cl_uint>(arguments.light_count));
+  kernel.setArg(4, arguments.lists.starts);
+  kernel.setArg(5, arguments.lists.list);
+  kernel.setArg(6, arguments.counts);
+  launch(device, kernel, arguments.plane_stride / device.description.lanes, rowsPerTile(device));
+}
+
+}  // namespace luciole

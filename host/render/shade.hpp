@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "cl/device.hpp"
+#include "kernels/shared.h"
+#include "render/cull.hpp"
+
+namespace luciole {
+
+/// A G-buffer's groups on the device. Absent groups are small dummies.
+struct GBufferBuffers {
+  cl::Buffer position, normal, diffuse, specular, ambient, emission;
+};
+
+struct ShadeArguments {
+  const ShadeFrame& frame;
+  const GBufferBuffers& gbuffer;
+  const cl::Buffer& lights;         ///< ShadeLight[frame.light_count]
+  const LightLists& lists;          ///< with Feature::kLightLists only
+  const cl::Buffer& shadow_maps;    ///< ShadowMap[]
+  const cl::Buffer& shadow_depths;  ///< see ShadowMaps::depths
+  const cl::Buffer& image;          ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
+};
+
+/// Launches kernels/shade.cl on every pixel of the G-buffer. defines: the program's features (featureDefines).
+void shade(Device& device, const std::string& defines, const ShadeArguments& arguments);
+
+struct CountInRangeArguments {
+  const cl::Buffer& position;
+  std::size_t plane_stride;
+  const cl::Buffer& lights;
+  std::size_t light_count;
+  const LightLists& lists;
+  const cl::Buffer& counts;  ///< out: one float a pixel
+};
+
+/// Launches kernels/count_in_range.cl: how many lights reach each pixel.
+void countInRange(Device& device, const std::string& defines, const CountInRangeArguments& arguments);
+
+}  // namespace luciole

@@ -1,0 +1,59 @@
+#include "render/shade_lights.hpp"
+
+#include <cmath>
+
+namespace luciole {
+namespace {
+
+constexpr std::size_t kMostLanes = 16;
+
+float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y), float(xyz.z), float(w)}; }
+
+}  // namespace
+
+ShadeLights prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps) {
+  const glm::dmat4 world_to_view = glm::inverse(camera.camera_to_world);
+  const glm::dmat3 rotation(world_to_view);
+  ShadeLights result;
+  const std::size_t count = scene.lights.size();
+  result.lights.resize(count);
+  result.reach_stride = (count + kMostLanes - 1) / kMostLanes * kMostLanes;
+  result.reach.assign(4 * result.reach_stride, 0.0f);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Light& light = scene.lights[i];
+    ShadeLight& out = result.lights[i];
+    const glm::dvec3 shines = rotation * light.direction;
+    const double range = light.range;
+    const double inverse_range2 = light.kind == LightKind::kDirectional ? 0.0 : 1.0 / (range * range);
+    double cone_scale = 0;
+    if (light.kind == LightKind::kDirectional) {
+      out.kind = kDirectionalLight;
+      out.position = pack(-shines, 0);
+    } else {
+      out.kind = light.kind == LightKind::kSpot ? kSpotLight : kPointLight;
+      out.position = pack(glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), inverse_range2);
+      if (light.falloff == SpotFalloff::kCone)
+        cone_scale = 1.0 / std::max(std::cos(light.inner_cone) - std::cos(light.cutoff), 1e-6);
+    }
+    out.direction = pack(shines, std::cos(light.cutoff));
+    out.diffuse = pack(light.diffuse, light.exponent);
+    out.specular = pack(light.specular, cone_scale);
+    out.ambient = pack(light.ambient, 0);
+    out.attenuation = pack(light.attenuation, 0);
+    out.khr_window = light.window == RangeWindow::kKhr;
+    out.cone = light.falloff == SpotFalloff::kCone;
+    out.shadow = shadow_maps.map_of_light.empty() ? kNoShadow : shadow_maps.map_of_light[i];
+    // The very floats that shading uses, so that both see the same distances.
+    result.reach[i] = out.position.x;
+    result.reach[i + result.reach_stride] = out.position.y;
+    result.reach[i + 2 * result.reach_stride] = out.position.z;
+    result.reach[i + 3 * result.reach_stride] = out.position.w;
+  }
+  for (std::size_t i = count; i < result.reach_stride; ++i) {
+    result.reach[i] = 1e18f;  // squared still finite, and out of any range
+    result.reach[i + 3 * result.reach_stride] = 1.0f;
+  }
+  return result;
+}
+
+}  // namespace luciole

@@ -1,0 +1,44 @@
+#include "render/stats.hpp"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+namespace luciole {
+
+void addStage(Stats& stats, const std::string& name, double milliseconds) {
+  for (auto& [stage, sum] : stats.stages) {
+    if (stage == name) {
+      sum += milliseconds;
+      return;
+    }
+  }
+  stats.stages.emplace_back(name, milliseconds);
+}
+
+std::string statsJson(const Stats& stats) {
+  nlohmann::ordered_json json;
+  json["version"] = LUCIOLE_VERSION;
+  json["command"] = stats.command;
+  json["device"] = {{"platform", stats.device.platform},
+                    {"name", stats.device.name},
+                    {"driver", stats.device.version},
+                    {"lanes", stats.device.lanes}};
+  json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
+  json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
+  double cold_start = 0;
+  json["stages"] = nlohmann::ordered_json::array();
+  for (const auto& [name, milliseconds] : stats.stages) {
+    json["stages"].push_back({{"name", name}, {"milliseconds", milliseconds}});
+    if (name == "open device" || name == "compile kernels") cold_start += milliseconds;
+  }
+  json["counts"] = nlohmann::ordered_json::object();
+  for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  json["memory"] = {{"peak_bytes", std::uint64_t(usage.ru_maxrss) * 1024}, {"device_bytes", stats.device_bytes}};
+  json["cold_start_milliseconds"] = cold_start;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace luciole

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cl/device.hpp"
+
+namespace luciole {
+
+/// What a picture cost: the content of --stats.
+struct Stats {
+  std::string command;
+  DeviceDescription device;
+  std::uint64_t triangles = 0;
+  std::uint64_t lights = 0;
+  std::vector<std::string> features;
+  int width = 0, height = 0, samples = 1;
+  std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, summed over the samples, in order of first use
+  std::vector<std::pair<std::string, std::uint64_t>> counts;
+  std::size_t device_bytes = 0;  ///< OpenCL buffers of one sample, those shared with the host included
+};
+
+/// Adds `milliseconds` to the stage of that name.
+void addStage(Stats& stats, const std::string& name, double milliseconds);
+
+/// Runs a stage and adds the time it took.
+template <class Function>
+auto timed(Stats& stats, const char* name, Function&& function) {
+  struct Timer {
+    Stats& stats;
+    const char* name;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Timer() {
+      addStage(stats, name,
+               std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+  } timer{stats, name};
+  return function();
+}
+
+/// The JSON text that --stats writes, by the names of the interface.
+std::string statsJson(const Stats& stats);
+
+}  // namespace luciole

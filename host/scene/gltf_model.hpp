@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace luciole {
+
+/// A parsed glTF file. What tinygltf read is only parsed, not checked: any index in it may point nowhere.
+struct GltfModel {
+  std::string path;
+  tinygltf::Model
+      file;  ///< Image::image holds a picture file's bytes, not texels; empty where it lies in a buffer
+};
+
+/// Parses a .gltf or .glb with its buffers and pictures. Throws InputError: among others for a glTF other
+/// than 2.x, a missing buffer, and a required extension that is not supported.
+GltfModel readGltfModel(const std::string& path);
+
+/// `list[index]`, or an InputError: "`place` refers to `what` `index`, but the file has only …".
+template <typename T>
+const T& element(const GltfModel& model, const std::vector<T>& list, int index, const std::string& place,
+                 const char* what);
+
+/// The bytes that a buffer view shows. Throws InputError where it reaches past its buffer.
+std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place);
+
+/// The bytes of a picture file. Throws InputError where it is missing.
+std::span<const std::byte> imageBytes(const GltfModel& model, int image);
+
+/// The member of an extension's JSON, as a number; `otherwise` where there is none.
+double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,
+                       double otherwise);
+
+[[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);
+
+template <typename T>
+const T& element(const GltfModel& model, const std::vector<T>& list, int index, const std::string& place,
+                 const char* what) {
+  if (index < 0 || static_cast<std::size_t>(index) >= list.size()) {
+    failGltf(model, place,
+             std::string("refers to ") + what + " " + std::to_string(index) + ", but the file has " +
+                 std::to_string(list.size()) + " of them");
+  }
+  return list[index];
+}
+
+}  // namespace luciole

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// Reads a Luciole scene, from standard input for "-", and every mesh and texture it names. Nothing is added
+/// that the file doesn't say: without a camera in it, the scene has none. Throws InputError "file: place:
+/// what is wrong".
+Scene loadJsonScene(const std::string& path);
+
+/// Throws InputError "where: …" unless each side is from 1 to 65536 pixels and all are 2³⁰ at most.
+void checkPictureSize(glm::ivec2 size, const std::string& where);
+
+}  // namespace luciole

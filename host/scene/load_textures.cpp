@@ -1,0 +1,28 @@
+#include "scene/load_textures.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "image/read_texture.hpp"
+
+namespace luciole {
+
+int addTexture(Scene& scene, const std::string& path) {
+  const std::string name = std::filesystem::path(path).lexically_normal().string();
+  const auto found = std::find_if(scene.textures.begin(), scene.textures.end(),
+                                  [&](const Texture& texture) { return texture.name == name; });
+  const int index = static_cast<int>(found - scene.textures.begin());
+  if (found == scene.textures.end()) scene.textures.push_back({name, {}});
+  return index;
+}
+
+void decodeTextures(Scene& scene) {
+  tbb::parallel_for(std::size_t{0}, scene.textures.size(), [&](std::size_t i) {
+    Texture& texture = scene.textures[i];
+    if (texture.levels.empty()) texture = readTexture(texture.name);
+  });
+}
+
+}  // namespace luciole

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+enum class PrimitiveKind : std::uint8_t { kPlane, kBox, kSphere, kCylinder, kCone, kTorus };
+
+/// A shape made on the spot. Around the origin, y up, in metres:
+///   plane     1 × 1 in xz, facing +y; the only one that is open
+///   box       side 1
+///   sphere    radius 1
+///   cylinder  radius 1, from y = 0 to 1, capped
+///   cone      radius 1 at y = 0, apex at y = 1, capped
+///   torus     around the y axis: circles of `minor_radius` around a circle of radius 1
+/// A texture's top is towards +y, on what faces up towards −z, on what faces down towards +z; seen from
+/// outside it isn't mirrored.
+struct Primitive {
+  PrimitiveKind kind = PrimitiveKind::kPlane;
+  /// Plane: squares a side, 1 or more. Round shapes: sides around, 3 or more (sphere and torus have half as
+  /// many the other way). Box: unused. At most kMostSegments.
+  int segments = 1;
+  float minor_radius = 0.25f;  ///< torus only; 0 < minor_radius < 1
+  float uv_scale = 1.0f;       ///< how often a texture repeats along u and v
+  auto operator<=>(const Primitive&) const = default;
+};
+inline constexpr int kMostSegments = 4096;
+
+/// The shape's mesh, every triangle of `material`. Normals are smooth where the surface is and split at sharp
+/// edges; vertices that are split there or at the texture's seam lie at exactly the same place.
+Mesh makePrimitive(const Primitive& primitive, std::uint32_t material);
+
+}  // namespace luciole

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/texture.hpp"
+
+namespace luciole {
+
+enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };
+
+/// How a material looks a texture up. `texture` indexes Scene::textures; -1: no texture.
+struct TextureUse {
+  int texture = -1;
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
+};
+
+/// Phong's reflection coefficients, linear Rec.709. Defaults are OpenGL's.
+/// The diffuse map multiplies ambient and diffuse; vertex colours likewise.
+struct Material {
+  std::string name;
+  glm::vec3 ambient{0.2f};
+  glm::vec3 diffuse{0.8f};
+  glm::vec3 specular{0.0f};
+  glm::vec3 emission{0.0f};
+  float shininess = 0.0f;  ///< exponent n ≥ 0 of the specular lobe
+  TextureUse diffuse_map;
+  TextureUse emission_map;
+  TextureUse alpha_map;       ///< opacity: its alpha where it has one that varies, else its red (OBJ map_d)
+  float alpha = 1.0f;         ///< constant opacity, multiplied with the maps' and the vertex colour's alpha
+  float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
+  bool double_sided = false;  ///< otherwise back faces are culled
+};
+
+/// An indexed triangle mesh in its own (object) space, metres. All per-vertex arrays have positions.size()
+/// elements or, where optional, none. Counter-clockwise triangles face the viewer.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  ///< unit, never missing: loaders make them
+  std::vector<glm::vec2> uvs;      ///< optional; v grows downwards: (0,0) is the picture's top left corner
+  std::vector<glm::vec4> colors;   ///< optional; linear RGBA that multiplies the material's
+  std::vector<glm::uvec3> triangles;
+  std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
+};
+
+/// A mesh placed in the world.
+struct Object {
+  std::uint32_t mesh = 0;
+  glm::dmat4 object_to_world{1.0};
+  int material = -1;  ///< replaces the material of every triangle of the mesh, unless -1
+};
+
+enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };
+
+/// How a light with a finite range fades out; d is the distance, r the range. Both are exactly 0 from r on.
+enum class RangeWindow : std::uint8_t {
+  kSmooth,  ///< (1 − (d/r)⁴)²: value and slope reach zero at the range
+  kKhr,     ///< 1 − (d/r)⁴, as KHR_lights_punctual recommends
+};
+
+enum class SpotFalloff : std::uint8_t {
+  kExponent,  ///< OpenGL: cos(angle to the axis)^exponent inside the cutoff, 0 outside
+  kCone,      ///< KHR_lights_punctual: from 1 inside inner_cone to 0 at the cutoff, square of a linear ramp in cos
+};
+
+/// A light of the scene. Disabled lights are dropped by the loader.
+struct Light {
+  LightKind kind = LightKind::kPoint;
+  glm::dvec3 position{0.0};              ///< world, metres; not for directional lights
+  glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit, world: the way the light shines; not for point lights
+  /// Colours, linear, with the intensity multiplied in. ≥ 0 and finite. Defaults as the course text gives OpenGL's.
+  glm::vec3 ambient{0.0f};
+  glm::vec3 diffuse{1.0f};
+  glm::vec3 specular{1.0f};
+  glm::vec3 attenuation{1.0f, 0.0f, 0.0f};  ///< constant, linear (1/m), quadratic (1/m²); not all 0
+  float range = std::numeric_limits<float>::infinity();  ///< metres, > 0
+  RangeWindow window = RangeWindow::kSmooth;
+  SpotFalloff falloff = SpotFalloff::kExponent;
+  double cutoff = 0.0;      ///< spot: half angle in radians, 0 to π/2 (a cutoff of 180° makes a point light)
+  double inner_cone = 0.0;  ///< kCone: radians, 0 ≤ inner_cone < cutoff
+  float exponent = 0.0f;    ///< kExponent: ≥ 0
+  bool shadow = false;
+};
+
+enum class FogMode : std::uint8_t { kNone, kLinear, kExp, kExp2 };
+
+/// OpenGL's fog: colour = f·colour + (1 − f)·fog colour, with f = (end − z)/(end − start), exp(−density·z) or
+/// exp(−(density·z)²), clamped to [0,1]. Defaults are OpenGL's.
+struct Fog {
+  FogMode mode = FogMode::kNone;
+  bool radial = false;      ///< z is the distance from the eye instead of the depth along the view axis
+  glm::vec3 density{1.0f};  ///< per channel, 1/m, ≥ 0; not for kLinear
+  float start = 0.0f;       ///< metres, kLinear only
+  float end = 1.0f;         ///< metres, kLinear only
+  glm::vec3 color{0.0f};
+};
+
+/// A camera looks along its −z, x to the right, y up (OpenGL's eye space, which is also glTF's).
+struct Camera {
+  std::string name;
+  glm::dmat4 camera_to_world{1.0};  ///< a rigid motion: rotation and translation only
+  bool orthographic = false;
+  double fov_y = 0.7853981633974483;  ///< radians, perspective only
+  double half_height = 1.0;           ///< metres, orthographic only
+  double near = 0.1;                  ///< metres, > 0
+  double far = 1000.0;                ///< metres, > near
+};
+
+/// Everything a picture is made of: the output of the loaders, and the input of every later stage.
+/// Indices are checked by the loaders; every number is finite unless its comment says otherwise.
+struct Scene {
+  std::string name;  ///< the file, for messages and metadata
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Object> objects;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;  ///< empty after a loader; never empty after completeScene()
+  std::optional<glm::ivec2> size;  ///< the picture's size that the file asks for
+  glm::vec3 background{0.0f};
+  glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
+  Fog fog;
+  bool lighting = true;  ///< false: every surface shows its emission + diffuse colour unlit
+};
+
+}  // namespace luciole

@@ -1,0 +1,35 @@
+#include "scene/text_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "error.hpp"
+
+namespace luciole {
+
+std::string readFile(const std::string& path) {
+  if (std::filesystem::is_directory(path)) throw InputError(path + ": is a folder, expected a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": can't be opened, expected a readable file");
+  std::string bytes;
+  std::error_code no_size;
+  const std::uintmax_t size = std::filesystem::file_size(path, no_size);  // pipes have none
+  if (!no_size) bytes.reserve(size);
+  char block[1 << 16];
+  while (file.read(block, sizeof block) || file.gcount() > 0) bytes.append(block, file.gcount());
+  if (file.bad()) throw InputError(path + ": can't be read to its end");
+  return bytes;
+}
+
+std::string forMessage(std::string_view words) {
+  constexpr std::size_t kLongest = 200;
+  std::string line(words.substr(0, kLongest));
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+}  // namespace luciole

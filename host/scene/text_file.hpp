@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace luciole {
+
+/// The whole file. Throws InputError where it can't be read.
+std::string readFile(const std::string& path);
+
+/// Words from a file or a library made fit for a one-line message: control characters become blanks, trailing
+/// blanks go, and what is longer than 200 characters is cut.
+std::string forMessage(std::string_view words);
+
+}  // namespace luciole

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace luciole {
+
+/// One level of a mip chain: row-major, texel (0,0) top left.
+struct MipLevel {
+  int width = 0;
+  int height = 0;
+  /// 4 values a texel, RGBA, each 16-bit unsigned normalized: colour is sRGB-encoded (so that an 8-bit file's
+  /// codes are kept exactly, as code × 257), alpha is linear. 8 bytes a texel.
+  std::vector<std::uint16_t> texels;
+};
+
+/// A filtered texture: levels[0] is the picture itself, each next level half the size, down to 1×1.
+/// Never empty once loaded.
+struct Texture {
+  std::string name;  ///< for messages: the file's path, or where it lies inside its glTF
+  std::vector<MipLevel> levels;
+};
+
+}  // namespace luciole

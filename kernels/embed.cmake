@@ -1,0 +1,15 @@
+# cmake -DOUTPUT=x.cpp -DFILES=a;b -P embed.cmake: writes a C++ file that holds the files' bytes and a table of them,
+# declared in host/cl/kernel_source.hpp.
+set(arrays "")
+set(table "")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  string(MAKE_C_IDENTIFIER ${name} identifier)
+  file(READ ${file} hex HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
+  string(APPEND arrays "const unsigned char ${identifier}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${name}\", {reinterpret_cast<const char*>(${identifier}), sizeof ${identifier}}},\n")
+endforeach()
+file(WRITE ${OUTPUT} "#include \"cl/kernel_source.hpp\"\n\nnamespace {\n${arrays}}\n\nnamespace luciole {\n"
+  "const std::vector<EmbeddedFile>& embeddedKernels() {\n  static const std::vector<EmbeddedFile> files{\n${table}  };\n"
+  "  return files;\n}\n}\n")

@@ -1,0 +1,64 @@
+// Where this device's compiler puts every member of the shared structs: per struct its size, then the offsets, in the order
+// of their declaration.
+#include "shared.h"
+
+#define OFFSET(member) (uint)((__private char *)&value.member - (__private char *)&value)
+
+__kernel void report_shade_light(__global uint *out) {
+  ShadeLight value;
+  *out++ = sizeof(ShadeLight);
+  *out++ = OFFSET(position);
+  *out++ = OFFSET(direction);
+  *out++ = OFFSET(diffuse);
+  *out++ = OFFSET(specular);
+  *out++ = OFFSET(ambient);
+  *out++ = OFFSET(attenuation);
+  *out++ = OFFSET(kind);
+  *out++ = OFFSET(khr_window);
+  *out++ = OFFSET(cone);
+  *out++ = OFFSET(shadow);
+}
+
+__kernel void report_shadow_map(__global uint *out) {
+  ShadowMap value;
+  *out++ = sizeof(ShadowMap);
+  *out++ = OFFSET(to_map_x);
+  *out++ = OFFSET(to_map_y);
+  *out++ = OFFSET(to_map_z);
+  *out++ = OFFSET(to_map_w);
+  *out++ = OFFSET(depth_scale);
+  *out++ = OFFSET(depth_offset);
+  *out++ = OFFSET(texel);
+  *out++ = OFFSET(face_scale);
+  *out++ = OFFSET(offset);
+  *out++ = OFFSET(size);
+  *out++ = OFFSET(kind);
+  *out++ = OFFSET(pad);
+}
+
+__kernel void report_shade_frame(__global uint *out) {
+  ShadeFrame value;
+  *out++ = sizeof(ShadeFrame);
+  *out++ = OFFSET(ambient);
+  *out++ = OFFSET(background);
+  *out++ = OFFSET(fog_color);
+  *out++ = OFFSET(fog_density);
+  *out++ = OFFSET(eye);
+  *out++ = OFFSET(fog_end);
+  *out++ = OFFSET(fog_scale);
+  *out++ = OFFSET(fog_mode);
+  *out++ = OFFSET(blinn);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(fog_radial);
+  *out++ = OFFSET(pad);
+}
+
+// The members of a frame that came by value, as shade() gets it: a wrong layout of arguments shows here only.
+__kernel void report_frame_argument(__global uint *out, ShadeFrame frame) {
+  out[0] = as_uint(frame.ambient.x);
+  out[1] = as_uint(frame.eye.w);
+  out[2] = as_uint(frame.fog_end);
+  out[3] = frame.fog_mode;
+  out[4] = frame.pad;
+}

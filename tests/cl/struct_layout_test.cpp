@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstddef>
+#include <fstream>
+#include <sstream>
+
+#include "cl/device.hpp"
+#include "cl/kernel_source.hpp"
+#include "kernels/shared.h"
+
+namespace luciole {
+namespace {
+
+/// Runs a kernel of struct_layout.cl, whose first argument takes what it reports.
+template <class... Arguments>
+std::vector<cl_uint> report(const char* kernel_name, std::size_t count, const Arguments&... arguments) {
+  std::ifstream file(LUCIOLE_SOURCE_DIR "/tests/cl/struct_layout.cl");
+  std::stringstream text;
+  text << file.rdbuf();
+  Device device;
+  openDevice("", device);
+  cl::Kernel kernel =
+      makeKernelFromSource(device, expandKernelSource("struct_layout.cl", text.str()), kernel_name, "");
+  const cl::Buffer out = deviceBuffer(device, count * sizeof(cl_uint));
+  kernel.setArg(0, out);
+  cl_uint index = 1;
+  (kernel.setArg(index++, arguments), ...);
+  launch(device, kernel, 1, 1);
+  std::vector<cl_uint> reported(count);
+  readBuffer(device, out, reported.data(), count * sizeof(cl_uint));
+  return reported;
+}
+
+void expectLayout(const char* kernel, const std::vector<std::size_t>& host) {
+  const std::vector<cl_uint> device = report(kernel, host.size());
+  EXPECT_EQ(std::vector<std::size_t>(device.begin(), device.end()), host);
+}
+
+TEST(StructLayout, ShadeLight) {
+  expectLayout("report_shade_light",
+               {sizeof(ShadeLight), offsetof(ShadeLight, position), offsetof(ShadeLight, direction),
+                offsetof(ShadeLight, diffuse), offsetof(ShadeLight, specular), offsetof(ShadeLight, ambient),
+                offsetof(ShadeLight, attenuation), offsetof(ShadeLight, kind),
+                offsetof(ShadeLight, khr_window), offsetof(ShadeLight, cone), offsetof(ShadeLight, shadow)});
+}
+
+TEST(StructLayout, ShadowMap) {
+  expectLayout("report_shadow_map",
+               {sizeof(ShadowMap), offsetof(ShadowMap, to_map_x), offsetof(ShadowMap, to_map_y),
+                offsetof(ShadowMap, to_map_z), offsetof(ShadowMap, to_map_w),
+                offsetof(ShadowMap, depth_scale), offsetof(ShadowMap, depth_offset),
+                offsetof(ShadowMap, texel), offsetof(ShadowMap, face_scale), offsetof(ShadowMap, offset),
+                offsetof(ShadowMap, size), offsetof(ShadowMap, kind), offsetof(ShadowMap, pad)});
+}
+
+TEST(StructLayout, ShadeFrame) {
+  expectLayout(
+      "report_shade_frame",
+      {sizeof(ShadeFrame), offsetof(ShadeFrame, ambient), offsetof(ShadeFrame, background),
+       offsetof(ShadeFrame, fog_color), offsetof(ShadeFrame, fog_density), offsetof(ShadeFrame, eye),
+       offsetof(ShadeFrame, fog_end), offsetof(ShadeFrame, fog_scale), offsetof(ShadeFrame, fog_mode),
+       offsetof(ShadeFrame, blinn), offsetof(ShadeFrame, light_count), offsetof(ShadeFrame, plane_stride),
+       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, pad)});
+}
+
+TEST(StructLayout, FrameArrivesByValue) {
+  ShadeFrame frame{};
+  frame.ambient.x = 1.5f;
+  frame.eye.w = -2.25f;
+  frame.fog_end = 7;
+  frame.fog_mode = 42;
+  frame.pad = 43;
+  EXPECT_EQ(report("report_frame_argument", 5, frame),
+            (std::vector<cl_uint>{std::bit_cast<cl_uint>(1.5f), std::bit_cast<cl_uint>(-2.25f),
+                                  std::bit_cast<cl_uint>(7.0f), 42, 43}));
+}
+
+}  // namespace
+}  // namespace luciole

@@ -1,0 +1,288 @@
+#include "render/features.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <tuple>
+
+#include "kernels/probe.hpp"
+#include "kernels/random_scene.hpp"
+#include "render/lighting.hpp"
+#include "scene/load_scene.hpp"
+#include "shared_files.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// Features that mean nothing without another.
+struct Needs {
+  Feature feature;
+  std::vector<Feature> any_of;  ///< the first is added where none is there
+};
+
+const std::vector<Needs>& needs() {
+  using enum Feature;
+  static const std::vector<Needs> rules{
+      {kSpotExponent, {kSpotLights}},
+      {kSpotCone, {kSpotLights}},
+      {kAttenuation, {kPointLights, kSpotLights}},
+      {kSmoothWindow, {kPointLights, kSpotLights}},
+      {kKhrWindow, {kSpotLights, kPointLights}},
+      {kPhongSpecular, {kPointLights, kDirectionalLights, kSpotLights}},
+      {kBlinnSpecular, {kDirectionalLights, kSpotLights, kPointLights}},
+      {kLightAmbient, {kAmbient}},
+      {kLightAmbient, {kSpotLights, kPointLights, kDirectionalLights}},
+      {kPcf, {kPlanarShadows, kCubeShadows}},
+      {kOutputShadow, {kCubeShadows, kPlanarShadows}},
+      {kPlanarShadows, {kDirectionalLights, kSpotLights}},
+      {kCubeShadows, {kPointLights, kSpotLights}},
+      {kFogPerChannel, {kFogExp, kFogExp2}},
+      {kFogRadial, {kFogLinear, kFogExp, kFogExp2}},
+      {kLightLists, {kPointLights, kSpotLights, kDirectionalLights}},
+  };
+  return rules;
+}
+
+FeatureSet completed(FeatureSet features) {
+  for (const Needs& rule : needs()) {
+    bool met = !features.has(rule.feature);
+    for (const Feature other : rule.any_of) met |= features.has(other);
+    if (!met) features.set(rule.any_of[0]);
+  }
+  return features;
+}
+
+using Pair = std::tuple<std::size_t, bool, std::size_t, bool>;
+
+/// Every two features in every state of both that these features show.
+std::set<Pair> pairsIn(const FeatureSet& features) {
+  std::set<Pair> pairs;
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    for (std::size_t j = i + 1; j < kFeatureCount; ++j)
+      pairs.insert({i, features.has(static_cast<Feature>(i)), j, features.has(static_cast<Feature>(j))});
+  return pairs;
+}
+
+/// The pairs that no set shows: a feature without the one that it cannot do without.
+bool impossible(const Pair& pair) {
+  const auto [i, i_on, j, j_on] = pair;
+  for (const Needs& rule : needs()) {
+    if (rule.any_of.size() > 1) continue;
+    const auto feature = std::size_t(rule.feature), other = std::size_t(rule.any_of[0]);
+    if ((i == feature && i_on && j == other && !j_on) || (j == feature && j_on && i == other && !i_on))
+      return true;
+  }
+  return false;
+}
+
+std::set<Pair> allPairs() {
+  std::set<Pair> pairs;
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    for (std::size_t j = i + 1; j < kFeatureCount; ++j)
+      for (const bool i_on : {false, true})
+        for (const bool j_on : {false, true})
+          if (!impossible({i, i_on, j, j_on})) pairs.insert({i, i_on, j, j_on});
+  return pairs;
+}
+
+/// Few sets that together show every possible pair (a covering array of strength 2), by greedy choice from
+/// random sets.
+std::vector<FeatureSet> coveringSets() {
+  Random random(42);
+  std::set<Pair> missing = allPairs();
+  std::vector<FeatureSet> sets;
+  while (!missing.empty() && sets.size() < 100) {
+    FeatureSet best;
+    std::size_t most = 0;
+    for (int attempt = 0; attempt < 60; ++attempt) {
+      FeatureSet candidate;
+      const double density = random.between(0.15, 0.85);
+      for (std::size_t i = 0; i < kFeatureCount; ++i)
+        candidate.set(static_cast<Feature>(i), random.chance(density));
+      candidate = completed(candidate);
+      std::size_t covers = 0;
+      for (const Pair& pair : pairsIn(candidate)) covers += missing.count(pair);
+      if (covers > most) {
+        most = covers;
+        best = candidate;
+      }
+    }
+    for (const Pair& pair : pairsIn(best)) missing.erase(pair);
+    if (most > 0) sets.push_back(best);
+  }
+  return sets;
+}
+
+template <class T>
+T pick(const std::vector<T>& values, Random& random) {
+  return values[random.below(int(values.size()))];
+}
+
+FogMode fogMode(const FeatureSet& features, Random& random) {
+  std::vector<FogMode> modes;
+  if (features.has(Feature::kFogLinear) && !features.has(Feature::kFogPerChannel))
+    modes.push_back(FogMode::kLinear);
+  if (features.has(Feature::kFogExp)) modes.push_back(FogMode::kExp);
+  if (features.has(Feature::kFogExp2)) modes.push_back(FogMode::kExp2);
+  return modes.empty() ? FogMode::kNone : pick(modes, random);
+}
+
+/// A random light that uses these features and no others.
+Light lightWith(const FeatureSet& features, const std::vector<LightKind>& kinds, const Camera& camera,
+                Random& random) {
+  Light light = randomLight(camera, random);
+  light.kind = pick(kinds, random);
+  light.attenuation = features.has(Feature::kAttenuation) ? glm::vec3(0.5f, 0.1f, 0.02f) : glm::vec3(1, 0, 0);
+  const bool smooth = features.has(Feature::kSmoothWindow), khr = features.has(Feature::kKhrWindow);
+  light.range = smooth || khr ? float(random.between(5, 30)) : std::numeric_limits<float>::infinity();
+  light.window = khr && (!smooth || random.chance(0.5)) ? RangeWindow::kKhr : RangeWindow::kSmooth;
+  if (!features.specular()) light.specular = glm::vec3(0);
+  if (!features.has(Feature::kLightAmbient)) light.ambient = glm::vec3(0);
+  const bool cone = features.has(Feature::kSpotCone), exponent = features.has(Feature::kSpotExponent);
+  light.falloff = cone && (!exponent || random.chance(0.5)) ? SpotFalloff::kCone : SpotFalloff::kExponent;
+  light.exponent = exponent ? 12.5f : 0.0f;
+  light.cutoff = glm::radians(
+      features.has(Feature::kPlanarShadows) && !features.has(Feature::kCubeShadows) ? 50.0 : 80.0);
+  light.inner_cone = 0.5 * light.cutoff;
+  const bool planar = light.kind == LightKind::kDirectional || light.cutoff < glm::radians(60.0);
+  light.shadow = features.has(light.kind != LightKind::kPoint && planar ? Feature::kPlanarShadows
+                                                                        : Feature::kCubeShadows);
+  return light;
+}
+
+/// A scene that uses these features and no others, with a few triangles to cast shadows.
+Scene sceneWith(const FeatureSet& features, const Camera& camera, Random& random) {
+  Scene scene = randomScene(camera, 0, random);
+  std::vector<LightKind> kinds;
+  if (features.has(Feature::kPointLights)) kinds.push_back(LightKind::kPoint);
+  if (features.has(Feature::kDirectionalLights)) kinds.push_back(LightKind::kDirectional);
+  if (features.has(Feature::kSpotLights)) kinds.push_back(LightKind::kSpot);
+  for (int i = 0; i < 6 && !kinds.empty(); ++i)
+    scene.lights.push_back(lightWith(features, kinds, camera, random));
+  if (!features.has(Feature::kAmbient)) scene.ambient = glm::vec3(0);
+  scene.fog = randomFog(fogMode(features, random), random);
+  scene.fog.radial = features.has(Feature::kFogRadial);
+  if (!features.has(Feature::kFogPerChannel)) scene.fog.density = glm::vec3(scene.fog.density.x);
+  Mesh mesh;
+  for (int i = 0; i < 60; ++i) {
+    const glm::vec3 corner(random.between(-10, 10), random.between(-10, 10), random.between(-30, -2));
+    for (int c = 0; c < 3; ++c) mesh.positions.push_back(corner + glm::vec3(random.direction()));
+    mesh.normals.resize(mesh.positions.size(), glm::vec3(0, 0, 1));
+    mesh.triangles.push_back(glm::uvec3(3 * i, 3 * i + 1, 3 * i + 2));
+    mesh.triangle_materials.push_back(0);
+  }
+  scene.materials.resize(1);
+  scene.meshes.push_back(mesh);
+  scene.objects.push_back({0, camera.camera_to_world, -1});
+  return scene;
+}
+
+/// Lights the G-buffer by the program of exactly `needed`, and by the program of all features: the same
+/// picture, bit for bit, because a feature that is not used adds 0, multiplies by 1, or is not chosen at run
+/// time, and the operations that are left are the same in both. How shadow maps are filtered is a choice of
+/// method, which no scene makes; both have it alike.
+void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const FeatureSet& needed, bool blinn) {
+  Device& device = deviceWithLanes(listDevices().at(selectDevice(listDevices(), "")).lanes);
+  FeatureSet all = everyFeature();
+  all.set(Feature::kPcf, needed.has(Feature::kPcf));
+  Lighting lighting;
+  Stats stats;
+  prepareLighting(device, scene, gbuffer.camera, cameraView(gbuffer.camera, gbuffer.picture_size), needed,
+                  blinn, lighting, stats);
+  const Plane least = lightGBuffer(device, lighting, needed, gbuffer, false, stats).color;
+  Plane most = lightGBuffer(device, lighting, all, gbuffer, false, stats).color;
+  ASSERT_EQ(most.size(), 4 * gbuffer.pixels());
+  most.resize(least.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    if (least[i] == most[i]) continue;
+    if (++different < 5)
+      ADD_FAILURE() << "value " << i << ": " << least[i] << " by the least program, " << most[i]
+                    << " by the full";
+  }
+  EXPECT_EQ(different, 0u) << "of " << least.size() << " values; " << featureDefines(needed);
+}
+
+void expectSamePicture(const FeatureSet& features) {
+  Random random(8);
+  Camera camera = randomCamera(random);
+  camera.orthographic = features.has(Feature::kParallelView);
+  camera.half_height = 10;
+  const Scene scene = sceneWith(features, camera, random);
+  GBuffer gbuffer = randomGBuffer(camera, 39, 20, 0.1, random);
+  if (!features.has(Feature::kEmission)) std::fill(gbuffer.emission.begin(), gbuffer.emission.end(), 0.0f);
+  const bool blinn =
+      features.has(Feature::kBlinnSpecular) && (!features.has(Feature::kPhongSpecular) || random.chance(0.5));
+  expectSamePicture(scene, gbuffer, features, blinn);
+}
+
+std::string featureTestName(const testing::TestParamInfo<std::size_t>& info) {
+  std::string name = kFeatureTable[info.param].define;
+  std::erase(name, '_');
+  return name;
+}
+
+class FeatureAlone : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(FeatureAlone, LooksAsWithAllOthers) {
+  FeatureSet features;
+  features.set(static_cast<Feature>(GetParam()));
+  expectSamePicture(completed(features));
+}
+INSTANTIATE_TEST_SUITE_P(Each, FeatureAlone, testing::Range<std::size_t>(0, kFeatureCount), featureTestName);
+
+class FeaturePairs : public testing::TestWithParam<FeatureSet> {};
+
+TEST_P(FeaturePairs, LookAsWithAllOthers) { expectSamePicture(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(Covering, FeaturePairs, testing::ValuesIn(coveringSets()),
+                         [](const auto& set) { return std::to_string(set.index); });
+
+TEST(Features, CoveringSetsShowEveryPossiblePair) {
+  std::set<Pair> missing = allPairs();
+  for (const FeatureSet& features : coveringSets())
+    for (const Pair& pair : pairsIn(features)) missing.erase(pair);
+  EXPECT_TRUE(missing.empty()) << missing.size() << " pairs are never shown";
+}
+
+TEST(Features, NoneAtAllLooksAsWithAll) { expectSamePicture(FeatureSet{}); }
+
+TEST(Features, UnlitSceneLooksAsWithAll) {
+  Random random(8);
+  const Camera camera = randomCamera(random);
+  Scene scene = randomScene(camera, 5, random);
+  scene.lighting = false;
+  const GBuffer gbuffer = randomGBuffer(camera, 39, 20, 0.1, random);
+  expectSamePicture(scene, gbuffer, neededFeatures(scene, camera, {.specular = true, .emission = true}, {}),
+                    false);
+}
+
+TEST(Features, RealScenesLookAsWithAll) {
+  LUCIOLE_NEEDS_SHARED();
+  for (const char* file :
+       {"cornell_box/CornellBox-Original.obj", "khronos_LightsPunctualLamp/glTF/LightsPunctualLamp.gltf",
+        "khronos_Duck/glTF/Duck.gltf", "utah_teapot/teapot.obj"}) {
+    SCOPED_TRACE(file);
+    const Scene scene = loadScene((sharedScenes() / file).string());
+    const View view = cameraView(scene.cameras[0], {97, 64});
+    std::vector<std::uint32_t> objects(scene.objects.size());
+    for (std::uint32_t i = 0; i < objects.size(); ++i) objects[i] = i;
+    GBuffer gbuffer = rasterize(scene, objects, view, Shading::kPhong, {true, true, true});
+    gbuffer.camera = scene.cameras[0];
+    for (const ShadeSettings settings :
+         {ShadeSettings{}, ShadeSettings{.blinn = true, .culling = Culling::kNone}})
+      expectSamePicture(scene, gbuffer,
+                        neededFeatures(scene, gbuffer.camera, materialTraits(scene), settings),
+                        settings.blinn);
+  }
+}
+
+TEST(Features, EveryRowHasADefineOfTheKernels) {
+  std::string fallbacks;
+  for (const EmbeddedFile& file : embeddedKernels())
+    if (file.name == "features.clh") fallbacks = file.text;
+  for (const FeatureRow& row : kFeatureTable)
+    EXPECT_NE(fallbacks.find("#define " + std::string(row.define) + " 1\n"), std::string::npos) << row.define;
+}
+
+}  // namespace
+}  // namespace luciole::test

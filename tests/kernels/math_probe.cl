@@ -1,0 +1,29 @@
+// Every function of math.clh, and of lanes.clh what computes, a kernel each.
+#include "lanes.clh"
+#include "math.clh"
+
+#define PROBE_1(name, function)                                                             \
+  __kernel void name(__global const float *in, __global float *out, uint stride) {          \
+    uint first = get_global_id(0) * LANES;                                                  \
+    store_lanes(out + first, function(load_lanes(in + first)));                             \
+  }
+#define PROBE_2(name, function)                                                             \
+  __kernel void name(__global const float *in, __global float *out, uint stride) {          \
+    uint first = get_global_id(0) * LANES;                                                  \
+    store_lanes(out + first, function(load_lanes(in + first), load_lanes(in + first + stride))); \
+  }
+
+PROBE_1(probe_rsqrt, rsqrt_lanes)
+PROBE_1(probe_exp2, exp2_lanes)
+PROBE_1(probe_log2_one_minus, log2_one_minus)
+PROBE_1(probe_finite_color, finite_color)
+PROBE_1(probe_clamp01, clamp01)
+PROBE_2(probe_pow_one_minus, pow_one_minus)
+PROBE_2(probe_max, max_lanes)
+PROBE_2(probe_min, min_lanes)
+
+// 1 in every lane of a row where any lane is above 0, else 0.
+__kernel void probe_any_lane(__global const float *in, __global float *out, uint stride) {
+  uint first = get_global_id(0) * LANES;
+  store_lanes(out + first, (floatL)(any_lane(load_lanes(in + first) > 0.0f) ? 1.0f : 0.0f));
+}

@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <random>
+
+#include "kernels/probe.hpp"
+
+namespace luciole::test {
+namespace {
+
+constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
+
+/// Cases for one exponent: unit float vectors, the eye near enough to the mirror direction to see the lobe.
+struct Lobes {
+  std::vector<Column> in{10};
+  std::vector<glm::dvec3> normal, to_light, to_eye;  // the same vectors, exactly unit
+
+  void add(const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v, float exponent) {
+    const glm::vec3 rounded[3] = {glm::vec3(n), glm::vec3(l), glm::vec3(v)};
+    for (int i = 0; i < 9; ++i) in[i].push_back(rounded[i / 3][i % 3]);
+    in[9].push_back(exponent);
+    normal.push_back(glm::normalize(glm::dvec3(rounded[0])));
+    to_light.push_back(glm::normalize(glm::dvec3(rounded[1])));
+    to_eye.push_back(glm::normalize(glm::dvec3(rounded[2])));
+  }
+};
+
+Lobes lobesAround(float exponent, bool blinn, std::mt19937& random) {
+  std::normal_distribution<double> bell;
+  std::uniform_real_distribution<double> share(0, 1);
+  const auto direction = [&] { return glm::normalize(glm::dvec3(bell(random), bell(random), bell(random))); };
+  // cosⁿ has fallen to exp(−8) at an angle of √(16/n); Blinn's half angle is half of that.
+  const double widest = std::min(1.5, std::sqrt(16.0 / std::max(exponent, 1.0f))) * (blinn ? 2 : 1);
+  Lobes lobes;
+  while (lobes.normal.size() < 4000) {
+    const glm::dvec3 n = direction(), l = direction();
+    if (glm::dot(n, l) < 0.05) continue;
+    const glm::dvec3 mirrored = 2 * glm::dot(n, l) * n - l;
+    const glm::dvec3 aside = glm::normalize(glm::cross(mirrored, direction()));
+    const double angle = widest * share(random);
+    const glm::dvec3 v = std::cos(angle) * mirrored + std::sin(angle) * aside;
+    if (glm::length(l + v) < 0.5) continue;
+    lobes.add(n, l, v, exponent);
+  }
+  return lobes;
+}
+
+/// Largest error of a lobe as a share of its bound, and relative to the lobe's peak of 1.
+struct Worst {
+  double of_bound = 0, of_peak = 0;
+};
+
+// The kernel's argument is t = |a − b|²/2 for the cosine 1 − t. An error δ of the vector a − b changes t by
+// √(2t)·δ + δ²/2 at most; the lengths of a and b, off by ε, only by ε·t + ε². In units of 2^-24:
+//   Phong: R = 2(N·L)N − L. N·L has 3 roundings and N's length (2), R two products and a difference (≤ 2
+//   each, three components: √3) and N's length again: (2·5 + 2 + √3·3 + 2) < 20. Blinn: the sum L + V rounds
+//   (√3), unequal lengths of L and V (2 each) tilt it by 4/|L + V| ≤ 8, its scaling rounds √3, N has 2: < 14.
+// The power's own error is n·|log2(1 − t)|·2^-22 + 2 ulp.
+Worst worstError(const Lobes& lobes, const Column& result, bool blinn) {
+  const double delta = (blinn ? 14 : 20) * kUnit;
+  Worst worst;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const glm::dvec3 n = lobes.normal[i], l = lobes.to_light[i], v = lobes.to_eye[i];
+    const double cosine =
+        blinn ? glm::dot(n, glm::normalize(l + v)) : glm::dot(2 * glm::dot(n, l) * n - l, v);
+    const double exponent = lobes.in[9][i];
+    const auto power = [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); };
+    const double exact = power(cosine), t = std::max(1 - cosine, 0.0);
+    const double moved = std::sqrt(2 * t) * delta + delta * delta + 4 * kUnit * t;
+    const double log2 = cosine > 0 ? -std::log2(std::min(cosine, 1.0)) : 0.0;
+    const double bound = std::max(power(cosine + moved) - exact, exact - power(cosine - moved)) +
+                         exact * (exponent * log2 * 0x1p-22 + 4 * kUnit) + 0x1p-126;
+    const double error = std::abs(result[i] - exact);
+    worst.of_bound = std::max(worst.of_bound, error / bound);
+    worst.of_peak = std::max(worst.of_peak, error);
+  }
+  return worst;
+}
+
+TEST(PhongKernels, LobesKeepTheirShapeUpToLargeExponents) {
+  std::mt19937 random(7);
+  for (const float exponent : {0.0f, 1.0f, 32.0f, 1e4f, 1e6f}) {
+    for (const bool blinn : {false, true}) {
+      const Lobes lobes = lobesAround(exponent, blinn, random);
+      for (const int lanes : kAllLanes) {
+        const auto out = probe(deviceWithLanes(lanes), "phong_probe.cl", "probe_lobes", lobes.in, 2);
+        const Worst worst = worstError(lobes, out[blinn], blinn);
+        EXPECT_LE(worst.of_bound, 1) << exponent << (blinn ? " Blinn " : " Phong ") << lanes << " lanes";
+        // n·√(2t)·δ·(1 − t)ⁿ peaks at nt = ½ with √(n/e)·δ: 7.3e-4 for n = 10⁶ and δ = 20 · 2^-24.
+        EXPECT_LE(worst.of_peak, 1e-3) << exponent << (blinn ? " Blinn " : " Phong ") << lanes << " lanes";
+      }
+    }
+  }
+}
+
+TEST(PhongKernels, MirrorDirectionIsThePeak) {
+  // Axes and a 3-4-5 triangle: nothing rounds but 0.6 and 0.8 themselves.
+  Lobes lobes;
+  for (const float exponent : {0.0f, 1.0f, 32.0f, 1e4f, 1e6f}) {
+    lobes.add({0, 0, 1}, {0, 0, 1}, {0, 0, 1}, exponent);
+    lobes.add({0, 1, 0}, {0.6, 0.8, 0}, {-0.6, 0.8, 0}, exponent);
+  }
+  for (const int lanes : kAllLanes)
+    for (const Column& lobe : probe(deviceWithLanes(lanes), "phong_probe.cl", "probe_lobes", lobes.in, 2))
+      // t is at most (2^-23)²/2 here: n·t < 1e-8.
+      for (const float value : lobe) EXPECT_NEAR(value, 1, 2e-7) << lanes << " lanes";
+}
+
+TEST(PhongKernels, ZeroToTheZeroIsOne) {
+  Lobes lobes;
+  lobes.add({0, 0, 1}, {0.6, 0, 0.8}, {0.6, 0, 0.8}, 0);  // R·V = 0.28
+  lobes.add({0, 0, 1}, {0.8, 0, 0.6}, {0.8, 0, 0.6}, 0);  // R·V < 0
+  lobes.add({0, 0, 1}, {0.8, 0, 0.6}, {0.8, 0, 0.6}, 1);
+  for (const int lanes : kAllLanes) {
+    const auto out = probe(deviceWithLanes(lanes), "phong_probe.cl", "probe_lobes", lobes.in, 1);
+    EXPECT_EQ(out[0], (Column{1, 1, 0})) << lanes << " lanes";
+  }
+}
+
+}  // namespace
+}  // namespace luciole::test

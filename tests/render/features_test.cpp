@@ -1,0 +1,92 @@
+#include "render/features.hpp"
+
+#include <gtest/gtest.h>
+
+#include "render_json.hpp"
+
+namespace luciole::test {
+namespace {
+
+FeatureSet featuresOf(const std::string& json, ShadeSettings settings = {}) {
+  const Scene scene = sceneFromJson(json);
+  return neededFeatures(scene, scene.cameras.front(), materialTraits(scene), settings);
+}
+
+FeatureSet setOf(std::initializer_list<Feature> features) {
+  FeatureSet set;
+  for (const Feature feature : features) set.set(feature);
+  return set;
+}
+
+std::string withLight(const std::string& light, const std::string& more = "") {
+  return R"({"objects": [{"primitive": "box"}], "lights": [)" + light + "]" + more + "}";
+}
+
+TEST(Features, EmptySceneNeedsNone) { EXPECT_EQ(featuresOf(R"({"objects": [{"primitive": "box"}]})"), FeatureSet()); }
+
+TEST(Features, PlainLightsNeedOnlyTheirKind) {
+  EXPECT_EQ(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})")), setOf({Feature::kPointLights, Feature::kLightLists}));
+  EXPECT_EQ(featuresOf(withLight(R"({"type": "directional", "direction": [0, -1, 0]})")),
+            setOf({Feature::kDirectionalLights, Feature::kLightLists}));
+  EXPECT_EQ(featuresOf(withLight(R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 30})")),
+            setOf({Feature::kSpotLights, Feature::kLightLists}));
+}
+
+TEST(Features, SpotOfCutoff180IsAPointLight) {
+  EXPECT_EQ(featuresOf(withLight(R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 180, "exponent": 9})")),
+            setOf({Feature::kPointLights, Feature::kLightLists}));
+}
+
+TEST(Features, ConesBesideExponentsAreToldApartAtRunTime) {
+  const std::string both = R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 30},
+    {"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "inner_cone": 10, "outer_cone": 20})";
+  const FeatureSet features = featuresOf(withLight(both));
+  EXPECT_TRUE(features.has(Feature::kSpotCone));
+  EXPECT_TRUE(features.has(Feature::kSpotExponent));
+}
+
+TEST(Features, SpecularNeedsBothASurfaceAndALight) {
+  const std::string shiny = R"(, "materials": {"m": {"specular": 0.5}})";
+  const std::string light = R"({"type": "point", "position": [0, 1, 0]})";
+  EXPECT_TRUE(featuresOf(withLight(light, shiny)).has(Feature::kPhongSpecular));
+  EXPECT_FALSE(featuresOf(withLight(light)).specular());
+  EXPECT_FALSE(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0], "specular": [0, 0, 0]})", shiny)).specular());
+  ShadeSettings blinn;
+  blinn.blinn = true;
+  EXPECT_TRUE(featuresOf(withLight(light, shiny), blinn).has(Feature::kBlinnSpecular));
+}
+
+TEST(Features, SwitchedOffShadowsAndCullingCostNothing) {
+  const std::string scene = withLight(R"({"type": "point", "position": [0, 1, 0], "shadow": true})");
+  EXPECT_TRUE(featuresOf(scene).has(Feature::kCubeShadows));
+  ShadeSettings off;
+  off.shadows = ShadowMethod::kOff;
+  off.culling = Culling::kNone;
+  EXPECT_EQ(featuresOf(scene, off), setOf({Feature::kPointLights}));
+}
+
+TEST(Features, FogNeedsItsModeAndChannelsOnly) {
+  const auto fog = [](const std::string& text) { return featuresOf(R"({"objects": [{"primitive": "box"}], "fog": )" + text + "}"); };
+  EXPECT_EQ(fog(R"({"mode": "exp", "density": 0.1})"), setOf({Feature::kFogExp}));
+  EXPECT_EQ(fog(R"({"mode": "exp2", "density": [0.1, 0.2, 0.3]})"), setOf({Feature::kFogExp2, Feature::kFogPerChannel}));
+  EXPECT_EQ(fog(R"({"mode": "linear", "start": 1, "end": 9, "distance": "radial"})"), setOf({Feature::kFogLinear, Feature::kFogRadial}));
+}
+
+TEST(Features, TableNamesEveryFeatureOnce) {
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_STRNE(kFeatureTable[i].define, kFeatureTable[j].define);
+      EXPECT_STRNE(kFeatureTable[i].name, kFeatureTable[j].name);
+    }
+}
+
+TEST(Features, GBufferGroupsFollowTheFeatures) {
+  const PlaneSet none = neededPlanes(FeatureSet());
+  EXPECT_FALSE(none.specular || none.ambient || none.emission);
+  EXPECT_TRUE(neededPlanes(setOf({Feature::kPhongSpecular})).specular);
+  EXPECT_TRUE(neededPlanes(setOf({Feature::kAmbient})).ambient);
+  EXPECT_TRUE(neededPlanes(setOf({Feature::kEmission})).emission);
+}
+
+}  // namespace
+}  // namespace luciole::test

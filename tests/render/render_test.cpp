@@ -1,0 +1,102 @@
+#include "render/render.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "error.hpp"
+#include "reference/reference.hpp"
+#include "render_json.hpp"
+
+namespace luciole::test {
+namespace {
+
+TEST(SamplePoint, SingleSampleIsThePixelsCentre) { EXPECT_EQ(samplePoint(0, 1), glm::dvec2(0.5)); }
+
+TEST(SamplePoint, SamplesFillEveryRowAndColumnOnceForPowersOfTwo) {
+  for (const int count : {2, 4, 8, 16, 64}) {
+    std::vector<int> columns(count), rows(count);
+    for (int i = 0; i < count; ++i) {
+      const glm::dvec2 p = samplePoint(i, count);
+      ++columns.at(int(p.x * count));
+      ++rows.at(int(p.y * count));
+    }
+    EXPECT_EQ(columns, std::vector<int>(count, 1));
+    EXPECT_EQ(rows, std::vector<int>(count, 1));
+  }
+}
+
+constexpr const char* kScene = R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0]}, "ambient": [0.1, 0.1, 0.1],
+  "fog": {"mode": "exp", "density": [0.05, 0.02, 0.01], "color": [0.2, 0.3, 0.4]},
+  "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
+  "objects": [{"primitive": "plane", "scale": 10, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"}],
+  "lights": [{"type": "directional", "direction": [-1, -2, -1], "color": [0.5, 0.5, 0.5]},
+             {"type": "point", "position": [1, 2, 2], "range": 4, "ambient": [0.1, 0, 0], "diffuse": [1, 0.5, 0.2]},
+             {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "inner_cone": 10, "outer_cone": 30, "attenuation": [0, 0, 0.1]}]})";
+
+TEST(Render, AgreesWithTheDoublePrecisionReference) {
+  const Scene scene = sceneFromJson(kScene);
+  RenderSettings settings;
+  settings.size = {160, 90};
+  settings.camera = scene.cameras.front();
+  for (const bool blinn : {false, true}) {
+    settings.shade.blinn = blinn;
+    Stats stats;
+    const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
+    const Image ours = renderScene(testDevice(), scene, settings, stats);
+    const Image truth = referenceShade(scene, gbuffer, blinn);
+    ASSERT_EQ(ours.pixels.size(), truth.pixels.size());
+    // About 40 roundings of 2^-24 between a light and the sum, on the largest of three lights' terms below 2; the lobe's
+    // power multiplies its argument's error (4·2^-24) by the exponent 32 and by log2 e.
+    const double tolerance = 2 * (40 + 4 * 32 * 1.4427) * std::exp2(-24);
+    double worst = 0;
+    for (std::size_t i = 0; i < ours.pixels.size(); ++i)
+      worst = std::max(worst, std::abs(double(ours.pixels[i]) - truth.pixels[i]));
+    EXPECT_LE(worst, tolerance);
+  }
+}
+
+TEST(Render, UnlitSceneShowsDiffuseAndEmission) {
+  const Image image = renderJson(R"({"lighting": false, "camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
+    "materials": {"m": {"diffuse": [0.25, 0.5, 0.75], "emission": [0.125, 0, 0]}},
+    "objects": [{"primitive": "box", "material": "m"}], "lights": [{"type": "directional", "direction": [0, 0, -1]}]})",
+                                 {9, 9}, [](RenderSettings&) {});
+  const std::size_t centre = 3 * (4 * 9 + 4);
+  EXPECT_EQ(image.pixels[centre], 0.375f);
+  EXPECT_EQ(image.pixels[centre + 1], 0.5f);
+  EXPECT_EQ(image.pixels[centre + 2], 0.75f);
+}
+
+TEST(Render, MoreSamplesSmoothEdgesTowardsTheCoveredShare) {
+  // The left half of an emissive square's pixel column is covered: with n samples the edge pixel is k/n white.
+  const std::string json = R"({"camera": {"eye": [0, 0, 2], "target": [0, 0, 0], "orthographic": 1}, "lighting": false,
+    "objects": [{"primitive": "box", "translate": [-0.5, 0, 0], "scale": [1, 4, 0.1]}], "materials": {}})";
+  const Image image = renderJson(json, {5, 5}, [](RenderSettings& settings) { settings.samples = 16; });
+  const float inside = image.pixels[3 * (2 * 5 + 0)], edge = image.pixels[3 * (2 * 5 + 2)];
+  // Pixel 2 spans x in [-0.2, 0.2] m, the box ends at 0: half of 16 samples, one per column of a 16th.
+  EXPECT_NEAR(edge, inside * 0.5f, inside * 1e-6f);
+}
+
+TEST(Render, MovingCameraAndSceneFarAwayChangesNextToNothing) {
+  const auto far = [](double offset) {
+    return "{\"camera\": {\"eye\": [" + std::to_string(offset + 3) + ", 2, 5], \"target\": [" + std::to_string(offset) + ", 0.5, 0]}, " +
+           "\"objects\": [{\"primitive\": \"sphere\", \"translate\": [" + std::to_string(offset) + ", 0.5, 0]}], " +
+           "\"lights\": [{\"type\": \"point\", \"position\": [" + std::to_string(offset + 1) + ", 2, 2], \"range\": 9}]}";
+  };
+  const Image near_image = renderJson(far(0), {64, 36}, [](RenderSettings&) {});
+  const Image far_image = renderJson(far(1e7), {64, 36}, [](RenderSettings&) {});
+  // A double holds 10^7 m to 2 nm: 10^-9 of the distances here, far below a float's rounding, which may then differ by an ulp
+  // in positions and, through the lighting, by some tens of ulps; a silhouette pixel may flip where a sample lies on the edge.
+  int differing = 0;
+  for (std::size_t i = 0; i < near_image.pixels.size(); ++i)
+    differing += std::abs(near_image.pixels[i] - far_image.pixels[i]) > 64 * std::exp2(-24);
+  EXPECT_LE(differing, 3);
+}
+
+TEST(Render, CropOutsideThePictureIsRefused) {
+  for (const Crop crop : {Crop{-1, 0, 2, 2}, {0, 0, 0, 1}, {60, 0, 5, 5}, {0, 0, 2147483647, 1}, {2147483647, 0, 1, 1}})
+    EXPECT_THROW(renderJson(kScene, {64, 36}, [&](RenderSettings& settings) { settings.crop = crop; }), InputError);
+}
+
+}  // namespace
+}  // namespace luciole::test

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace luciole::test {
+
+/// The folder of real scenes that are not part of this project: $LUCIOLE_SHARED, or ../shared beside the checkout.
+inline std::filesystem::path sharedFolder() {
+  if (const char* place = std::getenv("LUCIOLE_SHARED")) return place;
+  return std::filesystem::path(LUCIOLE_SOURCE_DIR) / ".." / "shared";
+}
+inline std::filesystem::path sharedScenes() { return sharedFolder() / "scenes"; }
+
+/// A folder of this test's own, empty, removed with everything in it at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "luciole-test-XXXXXX").string();
+    if (!mkdtemp(pattern.data())) std::abort();
+    path_ = pattern;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace luciole::test
+
+/// For tests that need the shared scenes. Where $LUCIOLE_SHARED says where they are, missing files are a failure;
+/// without them anywhere, the test says that it was skipped.
+#define LUCIOLE_NEEDS_SHARED()                                                                              \
+  do {                                                                                                      \
+    if (!std::filesystem::is_directory(luciole::test::sharedScenes())) {                                    \
+      if (std::getenv("LUCIOLE_SHARED")) FAIL() << "no scenes in " << luciole::test::sharedScenes();        \
+      GTEST_SKIP() << "needs the shared scenes (set LUCIOLE_SHARED to the folder that holds scenes/)";      \
+    }                                                                                                       \
+  } while (false)
