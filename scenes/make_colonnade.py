@@ -25,8 +25,8 @@ class Obj:
         """A face of (position, normal) corners, counter-clockwise from outside."""
         indices = []
         for position, normal in corners:
-            p = " ".join(f"{v:.4f}" for v in position)
-            n = " ".join(f"{v:.3f}" for v in normal)
+            p = " ".join(f"{round(v, 3) + 0:g}" for v in position)
+            n = " ".join(f"{round(v, 3) + 0:g}" for v in normal)
             i = self.positions.setdefault(p, len(self.positions) + 1)
             if i not in [index for index, _ in indices]:
                 indices.append((i, self.normals.setdefault(n, len(self.normals) + 1)))
@@ -216,7 +216,7 @@ def statue():
     obj = Obj()
     slab(obj, (-0.42, 0, -0.42), (0.42, 0.9, 0.42))
     slab(obj, (-0.47, 0.9, -0.47), (0.47, 1.0, 0.47))
-    around, rings = 48, 22
+    around, rings = 40, 20
     outline = [(0.0, 0.31), (0.1, 0.29), (0.45, 0.235), (0.62, 0.19), (0.72, 0.215), (0.8, 0.245), (0.845, 0.2),
                (0.87, 0.11), (0.9, 0.062), (0.94, 0.06)]
 

@@ -6,7 +6,8 @@
 
 namespace luciole::test {
 
-/// The folder of real scenes that are not part of this project: $LUCIOLE_SHARED, or ../shared beside the checkout.
+/// The folder of real scenes that are not part of this project: $LUCIOLE_SHARED, or ../shared beside the
+/// checkout.
 inline std::filesystem::path sharedFolder() {
   if (const char* place = std::getenv("LUCIOLE_SHARED")) return place;
   return std::filesystem::path(LUCIOLE_SOURCE_DIR) / ".." / "shared";
@@ -33,12 +34,12 @@ class TemporaryFolder {
 
 }  // namespace luciole::test
 
-/// For tests that need the shared scenes. Where $LUCIOLE_SHARED says where they are, missing files are a failure;
-/// without them anywhere, the test says that it was skipped.
-#define LUCIOLE_NEEDS_SHARED()                                                                              \
-  do {                                                                                                      \
-    if (!std::filesystem::is_directory(luciole::test::sharedScenes())) {                                    \
-      if (std::getenv("LUCIOLE_SHARED")) FAIL() << "no scenes in " << luciole::test::sharedScenes();        \
-      GTEST_SKIP() << "needs the shared scenes (set LUCIOLE_SHARED to the folder that holds scenes/)";      \
-    }                                                                                                       \
+/// For tests that need the shared scenes. Where $LUCIOLE_SHARED says where they are, missing files are a
+/// failure; without them anywhere, the test says that it was skipped.
+#define LUCIOLE_NEEDS_SHARED()                                                                         \
+  do {                                                                                                 \
+    if (!std::filesystem::is_directory(luciole::test::sharedScenes())) {                               \
+      if (std::getenv("LUCIOLE_SHARED")) FAIL() << "no scenes in " << luciole::test::sharedScenes();   \
+      GTEST_SKIP() << "needs the shared scenes (set LUCIOLE_SHARED to the folder that holds scenes/)"; \
+    }                                                                                                  \
   } while (false)

@@ -47,9 +47,11 @@ std::vector<FoundDevice> findDevices() {
     try {
       platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
       for (const cl::Device& device : devices)
-        found.push_back({platform, device,
-                         {trimmed(platform.getInfo<CL_PLATFORM_NAME>()), trimmed(device.getInfo<CL_DEVICE_NAME>()),
-                          trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device)}});
+        found.push_back(
+            {platform,
+             device,
+             {trimmed(platform.getInfo<CL_PLATFORM_NAME>()), trimmed(device.getInfo<CL_DEVICE_NAME>()),
+              trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device)}});
     } catch (const cl::Error&) {
       continue;  // a platform without usable devices
     }
@@ -86,7 +88,8 @@ std::vector<DeviceDescription> listDevices() {
 
 std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::string& selector) {
   if (devices.empty())
-    throw MachineError("no OpenCL device: install one, for example PoCL for the CPU (apt install pocl-opencl-icd)");
+    throw MachineError(
+        "no OpenCL device: install one, for example PoCL for the CPU (apt install pocl-opencl-icd)");
   const std::string wanted = lowered(selector.substr(0, selector.find(kLanesSuffix)));
   if (wanted.empty()) {
     for (std::size_t i = 0; i < devices.size(); ++i)
@@ -95,12 +98,13 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
   }
   if (const auto number = parseNumber(wanted)) {
     if (*number < devices.size()) return *number;
-    throw InputError(fmt::format("--device {}: there are {} devices, counted from 0 (see luciole devices)", selector,
-                                 devices.size()));
+    throw InputError(fmt::format("--device {}: there are {} devices, counted from 0 (see luciole devices)",
+                                 selector, devices.size()));
   }
   for (std::size_t i = 0; i < devices.size(); ++i)
     if (lowered(devices[i].platform + " " + devices[i].name).find(wanted) != std::string::npos) return i;
-  throw InputError(fmt::format("--device {}: no device has this in its name (see luciole devices)", selector));
+  throw InputError(
+      fmt::format("--device {}: no device has this in its name (see luciole devices)", selector));
 }
 
 void openDevice(const std::string& selector, Device& device) {
@@ -129,7 +133,8 @@ cl::Kernel makeKernel(Device& device, const std::string& file, const char* name,
   return makeKernelFromSource(device, kernelSource(file), name, defines);
 }
 
-cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name, const std::string& defines) {
+cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+                                const std::string& defines) {
   const std::string options = fmt::format("-cl-std=CL1.2 -cl-mad-enable -cl-denorms-are-zero -DLANES={} {}",
                                           device.description.lanes, defines);
   const std::string key = options + source;
@@ -146,7 +151,8 @@ cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const
     std::string log;
     for (const auto& [where, text] : error.getBuildLog()) log += text;
     std::replace(log.begin(), log.end(), '\n', ' ');
-    throw MachineError(fmt::format("{}: kernel '{}' does not compile: {}", device.description.name, name, log.substr(0, 1000)));
+    throw MachineError(fmt::format("{}: kernel '{}' does not compile: {}", device.description.name, name,
+                                   log.substr(0, 1000)));
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }

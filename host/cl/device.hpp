@@ -34,24 +34,26 @@ struct Device {
 /// All OpenCL devices of all platforms, in the order the runtime names them. Empty where there is none.
 std::vector<DeviceDescription> listDevices();
 
-/// Which of listDevices() a selector means. "": PoCL's first device where there is one, otherwise the first. A number: that
-/// one. Anything else: the first whose name or platform contains it, case ignored. Throws InputError if none fits and
-/// MachineError if there is no device at all. A suffix ",lanes=N" (1, 4, 8, 16) is left to openDevice.
+/// Which of listDevices() a selector means. "": PoCL's first device where there is one, otherwise the first.
+/// A number: that one. Anything else: the first whose name or platform contains it, case ignored. Throws
+/// InputError if none fits and MachineError if there is no device at all. A suffix ",lanes=N" (1, 4, 8, 16)
+/// is left to openDevice.
 std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::string& selector);
 
 /// Opens the device that `selector` means, its lanes forced where the selector ends in ",lanes=N".
 /// Throws as selectDevice does, and MachineError if the device fails.
 void openDevice(const std::string& selector, Device& device);
 
-/// The kernel `name` of kernels/`file`, compiled for the device with LANES and the given -D options. A program is built
-/// once a device. Throws MachineError with the compiler's first message.
+/// The kernel `name` of kernels/`file`, compiled for the device with LANES and the given -D options. A
+/// program is built once a device. Throws MachineError with the compiler's first message.
 cl::Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines);
 
 /// The same for any source text whose includes are in place (see expandKernelSource).
-cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name, const std::string& defines);
+cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+                                const std::string& defines);
 
-/// A buffer with these bytes to read from; shared in place where device and host share memory, so the bytes must
-/// outlive it. Empty input makes a small buffer, as OpenCL has no empty ones.
+/// A buffer with these bytes to read from; shared in place where device and host share memory, so the bytes
+/// must outlive it. Empty input makes a small buffer, as OpenCL has no empty ones.
 cl::Buffer inputBuffer(Device& device, const void* data, std::size_t bytes);
 template <class Container>
 cl::Buffer inputBuffer(Device& device, const Container& values) {

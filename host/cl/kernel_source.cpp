@@ -14,7 +14,8 @@ std::string_view embeddedText(std::string_view name) {
   throw std::logic_error(fmt::format("no kernel file '{}'", name));
 }
 
-void appendText(std::string_view name, std::string_view text, std::vector<std::string_view>& seen, std::string& source) {
+void appendText(std::string_view name, std::string_view text, std::vector<std::string_view>& seen,
+                std::string& source) {
   source += fmt::format("#line 1 \"kernels/{}\"\n", name);
   constexpr std::string_view kInclude = "#include \"";
   for (int line_number = 1; !text.empty(); ++line_number) {
@@ -25,7 +26,8 @@ void appendText(std::string_view name, std::string_view text, std::vector<std::s
       source += line;
       continue;
     }
-    const std::string_view included = line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
+    const std::string_view included =
+        line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
     if (std::find(seen.begin(), seen.end(), included) == seen.end()) {
       seen.push_back(included);
       appendText(included, embeddedText(included), seen, source);

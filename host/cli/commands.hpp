@@ -5,17 +5,19 @@
 
 namespace luciole {
 
-/// The status of the process: 0 done, 1 the comparison failed, 2 wrong input or arguments, 3 the machine can't.
+/// The status of the process: 0 done, 1 the comparison failed, 2 wrong input or arguments, 3 the machine
+/// can't.
 enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3 };
 
-/// What every command is told: the line as typed, for metadata and statistics, and where to leave its exit status.
+/// What every command is told: the line as typed, for metadata and statistics, and where to leave its exit
+/// status.
 struct CommandContext {
   std::string command_line;
   int status = kDone;
 };
 
-// Each adds one command to the program; its work runs when the command line names it. They throw InputError and
-// MachineError.
+// Each adds one command to the program; its work runs when the command line names it. They throw InputError
+// and MachineError.
 void addRenderCommand(CLI::App& app, CommandContext& context);
 void addGBufferCommand(CLI::App& app, CommandContext& context);
 void addShadeCommand(CLI::App& app, CommandContext& context);

@@ -13,8 +13,8 @@ void addDevicesCommand(CLI::App& app, CommandContext&) {
     const std::vector<DeviceDescription> devices = listDevices();
     const std::size_t chosen = selectDevice(devices, *selector);
     for (std::size_t i = 0; i < devices.size(); ++i)
-      fmt::print("{} {}  {} ({}), driver {}, {} lanes\n", i == chosen ? '*' : ' ', i, devices[i].name, devices[i].platform,
-                 devices[i].version, devices[i].lanes);
+      fmt::print("{} {}  {} ({}), driver {}, {} lanes\n", i == chosen ? '*' : ' ', i, devices[i].name,
+                 devices[i].platform, devices[i].version, devices[i].lanes);
   });
 }
 

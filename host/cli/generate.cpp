@@ -36,18 +36,21 @@ void generateLights(const LightsOptions& options) {
     field.high = bounds.high;
   }
   if (options.colors.empty()) {
-    field.colors = {{1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
+    field.colors = {
+        {1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
   } else {
     field.colors.clear();
     for (std::size_t i = 0; i + 2 < options.colors.size(); i += 3)
       field.colors.emplace_back(options.colors[i], options.colors[i + 1], options.colors[i + 2]);
   }
   const glm::dvec3 sides = field.high - field.low;
-  if (!(sides.x >= 0 && sides.y >= 0 && sides.z >= 0)) throw InputError("generate lights: --min must not exceed --max");
+  if (!(sides.x >= 0 && sides.y >= 0 && sides.z >= 0))
+    throw InputError("generate lights: --min must not exceed --max");
   double range = options.range;
   if (range == 0) {
     const double volume = std::max(sides.x, 1e-3) * std::max(sides.y, 1e-3) * std::max(sides.z, 1e-3);
-    range = std::cbrt(kLightsPerPoint * volume / std::max<double>(double(options.count), 1) * 3 / (4 * 3.14159265358979));
+    range = std::cbrt(kLightsPerPoint * volume / std::max<double>(double(options.count), 1) * 3 /
+                      (4 * 3.14159265358979));
   }
   field.range = glm::vec2(float(range));
   field.intensity = glm::vec2(float(options.intensity));
@@ -67,19 +70,22 @@ void generateLights(const LightsOptions& options) {
 void addGenerateCommand(CLI::App& app, CommandContext&) {
   CLI::App* command = app.add_subcommand("generate", "seeded light fields, as scene files");
   command->require_subcommand(1);
-  CLI::App* lights = command->add_subcommand("lights", "point lights spread at random, the same for the same seed");
+  CLI::App* lights =
+      command->add_subcommand("lights", "point lights spread at random, the same for the same seed");
   auto options = std::make_shared<LightsOptions>();
   lights->add_option("MESH", options->mesh, "fill this file's bounding box, and place it in the scene");
   lights->add_option("--count", options->count, "lights")->capture_default_str();
   lights->add_option("--seed", options->seed)->capture_default_str();
   lights->add_option("--min", options->low, "x,y,z of the box, without MESH")->delimiter(',')->expected(3);
   lights->add_option("--max", options->high)->delimiter(',')->expected(3);
-  lights->add_option("--range", options->range, "metres (default: about 8 lights reach a point)")->check(CLI::PositiveNumber);
+  lights->add_option("--range", options->range, "metres (default: about 8 lights reach a point)")
+      ->check(CLI::PositiveNumber);
   lights->add_option("--intensity", options->intensity)->check(CLI::NonNegativeNumber)->capture_default_str();
   lights->add_option("--color", options->colors, "r,g,b; several: each light picks one")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber);
-  lights->add_option("-o,--output", options->output, "scene file (- : standard output)")->capture_default_str();
+  lights->add_option("-o,--output", options->output, "scene file (- : standard output)")
+      ->capture_default_str();
   lights->callback([options] {
     if (options->colors.size() % 3 != 0) throw InputError("--color: expected r,g,b, or several times r,g,b");
     generateLights(*options);

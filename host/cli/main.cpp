@@ -17,7 +17,8 @@ std::string joinedArguments(int count, char** arguments) {
 }
 
 const CLI::App& findCommand(CLI::App& app, const std::string& name) {
-  const auto named = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+  const auto named =
+      app.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
   if (named.empty()) throw InputError(fmt::format("{}: no such command (see luciole help)", name));
   return *named.front();
 }

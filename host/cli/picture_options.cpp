@@ -21,7 +21,8 @@ const std::map<std::string, Aov> kAovs{{"position", Aov::kPosition}, {"normal", 
                                        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
                                        {"shadow", Aov::kShadow}};
 
-/// Host and device bytes that a pixel takes while it is rendered: visibility, at most 20 G-buffer planes, colours.
+/// Host and device bytes that a pixel takes while it is rendered: visibility, at most 20 G-buffer planes,
+/// colours.
 constexpr double kBytesPerPixel = 130;
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -58,23 +59,25 @@ const Camera& findCamera(const Scene& scene, const std::string& wanted) {
     return scene.cameras[index];
   std::string names;
   for (const Camera& camera : scene.cameras) names += (names.empty() ? "" : ", ") + camera.name;
-  throw InputError(fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
-                               scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
-                               names.empty() ? "unnamed" : names));
+  throw InputError(
+      fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
+                  scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
+                  names.empty() ? "unnamed" : names));
 }
 
 void checkMemory(glm::ivec2 size) {
   const double needed = kBytesPerPixel * size.x * size.y;
   const double machine = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
   if (needed > 0.9 * machine)
-    throw MachineError(fmt::format("a picture of {}x{} pixels needs about {:.0f} GiB of memory, and the machine has {:.0f}",
-                                   size.x, size.y, needed / (1 << 30), machine / (1 << 30)));
+    throw MachineError(
+        fmt::format("a picture of {}x{} pixels needs about {:.0f} GiB of memory, and the machine has {:.0f}",
+                    size.x, size.y, needed / (1 << 30), machine / (1 << 30)));
 }
 
 }  // namespace
 
-std::vector<int> parseInts(const std::string& text, char separator, std::size_t count, const std::string& option,
-                           const std::string& expected) {
+std::vector<int> parseInts(const std::string& text, char separator, std::size_t count,
+                           const std::string& option, const std::string& expected) {
   std::vector<int> numbers;
   for (const std::string& part : split(text, separator)) {
     int number = 0;
@@ -88,12 +91,15 @@ std::vector<int> parseInts(const std::string& text, char separator, std::size_t 
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
-  command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")->required();
+  command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")
+      ->required();
   if (groups & kViewOptions) {
     command.add_option("--size", options.size, "WxH pixels (default: the scene's, or 1280x720)");
     command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
     command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
-    command.add_option("--shading", options.shading, "what is interpolated over a triangle: nothing, colours, normals")
+    command
+        .add_option("--shading", options.shading,
+                    "what is interpolated over a triangle: nothing, colours, normals")
         ->check(CLI::IsMember({"flat", "gouraud", "phong"}))
         ->capture_default_str();
   }
@@ -101,7 +107,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option("--model", options.model, "the specular lobe: (R.V)^n or (N.H)^n")
         ->check(CLI::IsMember({"phong", "blinn-phong"}))
         ->capture_default_str();
-    command.add_option("--culling", options.culling, "which lights a pixel goes through; never changes the picture")
+    command
+        .add_option("--culling", options.culling,
+                    "which lights a pixel goes through; never changes the picture")
         ->check(CLI::IsMember({"none", "tiles", "auto"}))
         ->capture_default_str();
     command.add_option("--shadows", options.shadows, "how shadow maps are looked up")
@@ -115,7 +123,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option("--samples", options.samples, "samples per pixel, against jagged edges")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-  command.add_option("--device", options.device, "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
+  command.add_option("--device", options.device,
+                     "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
 }
@@ -147,7 +156,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                            : options.shadows == "hard" ? ShadowMethod::kHard
                                                        : ShadowMethod::kPcf;
   settings.aovs = parseAovs(options.aovs);
-  if (!(std::abs(options.exposure) <= 100)) throw InputError("--exposure: expected stops between -100 and 100");
+  if (!(std::abs(options.exposure) <= 100))
+    throw InputError("--exposure: expected stops between -100 and 100");
   settings.exposure = float(options.exposure);
   settings.count_lights = !options.stats.empty();
   return settings;
@@ -164,9 +174,10 @@ void checkOutput(const PictureOptions& options) {
 Metadata pictureMetadata(const std::string& command_line, const Device* device) {
   Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", command_line}};
   if (device)
-    metadata.emplace_back("luciole:device", fmt::format("{}, {}, driver {}, {} lanes", device->description.name,
-                                                        device->description.platform, device->description.version,
-                                                        device->description.lanes));
+    metadata.emplace_back(
+        "luciole:device",
+        fmt::format("{}, {}, driver {}, {} lanes", device->description.name, device->description.platform,
+                    device->description.version, device->description.lanes));
   return metadata;
 }
 
@@ -177,10 +188,11 @@ void reportStats(const PictureOptions& options, const Stats& stats) {
   double total = 0;
   for (const auto& [name, milliseconds] : stats.stages) {
     total += milliseconds;
-    if (milliseconds >= 0.5) stages += fmt::format("{}{} {:.0f}", stages.empty() ? "" : ", ", name, milliseconds);
+    if (milliseconds >= 0.5)
+      stages += fmt::format("{}{} {:.0f}", stages.empty() ? "" : ", ", name, milliseconds);
   }
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {:.0f} ms ({})\n", options.output, stats.width, stats.height,
-             stats.triangles, stats.lights, total, stages);
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {:.0f} ms ({})\n", options.output, stats.width,
+             stats.height, stats.triangles, stats.lights, total, stages);
 }
 
 }  // namespace luciole

@@ -31,21 +31,23 @@ struct PictureOptions {
 enum OptionGroup : unsigned { kViewOptions = 1, kShadeOptions = 2 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
 
-/// Turns them into settings for this scene: the picture's size from --size, the scene or 1280x720; the camera by name or
-/// index. Throws InputError naming the option.
+/// Turns them into settings for this scene: the picture's size from --size, the scene or 1280x720; the camera
+/// by name or index. Throws InputError naming the option.
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene);
 
-/// Checks what can be checked of the output before any work is done: extension, folder, layers. Throws InputError.
+/// Checks what can be checked of the output before any work is done: extension, folder, layers. Throws
+/// InputError.
 void checkOutput(const PictureOptions& options);
 
 /// Text attributes for the picture: software, command and device.
 Metadata pictureMetadata(const std::string& command_line, const Device* device);
 
-/// Writes --stats, if asked for, and unless --quiet one line on standard error that says what was made and what it cost.
+/// Writes --stats, if asked for, and unless --quiet one line on standard error that says what was made and
+/// what it cost.
 void reportStats(const PictureOptions& options, const Stats& stats);
 
 /// Parses "a<separator>b…" into exactly `count` whole numbers. Throws InputError naming `option`.
-std::vector<int> parseInts(const std::string& text, char separator, std::size_t count, const std::string& option,
-                           const std::string& expected);
+std::vector<int> parseInts(const std::string& text, char separator, std::size_t count,
+                           const std::string& option, const std::string& expected);
 
 }  // namespace luciole

@@ -23,7 +23,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("render", "a picture of a scene");
   auto options = std::make_shared<PictureOptions>();
   auto scene_path = std::make_shared<std::string>();
-  command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")->required();
+  command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
+      ->required();
   addPictureOptions(*command, *options, kViewOptions | kShadeOptions);
   command->callback([&context, options, scene_path] {
     checkOutput(*options);
@@ -36,18 +37,19 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     RenderSettings settings = renderSettings(*options, scene);
     if (!options->quiet && settings.samples > 1 && isatty(STDERR_FILENO)) settings.on_sample = showProgress;
     const Image image = renderScene(device, scene, settings, stats);
-    timed(stats, "write", [&] {
-      writeImage(image, options->output, pictureMetadata(context.command_line, &device));
-    });
+    timed(stats, "write",
+          [&] { writeImage(image, options->output, pictureMetadata(context.command_line, &device)); });
     reportStats(*options, stats);
   });
 }
 
 void addGBufferCommand(CLI::App& app, CommandContext& context) {
-  CLI::App* command = app.add_subcommand("gbuffer", "stop after rasterizing: positions, normals and materials as an EXR");
+  CLI::App* command =
+      app.add_subcommand("gbuffer", "stop after rasterizing: positions, normals and materials as an EXR");
   auto options = std::make_shared<PictureOptions>();
   auto scene_path = std::make_shared<std::string>();
-  command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")->required();
+  command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
+      ->required();
   addPictureOptions(*command, *options, kViewOptions);
   command->callback([&context, options, scene_path] {
     checkOutput(*options);
@@ -75,8 +77,10 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<PictureOptions>();
   auto gbuffer_path = std::make_shared<std::string>();
   auto scene_path = std::make_shared<std::string>();
-  command->add_option("GBUFFER", *gbuffer_path, "an EXR with channels P and N, or Z and N and a camera")->required();
-  command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")->required();
+  command->add_option("GBUFFER", *gbuffer_path, "an EXR with channels P and N, or Z and N and a camera")
+      ->required();
+  command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
+      ->required();
   addPictureOptions(*command, *options, kShadeOptions);
   command->callback([&context, options, gbuffer_path, scene_path] {
     checkOutput(*options);
@@ -89,9 +93,8 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
-    timed(stats, "write", [&] {
-      writeImage(image, options->output, pictureMetadata(context.command_line, &device));
-    });
+    timed(stats, "write",
+          [&] { writeImage(image, options->output, pictureMetadata(context.command_line, &device)); });
     reportStats(*options, stats);
   });
 }

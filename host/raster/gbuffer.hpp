@@ -12,8 +12,8 @@
 
 namespace luciole {
 
-/// Allocates on cache lines, so that a row of up to 16 float lanes is one aligned load and OpenCL can use the memory
-/// in place.
+/// Allocates on cache lines, so that a row of up to 16 float lanes is one aligned load and OpenCL can use the
+/// memory in place.
 template <class T>
 struct CacheAligned {
   using value_type = T;
@@ -36,21 +36,22 @@ using Plane = std::vector<float, CacheAligned<float>>;
 ///     ├────────┼────────┼──────                └───────────────┴───────────────┴───────────────┘
 ///     │ tiles_x│ …      │                      inside a tile: row by row, kTileSize floats a row
 ///
-/// Space is view space: the eye is the origin, x right, y up, −z ahead (metres), so precision does not depend on
-/// where in the world the camera stands. A pixel that shows nothing, or lies in a tile beyond the picture's edge, has
-/// position (0, 0, −inf) and zeros everywhere else. A group that no feature needs is empty.
+/// Space is view space: the eye is the origin, x right, y up, −z ahead (metres), so precision does not depend
+/// on where in the world the camera stands. A pixel that shows nothing, or lies in a tile beyond the
+/// picture's edge, has position (0, 0, −inf) and zeros everywhere else. A group that no feature needs is
+/// empty.
 struct GBuffer {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
   int tiles_x = 0;
   int tiles_y = 0;
-  Plane position;  ///< x y z
-  Plane normal;    ///< x y z, unit, turned towards the viewer on double-sided surfaces
-  Plane diffuse;   ///< r g b, linear reflectance
-  Plane specular;  ///< r g b and shininess; optional
-  Plane ambient;   ///< r g b; optional
-  Plane emission;  ///< r g b; optional
-  Camera camera;   ///< whose view space this is
+  Plane position;              ///< x y z
+  Plane normal;                ///< x y z, unit, turned towards the viewer on double-sided surfaces
+  Plane diffuse;               ///< r g b, linear reflectance
+  Plane specular;              ///< r g b and shininess; optional
+  Plane ambient;               ///< r g b; optional
+  Plane emission;              ///< r g b; optional
+  Camera camera;               ///< whose view space this is
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
 

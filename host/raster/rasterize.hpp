@@ -31,15 +31,17 @@ struct RasterCounts {
   std::uint64_t outside = 0;  ///< of the view volume, or covering no sample
 };
 
-/// Draws the given objects (indices into scene.objects) and resolves what each pixel sees: visibility first, then
-/// attributes once a visible pixel. Back faces are culled unless double-sided. The nearer surface wins; at equal depth
-/// the first in object and triangle order. The result does not depend on the number of threads or on the crop.
+/// Draws the given objects (indices into scene.objects) and resolves what each pixel sees: visibility first,
+/// then attributes once a visible pixel. Back faces are culled unless double-sided. The nearer surface wins;
+/// at equal depth the first in object and triangle order. The result does not depend on the number of threads
+/// or on the crop.
 ///
-/// `vertex_colors`: empty, or for Shading::kGouraud the lit colours of all vertices of all the given objects, in order
-/// (see gatherVertices). Then the interpolated colour × the diffuse map goes into `emission`, and diffuse, specular and
-/// ambient are zero.
-GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view, Shading shading,
-                  PlaneSet planes, std::span<const glm::vec3> vertex_colors = {}, RasterCounts* counts = nullptr);
+/// `vertex_colors`: empty, or for Shading::kGouraud the lit colours of all vertices of all the given objects,
+/// in order (see gatherVertices). Then the interpolated colour × the diffuse map goes into `emission`, and
+/// diffuse, specular and ambient are zero.
+GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                  Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
+                  RasterCounts* counts = nullptr);
 
 /// A depth map: row-major, reversed depth (0: nothing there), alpha-masked holes left open, no face culled.
 struct DepthMap {
@@ -49,10 +51,11 @@ struct DepthMap {
 };
 DepthMap rasterizeDepth(const Scene& scene, std::span<const std::uint32_t> objects, const View& view);
 
-/// The vertices of the given objects as a G-buffer of their own, for Gouraud shading by the same kernels that shade
-/// pixels: vertex i of all (objects in order, each mesh's vertices in order) lies at index i of every plane.
-/// Its material is that of the first triangle that uses it; textures are left out. Normals of double-sided materials
-/// are turned towards the viewer.
-GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> objects, const View& view, PlaneSet planes);
+/// The vertices of the given objects as a G-buffer of their own, for Gouraud shading by the same kernels that
+/// shade pixels: vertex i of all (objects in order, each mesh's vertices in order) lies at index i of every
+/// plane. Its material is that of the first triangle that uses it; textures are left out. Normals of
+/// double-sided materials are turned towards the viewer.
+GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                       PlaneSet planes);
 
 }  // namespace luciole

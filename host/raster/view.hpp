@@ -9,8 +9,8 @@ namespace luciole {
 /// A pinhole or parallel view and the part of its picture to draw.
 struct View {
   glm::dmat4 world_to_view{1.0};  ///< rigid; view space as in Camera
-  /// View space to clip space: x and y in [−w, w] inside the picture, y up; z in [0, w] with reversed depth, 1 at the
-  /// near plane and 0 at the far plane, where float has its precision to spare.
+  /// View space to clip space: x and y in [−w, w] inside the picture, y up; z in [0, w] with reversed depth,
+  /// 1 at the near plane and 0 at the far plane, where float has its precision to spare.
   glm::dmat4 projection{1.0};
   glm::ivec2 size{0};         ///< of the whole picture, pixels
   glm::ivec2 crop_origin{0};  ///< top left pixel of the part to draw
@@ -20,7 +20,8 @@ struct View {
 
 /// Reversed-depth projections (see View::projection); angles in radians, lengths in metres.
 glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, double far);
-glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near, double far);
+glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near,
+                                  double far);
 
 /// The view of a camera on a picture of `size` pixels, uncropped, sampled at pixel centres.
 View cameraView(const Camera& camera, glm::ivec2 size);

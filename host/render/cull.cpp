@@ -42,7 +42,8 @@ LightLists cull(Device& device, const CullArguments& arguments) {
   readBuffer(device, lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
   lists.entries = starts.back();
   if (lists.entries == 0xffffffffu)
-    throw MachineError("the light lists have more than 4294967294 entries: use fewer lights or a smaller picture");
+    throw MachineError(
+        "the light lists have more than 4294967294 entries: use fewer lights or a smaller picture");
   lists.list = deviceBuffer(device, lists.entries * sizeof(cl_uint));
   lists.bytes = 2 * tiles * sizeof(cl_float4) + (tiles + 1 + lists.entries) * sizeof(cl_uint);
 

@@ -20,9 +20,9 @@ struct CullArguments {
   std::size_t reach_stride;    ///< floats
 };
 
-/// Launches kernels/cull.cl: for each tile the lights that may reach a point in it, in the order of light indices.
-/// Leaves out only lights that shading would find to contribute exactly zero. Throws MachineError, also where the lists
-/// would have more than 2³² − 2 entries.
+/// Launches kernels/cull.cl: for each tile the lights that may reach a point in it, in the order of light
+/// indices. Leaves out only lights that shading would find to contribute exactly zero. Throws MachineError,
+/// also where the lists would have more than 2³² − 2 entries.
 LightLists cull(Device& device, const CullArguments& arguments);
 
 }  // namespace luciole

@@ -50,16 +50,23 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   features.set(Feature::kEmission, surfaces.emission);
   features.set(Feature::kParallelView, camera.orthographic);
   switch (scene.fog.mode) {
-    case FogMode::kNone: break;
-    case FogMode::kLinear: features.set(Feature::kFogLinear); break;
-    case FogMode::kExp: features.set(Feature::kFogExp); break;
-    case FogMode::kExp2: features.set(Feature::kFogExp2); break;
+    case FogMode::kNone:
+      break;
+    case FogMode::kLinear:
+      features.set(Feature::kFogLinear);
+      break;
+    case FogMode::kExp:
+      features.set(Feature::kFogExp);
+      break;
+    case FogMode::kExp2:
+      features.set(Feature::kFogExp2);
+      break;
   }
   if (scene.fog.mode != FogMode::kNone) {
     const glm::vec3 density = scene.fog.density;
     features.set(Feature::kFogRadial, scene.fog.radial);
-    features.set(Feature::kFogPerChannel, scene.fog.mode != FogMode::kLinear &&
-                                              (density.x != density.y || density.x != density.z));
+    features.set(Feature::kFogPerChannel,
+                 scene.fog.mode != FogMode::kLinear && (density.x != density.y || density.x != density.z));
   }
   if (!scene.lighting) {
     features.set(Feature::kAmbient);  // unlit: diffuse colour under an ambient light of 1

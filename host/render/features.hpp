@@ -78,7 +78,8 @@ struct ShadeSettings {
 };
 
 /// The features that this scene's lights, fog and surfaces need, seen by this camera.
-FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces, const ShadeSettings& settings);
+FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
+                          const ShadeSettings& settings);
 
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);

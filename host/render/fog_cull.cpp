@@ -20,10 +20,14 @@ double fogLimit(const Fog& fog, float exposure) {
   const double share = hiddenShare(exposure);
   const double density = std::min({fog.density.x, fog.density.y, fog.density.z});
   switch (fog.mode) {
-    case FogMode::kNone: return infinite;
-    case FogMode::kLinear: return fog.end > fog.start ? fog.end - share * (fog.end - fog.start) : infinite;
-    case FogMode::kExp: return density > 0 ? -std::log(share) / density : infinite;
-    case FogMode::kExp2: return density > 0 ? std::sqrt(-std::log(share)) / density : infinite;
+    case FogMode::kNone:
+      return infinite;
+    case FogMode::kLinear:
+      return fog.end > fog.start ? fog.end - share * (fog.end - fog.start) : infinite;
+    case FogMode::kExp:
+      return density > 0 ? -std::log(share) / density : infinite;
+    case FogMode::kExp2:
+      return density > 0 ? std::sqrt(-std::log(share)) / density : infinite;
   }
   return infinite;
 }
@@ -36,7 +40,8 @@ std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, 
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     double nearest = -std::numeric_limits<double>::infinity();
     if (can_hide && std::isfinite(limit)) {
-      // Depth along the view axis; a distance from the eye is never smaller, so this serves radial fog as well.
+      // Depth along the view axis; a distance from the eye is never smaller, so this serves radial fog as
+      // well.
       const Bounds box = objectBounds(scene, scene.objects[i]);
       nearest = -nearest;
       for (int corner = 0; corner < 8; ++corner) {

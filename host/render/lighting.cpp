@@ -23,17 +23,21 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, bool blinn) {
   frame.light_count = scene.lighting ? static_cast<uint>(scene.lights.size()) : 0;
   return frame;
 }
-static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp && int(FogMode::kExp2) == kFogExp2);
+static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
+              int(FogMode::kExp2) == kFogExp2);
 
 /// Pixel-light pairs: a row of lanes with any covered pixel goes through its tile's whole list.
-std::uint64_t evaluatedPairs(const GBuffer& gbuffer, int lanes, const std::vector<cl_uint>& starts, std::size_t all_lights) {
+std::uint64_t evaluatedPairs(const GBuffer& gbuffer, int lanes, const std::vector<cl_uint>& starts,
+                             std::size_t all_lights) {
   std::uint64_t pairs = 0;
   const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
   for (std::size_t row = 0; row < gbuffer.pixels(); row += lanes) {
     bool covered = false;
-    for (int lane = 0; lane < lanes; ++lane) covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
+    for (int lane = 0; lane < lanes; ++lane)
+      covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
     const std::size_t tile = row / kTilePixels;
-    if (covered) pairs += std::uint64_t(lanes) * (starts.empty() ? all_lights : starts[tile + 1] - starts[tile]);
+    if (covered)
+      pairs += std::uint64_t(lanes) * (starts.empty() ? all_lights : starts[tile + 1] - starts[tile]);
   }
   return pairs;
 }
@@ -49,8 +53,8 @@ GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, bool unlit)
 
 }  // namespace
 
-void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view, const FeatureSet& features,
-                     bool blinn, Lighting& lighting, Stats& stats) {
+void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
+                     const FeatureSet& features, bool blinn, Lighting& lighting, Stats& stats) {
   lighting.features = features;
   lighting.unlit = !scene.lighting;
   lighting.frame = makeFrame(scene, camera, blinn);
@@ -67,8 +71,8 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
                    (lighting.host_lights.reach.size() + lighting.host_shadows.depths.size()) * sizeof(float);
 }
 
-LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features, const GBuffer& gbuffer,
-                       bool count_in_range, Stats& stats) {
+LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features,
+                       const GBuffer& gbuffer, bool count_in_range, Stats& stats) {
   const std::size_t pixels = gbuffer.pixels();
   const std::string defines = featureDefines(features);
   const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, lighting.unlit);
@@ -100,7 +104,8 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
            .shadow_depths = lighting.shadow_depths,
            .image = image});
   });
-  timed(stats, "read back", [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
+  timed(stats, "read back",
+        [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
   if (count_in_range) {
     lit.light_count.resize(pixels);
     const cl::Buffer counts = deviceBuffer(device, pixels * sizeof(float));
@@ -115,7 +120,8 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   }
   lit.evaluated = evaluatedPairs(gbuffer, device.description.lanes, starts, frame.light_count);
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
-                             gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() + lit.color.size();
+                             gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
+                             lit.color.size();
   stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes);
   return lit;
 }
@@ -126,7 +132,8 @@ void compileKernels(Device& device, const FeatureSet& features, Stats& stats) {
     empty.tiles_x = empty.tiles_y = 1;
     empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
     Lighting lighting;
-    for (cl::Buffer* buffer : {&lighting.lights, &lighting.reach, &lighting.shadow_maps, &lighting.shadow_depths})
+    for (cl::Buffer* buffer :
+         {&lighting.lights, &lighting.reach, &lighting.shadow_maps, &lighting.shadow_depths})
       *buffer = deviceBuffer(device, 0);
     Stats ignored;
     lightGBuffer(device, lighting, features, empty, false, ignored);

@@ -12,12 +12,13 @@
 
 namespace luciole {
 
-/// What stays the same for all G-buffers of one picture: lights and shadow maps in the camera's view space, on the device.
-/// The buffers may share the host's memory, so host side and device side live together and are not copied.
+/// What stays the same for all G-buffers of one picture: lights and shadow maps in the camera's view space,
+/// on the device. The buffers may share the host's memory, so host side and device side live together and are
+/// not copied.
 struct Lighting {
   FeatureSet features;
-  ShadeFrame frame{};   ///< all but plane_stride
-  bool unlit = false;   ///< the scene switches lighting off: the diffuse colour takes the place of ambient
+  ShadeFrame frame{};  ///< all but plane_stride
+  bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
   ShadeLights host_lights;
   ShadowMaps host_shadows;
   cl::Buffer lights, reach, shadow_maps, shadow_depths;
@@ -28,9 +29,10 @@ struct Lighting {
   Lighting& operator=(const Lighting&) = delete;
 };
 
-/// Fills `lighting` for a scene seen by a view of `camera`, drawing the shadow maps that the features ask for.
-void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view, const FeatureSet& features,
-                     bool blinn, Lighting& lighting, Stats& stats);
+/// Fills `lighting` for a scene seen by a view of `camera`, drawing the shadow maps that the features ask
+/// for.
+void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
+                     const FeatureSet& features, bool blinn, Lighting& lighting, Stats& stats);
 
 /// A lit G-buffer: planes of pixels() floats.
 struct LitPlanes {
@@ -41,8 +43,8 @@ struct LitPlanes {
 };
 
 /// Culls and shades one G-buffer. `features` may leave out some of what the lighting was prepared for.
-LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features, const GBuffer& gbuffer,
-                       bool count_in_range, Stats& stats);
+LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features,
+                       const GBuffer& gbuffer, bool count_in_range, Stats& stats);
 
 /// Compiles the kernels for these features down to machine code, which OpenCL does at the first launch.
 void compileKernels(Device& device, const FeatureSet& features, Stats& stats);

@@ -22,10 +22,10 @@ View settingsView(const RenderSettings& settings) {
   View view = cameraView(settings.camera, settings.size);
   if (settings.crop) {
     const Crop& crop = *settings.crop;
-    if (crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1 || crop.width > settings.size.x - crop.x ||
-        crop.height > settings.size.y - crop.y)
-      throw InputError(fmt::format("--crop {},{},{},{}: not inside the picture of {}x{} pixels", crop.x, crop.y, crop.width,
-                                   crop.height, settings.size.x, settings.size.y));
+    if (crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1 ||
+        crop.width > settings.size.x - crop.x || crop.height > settings.size.y - crop.y)
+      throw InputError(fmt::format("--crop {},{},{},{}: not inside the picture of {}x{} pixels", crop.x,
+                                   crop.y, crop.width, crop.height, settings.size.x, settings.size.y));
     view.crop_origin = {crop.x, crop.y};
     view.crop_size = {crop.width, crop.height};
   }
@@ -39,7 +39,8 @@ ShadeSettings shadeSettings(const RenderSettings& settings) {
 }
 
 void clearFog(FeatureSet& features) {
-  for (const Feature fog : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial})
+  for (const Feature fog : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2, Feature::kFogPerChannel,
+                            Feature::kFogRadial})
     features.set(fog, false);
 }
 
@@ -47,19 +48,21 @@ void clearFog(FeatureSet& features) {
 FeatureSet fogOnly(const FeatureSet& features) {
   FeatureSet fog;
   fog.set(Feature::kEmission);
-  for (const Feature kept : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial})
+  for (const Feature kept : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
+                             Feature::kFogPerChannel, Feature::kFogRadial})
     fog.set(kept, features.has(kept));
   return fog;
 }
 
 /// The scene's vertices, lit without fog (Gouraud's way).
-std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene, const std::vector<std::uint32_t>& objects,
-                                     const View& view, const Lighting& lighting, Stats& stats) {
+std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
+                                     const std::vector<std::uint32_t>& objects, const View& view,
+                                     const Lighting& lighting, Stats& stats) {
   FeatureSet features = lighting.features;
   clearFog(features);
   features.set(Feature::kOutputShadow, false);
-  const GBuffer vertices =
-      timed(stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
+  const GBuffer vertices = timed(
+      stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
   const LitPlanes lit = lightGBuffer(device, lighting, features, vertices, false, stats);
   std::vector<glm::vec3> colors(vertices.pixels());
   for (std::size_t i = 0; i < colors.size(); ++i)
@@ -108,7 +111,8 @@ struct Layer {
   const float* plane;  ///< in the G-buffer's layout
 };
 
-std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group, std::initializer_list<const char*> names) {
+std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group,
+                               std::initializer_list<const char*> names) {
   std::vector<Layer> layers;
   std::size_t component = 0;
   for (const char* name : names)
@@ -141,25 +145,38 @@ WorldPlanes worldPlanes(const GBuffer& gbuffer) {
 }
 
 /// The finished picture: averaged colour with exposure, and the layers asked for.
-Image assemble(const GBuffer& gbuffer, const LitPlanes& first, const Plane& color_sum, const RenderSettings& settings) {
+Image assemble(const GBuffer& gbuffer, const LitPlanes& first, const Plane& color_sum,
+               const RenderSettings& settings) {
   const std::size_t n = gbuffer.pixels();
-  std::vector<Layer> layers{{"R", color_sum.data()}, {"G", color_sum.data() + n}, {"B", color_sum.data() + 2 * n}};
+  std::vector<Layer> layers{
+      {"R", color_sum.data()}, {"G", color_sum.data() + n}, {"B", color_sum.data() + 2 * n}};
   const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
   WorldPlanes world;
   if (wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth))
     world = worldPlanes(gbuffer);
   for (const Aov aov : settings.aovs) {
     switch (aov) {
-      case Aov::kPosition: append(groupLayers(gbuffer, world.position, {"P.X", "P.Y", "P.Z"})); break;
-      case Aov::kNormal: append(groupLayers(gbuffer, world.normal, {"N.X", "N.Y", "N.Z"})); break;
-      case Aov::kDepth: append({{"Z", world.depth.data()}}); break;
-      case Aov::kDiffuse: append(groupLayers(gbuffer, gbuffer.diffuse, {"diffuse.R", "diffuse.G", "diffuse.B"})); break;
+      case Aov::kPosition:
+        append(groupLayers(gbuffer, world.position, {"P.X", "P.Y", "P.Z"}));
+        break;
+      case Aov::kNormal:
+        append(groupLayers(gbuffer, world.normal, {"N.X", "N.Y", "N.Z"}));
+        break;
+      case Aov::kDepth:
+        append({{"Z", world.depth.data()}});
+        break;
+      case Aov::kDiffuse:
+        append(groupLayers(gbuffer, gbuffer.diffuse, {"diffuse.R", "diffuse.G", "diffuse.B"}));
+        break;
       case Aov::kMaterial:
-        append(groupLayers(gbuffer, gbuffer.specular, {"specular.R", "specular.G", "specular.B", "shininess"}));
+        append(
+            groupLayers(gbuffer, gbuffer.specular, {"specular.R", "specular.G", "specular.B", "shininess"}));
         append(groupLayers(gbuffer, gbuffer.ambient, {"ambient.R", "ambient.G", "ambient.B"}));
         append(groupLayers(gbuffer, gbuffer.emission, {"emission.R", "emission.G", "emission.B"}));
         break;
-      case Aov::kLightCount: append({{"light_count", first.light_count.data()}}); break;
+      case Aov::kLightCount:
+        append({{"light_count", first.light_count.data()}});
+        break;
       case Aov::kShadow:
         // Without shadowed lights there is no such plane: everything is visible.
         if (first.color.size() == 4 * n) append({{"shadow", first.color.data() + 3 * n}});
@@ -174,7 +191,8 @@ Image assemble(const GBuffer& gbuffer, const LitPlanes& first, const Plane& colo
     float* out = image.pixels.data() + std::size_t(y) * image.width * layers.size();
     for (int x = 0; x < image.width; ++x) {
       const std::size_t place = gbuffer.index(x, y);
-      for (std::size_t c = 0; c < layers.size(); ++c) *out++ = layers[c].plane[place] * (c < 3 ? scale : 1.0f);
+      for (std::size_t c = 0; c < layers.size(); ++c)
+        *out++ = layers[c].plane[place] * (c < 3 ? scale : 1.0f);
     }
   });
   return image;
@@ -235,7 +253,8 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
         first_gbuffer = std::move(gbuffer);
         first = std::move(lit);
       } else {
-        tbb::parallel_for(std::size_t(0), 3 * first_gbuffer.pixels(), [&](std::size_t i) { sum[i] += lit.color[i]; });
+        tbb::parallel_for(std::size_t(0), 3 * first_gbuffer.pixels(),
+                          [&](std::size_t i) { sum[i] += lit.color[i]; });
       }
     });
     if (settings.on_sample) settings.on_sample(sample + 1, settings.samples);
@@ -270,7 +289,8 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   return gbuffer;
 }
 
-Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings, Stats& stats) {
+Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
+                   Stats& stats) {
   const ShadeSettings shade = shadeSettings(settings);
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);

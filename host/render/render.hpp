@@ -30,25 +30,28 @@ struct RenderSettings {
   int samples = 1;  ///< per pixel, at the points of a Hammersley set
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  std::vector<Aov> aovs;  ///< of the first sample
-  float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
+  std::vector<Aov> aovs;      ///< of the first sample
+  float exposure = 0;         ///< stops: colours are multiplied by 2^exposure
   bool count_lights = false;  ///< also count the lights in range of every pixel, for the statistics
   std::function<void(int done, int samples)> on_sample;  ///< called after each sample, if set
 };
 
-/// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is the centre.
+/// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is
+/// the centre.
 glm::dvec2 samplePoint(int index, int count);
 
-/// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G B, then the
-/// layers). Fills in the statistics. Throws InputError for a crop outside the picture, MachineError.
+/// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G
+/// B, then the layers). Fills in the statistics. Throws InputError for a crop outside the picture,
+/// MachineError.
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
-/// The first half of it: the G-buffer with every group. For Shading::kGouraud, whose vertices are lit, `device` is needed;
-/// otherwise it may be null.
+/// The first half of it: the G-buffer with every group. For Shading::kGouraud, whose vertices are lit,
+/// `device` is needed; otherwise it may be null.
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
-/// The second half: lights a G-buffer by the scene's lights, ambient and fog, with shadows cast by its objects. Of the
-/// settings, `shade`, `aovs`, `exposure` and `count_lights` count.
-Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings, Stats& stats);
+/// The second half: lights a G-buffer by the scene's lights, ambient and fog, with shadows cast by its
+/// objects. Of the settings, `shade`, `aovs`, `exposure` and `count_lights` count.
+Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
+                   Stats& stats);
 
 }  // namespace luciole

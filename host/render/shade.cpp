@@ -4,7 +4,9 @@ namespace luciole {
 namespace {
 
 /// Work-items of one tile: they share its light list.
-std::size_t rowsPerTile(const Device& device) { return kTilePixels / static_cast<std::size_t>(device.description.lanes); }
+std::size_t rowsPerTile(const Device& device) {
+  return kTilePixels / static_cast<std::size_t>(device.description.lanes);
+}
 
 }  // namespace
 

@@ -23,7 +23,8 @@ struct ShadeArguments {
   const cl::Buffer& image;          ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
 };
 
-/// Launches kernels/shade.cl on every pixel of the G-buffer. defines: the program's features (featureDefines).
+/// Launches kernels/shade.cl on every pixel of the G-buffer. defines: the program's features
+/// (featureDefines).
 void shade(Device& device, const std::string& defines, const ShadeArguments& arguments);
 
 struct CountInRangeArguments {

@@ -12,8 +12,8 @@ namespace luciole {
 /// The scene's lights as the kernels take them.
 struct ShadeLights {
   std::vector<ShadeLight> lights;  ///< in the order of scene.lights
-  /// What culling needs of them: planes x, y, z (view space) and 1 / range² of reach_stride floats each. Padded to whole
-  /// rows of lanes with lights that reach nothing.
+  /// What culling needs of them: planes x, y, z (view space) and 1 / range² of reach_stride floats each.
+  /// Padded to whole rows of lanes with lights that reach nothing.
   Plane reach;
   std::size_t reach_stride = 0;
 };

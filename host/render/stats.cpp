@@ -36,7 +36,8 @@ std::string statsJson(const Stats& stats) {
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  json["memory"] = {{"peak_bytes", std::uint64_t(usage.ru_maxrss) * 1024}, {"device_bytes", stats.device_bytes}};
+  json["memory"] = {{"peak_bytes", std::uint64_t(usage.ru_maxrss) * 1024},
+                    {"device_bytes", stats.device_bytes}};
   json["cold_start_milliseconds"] = cold_start;
   return json.dump(2) + "\n";
 }

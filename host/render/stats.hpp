@@ -18,7 +18,8 @@ struct Stats {
   std::uint64_t lights = 0;
   std::vector<std::string> features;
   int width = 0, height = 0, samples = 1;
-  std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, summed over the samples, in order of first use
+  std::vector<std::pair<std::string, double>>
+      stages;  ///< milliseconds, summed over the samples, in order of first use
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::size_t device_bytes = 0;  ///< OpenCL buffers of one sample, those shared with the host included
 };

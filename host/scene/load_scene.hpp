@@ -6,12 +6,12 @@
 
 namespace luciole {
 
-/// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from standard
-/// input for "-", and completes it (see completeScene). Throws InputError.
+/// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from
+/// standard input for "-", and completes it (see completeScene). Throws InputError.
 Scene loadScene(const std::string& path);
 
-/// Gives a scene what a picture needs and its file left out: a camera that frames the whole (from inside, for a
-/// closed hall), and, for a mesh file without lights, a light, some ambient and a sky colour.
+/// Gives a scene what a picture needs and its file left out: a camera that frames the whole (from inside, for
+/// a closed hall), and, for a mesh file without lights, a light, some ambient and a sky colour.
 /// `is_mesh_file`: the scene came from .obj, .gltf or .glb rather than from a Luciole scene.
 void completeScene(Scene& scene, bool is_mesh_file);
 

@@ -66,7 +66,8 @@ enum class RangeWindow : std::uint8_t {
 
 enum class SpotFalloff : std::uint8_t {
   kExponent,  ///< OpenGL: cos(angle to the axis)^exponent inside the cutoff, 0 outside
-  kCone,      ///< KHR_lights_punctual: from 1 inside inner_cone to 0 at the cutoff, square of a linear ramp in cos
+  kCone,  ///< KHR_lights_punctual: from 1 inside inner_cone to 0 at the cutoff, square of a linear ramp in
+          ///< cos
 };
 
 /// A light of the scene. Disabled lights are dropped by the loader.
@@ -74,7 +75,8 @@ struct Light {
   LightKind kind = LightKind::kPoint;
   glm::dvec3 position{0.0};              ///< world, metres; not for directional lights
   glm::dvec3 direction{0.0, 0.0, -1.0};  ///< unit, world: the way the light shines; not for point lights
-  /// Colours, linear, with the intensity multiplied in. ≥ 0 and finite. Defaults as the course text gives OpenGL's.
+  /// Colours, linear, with the intensity multiplied in. ≥ 0 and finite. Defaults as the course text gives
+  /// OpenGL's.
   glm::vec3 ambient{0.0f};
   glm::vec3 diffuse{1.0f};
   glm::vec3 specular{1.0f};
@@ -82,7 +84,7 @@ struct Light {
   float range = std::numeric_limits<float>::infinity();  ///< metres, > 0
   RangeWindow window = RangeWindow::kSmooth;
   SpotFalloff falloff = SpotFalloff::kExponent;
-  double cutoff = 0.0;      ///< spot: half angle in radians, 0 to π/2 (a cutoff of 180° makes a point light)
+  double cutoff = 0.0;  ///< spot: half angle in radians, 0 to π/2 (a cutoff of 180° makes a point light)
   double inner_cone = 0.0;  ///< kCone: radians, 0 ≤ inner_cone < cutoff
   float exponent = 0.0f;    ///< kExponent: ≥ 0
   bool shadow = false;
@@ -121,7 +123,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
   std::vector<Light> lights;
-  std::vector<Camera> cameras;  ///< empty after a loader; never empty after completeScene()
+  std::vector<Camera> cameras;     ///< empty after a loader; never empty after completeScene()
   std::optional<glm::ivec2> size;  ///< the picture's size that the file asks for
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light

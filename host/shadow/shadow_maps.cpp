@@ -18,9 +18,9 @@ namespace luciole {
 namespace {
 
 // Texels a side before the budget binds.
-constexpr int kParallelSize = 2048;
-constexpr int kPerspectiveSize = 1024;
-constexpr int kCubeSize = 512;
+constexpr int kParallelSize = 4096;
+constexpr int kPerspectiveSize = 2048;
+constexpr int kCubeSize = 1024;
 constexpr int kSmallestSize = 16;
 
 /// Texels around a perspective map's cone or a cube's face that filtered lookups may touch.
@@ -77,7 +77,8 @@ void appendClippedFaces(const Corners& of, const Corners& by, std::vector<glm::d
 Corners boxCorners(const Bounds& box) {
   Corners corners;
   for (int i = 0; i < 8; ++i)
-    corners[i] = {(i & 1 ? box.high : box.low).x, (i & 2 ? box.high : box.low).y, (i & 4 ? box.high : box.low).z};
+    corners[i] = {(i & 1 ? box.high : box.low).x, (i & 2 ? box.high : box.low).y,
+                  (i & 4 ? box.high : box.low).z};
   return corners;
 }
 
@@ -94,7 +95,8 @@ Corners viewCorners(const View& view) {
 
 /// Some rigid view from `eye` along `forward`, with `up` upwards where it can be.
 glm::dmat4 lookAlong(const glm::dvec3& eye, const glm::dvec3& forward, glm::dvec3 up) {
-  if (glm::length(glm::cross(forward, up)) < 1e-3) up = std::abs(forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  if (glm::length(glm::cross(forward, up)) < 1e-3)
+    up = std::abs(forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
   return glm::lookAt(eye, eye + forward, up);
 }
 
@@ -104,6 +106,7 @@ float4 toFloat4(const glm::dvec4& v) { return {float(v.x), float(v.y), float(v.z
 struct PlannedMap {
   ShadowMap lookup{};
   std::vector<View> faces;
+  std::vector<std::uint32_t> casters;  ///< objects that can cast into it
 };
 
 /// Texel rows of a planar map, for positions in the space that `to_clip` starts from.
@@ -160,7 +163,8 @@ PlannedMap planParallel(const Light& light, const View& camera_view, const Bound
 double lightReach(const Light& light, const Bounds& scene) {
   if (std::isfinite(light.range)) return light.range;
   double reach = 1e-3;
-  for (const glm::dvec3& corner : boxCorners(scene)) reach = std::max(reach, glm::distance(corner, light.position));
+  for (const glm::dvec3& corner : boxCorners(scene))
+    reach = std::max(reach, glm::distance(corner, light.position));
   return reach * 1.001;
 }
 
@@ -202,7 +206,8 @@ PlannedMap planCube(const Light& light, const View& camera_view, const Bounds& s
                                     glm::dvec4(light.position, 1));
     planned.faces.push_back(squareView(glm::inverse(light_to_world), projection, size));
   }
-  const glm::dmat4 view_to_way = glm::translate(glm::dmat4(1), -light.position) * glm::inverse(camera_view.world_to_view);
+  const glm::dmat4 view_to_way =
+      glm::translate(glm::dmat4(1), -light.position) * glm::inverse(camera_view.world_to_view);
   planned.lookup.to_map_x = toFloat4(glm::row(view_to_way, 0));
   planned.lookup.to_map_y = toFloat4(glm::row(view_to_way, 1));
   planned.lookup.to_map_z = toFloat4(glm::row(view_to_way, 2));
@@ -213,8 +218,21 @@ PlannedMap planCube(const Light& light, const View& camera_view, const Bounds& s
   return planned;
 }
 
+/// The objects within reach of a light.
+std::vector<std::uint32_t> findCasters(const Light& light, const std::vector<Bounds>& objects, double reach) {
+  std::vector<std::uint32_t> casters;
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    const glm::dvec3 nearest = glm::clamp(light.position, objects[i].low, objects[i].high);
+    if (light.kind == LightKind::kDirectional || glm::distance(nearest, light.position) <= reach)
+      casters.push_back(i);
+  }
+  return casters;
+}
+
 int fullSize(const Light& light) {
-  return light.kind == LightKind::kDirectional ? kParallelSize : usesCubeMap(light) ? kCubeSize : kPerspectiveSize;
+  return light.kind == LightKind::kDirectional ? kParallelSize
+         : usesCubeMap(light)                  ? kCubeSize
+                                               : kPerspectiveSize;
 }
 
 }  // namespace
@@ -226,7 +244,13 @@ bool usesCubeMap(const Light& light) {
 ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view) {
   ShadowMaps result;
   result.map_of_light.assign(scene.lights.size(), kNoShadow);
-  const Bounds bounds = sceneBounds(scene);
+  std::vector<Bounds> object_bounds;
+  Bounds bounds;
+  for (const Object& object : scene.objects) {
+    object_bounds.push_back(objectBounds(scene, object));
+    bounds.low = glm::min(bounds.low, object_bounds.back().low);
+    bounds.high = glm::max(bounds.high, object_bounds.back().high);
+  }
   if (bounds.low.x > bounds.high.x) return result;
 
   // Halve all sides until the maps fit.
@@ -251,9 +275,11 @@ ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view) {
     const Light& light = scene.lights[i];
     if (!light.shadow) continue;
     const int size = sizeOf(light);
-    PlannedMap map = usesCubeMap(light)                       ? planCube(light, camera_view, bounds, size)
-                     : light.kind == LightKind::kDirectional ? planParallel(light, camera_view, bounds, size)
-                                                              : planPerspective(light, camera_view, bounds, size);
+    PlannedMap map = usesCubeMap(light) ? planCube(light, camera_view, bounds, size)
+                     : light.kind == LightKind::kDirectional
+                         ? planParallel(light, camera_view, bounds, size)
+                         : planPerspective(light, camera_view, bounds, size);
+    map.casters = findCasters(light, object_bounds, lightReach(light, bounds));
     map.lookup.offset = static_cast<uint>(offset);
     map.lookup.size = static_cast<uint>(size);
     offset += std::size_t(size) * size * map.faces.size();
@@ -262,13 +288,12 @@ ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view) {
   }
 
   result.depths.resize(offset);
-  std::vector<std::uint32_t> casters(scene.objects.size());
-  std::iota(casters.begin(), casters.end(), 0u);
   for (const PlannedMap& map : planned) {
     const std::size_t face_depths = std::size_t(map.lookup.size) * map.lookup.size;
     tbb::parallel_for(std::size_t(0), map.faces.size(), [&](std::size_t face) {
-      const DepthMap drawn = rasterizeDepth(scene, casters, map.faces[face]);
-      std::copy(drawn.depth.begin(), drawn.depth.end(), result.depths.begin() + map.lookup.offset + face * face_depths);
+      const DepthMap drawn = rasterizeDepth(scene, map.casters, map.faces[face]);
+      std::copy(drawn.depth.begin(), drawn.depth.end(),
+                result.depths.begin() + map.lookup.offset + face * face_depths);
     });
     result.maps.push_back(map.lookup);
   }

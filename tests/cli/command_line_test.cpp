@@ -52,7 +52,8 @@ TEST_F(CommandLine, RenderWritesAPictureOfTheScenesSize) {
 
 TEST_F(CommandLine, SizeOptionWinsOverTheScene) {
   for (const auto& [width, height] : {std::pair{1, 1}, {7, 93}, {144, 17}}) {
-    succeed("luciole render scene.json --quiet -o out.exr --size " + std::to_string(width) + "x" + std::to_string(height));
+    succeed("luciole render scene.json --quiet -o out.exr --size " + std::to_string(width) + "x" +
+            std::to_string(height));
     const Image image = readImage(folder / "out.exr");
     EXPECT_EQ(image.width, width);
     EXPECT_EQ(image.height, height);
@@ -68,19 +69,24 @@ TEST_F(CommandLine, ShadingAGBufferFileEqualsRenderingBitForBit) {
   for (const char* options : {"", "--shading flat"}) {
     const std::string o = options;
     succeed("luciole render scene.json -o a.exr " + o);
-    succeed("luciole gbuffer scene.json -o g.exr " + o + " && luciole shade g.exr --scene scene.json -o b.exr");
+    succeed("luciole gbuffer scene.json -o g.exr " + o +
+            " && luciole shade g.exr --scene scene.json -o b.exr");
     succeed("luciole compare a.exr b.exr --max-abs 0");
   }
 }
 
 TEST_F(CommandLine, GouraudGBufferShadesToTheGouraudPicture) {
   succeed("luciole render scene.json --shading gouraud -o a.exr");
-  succeed("luciole gbuffer scene.json --shading gouraud -o g.exr && luciole shade g.exr --scene scene.json -o b.exr");
+  succeed(
+      "luciole gbuffer scene.json --shading gouraud -o g.exr && luciole shade g.exr --scene scene.json -o "
+      "b.exr");
   succeed("luciole compare a.exr b.exr --max-abs 0");
 }
 
 TEST_F(CommandLine, CropIsACutOutOfTheWholePicture) {
-  succeed("luciole render scene.json --samples 2 -o whole.exr && luciole render scene.json --samples 2 --crop 33,7,20,31 -o part.exr");
+  succeed(
+      "luciole render scene.json --samples 2 -o whole.exr && luciole render scene.json --samples 2 --crop "
+      "33,7,20,31 -o part.exr");
   const Image whole = readImage(folder / "whole.exr"), part = readImage(folder / "part.exr");
   ASSERT_EQ(part.width, 20);
   ASSERT_EQ(part.height, 31);
@@ -108,19 +114,23 @@ TEST_F(CommandLine, ExposureIsInStops) {
 }
 
 TEST_F(CommandLine, AovsBecomeLayers) {
-  succeed("luciole render scene.json --aov position,normal,depth,diffuse,material,light_count,shadow -o out.exr");
+  succeed(
+      "luciole render scene.json --aov position,normal,depth,diffuse,material,light_count,shadow -o out.exr");
   const Image image = readImage(folder / "out.exr");
-  for (const char* name : {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Z", "diffuse.R", "specular.G", "shininess",
-                           "ambient.B", "emission.R", "light_count", "shadow"})
+  for (const char* name : {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Z", "diffuse.R",
+                           "specular.G", "shininess", "ambient.B", "emission.R", "light_count", "shadow"})
     EXPECT_NE(std::find(image.channels.begin(), image.channels.end(), name), image.channels.end()) << name;
 }
 
-TEST_F(CommandLine, AovsNeedAFormatWithLayers) { refuse("luciole render scene.json --aov normal -o out.png", 2, "--aov"); }
+TEST_F(CommandLine, AovsNeedAFormatWithLayers) {
+  refuse("luciole render scene.json --aov normal -o out.png", 2, "--aov");
+}
 
 TEST_F(CommandLine, StatsNameEveryStageAndCount) {
   succeed("luciole render scene.json -o out.png --stats stats.json");
   const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
-  for (const char* key : {"version", "command", "device", "scene", "image", "stages", "counts", "memory", "cold_start_milliseconds"})
+  for (const char* key : {"version", "command", "device", "scene", "image", "stages", "counts", "memory",
+                          "cold_start_milliseconds"})
     EXPECT_TRUE(stats.contains(key)) << key;
   const auto& counts = stats["counts"];
   EXPECT_EQ(stats["scene"]["lights"], 203);
@@ -134,7 +144,9 @@ TEST_F(CommandLine, StatsNameEveryStageAndCount) {
 }
 
 TEST_F(CommandLine, ObjectsBehindTheFogAreCountedAndLeftOut) {
-  writeText(folder / "fog.json", R"({"camera": {"eye": [0, 1, 5], "target": [0, 1, 0]}, "size": [64, 36], "background": [0.5, 0.5, 0.5],
+  writeText(
+      folder / "fog.json",
+      R"({"camera": {"eye": [0, 1, 5], "target": [0, 1, 0]}, "size": [64, 36], "background": [0.5, 0.5, 0.5],
     "fog": {"mode": "exp", "density": 1, "color": [0.5, 0.5, 0.5]}, "lights": [{"type": "directional", "direction": [0, -1, -1]}],
     "objects": [{"primitive": "sphere"}, {"primitive": "sphere", "translate": [3, 0, -50]}]})");
   succeed("luciole render fog.json -o out.png --stats stats.json");
@@ -149,16 +161,20 @@ TEST_F(CommandLine, PicturesSayHowTheyWereMade) {
 }
 
 TEST_F(CommandLine, StandardInputAndOutputStandForFiles) {
-  succeed("cat scene.json | luciole render - --quiet -o - > piped.png && luciole render scene.json --quiet -o file.png");
+  succeed(
+      "cat scene.json | luciole render - --quiet -o - > piped.png && luciole render scene.json --quiet -o "
+      "file.png");
   succeed("luciole compare piped.png file.png --max-abs 0");
 }
 
 TEST_F(CommandLine, CompareReportsFiguresAndFailsOverTheLimit) {
   succeed("luciole render scene.json -o a.png && luciole render scene.json --exposure 1 -o b.png");
-  const Outcome outcome = runLine(folder, "luciole compare a.png b.png --max-abs 0.001 --diff d.png --json -");
+  const Outcome outcome =
+      runLine(folder, "luciole compare a.png b.png --max-abs 0.001 --diff d.png --json -");
   EXPECT_EQ(outcome.status, 1);
   const auto json = nlohmann::json::parse(outcome.out);
-  for (const char* key : {"max_abs", "mean_abs", "mean_signed", "rmse", "psnr", "relmse", "p99_abs", "p999_abs", "pixels_over", "worst_pixel"})
+  for (const char* key : {"max_abs", "mean_abs", "mean_signed", "rmse", "psnr", "relmse", "p99_abs",
+                          "p999_abs", "pixels_over", "worst_pixel"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_GT(json["mean_signed"], 0);
   EXPECT_EQ(readImage(folder / "d.png").width, 96);
@@ -175,17 +191,21 @@ TEST_F(CommandLine, GeneratedLightsAreTheSameForTheSameSeedAndRender) {
   EXPECT_NE(once, succeed("luciole generate lights --count 50 --seed 8"));
   EXPECT_EQ(nlohmann::json::parse(once)["lights"].size(), 50u);
   writeText(folder / "quad.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n");
-  succeed("mkdir sub && luciole generate lights quad.obj --count 20 --intensity 3 -o sub/lit.json && luciole render sub/lit.json --size 32x18 -o out.png");
+  succeed(
+      "mkdir sub && luciole generate lights quad.obj --count 20 --intensity 3 -o sub/lit.json && luciole "
+      "render sub/lit.json --size 32x18 -o out.png");
 }
 
-TEST_F(CommandLine, DevicesMarksTheOneThatWouldBeUsed) { EXPECT_NE(succeed("luciole devices").find("* "), std::string::npos); }
+TEST_F(CommandLine, DevicesMarksTheOneThatWouldBeUsed) {
+  EXPECT_NE(succeed("luciole devices").find("* "), std::string::npos);
+}
 
 TEST_F(CommandLine, EveryLaneWidthRendersThePicture) {
   succeed("luciole render scene.json -o native.exr");
   for (const char* lanes : {"1", "4", "8", "16"}) {
     succeed(std::string("luciole render scene.json --device ,lanes=") + lanes + " -o lanes.exr");
-    // The same operations in the same order on other vector widths; only what the compiler contracts may differ: a few
-    // rounding errors (2^-24 each) per light and pixel, of colours below 8.
+    // The same operations in the same order on other vector widths; only what the compiler contracts may
+    // differ: a few rounding errors (2^-24 each) per light and pixel, of colours below 8.
     succeed("luciole compare native.exr lanes.exr --max-abs 1e-4");
   }
 }
@@ -203,18 +223,42 @@ TEST_F(CommandLine, HelpAndVersionSucceed) {
 
 TEST_F(CommandLine, NoCommandIsWrongInput) { refuse("luciole", 2, "help"); }
 TEST_F(CommandLine, UnknownCommandIsWrongInput) { refuse("luciole rendr scene.json -o out.png", 2, "rendr"); }
-TEST_F(CommandLine, UnknownOptionIsNamed) { refuse("luciole render scene.json -o out.png --smples 3", 2, "--smples"); }
-TEST_F(CommandLine, MissingSceneIsNamed) { refuse("luciole render nowhere.json -o out.png", 2, "nowhere.json"); }
-TEST_F(CommandLine, UnknownExtensionIsRefusedBeforeAnyWork) { refuse("luciole render scene.json -o out.xyz", 2, "out.xyz"); }
-TEST_F(CommandLine, ZeroSizeIsRefused) { refuse("luciole render scene.json --size 0x0 -o out.png", 2, "--size"); }
-TEST_F(CommandLine, NegativeSizeIsRefused) { refuse("luciole render scene.json --size -5x10 -o out.png", 2, "--size"); }
-TEST_F(CommandLine, HugeSizeIsRefused) { refuse("luciole render scene.json --size 100000x100000 -o out.png", 2, "--size"); }
-TEST_F(CommandLine, SizeWithRubbishIsRefused) { refuse("luciole render scene.json --size 10x10x -o out.png", 2, "--size"); }
-TEST_F(CommandLine, CropOutsideThePictureIsRefused) { refuse("luciole render scene.json --crop 90,0,10,10 -o out.png", 2, "--crop"); }
-TEST_F(CommandLine, UnknownCameraIsRefused) { refuse("luciole render scene.json --camera 7 -o out.png", 2, "--camera"); }
-TEST_F(CommandLine, UnknownAovIsNamed) { refuse("luciole render scene.json --aov norml -o out.exr", 2, "norml"); }
-TEST_F(CommandLine, UnknownDeviceIsNamed) { refuse("luciole render scene.json --device abacus -o out.png", 2, "abacus"); }
-TEST_F(CommandLine, ZeroSamplesAreRefused) { refuse("luciole render scene.json --samples 0 -o out.png", 2, "--samples"); }
+TEST_F(CommandLine, UnknownOptionIsNamed) {
+  refuse("luciole render scene.json -o out.png --smples 3", 2, "--smples");
+}
+TEST_F(CommandLine, MissingSceneIsNamed) {
+  refuse("luciole render nowhere.json -o out.png", 2, "nowhere.json");
+}
+TEST_F(CommandLine, UnknownExtensionIsRefusedBeforeAnyWork) {
+  refuse("luciole render scene.json -o out.xyz", 2, "out.xyz");
+}
+TEST_F(CommandLine, ZeroSizeIsRefused) {
+  refuse("luciole render scene.json --size 0x0 -o out.png", 2, "--size");
+}
+TEST_F(CommandLine, NegativeSizeIsRefused) {
+  refuse("luciole render scene.json --size -5x10 -o out.png", 2, "--size");
+}
+TEST_F(CommandLine, HugeSizeIsRefused) {
+  refuse("luciole render scene.json --size 100000x100000 -o out.png", 2, "--size");
+}
+TEST_F(CommandLine, SizeWithRubbishIsRefused) {
+  refuse("luciole render scene.json --size 10x10x -o out.png", 2, "--size");
+}
+TEST_F(CommandLine, CropOutsideThePictureIsRefused) {
+  refuse("luciole render scene.json --crop 90,0,10,10 -o out.png", 2, "--crop");
+}
+TEST_F(CommandLine, UnknownCameraIsRefused) {
+  refuse("luciole render scene.json --camera 7 -o out.png", 2, "--camera");
+}
+TEST_F(CommandLine, UnknownAovIsNamed) {
+  refuse("luciole render scene.json --aov norml -o out.exr", 2, "norml");
+}
+TEST_F(CommandLine, UnknownDeviceIsNamed) {
+  refuse("luciole render scene.json --device abacus -o out.png", 2, "abacus");
+}
+TEST_F(CommandLine, ZeroSamplesAreRefused) {
+  refuse("luciole render scene.json --samples 0 -o out.png", 2, "--samples");
+}
 
 TEST_F(CommandLine, UnknownKeyIsNamed) {
   writeText(folder / "bad.json", R"({"objects": [], "lihgts": []})");
@@ -222,9 +266,13 @@ TEST_F(CommandLine, UnknownKeyIsNamed) {
 }
 
 TEST_F(CommandLine, NaNPositionIsRefused) {
-  writeText(folder / "bad.json", R"({"objects": [{"primitive": "box"}], "lights": [{"type": "point", "position": ["NaN", 0, 0]}]})");
+  writeText(
+      folder / "bad.json",
+      R"({"objects": [{"primitive": "box"}], "lights": [{"type": "point", "position": ["NaN", 0, 0]}]})");
   refuse("luciole render bad.json -o out.png", 2, "lights[0].position");
-  writeText(folder / "bad.json", R"({"objects": [{"primitive": "box"}], "lights": [{"type": "point", "position": [1e999, 0, 0]}]})");
+  writeText(
+      folder / "bad.json",
+      R"({"objects": [{"primitive": "box"}], "lights": [{"type": "point", "position": [1e999, 0, 0]}]})");
   refuse("luciole render bad.json -o out.png", 2, "bad.json");
 }
 
@@ -234,12 +282,15 @@ TEST_F(CommandLine, SingularMatrixIsRefused) {
 }
 
 TEST_F(CommandLine, MissingTextureIsNamed) {
-  writeText(folder / "bad.json",
-            R"({"materials": {"m": {"diffuse_map": "gone.png"}}, "objects": [{"primitive": "box", "material": "m"}]})");
+  writeText(
+      folder / "bad.json",
+      R"({"materials": {"m": {"diffuse_map": "gone.png"}}, "objects": [{"primitive": "box", "material": "m"}]})");
   refuse("luciole render bad.json -o out.png", 2, "gone.png");
 }
 
-TEST_F(CommandLine, MissingFolderIsRefused) { refuse("luciole render scene.json -o nowhere/out.png", 2, "nowhere/out.png"); }
+TEST_F(CommandLine, MissingFolderIsRefused) {
+  refuse("luciole render scene.json -o nowhere/out.png", 2, "nowhere/out.png");
+}
 
 TEST_F(CommandLine, ReadOnlyFolderIsRefused) {
   // /proc takes no files from anyone, root included.
@@ -247,8 +298,8 @@ TEST_F(CommandLine, ReadOnlyFolderIsRefused) {
 }
 
 TEST_F(CommandLine, FullDiskLeavesNoPartOfAFile) {
-  // A limit on file size fails writes as a full disk does; the shell ignores the signal that comes with it. A G-buffer,
-  // because the limit would fail a kernel compiler's files too.
+  // A limit on file size fails writes as a full disk does; the shell ignores the signal that comes with it. A
+  // G-buffer, because the limit would fail a kernel compiler's files too.
   refuse("(trap '' XFSZ; ulimit -f 1; luciole gbuffer scene.json --quiet -o out.exr)", 3, "out.exr");
 }
 
@@ -259,7 +310,10 @@ TEST_F(CommandLine, NoOpenClDeviceIsTheMachinesFault) {
 
 TEST_F(CommandLine, ExistingFileSurvivesAFailedWrite) {
   succeed("luciole gbuffer scene.json -o keep.exr && cp keep.exr copy.exr");
-  EXPECT_EQ(runLine(folder, "(trap '' XFSZ; ulimit -f 1; luciole gbuffer scene.json --size 400x400 -o keep.exr)").status, 3);
+  EXPECT_EQ(
+      runLine(folder, "(trap '' XFSZ; ulimit -f 1; luciole gbuffer scene.json --size 400x400 -o keep.exr)")
+          .status,
+      3);
   succeed("cmp keep.exr copy.exr");
 }
 

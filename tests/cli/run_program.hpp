@@ -23,15 +23,19 @@ inline std::string readText(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-inline void writeText(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+inline void writeText(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 /// Runs a shell line in `folder` as a person would type it, with "luciole" as the program.
 inline Outcome runLine(const TemporaryFolder& folder, const std::string& line) {
   const std::string out = folder / ".stdout", err = folder / ".stderr";
-  const std::string command = "cd '" + folder.path().string() + "' && luciole() { '" LUCIOLE_BINARY "' \"$@\"; } && { " + line +
-                              "; } >'" + out + "' 2>'" + err + "' </dev/null";
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && luciole() { '" LUCIOLE_BINARY "' \"$@\"; } && { " + line + "; } >'" +
+                              out + "' 2>'" + err + "' </dev/null";
   const int status = std::system(command.c_str());
-  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), readText(out), readText(err)};
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), readText(out),
+                  readText(err)};
   std::filesystem::remove(out);
   std::filesystem::remove(err);
   return outcome;

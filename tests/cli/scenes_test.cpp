@@ -8,22 +8,27 @@
 namespace luciole::test {
 namespace {
 
-std::vector<std::filesystem::path> sceneFiles(const std::filesystem::path& root, const std::set<std::string>& extensions) {
+std::vector<std::filesystem::path> sceneFiles(const std::filesystem::path& root,
+                                              const std::set<std::string>& extensions) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
-    if (entry.is_regular_file() && extensions.count(entry.path().extension().string())) files.push_back(entry.path());
+    if (entry.is_regular_file() && extensions.count(entry.path().extension().string()))
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
 
 const std::set<std::string> kMeshes{".obj", ".gltf", ".glb"};
 
-/// Renders a file and expects a picture, or one clear line and exit status 2 and no file. Returns whether it rendered.
+/// Renders a file and expects a picture, or one clear line and exit status 2 and no file. Returns whether it
+/// rendered.
 bool renderedOrRefused(const TemporaryFolder& folder, const std::filesystem::path& file) {
-  const Outcome outcome = runLine(folder, "luciole render --quiet --size 64x36 -o out.png '" + file.string() + "'");
+  const Outcome outcome =
+      runLine(folder, "luciole render --quiet --size 64x36 -o out.png '" + file.string() + "'");
   const bool exists = std::filesystem::exists(folder / "out.png");
   std::filesystem::remove(folder / "out.png");
-  EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << file << ": status " << outcome.status << "\n" << outcome.err;
+  EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << file << ": status " << outcome.status << "\n"
+                                                          << outcome.err;
   EXPECT_EQ(exists, outcome.status == 0) << file;
   if (outcome.status != 0) EXPECT_TRUE(isOneLine(outcome.err)) << file << "\n" << outcome.err;
   return outcome.status == 0;
@@ -35,11 +40,15 @@ TEST_P(OwnScene, LooksTheSameWithAndWithoutCulling) {
   const TemporaryFolder folder;
   const std::string scene = "'" LUCIOLE_SOURCE_DIR "/scenes/" + std::string(GetParam()) + ".json'";
   const std::string render = "luciole render " + scene + " --quiet --size 320x180 ";
-  const Outcome outcome = runLine(folder, render + "-o a.exr && " + render + "--culling none -o b.exr && luciole compare a.exr b.exr --max-abs 0");
+  const Outcome outcome =
+      runLine(folder, render + "-o a.exr && " + render +
+                          "--culling none -o b.exr && luciole compare a.exr b.exr --max-abs 0");
   EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, OwnScene, testing::Values("fireflies", "cornell", "colonnade", "underwater", "spheres", "city"),
+INSTANTIATE_TEST_SUITE_P(Scenes, OwnScene,
+                         testing::Values("fireflies", "cornell", "colonnade", "underwater", "spheres",
+                                         "city"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(SharedScenes, ValidOnesRenderAndOthersSayWhyNot) {
@@ -69,8 +78,8 @@ TEST_P(MalformedScenes, EndInAPictureOrOneClearLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Folders, MalformedScenes,
-                         testing::Values("malformed_assimp/OBJ", "malformed_assimp/glTF2", "malformed_assimp/invalid",
-                                         "malformed_tinyobjloader"),
+                         testing::Values("malformed_assimp/OBJ", "malformed_assimp/glTF2",
+                                         "malformed_assimp/invalid", "malformed_tinyobjloader"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::replace(name.begin(), name.end(), '/', '_');

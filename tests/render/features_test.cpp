@@ -22,19 +22,25 @@ std::string withLight(const std::string& light, const std::string& more = "") {
   return R"({"objects": [{"primitive": "box"}], "lights": [)" + light + "]" + more + "}";
 }
 
-TEST(Features, EmptySceneNeedsNone) { EXPECT_EQ(featuresOf(R"({"objects": [{"primitive": "box"}]})"), FeatureSet()); }
+TEST(Features, EmptySceneNeedsNone) {
+  EXPECT_EQ(featuresOf(R"({"objects": [{"primitive": "box"}]})"), FeatureSet());
+}
 
 TEST(Features, PlainLightsNeedOnlyTheirKind) {
-  EXPECT_EQ(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})")), setOf({Feature::kPointLights, Feature::kLightLists}));
+  EXPECT_EQ(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})")),
+            setOf({Feature::kPointLights, Feature::kLightLists}));
   EXPECT_EQ(featuresOf(withLight(R"({"type": "directional", "direction": [0, -1, 0]})")),
             setOf({Feature::kDirectionalLights, Feature::kLightLists}));
-  EXPECT_EQ(featuresOf(withLight(R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 30})")),
+  EXPECT_EQ(featuresOf(withLight(
+                R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 30})")),
             setOf({Feature::kSpotLights, Feature::kLightLists}));
 }
 
 TEST(Features, SpotOfCutoff180IsAPointLight) {
-  EXPECT_EQ(featuresOf(withLight(R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 180, "exponent": 9})")),
-            setOf({Feature::kPointLights, Feature::kLightLists}));
+  EXPECT_EQ(
+      featuresOf(withLight(
+          R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 180, "exponent": 9})")),
+      setOf({Feature::kPointLights, Feature::kLightLists}));
 }
 
 TEST(Features, ConesBesideExponentsAreToldApartAtRunTime) {
@@ -50,7 +56,9 @@ TEST(Features, SpecularNeedsBothASurfaceAndALight) {
   const std::string light = R"({"type": "point", "position": [0, 1, 0]})";
   EXPECT_TRUE(featuresOf(withLight(light, shiny)).has(Feature::kPhongSpecular));
   EXPECT_FALSE(featuresOf(withLight(light)).specular());
-  EXPECT_FALSE(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0], "specular": [0, 0, 0]})", shiny)).specular());
+  EXPECT_FALSE(
+      featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0], "specular": [0, 0, 0]})", shiny))
+          .specular());
   ShadeSettings blinn;
   blinn.blinn = true;
   EXPECT_TRUE(featuresOf(withLight(light, shiny), blinn).has(Feature::kBlinnSpecular));
@@ -66,10 +74,14 @@ TEST(Features, SwitchedOffShadowsAndCullingCostNothing) {
 }
 
 TEST(Features, FogNeedsItsModeAndChannelsOnly) {
-  const auto fog = [](const std::string& text) { return featuresOf(R"({"objects": [{"primitive": "box"}], "fog": )" + text + "}"); };
+  const auto fog = [](const std::string& text) {
+    return featuresOf(R"({"objects": [{"primitive": "box"}], "fog": )" + text + "}");
+  };
   EXPECT_EQ(fog(R"({"mode": "exp", "density": 0.1})"), setOf({Feature::kFogExp}));
-  EXPECT_EQ(fog(R"({"mode": "exp2", "density": [0.1, 0.2, 0.3]})"), setOf({Feature::kFogExp2, Feature::kFogPerChannel}));
-  EXPECT_EQ(fog(R"({"mode": "linear", "start": 1, "end": 9, "distance": "radial"})"), setOf({Feature::kFogLinear, Feature::kFogRadial}));
+  EXPECT_EQ(fog(R"({"mode": "exp2", "density": [0.1, 0.2, 0.3]})"),
+            setOf({Feature::kFogExp2, Feature::kFogPerChannel}));
+  EXPECT_EQ(fog(R"({"mode": "linear", "start": 1, "end": 9, "distance": "radial"})"),
+            setOf({Feature::kFogLinear, Feature::kFogRadial}));
 }
 
 TEST(Features, TableNamesEveryFeatureOnce) {

@@ -14,10 +14,14 @@ constexpr double kHalfStep = 0.5 / 255 / 12.92;
 
 double share(const Fog& fog, double z) {
   switch (fog.mode) {
-    case FogMode::kNone: return 1;
-    case FogMode::kLinear: return std::min(1.0, std::max(0.0, (fog.end - z) / (double(fog.end) - fog.start)));
-    case FogMode::kExp: return std::exp(-double(fog.density.z) * z);
-    case FogMode::kExp2: return std::exp(-std::pow(fog.density.z * z, 2));
+    case FogMode::kNone:
+      return 1;
+    case FogMode::kLinear:
+      return std::min(1.0, std::max(0.0, (fog.end - z) / (double(fog.end) - fog.start)));
+    case FogMode::kExp:
+      return std::exp(-double(fog.density.z) * z);
+    case FogMode::kExp2:
+      return std::exp(-std::pow(fog.density.z * z, 2));
   }
   return 1;
 }
@@ -43,7 +47,8 @@ TEST(FogCull, WithoutFogOrDensityNothingIsHidden) {
   EXPECT_TRUE(std::isinf(fogLimit(fog, 0)));
 }
 
-constexpr const char* kRow = R"({"camera": {"eye": [0, 0, 0], "target": [0, 0, -1], "far": 500}, "background": [%],
+constexpr const char* kRow =
+    R"({"camera": {"eye": [0, 0, 0], "target": [0, 0, -1], "far": 500}, "background": [%],
   "fog": {"mode": "exp", "density": 0.5, "color": [0.5, 0.6, 0.7]},
   "lights": [{"type": "directional", "direction": [0, 0, -1]}],
   "objects": [{"primitive": "box", "translate": [0, 0, -3]}, {"primitive": "box", "translate": [0, 5, -100]},
@@ -56,7 +61,8 @@ std::string rowScene(const std::string& background) {
 
 TEST(FogCull, HidesOnlyObjectsWhollyBeyondTheLimit) {
   const Scene scene = sceneFromJson(rowScene("0.5, 0.6, 0.7"));
-  EXPECT_EQ(objectsInSight(scene, cameraView(scene.cameras.front(), {64, 64}), 0), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(objectsInSight(scene, cameraView(scene.cameras.front(), {64, 64}), 0),
+            (std::vector<std::uint32_t>{0, 2}));
 }
 
 TEST(FogCull, KeepsSilhouettesBeforeAnotherBackground) {

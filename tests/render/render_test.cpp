@@ -26,7 +26,8 @@ TEST(SamplePoint, SamplesFillEveryRowAndColumnOnceForPowersOfTwo) {
   }
 }
 
-constexpr const char* kScene = R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0]}, "ambient": [0.1, 0.1, 0.1],
+constexpr const char* kScene =
+    R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0]}, "ambient": [0.1, 0.1, 0.1],
   "fog": {"mode": "exp", "density": [0.05, 0.02, 0.01], "color": [0.2, 0.3, 0.4]},
   "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
   "objects": [{"primitive": "plane", "scale": 10, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"}],
@@ -46,8 +47,8 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
     const Image ours = renderScene(testDevice(), scene, settings, stats);
     const Image truth = referenceShade(scene, gbuffer, blinn);
     ASSERT_EQ(ours.pixels.size(), truth.pixels.size());
-    // About 40 roundings of 2^-24 between a light and the sum, on the largest of three lights' terms below 2; the lobe's
-    // power multiplies its argument's error (4·2^-24) by the exponent 32 and by log2 e.
+    // About 40 roundings of 2^-24 between a light and the sum, on the largest of three lights' terms below 2;
+    // the lobe's power multiplies its argument's error (4·2^-24) by the exponent 32 and by log2 e.
     const double tolerance = 2 * (40 + 4 * 32 * 1.4427) * std::exp2(-24);
     double worst = 0;
     for (std::size_t i = 0; i < ours.pixels.size(); ++i)
@@ -68,8 +69,10 @@ TEST(Render, UnlitSceneShowsDiffuseAndEmission) {
 }
 
 TEST(Render, MoreSamplesSmoothEdgesTowardsTheCoveredShare) {
-  // The left half of an emissive square's pixel column is covered: with n samples the edge pixel is k/n white.
-  const std::string json = R"({"camera": {"eye": [0, 0, 2], "target": [0, 0, 0], "orthographic": 1}, "lighting": false,
+  // The left half of an emissive square's pixel column is covered: with n samples the edge pixel is k/n
+  // white.
+  const std::string json =
+      R"({"camera": {"eye": [0, 0, 2], "target": [0, 0, 0], "orthographic": 1}, "lighting": false,
     "objects": [{"primitive": "box", "translate": [-0.5, 0, 0], "scale": [1, 4, 0.1]}], "materials": {}})";
   const Image image = renderJson(json, {5, 5}, [](RenderSettings& settings) { settings.samples = 16; });
   const float inside = image.pixels[3 * (2 * 5 + 0)], edge = image.pixels[3 * (2 * 5 + 2)];
@@ -79,14 +82,17 @@ TEST(Render, MoreSamplesSmoothEdgesTowardsTheCoveredShare) {
 
 TEST(Render, MovingCameraAndSceneFarAwayChangesNextToNothing) {
   const auto far = [](double offset) {
-    return "{\"camera\": {\"eye\": [" + std::to_string(offset + 3) + ", 2, 5], \"target\": [" + std::to_string(offset) + ", 0.5, 0]}, " +
-           "\"objects\": [{\"primitive\": \"sphere\", \"translate\": [" + std::to_string(offset) + ", 0.5, 0]}], " +
-           "\"lights\": [{\"type\": \"point\", \"position\": [" + std::to_string(offset + 1) + ", 2, 2], \"range\": 9}]}";
+    return "{\"camera\": {\"eye\": [" + std::to_string(offset + 3) + ", 2, 5], \"target\": [" +
+           std::to_string(offset) + ", 0.5, 0]}, " +
+           "\"objects\": [{\"primitive\": \"sphere\", \"translate\": [" + std::to_string(offset) +
+           ", 0.5, 0]}], " + "\"lights\": [{\"type\": \"point\", \"position\": [" +
+           std::to_string(offset + 1) + ", 2, 2], \"range\": 9}]}";
   };
   const Image near_image = renderJson(far(0), {64, 36}, [](RenderSettings&) {});
   const Image far_image = renderJson(far(1e7), {64, 36}, [](RenderSettings&) {});
-  // A double holds 10^7 m to 2 nm: 10^-9 of the distances here, far below a float's rounding, which may then differ by an ulp
-  // in positions and, through the lighting, by some tens of ulps; a silhouette pixel may flip where a sample lies on the edge.
+  // A double holds 10^7 m to 2 nm: 10^-9 of the distances here, far below a float's rounding, which may then
+  // differ by an ulp in positions and, through the lighting, by some tens of ulps; a silhouette pixel may
+  // flip where a sample lies on the edge.
   int differing = 0;
   for (std::size_t i = 0; i < near_image.pixels.size(); ++i)
     differing += std::abs(near_image.pixels[i] - far_image.pixels[i]) > 64 * std::exp2(-24);
@@ -94,8 +100,10 @@ TEST(Render, MovingCameraAndSceneFarAwayChangesNextToNothing) {
 }
 
 TEST(Render, CropOutsideThePictureIsRefused) {
-  for (const Crop crop : {Crop{-1, 0, 2, 2}, {0, 0, 0, 1}, {60, 0, 5, 5}, {0, 0, 2147483647, 1}, {2147483647, 0, 1, 1}})
-    EXPECT_THROW(renderJson(kScene, {64, 36}, [&](RenderSettings& settings) { settings.crop = crop; }), InputError);
+  for (const Crop crop :
+       {Crop{-1, 0, 2, 2}, {0, 0, 0, 1}, {60, 0, 5, 5}, {0, 0, 2147483647, 1}, {2147483647, 0, 1, 1}})
+    EXPECT_THROW(renderJson(kScene, {64, 36}, [&](RenderSettings& settings) { settings.crop = crop; }),
+                 InputError);
 }
 
 }  // namespace
