@@ -66,7 +66,7 @@ def broadleaf(seed, trunk, radius, lean, depth):
             )
         )
         radii.append(radius * (1 - 0.36 * t + 0.5 * math.exp(-9 * t)))
-    mesh.tube(points, radii, 22, color=bark_color, wobble=0.26, seed=seed)
+    mesh.tube(points, radii, 20, color=bark_color, wobble=0.26, seed=seed)
     for k in range(5):
         angle = 6.283 * k / 5 + rng.uniform(-0.3, 0.3)
         c, s, reach = math.cos(angle), math.sin(angle), radius * rng.uniform(2.6, 4.2)
@@ -77,7 +77,7 @@ def broadleaf(seed, trunk, radius, lean, depth):
                 for d in along
             ],
             [radius * (0.46 - 0.07 * i) for i in range(6)],
-            7,
+            6,
             color=bark_color,
         )
     tips = []
@@ -94,7 +94,7 @@ def broadleaf(seed, trunk, radius, lean, depth):
             radius * 0.46,
             depth,
             tips,
-            7,
+            5,
         )
     return mesh, tips
 

@@ -66,8 +66,8 @@ def sand():
 
 
 def backdrop():
-    """Water far away: brighter towards the surface, with rays fanning out from the sun. What the fog takes is put
-    in first. Colours are radiances: the material's ambient coefficient undoes the scene's ambient light."""
+    """Water far away: brighter towards the surface, with rays fanning out from the sun. What the fog takes is
+    put in first. Colours are radiances: the material's ambient coefficient undoes the ambient light."""
     share = [math.exp(-f * BACKDROP) for f in FOG_DENSITY]
     columns, rows, half, low, top = 56, 14, 27.0, -6.0, 19.0
     mesh = Mesh(2)

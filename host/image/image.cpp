@@ -73,7 +73,7 @@ Image readImage(const std::string& path) {
 }
 
 void writeImage(const Image& image, const std::string& path, const Metadata& metadata) {
-  const FileFormat& format = outputFormat(path);
+  const FileFormat format = outputFormat(path);
   if (format.max_channels > 4) {
     OIIO::ImageSpec spec = makeSpec(image, image.channels, OIIO::TypeDesc::FLOAT, metadata);
     spec.attribute("compression", "zip");

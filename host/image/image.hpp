@@ -24,7 +24,8 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 Image readImage(const std::string& path);
 
 /// Writes by the extension. Integer formats (png, tga, jpg, bmp, ppm) take the R, G, B channels (and A: png,
-/// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B.
+/// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B. Others
+/// that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
 /// The file appears whole or not at all (written beside, then renamed). "-" writes a PNG to standard output.
 /// Throws InputError (unknown extension, no such folder, read-only folder) or MachineError (disk full).
 void writeImage(const Image& image, const std::string& path, const Metadata& metadata);

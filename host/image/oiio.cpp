@@ -30,7 +30,7 @@ constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 31;
 constexpr std::uint64_t kMaxCompression = 65536;
 
 constexpr int kAnyChannels = 1024;
-constexpr FileFormat kFormats[] = {
+const FileFormat kFormats[] = {
     {"png", false, 4},
     {"tga", false, 4},
     {"jpg", false, 3},
@@ -206,24 +206,25 @@ bool isLinear(const OIIO::ImageSpec& spec) {
          space == "scene_linear";
 }
 
-const FileFormat& outputFormat(const std::string& path) {
+FileFormat outputFormat(const std::string& path) {
   if (path == "-") return kFormats[0];
   std::string extension = lowerCase(std::filesystem::path(path).extension().string());
   if (!extension.empty()) extension.erase(0, 1);
   for (const FileFormat& format : kFormats) {
     if (extension == format.extension) return format;
   }
+  // Its outputs "term" and "null" make no file.
+  if (!extension.empty() && extension != "term" && extension != "null" && OIIO::ImageOutput::create(extension))
+    return {extension, false, 3};
+  OIIO::geterror();  // what it says of an unknown extension is about plugins
   std::string known;
   for (const FileFormat& format : kFormats) known += fmt::format(" .{}", format.extension);
-  throw InputError(fmt::format("{}: unknown extension '{}', expected one of{}", path, extension, known));
+  throw InputError(fmt::format("{}: unknown extension '{}', expected one of{} or another that OpenImageIO writes",
+                               path, extension, known));
 }
 
 void checkWritable(const std::string& path) {
-  const FileFormat& format = outputFormat(path);
-  if (!OIIO::ImageOutput::create(format.extension)) {
-    throw InputError(fmt::format("{}: this OpenImageIO can't write .{} files: {}", path, format.extension,
-                                 oneLine(OIIO::geterror())));
-  }
+  outputFormat(path);
   if (path == "-") return;
   const std::string folder = folderOf(path);
   std::error_code error;
@@ -250,6 +251,10 @@ void writePicture(const std::string& path, const OIIO::ImageSpec& spec, const vo
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(outputFormat(path).extension);
   if (!output->open(encoded.path(), spec) || !output->write_image(spec.format, values) || !output->close()) {
     throw MachineError(fmt::format("{}: can't encode: {}", path, oneLine(output->geterror())));
+  }
+  struct stat status {};
+  if (fstat(encoded.descriptor(), &status) != 0 || status.st_size == 0) {
+    throw MachineError(path + ": OpenImageIO wrote nothing for this extension");
   }
   deliver(encoded, path);
 }

@@ -43,13 +43,14 @@ bool isLinear(const OIIO::ImageSpec& spec);
 
 /// How a file of some extension stores pictures.
 struct FileFormat {
-  const char* extension;  ///< in lower case, without the dot
+  std::string extension;  ///< in lower case, without the dot
   bool is_float;
   int max_channels;  ///< 3: R G B; 4: and A; more: any channels under any names
 };
 
-/// The format of a file to write, by its extension; PNG for "-". Throws InputError for an unknown one.
-const FileFormat& outputFormat(const std::string& path);
+/// The format of a file to write, by its extension; PNG for "-". What only OpenImageIO knows is taken for 8-bit R G B.
+/// Throws InputError for an extension that it doesn't write.
+FileFormat outputFormat(const std::string& path);
 
 /// Puts a finished file at its path, whole or not at all, or on standard output for "-". Throws InputError
 /// (no such folder, read-only folder) or MachineError (disk full).
