@@ -153,7 +153,7 @@ def uniforms(state):
 
 
 def lights_of(field):
-    """A field's lights as the renderer makes them: place, colour, and where its intensity lies in the interval."""
+    """A field's lights as the renderer makes them: place, colour, intensity from 0 to 1 in its interval."""
     places, looks = uniforms(field["seed"]), uniforms(~field["seed"] & (1 << 64) - 1)
     for _ in range(field["count"]):
         if "radius" not in field:

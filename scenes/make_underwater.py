@@ -94,7 +94,7 @@ def backdrop():
 def ceiling():
     """A tile of 5 m that repeats: the cells of random points (Voronoi), shrunk, their corners rounded."""
     rng = random.Random(12)
-    size, n = 5.0, 8
+    size, n = 5.0, 9
     points = [
         ((i + rng.uniform(0.1, 0.9)) * size / n, (j + rng.uniform(0.1, 0.9)) * size / n)
         for i in range(n)

@@ -8,15 +8,12 @@
 
 #include "error.hpp"
 #include "raster/view.hpp"
+#include "render/assemble.hpp"
 #include "render/fog_cull.hpp"
 #include "render/lighting.hpp"
 
 namespace luciole {
 namespace {
-
-bool wants(const RenderSettings& settings, Aov aov) {
-  return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
-}
 
 View settingsView(const RenderSettings& settings) {
   View view = cameraView(settings.camera, settings.size);
@@ -38,29 +35,29 @@ ShadeSettings shadeSettings(const RenderSettings& settings) {
   return shade;
 }
 
-void clearFog(FeatureSet& features) {
-  for (const Feature fog : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2, Feature::kFogPerChannel,
-                            Feature::kFogRadial})
-    features.set(fog, false);
+constexpr Feature kFogFeatures[] = {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
+                                    Feature::kFogPerChannel, Feature::kFogRadial};
+
+/// Features of the pass that lights vertices (Gouraud's way): no fog, which is for pixels.
+FeatureSet vertexFeatures(FeatureSet features) {
+  for (const Feature fog : kFogFeatures) features.set(fog, false);
+  features.set(Feature::kOutputShadow, false);
+  return features;
 }
 
 /// Features of the pass that fogs colours which are lit already, and stand in the emission planes.
 FeatureSet fogOnly(const FeatureSet& features) {
-  FeatureSet fog;
-  fog.set(Feature::kEmission);
-  for (const Feature kept : {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
-                             Feature::kFogPerChannel, Feature::kFogRadial})
-    fog.set(kept, features.has(kept));
-  return fog;
+  FeatureSet kept;
+  kept.set(Feature::kEmission);
+  for (const Feature fog : kFogFeatures) kept.set(fog, features.has(fog));
+  return kept;
 }
 
-/// The scene's vertices, lit without fog (Gouraud's way).
+/// The scene's vertices, lit.
 std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
                                      const std::vector<std::uint32_t>& objects, const View& view,
                                      const Lighting& lighting, Stats& stats) {
-  FeatureSet features = lighting.features;
-  clearFog(features);
-  features.set(Feature::kOutputShadow, false);
+  const FeatureSet features = vertexFeatures(lighting.features);
   const GBuffer vertices = timed(
       stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
   const LitPlanes lit = lightGBuffer(device, lighting, features, vertices, false, stats);
@@ -105,99 +102,6 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
   addCount(stats, "pixel_lights_in_range", static_cast<std::uint64_t>(in_range));
 }
 
-/// A channel of the finished picture.
-struct Layer {
-  std::string name;
-  const float* plane;  ///< in the G-buffer's layout
-};
-
-std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group,
-                               std::initializer_list<const char*> names) {
-  std::vector<Layer> layers;
-  std::size_t component = 0;
-  for (const char* name : names)
-    if (!group.empty()) layers.push_back({name, group.data() + gbuffer.pixels() * component++});
-  return layers;
-}
-
-/// World-space positions or normals and depths, from the view-space planes.
-struct WorldPlanes {
-  Plane position, normal, depth;
-};
-
-WorldPlanes worldPlanes(const GBuffer& gbuffer) {
-  const std::size_t n = gbuffer.pixels();
-  WorldPlanes world{Plane(3 * n), Plane(3 * n), Plane(n)};
-  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
-  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
-    const glm::dvec3 p(gbuffer.position[i], gbuffer.position[i + n], gbuffer.position[i + 2 * n]);
-    const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]);
-    const bool covered = std::isfinite(p.z);
-    const glm::dvec3 world_p = covered ? glm::dvec3(to_world * glm::dvec4(p, 1)) : glm::dvec3(0);
-    const glm::dvec3 world_n = glm::dmat3(to_world) * normal;
-    for (int c = 0; c < 3; ++c) {
-      world.position[i + c * n] = float(world_p[c]);
-      world.normal[i + c * n] = float(world_n[c]);
-    }
-    world.depth[i] = float(-p.z);
-  });
-  return world;
-}
-
-/// The finished picture: averaged colour with exposure, and the layers asked for.
-Image assemble(const GBuffer& gbuffer, const LitPlanes& first, const Plane& color_sum,
-               const RenderSettings& settings) {
-  const std::size_t n = gbuffer.pixels();
-  std::vector<Layer> layers{
-      {"R", color_sum.data()}, {"G", color_sum.data() + n}, {"B", color_sum.data() + 2 * n}};
-  const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
-  WorldPlanes world;
-  if (wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth))
-    world = worldPlanes(gbuffer);
-  for (const Aov aov : settings.aovs) {
-    switch (aov) {
-      case Aov::kPosition:
-        append(groupLayers(gbuffer, world.position, {"P.X", "P.Y", "P.Z"}));
-        break;
-      case Aov::kNormal:
-        append(groupLayers(gbuffer, world.normal, {"N.X", "N.Y", "N.Z"}));
-        break;
-      case Aov::kDepth:
-        append({{"Z", world.depth.data()}});
-        break;
-      case Aov::kDiffuse:
-        append(groupLayers(gbuffer, gbuffer.diffuse, {"diffuse.R", "diffuse.G", "diffuse.B"}));
-        break;
-      case Aov::kMaterial:
-        append(
-            groupLayers(gbuffer, gbuffer.specular, {"specular.R", "specular.G", "specular.B", "shininess"}));
-        append(groupLayers(gbuffer, gbuffer.ambient, {"ambient.R", "ambient.G", "ambient.B"}));
-        append(groupLayers(gbuffer, gbuffer.emission, {"emission.R", "emission.G", "emission.B"}));
-        break;
-      case Aov::kLightCount:
-        append({{"light_count", first.light_count.data()}});
-        break;
-      case Aov::kShadow:
-        // Without shadowed lights there is no such plane: everything is visible.
-        if (first.color.size() == 4 * n) append({{"shadow", first.color.data() + 3 * n}});
-        break;
-    }
-  }
-  Image image{gbuffer.width, gbuffer.height, {}, {}};
-  for (const Layer& layer : layers) image.channels.push_back(layer.name);
-  image.pixels.resize(std::size_t(image.width) * image.height * layers.size());
-  const float scale = std::exp2(settings.exposure) / float(settings.samples);
-  tbb::parallel_for(0, image.height, [&](int y) {
-    float* out = image.pixels.data() + std::size_t(y) * image.width * layers.size();
-    for (int x = 0; x < image.width; ++x) {
-      const std::size_t place = gbuffer.index(x, y);
-      for (std::size_t c = 0; c < layers.size(); ++c)
-        *out++ = layers[c].plane[place] * (c < 3 ? scale : 1.0f);
-    }
-  });
-  return image;
-}
-
 }  // namespace
 
 glm::dvec2 samplePoint(int index, int count) {
@@ -217,6 +121,7 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
   const bool gouraud = settings.shading == Shading::kGouraud;
   const FeatureSet pixel_features = gouraud ? fogOnly(features) : features;
   compileKernels(device, pixel_features, stats);
+  if (gouraud) compileKernels(device, vertexFeatures(features), stats);
   const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
   Lighting lighting;
   prepareLighting(device, scene, settings.camera, view, features, shade.blinn, lighting, stats);
@@ -260,7 +165,7 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
     if (settings.on_sample) settings.on_sample(sample + 1, settings.samples);
   }
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
-  return timed(stats, "resolve", [&] { return assemble(first_gbuffer, first, sum, settings); });
+  return timed(stats, "resolve", [&] { return assemblePicture(first_gbuffer, first, sum, settings); });
 }
 
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
@@ -306,7 +211,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   countPass(gbuffer, lit, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
-  return timed(stats, "resolve", [&] { return assemble(gbuffer, lit, lit.color, one_sample); });
+  return timed(stats, "resolve", [&] { return assemblePicture(gbuffer, lit, lit.color, one_sample); });
 }
 
 }  // namespace luciole

@@ -1,0 +1,109 @@
+#include "render/assemble.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace luciole {
+namespace {
+
+/// A channel of the finished picture.
+struct Layer {
+  std::string name;
+  const float* plane;  ///< in the G-buffer's layout
+};
+
+std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group,
+                               std::initializer_list<const char*> names) {
+  std::vector<Layer> layers;
+  std::size_t component = 0;
+  for (const char* name : names)
+    if (!group.empty()) layers.push_back({name, group.data() + gbuffer.pixels() * component++});
+  return layers;
+}
+
+/// World-space positions or normals and depths, from the view-space planes.
+struct WorldPlanes {
+  Plane position, normal, depth;
+};
+
+WorldPlanes worldPlanes(const GBuffer& gbuffer) {
+  const std::size_t n = gbuffer.pixels();
+  WorldPlanes world{Plane(3 * n), Plane(3 * n), Plane(n)};
+  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const glm::dvec3 p(gbuffer.position[i], gbuffer.position[i + n], gbuffer.position[i + 2 * n]);
+    const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]);
+    const bool covered = std::isfinite(p.z);
+    const glm::dvec3 world_p = covered ? glm::dvec3(to_world * glm::dvec4(p, 1)) : glm::dvec3(0);
+    const glm::dvec3 world_n = glm::dmat3(to_world) * normal;
+    for (int c = 0; c < 3; ++c) {
+      world.position[i + c * n] = float(world_p[c]);
+      world.normal[i + c * n] = float(world_n[c]);
+    }
+    world.depth[i] = float(-p.z);
+  });
+  return world;
+}
+
+}  // namespace
+
+bool wants(const RenderSettings& settings, Aov aov) {
+  return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
+}
+
+Image assemblePicture(const GBuffer& gbuffer, const LitPlanes& first, const Plane& color_sum,
+                      const RenderSettings& settings) {
+  const std::size_t n = gbuffer.pixels();
+  std::vector<Layer> layers{
+      {"R", color_sum.data()}, {"G", color_sum.data() + n}, {"B", color_sum.data() + 2 * n}};
+  const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
+  const Plane all_visible(wants(settings, Aov::kShadow) ? n : 0, 1.0f);  // where no light casts shadows
+  WorldPlanes world;
+  if (wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth))
+    world = worldPlanes(gbuffer);
+  for (const Aov aov : settings.aovs) {
+    switch (aov) {
+      case Aov::kPosition:
+        append(groupLayers(gbuffer, world.position, {"P.X", "P.Y", "P.Z"}));
+        break;
+      case Aov::kNormal:
+        append(groupLayers(gbuffer, world.normal, {"N.X", "N.Y", "N.Z"}));
+        break;
+      case Aov::kDepth:
+        append({{"Z", world.depth.data()}});
+        break;
+      case Aov::kDiffuse:
+        append(groupLayers(gbuffer, gbuffer.diffuse, {"diffuse.R", "diffuse.G", "diffuse.B"}));
+        break;
+      case Aov::kMaterial:
+        append(
+            groupLayers(gbuffer, gbuffer.specular, {"specular.R", "specular.G", "specular.B", "shininess"}));
+        append(groupLayers(gbuffer, gbuffer.ambient, {"ambient.R", "ambient.G", "ambient.B"}));
+        append(groupLayers(gbuffer, gbuffer.emission, {"emission.R", "emission.G", "emission.B"}));
+        break;
+      case Aov::kLightCount:
+        append({{"light_count", first.light_count.data()}});
+        break;
+      case Aov::kShadow:
+        append({{"shadow", first.color.size() == 4 * n ? first.color.data() + 3 * n : all_visible.data()}});
+        break;
+    }
+  }
+  Image image{gbuffer.width, gbuffer.height, {}, {}};
+  for (const Layer& layer : layers) image.channels.push_back(layer.name);
+  image.pixels.resize(std::size_t(image.width) * image.height * layers.size());
+  const float scale = std::exp2(settings.exposure) / float(settings.samples);
+  tbb::parallel_for(0, image.height, [&](int y) {
+    float* out = image.pixels.data() + std::size_t(y) * image.width * layers.size();
+    for (int x = 0; x < image.width; ++x) {
+      const std::size_t place = gbuffer.index(x, y);
+      for (std::size_t c = 0; c < layers.size(); ++c)
+        *out++ = layers[c].plane[place] * (c < 3 ? scale : 1.0f);
+    }
+  });
+  return image;
+}
+
+}  // namespace luciole

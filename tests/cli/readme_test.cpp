@@ -1,0 +1,81 @@
+// What the READMEs tell a reader to type works as they say it.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <sstream>
+
+#include "cli/run_program.hpp"
+
+namespace luciole::test {
+namespace {
+
+const std::string kSource = LUCIOLE_SOURCE_DIR;
+
+/// Everything the file shows as a call of the program: lines of its ```sh blocks, and `./luciole …` in the
+/// text and under the pictures. Not the test command, which would call this test.
+std::vector<std::string> commandsOf(const std::string& readme) {
+  std::istringstream lines(readText(kSource + "/" + readme));
+  const std::regex quoted("`(\\./luciole [^`]+)`");
+  std::vector<std::string> commands;
+  bool in_block = false, in_shell = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("```", 0) == 0) {
+      in_block = !in_block;
+      in_shell = in_block && line == "```sh";
+    } else if (in_shell && line.rfind("./luciole ", 0) == 0) {
+      commands.push_back(line);
+    } else if (!in_block) {
+      for (auto i = std::sregex_iterator(line.begin(), line.end(), quoted); i != std::sregex_iterator(); ++i)
+        commands.push_back((*i)[1]);
+    }
+  }
+  std::erase_if(commands, [](const std::string& command) { return command.rfind("./luciole test", 0) == 0; });
+  return commands;
+}
+
+/// A folder that looks like a checkout whose launcher has built the program.
+void prepareCheckout(const TemporaryFolder& folder) {
+  std::filesystem::create_symlink(LUCIOLE_BINARY, folder / "luciole");
+  std::filesystem::create_symlink(kSource + "/scenes", folder / "scenes");
+}
+
+TEST(Readme, EveryCommandSucceeds) {
+  const TemporaryFolder folder;
+  prepareCheckout(folder);
+  const std::vector<std::string> commands = commandsOf("README.md");
+  EXPECT_GE(commands.size(), 10u);
+  for (const std::string& command : commands) {
+    const Outcome outcome = runLine(folder, command);
+    EXPECT_EQ(outcome.status, 0) << command << "\n" << outcome.err;
+  }
+}
+
+TEST(Readme, SceneFileExampleRenders) {
+  const std::string text = readText(kSource + "/README.md");
+  const std::size_t start = text.find("```json\n");
+  ASSERT_NE(start, std::string::npos);
+  const TemporaryFolder folder;
+  writeText(folder / "example.json", text.substr(start + 8, text.find("```", start + 8) - start - 8));
+  const Outcome outcome = runLine(folder, "luciole render example.json --size 160x90 -o example.png");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST(Readme, PicturesAndFilesItNamesExist) {
+  for (const char* readme : {"README.md", "scenes/README.md"}) {
+    const std::string text = readText(kSource + "/" + readme);
+    const std::filesystem::path folder = std::filesystem::path(kSource + "/" + readme).parent_path();
+    const std::regex link(R"(\]\(([^):#]+)\))"), path(R"(`((?:host|kernels|tests|scenes)/[A-Za-z0-9_./]+)`)");
+    int found = 0;
+    for (auto i = std::sregex_iterator(text.begin(), text.end(), link); i != std::sregex_iterator();
+         ++i, ++found)
+      EXPECT_TRUE(std::filesystem::exists(folder / (*i)[1].str())) << readme << " links to " << (*i)[1];
+    for (auto i = std::sregex_iterator(text.begin(), text.end(), path); i != std::sregex_iterator();
+         ++i, ++found)
+      EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(kSource) / (*i)[1].str()))
+          << readme << " names " << (*i)[1];
+    EXPECT_GT(found, 3) << readme;
+  }
+}
+
+}  // namespace
+}  // namespace luciole::test
