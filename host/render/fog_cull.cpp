@@ -11,13 +11,18 @@ namespace {
 
 constexpr double kHalfStep = 0.5 / 255 / 12.92;
 
-double hiddenShare(float exposure) { return kHalfStep * std::exp2(-std::max(exposure, 0.0f)); }
+double brightestColor(const Scene& scene, float exposure) {
+  float brightest = 1.0f;
+  for (const Material& material : scene.materials)
+    brightest = std::max({brightest, material.emission.x, material.emission.y, material.emission.z});
+  return brightest * std::exp2(std::max(exposure, 0.0f));
+}
 
 }  // namespace
 
-double fogLimit(const Fog& fog, float exposure) {
+double fogLimit(const Fog& fog, double brightest) {
   const double infinite = std::numeric_limits<double>::infinity();
-  const double share = hiddenShare(exposure);
+  const double share = kHalfStep / brightest;
   const double density = std::min({fog.density.x, fog.density.y, fog.density.z});
   switch (fog.mode) {
     case FogMode::kNone:
@@ -33,9 +38,10 @@ double fogLimit(const Fog& fog, float exposure) {
 }
 
 std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, float exposure) {
-  const double limit = fogLimit(scene.fog, exposure);
+  const double brightest = brightestColor(scene, exposure);
+  const double limit = fogLimit(scene.fog, brightest);
   const glm::vec3 contrast = glm::abs(scene.background - scene.fog.color);
-  const bool can_hide = std::max({contrast.x, contrast.y, contrast.z}) <= hiddenShare(exposure);
+  const bool can_hide = std::max({contrast.x, contrast.y, contrast.z}) <= kHalfStep / brightest;
   std::vector<std::uint32_t> objects;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     double nearest = -std::numeric_limits<double>::infinity();

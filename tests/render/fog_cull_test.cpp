@@ -34,17 +34,17 @@ TEST(FogCull, LimitIsWhereHalfAStepIsLeft) {
     fog.start = 5;
     fog.end = 50;
     // Solving for z and inserting again: a handful of double operations and logarithms.
-    EXPECT_NEAR(share(fog, fogLimit(fog, 0)), kHalfStep, kHalfStep * 1e-9) << int(mode);
-    EXPECT_NEAR(share(fog, fogLimit(fog, 2)), kHalfStep / 4, kHalfStep * 1e-9) << int(mode);
+    EXPECT_NEAR(share(fog, fogLimit(fog, 1)), kHalfStep, kHalfStep * 1e-9) << int(mode);
+    EXPECT_NEAR(share(fog, fogLimit(fog, 4)), kHalfStep / 4, kHalfStep * 1e-9) << int(mode);
   }
 }
 
 TEST(FogCull, WithoutFogOrDensityNothingIsHidden) {
   Fog fog;
-  EXPECT_TRUE(std::isinf(fogLimit(fog, 0)));
+  EXPECT_TRUE(std::isinf(fogLimit(fog, 1)));
   fog.mode = FogMode::kExp;
   fog.density = {1, 1, 0};
-  EXPECT_TRUE(std::isinf(fogLimit(fog, 0)));
+  EXPECT_TRUE(std::isinf(fogLimit(fog, 1)));
 }
 
 constexpr const char* kRow =
@@ -63,6 +63,17 @@ TEST(FogCull, HidesOnlyObjectsWhollyBeyondTheLimit) {
   const Scene scene = sceneFromJson(rowScene("0.5, 0.6, 0.7"));
   EXPECT_EQ(objectsInSight(scene, cameraView(scene.cameras.front(), {64, 64}), 0),
             (std::vector<std::uint32_t>{0, 2}));
+}
+
+TEST(FogCull, BrightEmittersShineThroughMoreFog) {
+  // A box that hides at 17 m and more: -ln(1.5e-4) / 0.5 = 17.6 m. A thousand times as bright it takes
+  // ln(1000) / 0.5 = 13.8 m more.
+  Scene scene = sceneFromJson(rowScene("0.5, 0.6, 0.7"));
+  scene.objects[1].object_to_world[3] = {0, 0, -25, 1};
+  const View view = cameraView(scene.cameras.front(), {64, 64});
+  EXPECT_EQ(objectsInSight(scene, view, 0).size(), 2u);
+  scene.materials.front().emission = {1000, 0, 0};
+  EXPECT_EQ(objectsInSight(scene, view, 0).size(), 3u);
 }
 
 TEST(FogCull, KeepsSilhouettesBeforeAnotherBackground) {

@@ -1,4 +1,5 @@
-// What the pictures of scenes/ cost and how wrong they are: the README's table. Run it alone on a quiet machine:
+// What the pictures of scenes/ cost and how wrong they are: the README's table. Run it alone on a quiet
+// machine:
 //   build/tests/picture_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only
 #include <benchmark/benchmark.h>
 
@@ -26,7 +27,8 @@ RenderSettings settingsOf(const Scene& scene, glm::ivec2 size) {
   return settings;
 }
 
-/// Largest and mean difference from the double-precision reference, shadows off in both, as shares of the picture's maximum.
+/// Largest and mean difference from the double-precision reference, shadows off in both, as shares of the
+/// picture's maximum.
 void reportError(benchmark::State& state, const Scene& scene) {
   RenderSettings settings = settingsOf(scene, {320, 180});
   settings.shade.shadows = ShadowMethod::kOff;
@@ -87,7 +89,8 @@ void shadeEveryPair(benchmark::State& state) {
     gbuffer.specular[i + 3 * kPixels] = 1 + 100 * random();
   }
   FeatureSet features;
-  for (const Feature used : {Feature::kPointLights, Feature::kSmoothWindow, Feature::kPhongSpecular}) features.set(used);
+  for (const Feature used : {Feature::kPointLights, Feature::kSmoothWindow, Feature::kPhongSpecular})
+    features.set(used);
   Lighting lighting;
   Stats stats;
   prepareLighting(device(), scene, gbuffer.camera, View(), features, false, lighting, stats);
