@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9.0;
 constexpr double kMargin = 1.06;  // how much larger than the scene's box the picture is
-/// Above it the tree for asking what can be seen costs seconds: such a scene is looked at from outside.
+/// Above it the rays for asking what can be seen costs seconds: such a scene is looked at from outside.
 constexpr std::uint64_t kMostTrianglesToAsk = 8'000'000;
 
 glm::dvec3 centerOf(const Bounds& bounds) { return bounds.low + (bounds.high - bounds.low) / 2.0; }
@@ -45,12 +45,12 @@ std::vector<glm::dvec3> allRound() {
 
 /// Whether nearly everything to be seen from here is the front of a surface: so it is in a room, but neither
 /// inside a solid nor outside everything.
-bool isInRoom(const RayTree& tree, const glm::dvec3& place) {
+bool isInRoom(const RayScene& rays, const glm::dvec3& place) {
   static const std::vector<glm::dvec3> kDirections = allRound();
   int fronts = 0;
   int backs = 0;
   for (const glm::dvec3& direction : kDirections) {
-    if (const auto hit = castRay(tree, place, direction)) ++(hit->front ? fronts : backs);
+    if (const auto hit = castRay(rays, place, direction)) ++(hit->front ? fronts : backs);
   }
   return fronts >= 21 && backs <= 2;  // of 26: a roof may be open, a leaf or a curtain have one side only
 }
@@ -81,7 +81,7 @@ struct Sides {
   int fronts = 0;
   int backs = 0;
 };
-Sides sidesSeen(const RayTree& tree, const Bounds& bounds, const glm::dvec3& back) {
+Sides sidesSeen(const RayScene& rays, const Bounds& bounds, const glm::dvec3& back) {
   constexpr int kRays = 15;
   const double radius = glm::length(bounds.high - bounds.low) / 2;
   const glm::dmat4 frame = cameraToWorld(back, glm::dvec3(0), {0, 1, 0});
@@ -90,18 +90,18 @@ Sides sidesSeen(const RayTree& tree, const Bounds& bounds, const glm::dvec3& bac
     const glm::dvec2 at = (glm::dvec2(i % kRays, i / kRays) + 0.5) / (0.5 * kRays) - 1.0;
     const glm::dvec3 from =
         centerOf(bounds) + radius * (at.x * glm::dvec3(frame[0]) + at.y * glm::dvec3(frame[1]) + 1.01 * back);
-    if (const auto hit = castRay(tree, from, -back)) ++(hit->front ? sides.fronts : sides.backs);
+    if (const auto hit = castRay(rays, from, -back)) ++(hit->front ? sides.fronts : sides.backs);
   }
   return sides;
 }
 
 /// The side on which walls are left out to look in, as on a stage: the horizontal way that is free from most
 /// of the places in a room.
-std::optional<glm::dvec3> openSide(const RayTree& tree, const std::vector<glm::dvec3>& places_in_room) {
+std::optional<glm::dvec3> openSide(const RayScene& rays, const std::vector<glm::dvec3>& places_in_room) {
   for (const glm::dvec3& out :
        {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, -1)}) {
     const auto free = std::count_if(places_in_room.begin(), places_in_room.end(),
-                                    [&](const glm::dvec3& place) { return !castRay(tree, place, out); });
+                                    [&](const glm::dvec3& place) { return !castRay(rays, place, out); });
     if (2 * static_cast<std::size_t>(free) > places_in_room.size()) return out;
   }
   return std::nullopt;
@@ -117,43 +117,43 @@ struct Stand {
   double score = 0;       ///< 0: nothing to be seen from here
 };
 
-double clearDistance(const RayTree& tree, const Bounds& bounds, const glm::dvec3& from,
+double clearDistance(const RayScene& rays, const Bounds& bounds, const glm::dvec3& from,
                      const glm::dvec3& direction) {
-  const auto hit = castRay(tree, from, direction);
+  const auto hit = castRay(rays, from, direction);
   return hit ? hit->distance : glm::length(bounds.high - bounds.low);
 }
 
 /// A room of 6 m makes 1.5 m, the height of somebody's eyes; files don't say what their unit is.
-Stand standAt(const RayTree& tree, const Bounds& bounds, const glm::dvec3& place) {
+Stand standAt(const RayScene& rays, const Bounds& bounds, const glm::dvec3& place) {
   Stand stand;
-  stand.floor = std::max(place.y - clearDistance(tree, bounds, place, {0, -1, 0}), bounds.low.y);
-  stand.ceiling = std::min(place.y + clearDistance(tree, bounds, place, {0, 1, 0}), bounds.high.y);
+  stand.floor = std::max(place.y - clearDistance(rays, bounds, place, {0, -1, 0}), bounds.low.y);
+  stand.ceiling = std::min(place.y + clearDistance(rays, bounds, place, {0, 1, 0}), bounds.high.y);
   stand.eye = {place.x, stand.floor + 0.25 * (stand.ceiling - stand.floor), place.z};
   return stand;
 }
 
 /// Chooses the way to look: far, not past something close, and at many things rather than at bare walls.
-void lookAround(const RayTree& tree, const Bounds& bounds, Stand& stand) {
-  if (!isInRoom(tree, stand.eye)) return;
+void lookAround(const RayScene& rays, const Bounds& bounds, Stand& stand) {
+  if (!isInRoom(rays, stand.eye)) return;
   constexpr int kDirections = 16;
   const glm::dvec3 up{0, 1, 0};
   for (int i = 0; i < kDirections; ++i) {
     const double angle = 2 * std::numbers::pi * i / kDirections;
     const glm::dvec3 ahead{std::sin(angle), 0, std::cos(angle)};
     const glm::dvec3 right = glm::cross(ahead, up);
-    const double length = clearDistance(tree, bounds, stand.eye, ahead);
+    const double length = clearDistance(rays, bounds, stand.eye, ahead);
     double beam = length;
     for (double x : {-0.03, 0.03}) {
       for (double y : {0.0, 0.05}) {
         beam = std::min(beam,
-                        clearDistance(tree, bounds, stand.eye, glm::normalize(ahead + x * right + y * up)));
+                        clearDistance(rays, bounds, stand.eye, glm::normalize(ahead + x * right + y * up)));
       }
     }
     double room = 0;
     std::vector<std::uint32_t> seen;
     for (int x = -4; x <= 4; ++x) {
       for (int y = -1; y <= 3; ++y) {
-        const auto hit = castRay(tree, stand.eye, glm::normalize(ahead + 0.2 * x * right + 0.2 * y * up));
+        const auto hit = castRay(rays, stand.eye, glm::normalize(ahead + 0.2 * x * right + 0.2 * y * up));
         room += hit ? std::min(beam, hit->distance) : beam;
         if (hit) seen.push_back(hit->triangle);
       }
@@ -209,7 +209,7 @@ Framing frameFromOutside(const Bounds& bounds, const glm::dvec3& back) {
 
 /// From the front, from the right, a little from above; from another side where that shows much more fronts.
 /// Flat pictures are looked at straight.
-glm::dvec3 outsideDirection(const RayTree& tree, const Bounds& bounds) {
+glm::dvec3 outsideDirection(const RayScene& rays, const Bounds& bounds) {
   const glm::dvec3 extent = bounds.high - bounds.low;
   std::vector<glm::dvec3> backs;
   if (extent.z <= 1e-3 * std::max(extent.x, extent.y)) {
@@ -223,9 +223,9 @@ glm::dvec3 outsideDirection(const RayTree& tree, const Bounds& bounds) {
     }
   }
   glm::dvec3 best = backs[0];
-  int most = sidesSeen(tree, bounds, best).fronts;
+  int most = sidesSeen(rays, bounds, best).fronts;
   for (const glm::dvec3& back : backs) {
-    const int fronts = sidesSeen(tree, bounds, back).fronts;
+    const int fronts = sidesSeen(rays, bounds, back).fronts;
     if (fronts > 2 * most) {
       most = fronts;
       best = back;
@@ -255,25 +255,25 @@ Framing frameScene(const Scene& scene) {
   if (triangles > kMostTrianglesToAsk)
     return frameFromOutside(bounds, glm::normalize(glm::dvec3(0.5, 0.35, 1)));
 
-  const RayTree tree = buildRayTree(scene, centerOf(bounds));
+  const RayScene rays = buildRayScene(scene, centerOf(bounds));
   std::vector<glm::dvec3> places = placesToStand(scene, bounds);
   const std::size_t tried = places.size();
-  std::erase_if(places, [&](const glm::dvec3& place) { return !isInRoom(tree, place); });
-  const glm::dvec3 usual = outsideDirection(tree, bounds);
-  const Sides outside = sidesSeen(tree, bounds, usual);
+  std::erase_if(places, [&](const glm::dvec3& place) { return !isInRoom(rays, place); });
+  const glm::dvec3 usual = outsideDirection(rays, bounds);
+  const Sides outside = sidesSeen(rays, bounds, usual);
   // A car has a cabin, but a hall is all rooms, or else has no outside to look at.
   const bool is_hall = 2 * places.size() >= tried || (!places.empty() && outside.backs > outside.fronts);
   if (!is_hall) return frameFromOutside(bounds, usual);
-  if (const auto open = openSide(tree, places)) return frameFromOutside(bounds, *open);
+  if (const auto open = openSide(rays, places)) return frameFromOutside(bounds, *open);
 
   std::vector<Stand> stands;
   const double close = 1e-3 * glm::length(bounds.high - bounds.low);
   for (const glm::dvec3& place : places) {
-    const Stand stand = standAt(tree, bounds, place);
+    const Stand stand = standAt(rays, bounds, place);
     if (stands.empty() || glm::distance(stands.back().eye, stand.eye) > close) stands.push_back(stand);
   }
   tbb::parallel_for(std::size_t{0}, stands.size(),
-                    [&](std::size_t i) { lookAround(tree, bounds, stands[i]); });
+                    [&](std::size_t i) { lookAround(rays, bounds, stands[i]); });
   const auto best = std::max_element(stands.begin(), stands.end(),
                                      [](const Stand& a, const Stand& b) { return a.score < b.score; });
   return best->score > 0 ? frameFromInside(bounds, *best) : frameFromOutside(bounds, usual);

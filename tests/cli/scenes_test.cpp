@@ -49,7 +49,7 @@ TEST_P(OwnScene, LooksTheSameWithAndWithoutCulling) {
 INSTANTIATE_TEST_SUITE_P(Scenes, OwnScene,
                          testing::Values("fireflies", "cornell", "colonnade", "underwater", "spheres",
                                          "city"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(SharedScenes, ValidOnesRenderAndOthersSayWhyNot) {
   LUCIOLE_NEEDS_SHARED();
@@ -80,8 +80,8 @@ TEST_P(MalformedScenes, EndInAPictureOrOneClearLine) {
 INSTANTIATE_TEST_SUITE_P(Folders, MalformedScenes,
                          testing::Values("malformed_assimp/OBJ", "malformed_assimp/glTF2",
                                          "malformed_assimp/invalid", "malformed_tinyobjloader"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& test) {
+                           std::string name = test.param;
                            std::replace(name.begin(), name.end(), '/', '_');
                            return name;
                          });

@@ -75,11 +75,17 @@ TEST(LightField, ShapesAreFilledEvenly) {
     glm::dvec3 mean{0.0}, square{0.0};
     for (const Light& light : expand(field)) {
       const glm::dvec3 p = light.position - center;
-      if (shape == FieldShape::kBox) EXPECT_LE(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}), 0.5);
+      if (shape == FieldShape::kBox) {
+        EXPECT_LE(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}), 0.5);
+      }
       // Coordinates up to 32 have an error of 2⁻⁴⁸ in each of centre + offset and back, over three
       // components; the point on the unit sphere has some 2⁻⁵² of its own: below 2·10⁻¹⁴ m together.
-      if (shape == FieldShape::kBall) EXPECT_LE(glm::length(p), 2 + 2e-14);
-      if (shape == FieldShape::kSphere) EXPECT_NEAR(glm::length(p), 2, 2e-14);
+      if (shape == FieldShape::kBall) {
+        EXPECT_LE(glm::length(p), 2 + 2e-14);
+      }
+      if (shape == FieldShape::kSphere) {
+        EXPECT_NEAR(glm::length(p), 2, 2e-14);
+      }
       mean += p / double(kCount);
       square += p * p / double(kCount);
     }

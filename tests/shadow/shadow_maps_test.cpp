@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
             -0.5 * 4 / 3, 0.5 * 4 / 3, 0.016},
         HoverCase{"Point", R"({"type": "point", "position": [0, 4, 0], "shadow": true})", -0.5 * 4 / 3,
                   0.5 * 4 / 3, 0.046}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ShadowMaps, AlphaMaskedHolesLetLightThrough) {
   // A hovering square whose opacity is below the cutoff casts nothing.
