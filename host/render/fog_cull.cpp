@@ -18,6 +18,18 @@ double brightestColor(const Scene& scene, float exposure) {
   return brightest * std::exp2(std::max(exposure, 0.0f));
 }
 
+/// Least depth of a box along the view axis. A distance from the eye is never smaller, so it serves radial
+/// fog as well.
+double nearestDepth(const Bounds& box, const View& view) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec4 p((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
+                       (corner & 4 ? box.high : box.low).z, 1.0);
+    nearest = std::min(nearest, -(view.world_to_view * p).z);
+  }
+  return nearest;
+}
+
 }  // namespace
 
 double fogLimit(const Fog& fog, double brightest) {
@@ -41,23 +53,11 @@ std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, 
   const double brightest = brightestColor(scene, exposure);
   const double limit = fogLimit(scene.fog, brightest);
   const glm::vec3 contrast = glm::abs(scene.background - scene.fog.color);
-  const bool can_hide = std::max({contrast.x, contrast.y, contrast.z}) <= kHalfStep / brightest;
+  const bool can_hide =
+      std::isfinite(limit) && std::max({contrast.x, contrast.y, contrast.z}) <= kHalfStep / brightest;
   std::vector<std::uint32_t> objects;
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    double nearest = -std::numeric_limits<double>::infinity();
-    if (can_hide && std::isfinite(limit)) {
-      // Depth along the view axis; a distance from the eye is never smaller, so this serves radial fog as
-      // well.
-      const Bounds box = objectBounds(scene, scene.objects[i]);
-      nearest = -nearest;
-      for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 p((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
-                           (corner & 4 ? box.high : box.low).z, 1.0);
-        nearest = std::min(nearest, -(view.world_to_view * p).z);
-      }
-    }
-    if (nearest <= limit) objects.push_back(i);
-  }
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
+    if (!can_hide || nearestDepth(objectBounds(scene, scene.objects[i]), view) <= limit) objects.push_back(i);
   return objects;
 }
 

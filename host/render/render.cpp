@@ -133,8 +133,8 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
   stats.height = view.crop_size.y;
   stats.samples = settings.samples;
   PlaneSet planes = neededPlanes(pixel_features);
-  if (wants(settings, Aov::kMaterial)) planes = {true, true, true};
   if (!scene.lighting) planes.ambient = false;  // diffuse takes its place
+  if (wants(settings, Aov::kMaterial)) planes = {true, true, true};
 
   GBuffer first_gbuffer;
   LitPlanes first;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9.0;
 constexpr double kMargin = 1.06;  // how much larger than the scene's box the picture is
-/// Above it the rays for asking what can be seen costs seconds: such a scene is looked at from outside.
+/// Above it the rays that ask what can be seen cost seconds: such a scene is looked at from outside.
 constexpr std::uint64_t kMostTrianglesToAsk = 8'000'000;
 
 glm::dvec3 centerOf(const Bounds& bounds) { return bounds.low + (bounds.high - bounds.low) / 2.0; }
