@@ -24,25 +24,32 @@ std::vector<bool> findVaryingAlpha(const Scene& scene) {
   return varying;
 }
 
+float opacityAt(const Scene& scene, const std::vector<bool>& varying_alpha, const Surface& surface,
+                const Weights& weights, const TexturePlace& place) {
+  const Material& material = *surface.material;
+  float opacity = material.alpha * vertexColor(surface, weights).a;
+  if (surface.object->mesh->uvs.empty()) return opacity;
+  const int diffuse = material.diffuse_map.texture;
+  if (diffuse >= 0)
+    opacity *= varying_alpha[diffuse] ? lookUp(scene, material.diffuse_map, place).a
+                                      : scene.textures[diffuse].levels[0].texels[3] / 65535.0f;
+  if (material.alpha_map.texture >= 0) {
+    const glm::vec4 map = lookUp(scene, material.alpha_map, place);
+    // An opacity map in grey is a picture of numbers: its codes count, not the light they would stand for.
+    opacity *= varying_alpha[material.alpha_map.texture] ? map.a : encodeSrgb(map.r);
+  }
+  return opacity;
+}
+
 bool isHole(const Scene& scene, const std::vector<bool>& varying_alpha, const Surface& surface,
             const ViewPlane& plane, int x, int y) {
   const Material& material = *surface.material;
   const Weights weights = weightsInside(surface, plane.at(x, y));
-  float opacity = material.alpha * vertexColor(surface, weights).a;
   const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;
-  if (textured && !surface.object->mesh->uvs.empty()) {
-    const TexturePlace place = texturePlace(surface, plane, x, y, weights);
-    const int diffuse = material.diffuse_map.texture;
-    if (diffuse >= 0)
-      opacity *= varying_alpha[diffuse] ? lookUp(scene, material.diffuse_map, place).a
-                                        : scene.textures[diffuse].levels[0].texels[3] / 65535.0f;
-    if (material.alpha_map.texture >= 0) {
-      const glm::vec4 map = lookUp(scene, material.alpha_map, place);
-      // An opacity map in grey is a picture of numbers: its codes count, not the light they would stand for.
-      opacity *= varying_alpha[material.alpha_map.texture] ? map.a : encodeSrgb(map.r);
-    }
-  }
-  return opacity < material.alpha_cutoff;
+  const TexturePlace place = textured && !surface.object->mesh->uvs.empty()
+                                 ? texturePlace(surface, plane, x, y, weights)
+                                 : TexturePlace{};
+  return opacityAt(scene, varying_alpha, surface, weights, place) < material.alpha_cutoff;
 }
 
 }  // namespace luciole

@@ -22,12 +22,6 @@ Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
   return {1.0 - b1 - b2, b1, b2};
 }
 
-glm::dvec2 interpolateUv(const Surface& surface, const Weights& weights) {
-  const std::vector<glm::vec2>& uvs = surface.object->mesh->uvs;
-  return weights[0] * glm::dvec2(uvs[surface.corners[0]]) + weights[1] * glm::dvec2(uvs[surface.corners[1]]) +
-         weights[2] * glm::dvec2(uvs[surface.corners[2]]);
-}
-
 glm::vec2 finiteOrZero(const glm::dvec2& step) {
   const glm::vec2 rounded(step);
   return std::isfinite(rounded.x) && std::isfinite(rounded.y) ? rounded : glm::vec2(0.0f);
@@ -82,6 +76,12 @@ Weights weightsInside(const Surface& surface, const glm::dvec3& p) {
   for (int i = 0; i < 3; ++i) weights[i] = std::clamp(weights[i], 0.0, 1.0);
   const double sum = weights[0] + weights[1] + weights[2];
   return sum > 0.0 ? weights / sum : Weights(1.0 / 3.0);
+}
+
+glm::dvec2 interpolateUv(const Surface& surface, const Weights& weights) {
+  const std::vector<glm::vec2>& uvs = surface.object->mesh->uvs;
+  return weights[0] * glm::dvec2(uvs[surface.corners[0]]) + weights[1] * glm::dvec2(uvs[surface.corners[1]]) +
+         weights[2] * glm::dvec2(uvs[surface.corners[2]]);
 }
 
 TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,

@@ -47,6 +47,9 @@ using Weights = glm::dvec3;
 /// pixel beside it, which show a point of its edge instead of its plane's continuation.
 Weights weightsInside(const Surface& surface, const glm::dvec3& p);
 
+/// Texture coordinates at a point of a surface whose mesh has some.
+glm::dvec2 interpolateUv(const Surface& surface, const Weights& weights);
+
 /// Texture coordinates at a pixel, and their steps to the next pixel right and down (zero where not finite).
 struct TexturePlace {
   glm::vec2 uv;

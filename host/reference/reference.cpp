@@ -1,9 +1,14 @@
 #include "reference/reference.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
+
+#include "reference/ray_shadows.hpp"
 
 namespace luciole {
 namespace {
@@ -89,8 +94,17 @@ glm::dvec3 triple(const Plane& group, std::size_t stride, std::size_t place) {
   return {group[place], group[place + stride], group[place + 2 * stride]};
 }
 
-glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, std::size_t place, bool blinn) {
-  const std::size_t stride = gbuffer.pixels();
+/// Spreads the bits of a pixel's place in the whole picture, for rays that differ from pixel to pixel.
+std::uint32_t pixelSeed(const glm::ivec2& pixel) {
+  std::uint32_t bits = std::uint32_t(pixel.x) * 0x9e3779b1u ^ std::uint32_t(pixel.y) * 0x85ebca6bu;
+  bits = (bits ^ bits >> 15) * 0x2c1b3c6du;
+  return bits ^ bits >> 13;
+}
+
+/// rays: null without shadows.
+glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                      const RayScene* rays, const ReferenceSettings& settings) {
+  const std::size_t stride = gbuffer.pixels(), place = gbuffer.index(pixel.x, pixel.y);
   const glm::dvec3 view_position = triple(gbuffer.position, stride, place);
   if (!std::isfinite(view_position.z)) return scene.background;
   const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
@@ -102,16 +116,22 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, std::size_t pl
   point.ambient = triple(gbuffer.ambient, stride, place);
   point.emission = triple(gbuffer.emission, stride, place);
   point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
+  const std::uint32_t seed = pixelSeed(pixel + gbuffer.crop_origin);
+  Visibility visibility;
+  if (rays)
+    visibility = [&](const Light& light) {
+      return lightVisibility(*rays, light, point.position, settings.shadow_samples, seed);
+    };
   return referenceFog(scene.fog, gbuffer.camera, point.position,
-                      referenceRadiance(scene, gbuffer.camera, point, blinn));
+                      referenceRadiance(scene, gbuffer.camera, point, settings.blinn, visibility));
 }
 
 }  // namespace
 
 // The lighting equation of OpenGL 1.x (The OpenGL Graphics System: A Specification, section "Lighting") with
 // a local viewer, which is Phong's (CACM 18(6), 1975) or, with the half vector, Blinn's (SIGGRAPH 1977).
-glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point,
-                             bool blinn) {
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, bool blinn,
+                             const Visibility& visibility) {
   if (!scene.lighting) return point.emission + point.diffuse;
   // Unit again in double: a power of 10⁶ would make 10 % of the last bit of a float normal.
   const glm::dvec3 normal = unitOrZero(point.normal);
@@ -123,10 +143,11 @@ glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const Sur
     if (incoming.share == 0) continue;
     glm::dvec3 reflected = glm::dvec3(light.ambient) * point.ambient;
     const double n_dot_l = glm::dot(normal, incoming.to_light);
-    if (n_dot_l > 0) {
-      reflected += glm::dvec3(light.diffuse) * point.diffuse * n_dot_l;
+    const double visible = n_dot_l <= 0 ? 0.0 : light.shadow && visibility ? visibility(light) : 1.0;
+    if (visible > 0) {
+      reflected += glm::dvec3(light.diffuse) * point.diffuse * (n_dot_l * visible);
       reflected += glm::dvec3(light.specular) * point.specular *
-                   highlight(normal, incoming.to_light, to_eye, point.shininess, blinn);
+                   (highlight(normal, incoming.to_light, to_eye, point.shininess, blinn) * visible);
     }
     radiance += reflected * incoming.share;
   }
@@ -145,16 +166,32 @@ glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& 
   return seen;
 }
 
-Image referenceShade(const Scene& scene, const GBuffer& gbuffer, bool blinn) {
-  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
-  image.pixels.resize(std::size_t(gbuffer.width) * gbuffer.height * 3);
-  tbb::parallel_for(0, gbuffer.height, [&](int y) {
-    for (int x = 0; x < gbuffer.width; ++x) {
-      const glm::dvec3 color = shadePixel(scene, gbuffer, gbuffer.index(x, y), blinn);
-      for (int c = 0; c < 3; ++c)
-        image.pixels[(std::size_t(y) * gbuffer.width + x) * 3 + c] = static_cast<float>(color[c]);
-    }
+std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
+                                        std::span<const glm::ivec2> pixels,
+                                        const ReferenceSettings& settings) {
+  std::optional<RayScene> rays;
+  if (settings.shadows) rays = buildShadowRays(scene, eyePosition(gbuffer.camera));
+  std::vector<glm::dvec3> colors(pixels.size());
+  std::size_t done = 0;
+  std::mutex progress;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      colors[i] = shadePixel(scene, gbuffer, pixels[i], rays ? &*rays : nullptr, settings);
+    if (!settings.on_progress) return;
+    const std::lock_guard lock(progress);
+    done += range.size();
+    settings.on_progress(done, pixels.size());
   });
+  return colors;
+}
+
+Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings) {
+  std::vector<glm::ivec2> pixels;
+  for (int y = 0; y < gbuffer.height; ++y)
+    for (int x = 0; x < gbuffer.width; ++x) pixels.emplace_back(x, y);
+  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
+  for (const glm::dvec3& color : referencePixels(scene, gbuffer, pixels, settings))
+    for (int c = 0; c < 3; ++c) image.pixels.push_back(static_cast<float>(color[c]));
   return image;
 }
 

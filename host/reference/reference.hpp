@@ -1,6 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
+#include <span>
+#include <vector>
 
 #include "image/image.hpp"
 #include "raster/gbuffer.hpp"
@@ -18,15 +21,33 @@ struct SurfacePoint {
   double shininess = 0.0;
 };
 
-/// Radiance that leaves the point towards the eye, before fog, without shadows: every light of the scene, no
-/// culling.
-glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, bool blinn);
+/// The share of a light that reaches the point which is being lit, in [0, 1].
+using Visibility = std::function<double(const Light& light)>;
+
+/// Radiance that leaves the point towards the eye, before fog: every light of the scene, no culling. Lights
+/// marked `shadow` are asked for their visibility where it matters; without one nothing casts a shadow.
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, bool blinn,
+                             const Visibility& visibility = {});
 
 /// What the eye sees of `radiance` through the scene's fog.
 glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& position,
                         const glm::dvec3& radiance);
 
-/// The whole G-buffer shaded so: channels R G B.
-Image referenceShade(const Scene& scene, const GBuffer& gbuffer, bool blinn);
+struct ReferenceSettings {
+  bool blinn = false;       ///< Blinn's N·H instead of Phong's R·V
+  bool shadows = false;     ///< cast by the scene's objects, decided by rays
+  int shadow_samples = 64;  ///< rays from a pixel to a light that has a size; one to a light without
+  /// Called now and then, if set.
+  std::function<void(std::size_t done, std::size_t pixels)> on_progress = {};
+};
+
+/// Some pixels of a G-buffer shaded so, linear R G B each; (x, y) counted from its top left. On all cores;
+/// the result depends neither on their number nor on which other pixels are asked for.
+std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
+                                        std::span<const glm::ivec2> pixels,
+                                        const ReferenceSettings& settings);
+
+/// The whole of it: channels R G B.
+Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings);
 
 }  // namespace luciole

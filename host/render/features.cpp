@@ -117,4 +117,8 @@ std::string featureDefines(const FeatureSet& features) {
   return options;
 }
 
+std::string mathDefines(const ShadeSettings& settings) {
+  return fmt::format("-DLOG2_DEGREE={} -DEXP2_DEGREE={} ", settings.log2_degree, settings.exp2_degree);
+}
+
 }  // namespace luciole

@@ -75,6 +75,9 @@ struct ShadeSettings {
   Culling culling = Culling::kTiles;
   ShadowMethod shadows = ShadowMethod::kPcf;
   bool shadow_layer = false;  ///< also write the share of shadowed lights that reaches each pixel
+  int shadow_size = 4096;     ///< texels a side of a directional light's map (see drawShadowMaps)
+  int log2_degree = 8;        ///< of the polynomials in kernels/math.clh, which lists the degrees there are
+  int exp2_degree = 6;
 };
 
 /// The features that this scene's lights, fog and surfaces need, seen by this camera.
@@ -86,5 +89,8 @@ PlaneSet neededPlanes(const FeatureSet& features);
 
 /// -D options for every row of the table.
 std::string featureDefines(const FeatureSet& features);
+
+/// -D options for the degrees of the polynomials.
+std::string mathDefines(const ShadeSettings& settings);
 
 }  // namespace luciole

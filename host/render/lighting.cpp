@@ -54,12 +54,15 @@ GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, bool unlit)
 }  // namespace
 
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
-                     const FeatureSet& features, bool blinn, Lighting& lighting, Stats& stats) {
+                     const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
+                     Stats& stats) {
   lighting.features = features;
+  lighting.math_defines = mathDefines(settings);
   lighting.unlit = !scene.lighting;
-  lighting.frame = makeFrame(scene, camera, blinn);
+  lighting.frame = makeFrame(scene, camera, settings.blinn);
   if (features.shadows())
-    lighting.host_shadows = timed(stats, "shadow maps", [&] { return drawShadowMaps(scene, view); });
+    lighting.host_shadows =
+        timed(stats, "shadow maps", [&] { return drawShadowMaps(scene, view, settings.shadow_size); });
   timed(stats, "prepare lights", [&] {
     if (scene.lighting) lighting.host_lights = prepareLights(scene, camera, lighting.host_shadows);
     lighting.lights = inputBuffer(device, lighting.host_lights.lights);
@@ -74,7 +77,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
 LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features,
                        const GBuffer& gbuffer, bool count_in_range, Stats& stats) {
   const std::size_t pixels = gbuffer.pixels();
-  const std::string defines = featureDefines(features);
+  const std::string defines = featureDefines(features) + lighting.math_defines;
   const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, lighting.unlit);
   LitPlanes lit;
   LightLists lists;
@@ -126,12 +129,13 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   return lit;
 }
 
-void compileKernels(Device& device, const FeatureSet& features, Stats& stats) {
+void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings, Stats& stats) {
   timed(stats, "compile kernels", [&] {
     GBuffer empty;  // one tile of background
     empty.tiles_x = empty.tiles_y = 1;
     empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
     Lighting lighting;
+    lighting.math_defines = mathDefines(settings);
     for (cl::Buffer* buffer :
          {&lighting.lights, &lighting.reach, &lighting.shadow_maps, &lighting.shadow_depths})
       *buffer = deviceBuffer(device, 0);

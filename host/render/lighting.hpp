@@ -17,7 +17,8 @@ namespace luciole {
 /// not copied.
 struct Lighting {
   FeatureSet features;
-  ShadeFrame frame{};  ///< all but plane_stride
+  std::string math_defines;  ///< as by mathDefines
+  ShadeFrame frame{};        ///< all but plane_stride
   bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
   ShadeLights host_lights;
   ShadowMaps host_shadows;
@@ -32,7 +33,8 @@ struct Lighting {
 /// Fills `lighting` for a scene seen by a view of `camera`, drawing the shadow maps that the features ask
 /// for.
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
-                     const FeatureSet& features, bool blinn, Lighting& lighting, Stats& stats);
+                     const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
+                     Stats& stats);
 
 /// A lit G-buffer: planes of pixels() floats.
 struct LitPlanes {
@@ -47,6 +49,6 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
                        const GBuffer& gbuffer, bool count_in_range, Stats& stats);
 
 /// Compiles the kernels for these features down to machine code, which OpenCL does at the first launch.
-void compileKernels(Device& device, const FeatureSet& features, Stats& stats);
+void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings, Stats& stats);
 
 }  // namespace luciole

@@ -120,11 +120,11 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), shade);
   const bool gouraud = settings.shading == Shading::kGouraud;
   const FeatureSet pixel_features = gouraud ? fogOnly(features) : features;
-  compileKernels(device, pixel_features, stats);
-  if (gouraud) compileKernels(device, vertexFeatures(features), stats);
+  compileKernels(device, pixel_features, shade, stats);
+  if (gouraud) compileKernels(device, vertexFeatures(features), shade, stats);
   const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
   Lighting lighting;
-  prepareLighting(device, scene, settings.camera, view, features, shade.blinn, lighting, stats);
+  prepareLighting(device, scene, settings.camera, view, features, shade, lighting, stats);
   std::vector<glm::vec3> vertex_colors;
   if (gouraud) vertex_colors = lightVertices(device, scene, objects, view, lighting, stats);
 
@@ -178,7 +178,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   std::vector<glm::vec3> vertex_colors;
   if (settings.shading == Shading::kGouraud) {
     Lighting lighting;
-    prepareLighting(*device, scene, settings.camera, view, features, settings.shade.blinn, lighting, stats);
+    prepareLighting(*device, scene, settings.camera, view, features, settings.shade, lighting, stats);
     vertex_colors = lightVertices(*device, scene, objects, view, lighting, stats);
   }
   RasterCounts counts;
@@ -199,10 +199,10 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   const ShadeSettings shade = shadeSettings(settings);
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);
-  compileKernels(device, features, stats);
+  compileKernels(device, features, shade, stats);
   Lighting lighting;
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
-  prepareLighting(device, scene, gbuffer.camera, view, features, shade.blinn, lighting, stats);
+  prepareLighting(device, scene, gbuffer.camera, view, features, shade, lighting, stats);
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;

@@ -116,14 +116,17 @@ void readShape(const JsonNode& node, LightField& field) {
 std::optional<Light> readLight(const JsonNode& node) {
   allowKeys(node, {"type", "position", "direction", "target", "color", "intensity", "ambient", "diffuse",
                    "specular", "attenuation", "range", "cutoff", "exponent", "inner_cone", "outer_cone",
-                   "shadow", "enabled"});
+                   "shadow", "radius", "angle", "enabled"});
   Light light;
   light.kind = readKind(need(node, "type"));
   if (light.kind == LightKind::kDirectional) {
-    refuseKeys(node, {"position", "target", "attenuation", "range"}, "for a directional light");
+    refuseKeys(node, {"position", "target", "attenuation", "range", "radius"}, "for a directional light");
     light.direction = readDirection(need(node, "direction"));
+    if (const auto n = find(node, "angle")) light.half_angle = glm::radians(readNumber(*n, 0, 90)) / 2;
   } else {
+    refuseKeys(node, {"angle"}, "for a light with a position");
     light.position = readVector(need(node, "position"));
+    if (const auto n = find(node, "radius")) light.radius = readNumber(*n, 0, kLargestNumber);
     if (const auto n = find(node, "attenuation")) light.attenuation = readAttenuation(*n);
     if (const auto n = find(node, "range")) light.range = static_cast<float>(readPositive(*n));
   }

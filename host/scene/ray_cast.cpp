@@ -20,22 +20,53 @@ std::size_t countTriangles(const Scene& scene) {
   return count;
 }
 
-/// Fills three corners a triangle, counter-clockwise seen from its front.
-void placeCorners(const Scene& scene, const glm::dvec3& origin, glm::vec3* corner) {
+/// Embree's question after a hit whether it counts.
+void filterMeetings(const RTCFilterFunctionNArguments* arguments) {
+  const auto& passes_through = *static_cast<const PassesThrough*>(arguments->geometryUserPtr);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    RTCRayN* ray = arguments->ray;
+    RTCHitN* hit = arguments->hit;
+    const RayMeeting meeting{{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
+                             RTCHitN_primID(hit, n, i),
+                             RTCHitN_u(hit, n, i),
+                             RTCHitN_v(hit, n, i)};
+    if (passes_through(meeting)) arguments->valid[i] = 0;
+  }
+}
+
+RTCRay makeRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance) {
+  const glm::vec3 o = from - scene.origin, d = direction;
+  RTCRay ray{};
+  ray.org_x = o.x;
+  ray.org_y = o.y;
+  ray.org_z = o.z;
+  ray.dir_x = d.x;
+  ray.dir_y = d.y;
+  ray.dir_z = d.z;
+  ray.tfar = static_cast<float>(distance);
+  ray.mask = ~0u;
+  return ray;
+}
+
+/// Fills three corners a triangle.
+void placeCorners(const Scene& scene, RayScene& rays, glm::vec3* corner) {
   for (const Object& object : scene.objects) {
     const Mesh& mesh = scene.meshes[object.mesh];
-    const bool mirrored = glm::determinant(glm::dmat3(object.object_to_world)) < 0;
-    for (glm::uvec3 triangle : mesh.triangles) {
-      if (mirrored) std::swap(triangle.y, triangle.z);
+    for (const glm::uvec3& triangle : mesh.triangles) {
       for (int i = 0; i < 3; ++i)
-        *corner++ = glm::dvec3(object.object_to_world * glm::dvec4(mesh.positions[triangle[i]], 1)) - origin;
+        *corner++ =
+            glm::dvec3(object.object_to_world * glm::dvec4(mesh.positions[triangle[i]], 1)) - rays.origin;
     }
+    const bool mirrored = glm::determinant(glm::dmat3(object.object_to_world)) < 0;
+    rays.mirrored.insert(rays.mirrored.end(), mesh.triangles.size(), mirrored);
   }
 }
 
 }  // namespace
 
-RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin) {
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, PassesThrough passes_through) {
   const std::shared_ptr<RTCDeviceTy> device(rtcNewDevice(nullptr), rtcReleaseDevice);
   if (!device) throw MachineError("Embree can't be started");
   RayScene result;
@@ -52,8 +83,14 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin) {
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), count));
   if (count > 0 && (!corners || !indices))
     throw MachineError(scene.name + ": no memory for its triangles in Embree");
-  placeCorners(scene, origin, corners);
+  placeCorners(scene, result, corners);
   for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
+  if (passes_through) {
+    result.passes_through = std::make_shared<const PassesThrough>(std::move(passes_through));
+    rtcSetGeometryUserData(geometry, const_cast<PassesThrough*>(result.passes_through.get()));
+    rtcSetGeometryIntersectFilterFunction(geometry, filterMeetings);
+    rtcSetGeometryOccludedFilterFunction(geometry, filterMeetings);
+  }
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(result.scene.get(), geometry);
   rtcReleaseGeometry(geometry);
@@ -62,16 +99,8 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin) {
 }
 
 std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction) {
-  const glm::vec3 o = from - scene.origin, d = direction;
   RTCRayHit query{};
-  query.ray.org_x = o.x;
-  query.ray.org_y = o.y;
-  query.ray.org_z = o.z;
-  query.ray.dir_x = d.x;
-  query.ray.dir_y = d.y;
-  query.ray.dir_z = d.z;
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
+  query.ray = makeRay(scene, from, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
   rtcIntersect1(scene.scene.get(), &query);
@@ -81,8 +110,21 @@ std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, con
   rtcIntersect1(scene.scene.get(), &context, &query);
 #endif
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const bool front = glm::dot(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z), d) < 0;
-  return RayHit{query.ray.tfar, front, query.hit.primID};
+  const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  const bool against = glm::dot(normal, glm::vec3(direction)) < 0;
+  return RayHit{query.ray.tfar, against != scene.mirrored[query.hit.primID], query.hit.primID};
+}
+
+bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance) {
+  RTCRay ray = makeRay(scene, from, direction, distance);
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(scene.scene.get(), &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene.scene.get(), &context, &ray);
+#endif
+  return ray.tfar < 0;  // Embree's word for it
 }
 
 }  // namespace luciole

@@ -88,6 +88,9 @@ struct Light {
   double inner_cone = 0.0;  ///< kCone: radians, 0 ≤ inner_cone < cutoff
   float exponent = 0.0f;    ///< kExponent: ≥ 0
   bool shadow = false;
+  /// The light's size, which gives its shadow a penumbra and changes nothing else. 0: a sharp shadow.
+  double radius = 0.0;      ///< point and spot: of a sphere, metres
+  double half_angle = 0.0;  ///< directional: half the angle that it seems wide, radians, 0 to π/4
 };
 
 enum class FogMode : std::uint8_t { kNone, kLinear, kExp, kExp2 };

@@ -17,11 +17,7 @@
 namespace luciole {
 namespace {
 
-// Texels a side before the budget binds.
-constexpr int kParallelSize = 4096;
-constexpr int kPerspectiveSize = 2048;
-constexpr int kCubeSize = 1024;
-constexpr int kSmallestSize = 16;
+constexpr int kSmallestSize = 16;  ///< texels a side
 
 /// Texels around a perspective map's cone or a cube's face that filtered lookups may touch.
 constexpr double kBorder = 4.0;
@@ -229,10 +225,10 @@ std::vector<std::uint32_t> findCasters(const Light& light, const std::vector<Bou
   return casters;
 }
 
-int fullSize(const Light& light) {
-  return light.kind == LightKind::kDirectional ? kParallelSize
-         : usesCubeMap(light)                  ? kCubeSize
-                                               : kPerspectiveSize;
+/// Texels a side of a light's map where a directional light has `size`.
+int mapSize(const Light& light, int size) {
+  const int divisor = light.kind == LightKind::kDirectional ? 1 : usesCubeMap(light) ? 4 : 2;
+  return std::max(size / divisor, kSmallestSize);
 }
 
 }  // namespace
@@ -241,7 +237,7 @@ bool usesCubeMap(const Light& light) {
   return light.kind == LightKind::kPoint || (light.kind == LightKind::kSpot && light.cutoff > kWidestSpot);
 }
 
-ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view) {
+ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view, int size) {
   ShadowMaps result;
   result.map_of_light.assign(scene.lights.size(), kNoShadow);
   std::vector<Bounds> object_bounds;
@@ -253,20 +249,19 @@ ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view) {
   }
   if (bounds.low.x > bounds.high.x) return result;
 
-  // Halve all sides until the maps fit.
-  int shift = 0;
-  const auto sizeOf = [&](const Light& light) { return std::max(fullSize(light) >> shift, kSmallestSize); };
   const auto totalDepths = [&] {
     std::size_t total = 0;
-    for (const Light& light : scene.lights)
-      if (light.shadow) total += std::size_t(sizeOf(light)) * sizeOf(light) * (usesCubeMap(light) ? 6 : 1);
+    for (const Light& light : scene.lights) {
+      const std::size_t side = mapSize(light, size);
+      if (light.shadow) total += side * side * (usesCubeMap(light) ? 6 : 1);
+    }
     return total;
   };
   while (totalDepths() * sizeof(float) > kShadowBudget) {
-    if ((kParallelSize >> shift) <= kSmallestSize)
+    if (size <= kSmallestSize)
       throw MachineError(fmt::format("{}: the shadow maps of its lights don't fit into {} MiB", scene.name,
                                      kShadowBudget >> 20));
-    ++shift;
+    size /= 2;
   }
 
   std::vector<PlannedMap> planned;
@@ -274,15 +269,15 @@ ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     if (!light.shadow) continue;
-    const int size = sizeOf(light);
-    PlannedMap map = usesCubeMap(light) ? planCube(light, camera_view, bounds, size)
+    const int side = mapSize(light, size);
+    PlannedMap map = usesCubeMap(light) ? planCube(light, camera_view, bounds, side)
                      : light.kind == LightKind::kDirectional
-                         ? planParallel(light, camera_view, bounds, size)
-                         : planPerspective(light, camera_view, bounds, size);
+                         ? planParallel(light, camera_view, bounds, side)
+                         : planPerspective(light, camera_view, bounds, side);
     map.casters = findCasters(light, object_bounds, lightReach(light, bounds));
     map.lookup.offset = static_cast<uint>(offset);
-    map.lookup.size = static_cast<uint>(size);
-    offset += std::size_t(size) * size * map.faces.size();
+    map.lookup.size = static_cast<uint>(side);
+    offset += std::size_t(side) * side * map.faces.size();
     result.map_of_light[i] = static_cast<std::uint32_t>(planned.size());
     planned.push_back(std::move(map));
   }

@@ -21,10 +21,11 @@ struct ShadowMaps {
 bool usesCubeMap(const Light& light);
 
 /// Draws the maps of all lights with a shadow, by the same rasterizer as the picture, depth only. Directional
-/// maps are fitted to what the camera can see of the scene: its whole picture, whatever the crop. All maps
-/// together stay within kShadowBudget bytes: where they would not, each has half the side, until they do.
-/// Throws MachineError if even the smallest don't fit.
-ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view);
+/// maps are fitted to what the camera can see of the scene: its whole picture, whatever the crop. They are
+/// `size` texels a side, a spot's half and a cube's face a quarter of that. All maps together stay within
+/// kShadowBudget bytes: where they would not, each has half the side, until they do. Throws MachineError if
+/// even the smallest don't fit.
+ShadowMaps drawShadowMaps(const Scene& scene, const View& camera_view, int size);
 
 inline constexpr std::size_t kShadowBudget = std::size_t(512) << 20;
 

@@ -188,7 +188,7 @@ void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const Feature
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, gbuffer.camera, cameraView(gbuffer.camera, gbuffer.picture_size), needed,
-                  blinn, lighting, stats);
+                  {.blinn = blinn}, lighting, stats);
   const Plane least = lightGBuffer(device, lighting, needed, gbuffer, false, stats).color;
   Plane most = lightGBuffer(device, lighting, all, gbuffer, false, stats).color;
   ASSERT_EQ(most.size(), 4 * gbuffer.pixels());

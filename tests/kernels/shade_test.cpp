@@ -25,7 +25,7 @@ Plane shadeOn(Device& device, const Scene& scene, const GBuffer& gbuffer, bool b
   Lighting lighting;
   Stats stats;
   const FeatureSet features = unshadowed(culling);
-  prepareLighting(device, scene, gbuffer.camera, View{}, features, blinn, lighting, stats);
+  prepareLighting(device, scene, gbuffer.camera, View{}, features, {.blinn = blinn}, lighting, stats);
   return lightGBuffer(device, lighting, features, gbuffer, false, stats).color;
 }
 
@@ -37,7 +37,7 @@ struct Tightness {
 /// The kernel's picture lies within the bounds, and so does the reference's.
 void expectShaded(const Scene& scene, const GBuffer& gbuffer, bool blinn, const Plane& result,
                   Tightness& tightness) {
-  const Image reference = referenceShade(scene, gbuffer, blinn);
+  const Image reference = referenceShade(scene, gbuffer, {.blinn = blinn});
   const std::size_t n = gbuffer.pixels();
   for (int y = 0; y < gbuffer.height; ++y) {
     for (int x = 0; x < gbuffer.width; ++x) {

@@ -272,7 +272,7 @@ TEST(Reference, GBufferIsShadedInTheWorldOfItsCamera) {
   scene.background = {0.25f, 0.5f, 0.75f};
   scene.lights = {pointLight(far + glm::dvec3(0, 4, 0))};
   const GBuffer gbuffer = onePixel(camera, far, {0, 1, 0});
-  const Image image = referenceShade(scene, gbuffer, false);
+  const Image image = referenceShade(scene, gbuffer, {});
   ASSERT_EQ(image.width, 7);
   ASSERT_EQ(image.height, 4);
   ASSERT_EQ(image.pixels.size(), 7u * 4 * 3);

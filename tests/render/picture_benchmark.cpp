@@ -35,7 +35,7 @@ void reportError(benchmark::State& state, const Scene& scene) {
   Stats stats;
   const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
   const Image ours = renderScene(device(), scene, settings, stats);
-  const Image truth = referenceShade(scene, gbuffer, false);
+  const Image truth = referenceShade(scene, gbuffer, {});
   double most = 0, worst = 0, sum = 0;
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     const double error = std::abs(double(ours.pixels[i]) - truth.pixels[i]);
@@ -93,7 +93,7 @@ void shadeEveryPair(benchmark::State& state) {
     features.set(used);
   Lighting lighting;
   Stats stats;
-  prepareLighting(device(), scene, gbuffer.camera, View(), features, false, lighting, stats);
+  prepareLighting(device(), scene, gbuffer.camera, View(), features, ShadeSettings(), lighting, stats);
   lightGBuffer(device(), lighting, features, gbuffer, false, stats);
   for (auto _ : state) {
     stats.stages.clear();

@@ -45,7 +45,7 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
     Stats stats;
     const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
     const Image ours = renderScene(testDevice(), scene, settings, stats);
-    const Image truth = referenceShade(scene, gbuffer, blinn);
+    const Image truth = referenceShade(scene, gbuffer, {.blinn = blinn});
     ASSERT_EQ(ours.pixels.size(), truth.pixels.size());
     // About 40 roundings of 2^-24 between a light and the sum, on the largest of three lights' terms below 2;
     // the lobe's power multiplies its argument's error (4·2^-24) by the exponent 32 and by log2 e.

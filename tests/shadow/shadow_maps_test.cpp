@@ -150,16 +150,16 @@ TEST(ShadowMaps, DirectionalMapDoesNotDependOnTheCrop) {
   const Scene scene =
       sceneFromJson(planeScene(R"({"type": "directional", "direction": [1, -2, 0], "shadow": true})"));
   View view = cameraView(scene.cameras.front(), {200, 100});
-  const ShadowMaps whole = drawShadowMaps(scene, view);
+  const ShadowMaps whole = drawShadowMaps(scene, view, 4096);
   view.crop_origin = {50, 20};
   view.crop_size = {10, 10};
-  EXPECT_EQ(whole.depths, drawShadowMaps(scene, view).depths);
+  EXPECT_EQ(whole.depths, drawShadowMaps(scene, view, 4096).depths);
 }
 
 TEST(ShadowMaps, EveryShadowedLightHasAMapWithinTheBudget) {
   Scene scene = sceneFromJson(planeScene(R"({"type": "point", "position": [0, 1, 0], "shadow": true})"));
   scene.lights.resize(300, scene.lights.front());
-  const ShadowMaps maps = drawShadowMaps(scene, cameraView(scene.cameras.front(), {64, 64}));
+  const ShadowMaps maps = drawShadowMaps(scene, cameraView(scene.cameras.front(), {64, 64}), 4096);
   EXPECT_EQ(maps.maps.size(), 300u);
   EXPECT_LE(maps.depths.size() * sizeof(float), kShadowBudget);
   for (std::uint32_t i = 0; i < 300; ++i) EXPECT_EQ(maps.map_of_light[i], i);
@@ -167,7 +167,7 @@ TEST(ShadowMaps, EveryShadowedLightHasAMapWithinTheBudget) {
 
 TEST(ShadowMaps, LightsWithoutShadowHaveNoMap) {
   const Scene scene = sceneFromJson(planeScene(R"({"type": "point", "position": [0, 1, 0]})"));
-  const ShadowMaps maps = drawShadowMaps(scene, cameraView(scene.cameras.front(), {64, 64}));
+  const ShadowMaps maps = drawShadowMaps(scene, cameraView(scene.cameras.front(), {64, 64}), 4096);
   EXPECT_TRUE(maps.maps.empty());
   EXPECT_EQ(maps.map_of_light.front(), kNoShadow);
 }

@@ -118,7 +118,7 @@ void judge(const Scene& scene, const RayScene& rays, ShadowMethod method, Verdic
                     place = channelIndex(image, "P.X"), direction = channelIndex(image, "N.X"),
                     depth = channelIndex(image, "Z");
   const Light& light = scene.lights.front();
-  const ShadowMap map = drawShadowMaps(scene, cameraView(settings.camera, kSize)).maps.front();
+  const ShadowMap map = drawShadowMaps(scene, cameraView(settings.camera, kSize), 4096).maps.front();
   const glm::dvec3 eye(settings.camera.camera_to_world[3]);
 
   for (std::size_t i = 0; i < image.pixels.size(); i += channels) {

@@ -1,0 +1,124 @@
+#include "reference/ray_shadows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <numeric>
+
+#include "raster/opacity.hpp"
+
+namespace luciole {
+namespace {
+
+/// Share of its distance from the eye by which a point may lie off its surface. A float position is rounded
+/// in view space, and again relative to the eye, by 2^-24 each; eight times that leaves room for G-buffers of
+/// other programs, which have rounded in world space.
+constexpr double kPointError = 0x1p-20;
+
+/// What decides whether a triangle blocks a ray.
+struct Blockers {
+  const Scene& scene;
+  glm::dvec3 eye;
+  std::vector<bool> varying_alpha;
+  std::vector<PlacedObject> objects;  ///< in world space
+
+  const PlacedObject& objectOf(std::uint32_t triangle) const {
+    const auto after = std::upper_bound(
+        objects.begin(), objects.end(), triangle,
+        [](std::uint32_t wanted, const PlacedObject& object) { return wanted < object.first_triangle; });
+    return *(after - 1);
+  }
+
+  bool passesThrough(const RayMeeting& meeting) const {
+    const PlacedObject& object = objectOf(meeting.triangle);
+    const std::uint32_t in_mesh = meeting.triangle - object.first_triangle;
+    const glm::uvec3 corners = object.mesh->triangles[in_mesh];
+    return liesInPlane(object, corners, meeting.from) || isHoleAt(object, in_mesh, corners, meeting);
+  }
+
+  /// `from`: relative to the eye.
+  bool liesInPlane(const PlacedObject& object, const glm::uvec3& corners, const glm::dvec3& from) const {
+    const auto corner = [&](int i) {
+      return glm::dvec3(object.object_to_view * glm::dvec4(object.mesh->positions[corners[i]], 1)) - eye;
+    };
+    const glm::dvec3 a = corner(0), normal = glm::cross(corner(1) - a, corner(2) - a);
+    return std::abs(glm::dot(normal, from - a)) <= kPointError * glm::length(from) * glm::length(normal);
+  }
+
+  bool isHoleAt(const PlacedObject& object, std::uint32_t in_mesh, const glm::uvec3& corners,
+                const RayMeeting& meeting) const {
+    Surface surface;
+    surface.object = &object;
+    surface.material = &materialOf(scene, object, in_mesh);
+    surface.corners = corners;
+    if (surface.material->alpha_cutoff <= 0) return false;
+    const Weights weights(1 - meeting.second - meeting.third, meeting.second, meeting.third);
+    TexturePlace place{};
+    if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
+    return opacityAt(scene, varying_alpha, surface, weights, place) < surface.material->alpha_cutoff;
+  }
+};
+
+/// The cone of directions in which a light is seen: its unit axis, 1 − the cosine of its half angle, and for
+/// a light with a place the distance to its middle.
+struct LightCone {
+  glm::dvec3 axis;
+  double one_minus_cosine;
+  double distance;
+};
+
+LightCone lightCone(const Light& light, const glm::dvec3& point) {
+  if (light.kind == LightKind::kDirectional) {
+    const double half = std::sin(light.half_angle / 2);
+    return {-glm::normalize(light.direction), 2 * half * half, std::numeric_limits<double>::infinity()};
+  }
+  const glm::dvec3 way = light.position - point;
+  const double distance = glm::length(way), sine = std::min(light.radius / distance, 1.0);
+  // 1 − √(1 − s²), which would lose a small s.
+  return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine)), distance};
+}
+
+/// How far away a sphere's surface is on a ray that leaves its axis by an angle of this cosine.
+double distanceToSphere(double distance, double radius, double cosine) {
+  const double along = distance * cosine, across2 = distance * distance * (1 - cosine * cosine);
+  return along - std::sqrt(std::max(radius * radius - across2, 0.0));
+}
+
+}  // namespace
+
+RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
+  std::vector<std::uint32_t> all(scene.objects.size());
+  std::iota(all.begin(), all.end(), 0u);
+  auto blockers = std::make_shared<const Blockers>(
+      Blockers{scene, eye, findVaryingAlpha(scene), placeObjects(scene, all, glm::dmat4(1))});
+  return buildRayScene(scene, eye,
+                       [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
+}
+
+double lightVisibility(const RayScene& rays, const Light& light, const glm::dvec3& point, int samples,
+                       std::uint32_t seed) {
+  const LightCone cone = lightCone(light, point);
+  const bool directional = light.kind == LightKind::kDirectional;
+  if (!directional && cone.distance <= light.radius) return 1;  // inside it
+  if (cone.one_minus_cosine == 0) return isBlocked(rays, point, cone.axis, cone.distance) ? 0 : 1;
+
+  const glm::dvec3 any = std::abs(cone.axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 right = glm::normalize(glm::cross(cone.axis, any)), up = glm::cross(right, cone.axis);
+  // A sunflower's spiral: equal solid angles from the axis outwards, the golden angle apart.
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double turn = seed * 0x1p-32 * 2 * std::numbers::pi;
+  int visible = 0;
+  for (int i = 0; i < samples; ++i) {
+    const double drop = cone.one_minus_cosine * (i + 0.5) / samples, cosine = 1 - drop;
+    const double sine = std::sqrt(drop * (1 + cosine)), angle = turn + i * golden;
+    const glm::dvec3 direction = cosine * cone.axis + sine * (std::cos(angle) * right + std::sin(angle) * up);
+    const double distance =
+        directional ? cone.distance : distanceToSphere(cone.distance, light.radius, cosine);
+    visible += !isBlocked(rays, point, direction, distance);
+  }
+  return double(visible) / samples;
+}
+
+}  // namespace luciole
