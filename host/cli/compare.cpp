@@ -2,19 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/commands.hpp"
 #include "error.hpp"
+#include "image/error_map.hpp"
 #include "image/write_file.hpp"
 
 namespace luciole {
 namespace {
 
 struct CompareOptions {
-  std::string a, b, difference, json;
+  std::string a, b, difference, error_map, json;
   std::optional<double> max_abs;
 };
 
@@ -27,8 +29,12 @@ nlohmann::ordered_json figure(double value) {
 
 nlohmann::ordered_json differenceJson(const ImageDifference& d) {
   nlohmann::ordered_json json;
+  json["channels"] = d.channels;
+  json["pixels"] = d.pixels;
   json["max_abs"] = figure(d.max_abs);
   json["mean_abs"] = figure(d.mean_abs);
+  json["max_relative"] = figure(d.max_relative);
+  json["mean_relative"] = figure(d.mean_relative);
   json["mean_signed"] = figure(d.mean_signed);
   json["rmse"] = figure(d.rmse);
   json["psnr"] = figure(d.psnr);
@@ -41,21 +47,52 @@ nlohmann::ordered_json differenceJson(const ImageDifference& d) {
   return json;
 }
 
+void checkOptions(const CompareOptions& options) {
+  if (options.max_abs && !(*options.max_abs >= 0))
+    throw InputError("--max-abs: expected a number that is at least 0");
+  if (!options.json.empty()) checkPlace(options.json);
+  for (const std::string* path : {&options.difference, &options.error_map}) {
+    if (path->empty()) continue;
+    checkWritable(*path);
+    const auto outputs = {&options.difference, &options.error_map, &options.json};
+    if (std::count_if(outputs.begin(), outputs.end(), [&](const auto* other) { return *other == *path; }) > 1)
+      throw InputError(fmt::format("{}: named for two outputs, expected one", *path));
+  }
+}
+
+ImageDifference compareNamed(const CompareOptions& options, const Image& a, const Image& b) {
+  try {
+    return compareImages(a, b);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}, {}: {}", options.a, options.b, error.what()));
+  }
+}
+
+void printFigures(const ImageDifference& d) {
+  fmt::print("{} of {} pixels, channels {}\n", d.pixels, d.of_pixel.size(), fmt::join(d.channels, " "));
+  fmt::print("max_abs {:.6g} at ({}, {})\nmean_abs {:.6g}\n", d.max_abs, d.worst_pixel[0], d.worst_pixel[1],
+             d.mean_abs);
+  fmt::print("max_relative {:.6g}\nmean_relative {:.6g}\n", d.max_relative, d.mean_relative);
+  fmt::print("mean_signed {:.6g}\nrmse {:.6g}\npsnr {:.2f} dB\nrelmse {:.6g}\n", d.mean_signed, d.rmse,
+             d.psnr, d.relmse);
+  fmt::print("p99_abs {:.6g}\np999_abs {:.6g}\nnonfinite {}\n", d.p99_abs, d.p999_abs, d.nonfinite);
+  fmt::print("pixels over 1/2, 1, 4 steps of 8 bits: {}, {}, {}\n", d.over[0], d.over[1], d.over[2]);
+}
+
 void compareFiles(const CompareOptions& options, CommandContext& context) {
+  checkOptions(options);
   const Image a = readImage(options.a);
   const Image b = readImage(options.b);
-  const ImageDifference d = compareImages(a, b);
-  if (!options.difference.empty())
-    writeImage(differencePicture(a, b, kDifferenceGain), options.difference,
-               {{"ImageDescription", context.command_line}});
+  const ImageDifference d = compareNamed(options, a, b);
+  const Metadata metadata{{"ImageDescription", context.command_line}};
+  // Both are made before either is written: no file appears where one of them fails.
+  const bool wants_difference = !options.difference.empty(), wants_map = !options.error_map.empty();
+  const Image difference = wants_difference ? differencePicture(a, b, kDifferenceGain) : Image{};
+  const Image error_map = wants_map ? errorMap(d) : Image{};
+  if (wants_difference) writeImage(difference, options.difference, metadata);
+  if (wants_map) writeImage(error_map, options.error_map, metadata);
   if (!options.json.empty()) writeTextFile(options.json, differenceJson(d).dump(2) + "\n");
-  if (options.json != "-")
-    fmt::print(
-        "max_abs {:.6g} at ({}, {})\nmean_abs {:.6g}\nmean_signed {:.6g}\nrmse {:.6g}\npsnr {:.2f} "
-        "dB\nrelmse {:.6g}\n"
-        "p99_abs {:.6g}\np999_abs {:.6g}\nnonfinite {}\npixels over 1/2, 1, 4 steps of 8 bits: {}, {}, {}\n",
-        d.max_abs, d.worst_pixel[0], d.worst_pixel[1], d.mean_abs, d.mean_signed, d.rmse, d.psnr, d.relmse,
-        d.p99_abs, d.p999_abs, d.nonfinite, d.over[0], d.over[1], d.over[2]);
+  if (options.difference != "-" && options.error_map != "-" && options.json != "-") printFigures(d);
   if (options.max_abs && (d.nonfinite > 0 || !(d.max_abs <= *options.max_abs))) context.status = kDifferent;
 }
 
@@ -65,11 +102,18 @@ void addCompareCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("compare", "two pictures in numbers, in linear light; exit 1 over a limit");
   auto options = std::make_shared<CompareOptions>();
-  command->add_option("A", options->a, "the picture to hold against")->required();
+  command
+      ->add_option(
+          "A", options->a,
+          "the picture to hold against; with a channel `sampled`, only pixels where it is not 0 count")
+      ->required();
   command->add_option("B", options->b, "the picture to judge")->required();
-  command->add_option("--max-abs", options->max_abs, "the largest difference that still passes")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--diff", options->difference, "write |B - A| x 10 as a picture");
+  command->add_option("--max-abs", options->max_abs,
+                      "the largest difference that still passes, in linear light");
+  command->add_option("--diff", options->difference,
+                      "write |B - A| x 10 as a picture (- : PNG on standard output)");
+  command->add_option("--error-map", options->error_map,
+                      "write |B - A| in false colours with a scale bar (- : PNG on standard output)");
   command->add_option("--json", options->json, "write the figures as JSON (- : standard output)");
   command->callback([&context, options] { compareFiles(*options, context); });
 }

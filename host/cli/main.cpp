@@ -42,6 +42,7 @@ int main(int argument_count, char** arguments) {
   addRenderCommand(app, context);
   addGBufferCommand(app, context);
   addShadeCommand(app, context);
+  addReferenceCommand(app, context);
   addCompareCommand(app, context);
   addGenerateCommand(app, context);
   addDevicesCommand(app, context);

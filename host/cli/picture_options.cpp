@@ -103,10 +103,17 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(CLI::IsMember({"flat", "gouraud", "phong"}))
         ->capture_default_str();
   }
-  if (groups & kShadeOptions) {
+  if (groups & kSampleOption)
+    command.add_option("--samples", options.samples, "samples per pixel, against jagged edges")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+  if (groups & kModelOptions) {
     command.add_option("--model", options.model, "the specular lobe: (R.V)^n or (N.H)^n")
         ->check(CLI::IsMember({"phong", "blinn-phong"}))
         ->capture_default_str();
+    command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
+  }
+  if (groups & kShadeOptions) {
     command
         .add_option("--culling", options.culling,
                     "which lights a pixel goes through; never changes the picture")
@@ -117,14 +124,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->capture_default_str();
     command.add_option("--aov", options.aovs,
                        "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,shadow");
-    command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
   }
-  if ((groups & kViewOptions) && (groups & kShadeOptions))
-    command.add_option("--samples", options.samples, "samples per pixel, against jagged edges")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-  command.add_option("--device", options.device,
-                     "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
+  if (groups & kDeviceOption)
+    command.add_option("--device", options.device,
+                       "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
 }

@@ -27,8 +27,14 @@ struct PictureOptions {
   bool quiet = false;
 };
 
-/// Which of them a command takes.
-enum OptionGroup : unsigned { kViewOptions = 1, kShadeOptions = 2 };
+/// Which of them a command takes, beside the output, --stats and --quiet.
+enum OptionGroup : unsigned {
+  kViewOptions = 1,    ///< --size, --camera, --crop, --shading
+  kSampleOption = 2,   ///< --samples
+  kModelOptions = 4,   ///< --model, --exposure
+  kShadeOptions = 8,   ///< --culling, --shadows, --aov
+  kDeviceOption = 16,  ///< --device
+};
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
 
 /// Turns them into settings for this scene: the picture's size from --size, the scene or 1280x720; the camera

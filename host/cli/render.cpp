@@ -25,7 +25,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   auto scene_path = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options, kViewOptions | kShadeOptions);
+  addPictureOptions(*command, *options,
+                    kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption);
   command->callback([&context, options, scene_path] {
     checkOutput(*options);
     Stats stats;
@@ -50,7 +51,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   auto scene_path = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options, kViewOptions);
+  addPictureOptions(*command, *options, kViewOptions | kDeviceOption);
   command->callback([&context, options, scene_path] {
     checkOutput(*options);
     Stats stats;
@@ -81,7 +82,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
       ->required();
   command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
       ->required();
-  addPictureOptions(*command, *options, kShadeOptions);
+  addPictureOptions(*command, *options, kModelOptions | kShadeOptions | kDeviceOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
     checkOutput(*options);
     Stats stats;

@@ -2,18 +2,24 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "image/image.hpp"
 
 namespace luciole {
 
-/// How B differs from A, over all pixels and colour channels, in linear units unless said otherwise.
+/// How B differs from A, over the compared pixels and channels, in linear units unless said otherwise.
 /// Equal values, infinities of one sign and NaN with NaN among them, differ by 0. Values of which one is not
 /// finite and the other isn't the same count in `nonfinite` and as an infinite difference in max_abs, the
 /// percentiles and `over`; means leave them out.
 struct ImageDifference {
+  std::vector<std::string> channels;  ///< compared
+  std::uint64_t pixels = 0;           ///< compared
   double max_abs = 0;
   double mean_abs = 0;
+  double max_relative = 0;  ///< max_abs / the largest magnitude of A's finite compared values
+  double mean_relative = 0;
   double mean_signed = 0;  ///< mean of B − A: a bias hides from every other figure
   double rmse = 0;
   double psnr = 0;     ///< dB, peak 1; infinite for equal pictures
@@ -25,16 +31,22 @@ struct ImageDifference {
       0;  ///< values that are NaN or infinite in one picture and not the same in the other
   std::array<std::uint64_t, 3> over{};  ///< pixels with any channel differing by more than kOverLimits[i]
   std::array<int, 2> worst_pixel{};     ///< x, y of max_abs
+  int width = 0;
+  int height = 0;
+  std::vector<double> of_pixel;  ///< row-major: the largest difference of a pixel's channels, or kNotCompared
 };
 /// Half, one and four 8-bit steps of a linear [0,1] range.
 inline constexpr std::array<double, 3> kOverLimits{0.5 / 255, 1.0 / 255, 4.0 / 255};
+inline constexpr double kNotCompared = -1.0;
 
-/// Compares the channels both pictures have under the same names (R, G, B for pictures), except A, the
-/// coverage; sizes must be equal. Throws InputError when sizes or channels don't match.
+/// Compares the channels that both pictures have under the same names, except A, the coverage. Sizes must be
+/// equal, and R, G, B and Y be in both pictures or in neither. Where a picture has a channel `sampled`, only
+/// pixels where it is not 0 are compared. Throws InputError when sizes or channels don't match or no pixel is
+/// left.
 ImageDifference compareImages(const Image& a, const Image& b);
 
-/// |B − A| × gain of the same channels as a picture to look at; +inf where only one is not finite.
-/// Throws as compareImages does.
+/// |B − A| × gain of the same channels as a picture to look at; +inf where only one is not finite, 0 where
+/// nothing is compared. Throws as compareImages does.
 Image differencePicture(const Image& a, const Image& b, float gain);
 
 }  // namespace luciole

@@ -72,6 +72,10 @@ Image readImage(const std::string& path) {
   return image;
 }
 
+std::string readAttribute(const std::string& path, const std::string& name) {
+  return openPicture(path, path)->spec().get_string_attribute(name);
+}
+
 void writeImage(const Image& image, const std::string& path, const Metadata& metadata) {
   const FileFormat format = outputFormat(path);
   if (format.max_channels > 4) {

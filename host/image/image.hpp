@@ -23,6 +23,9 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// divided by alpha. Sizes are checked before anything is allocated. Throws InputError.
 Image readImage(const std::string& path);
 
+/// A text attribute stored with a picture; empty where it has none of that name. Throws as readImage does.
+std::string readAttribute(const std::string& path, const std::string& name);
+
 /// Writes by the extension. Integer formats (png, tga, jpg, bmp, ppm) take the R, G, B channels (and A: png,
 /// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B. Others
 /// that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.

@@ -19,6 +19,7 @@
 
 #include "error.hpp"
 #include "image/image.hpp"
+#include "image/write_file.hpp"
 
 namespace luciole {
 namespace {
@@ -225,6 +226,10 @@ FileFormat outputFormat(const std::string& path) {
 
 void checkWritable(const std::string& path) {
   outputFormat(path);
+  checkPlace(path);
+}
+
+void checkPlace(const std::string& path) {
   if (path == "-") return;
   const std::string folder = folderOf(path);
   std::error_code error;

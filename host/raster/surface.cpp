@@ -1,6 +1,7 @@
 #include "raster/surface.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "raster/sample_texture.hpp"
@@ -20,6 +21,27 @@ Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
   const double b1 = glm::dot(surface.weight1, p) * scale;
   const double b2 = glm::dot(surface.weight2, p) * scale;
   return {1.0 - b1 - b2, b1, b2};
+}
+
+bool isInside(const Weights& weights) { return weights[0] >= 0.0 && weights[1] >= 0.0 && weights[2] >= 0.0; }
+
+/// The place on the picture nearest to p, which lies outside the triangle, on the line of the edge that it is
+/// farthest outside of. The edge's line is where the corner's weight row vanishes.
+glm::dvec3 nearestOnEdge(const Surface& surface, const glm::dvec3& p) {
+  const std::array<glm::dvec3, 3> rows{surface.determinant - surface.weight1 - surface.weight2,
+                                       surface.weight1, surface.weight2};
+  const double side = glm::dot(surface.determinant, p) < 0.0 ? -1.0 : 1.0;
+  double farthest = 0.0;
+  glm::dvec2 step(0.0);
+  for (const glm::dvec3& row : rows) {
+    const glm::dvec2 across(row);
+    const double length = glm::length(across);
+    const double outside = -side * glm::dot(row, p) / length;
+    if (!(outside > farthest)) continue;
+    farthest = outside;
+    step = across * (side * outside / length);
+  }
+  return p + glm::dvec3(step, 0.0);
 }
 
 glm::vec2 finiteOrZero(const glm::dvec2& step) {
@@ -71,8 +93,10 @@ Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t 
 
 Weights weightsInside(const Surface& surface, const glm::dvec3& p) {
   Weights weights = weightsInPlane(surface, p);
-  if (weights[0] >= 0.0 && weights[1] >= 0.0 && weights[2] >= 0.0) return weights;
-  // A triangle seen edge on may have no finite weights; its middle stands for it then.
+  if (isInside(weights)) return weights;
+  weights = weightsInPlane(surface, nearestOnEdge(surface, p));
+  // Beyond a corner the weights are still outside, and on an edge they are so by rounding. A triangle seen
+  // edge on may have no finite weights; its middle stands for it then.
   for (int i = 0; i < 3; ++i) weights[i] = std::clamp(weights[i], 0.0, 1.0);
   const double sum = weights[0] + weights[1] + weights[2];
   return sum > 0.0 ? weights / sum : Weights(1.0 / 3.0);

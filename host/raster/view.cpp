@@ -1,6 +1,10 @@
 #include "raster/view.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+
+#include "error.hpp"
 
 namespace luciole {
 
@@ -28,7 +32,7 @@ glm::dmat4 orthographicProjection(double left, double right, double bottom, doub
   return projection;
 }
 
-View cameraView(const Camera& camera, glm::ivec2 size) {
+View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop) {
   View view;
   // The inverse of a rigid motion, written out so that it is rigid to the last bit.
   const glm::dmat3 to_view = glm::transpose(glm::dmat3(camera.camera_to_world));
@@ -44,7 +48,25 @@ View cameraView(const Camera& camera, glm::ivec2 size) {
   }
   view.size = size;
   view.crop_size = size;
+  if (crop) {
+    if (crop->x < 0 || crop->y < 0 || crop->width < 1 || crop->height < 1 || crop->width > size.x - crop->x ||
+        crop->height > size.y - crop->y)
+      throw InputError(fmt::format("--crop {},{},{},{}: not inside the picture of {}x{} pixels", crop->x,
+                                   crop->y, crop->width, crop->height, size.x, size.y));
+    view.crop_origin = {crop->x, crop->y};
+    view.crop_size = {crop->width, crop->height};
+  }
   return view;
+}
+
+glm::dvec2 samplePoint(int index, int count) {
+  // Radical inverse in base 2 (van der Corput); both coordinates are moved by half of their finest step.
+  double inverse = 0, step = 0.5;
+  for (int bits = index; bits > 0; bits >>= 1, step /= 2)
+    if (bits & 1) inverse += step;
+  double finest = 1;
+  while (finest > 1.0 / count) finest /= 2;
+  return {(index + 0.5) / count, inverse + finest / 2};
 }
 
 Camera viewCamera(const View& view) {

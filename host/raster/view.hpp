@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "scene/scene.hpp"
 
@@ -23,8 +24,18 @@ glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, doubl
 glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near,
                                   double far);
 
-/// The view of a camera on a picture of `size` pixels, uncropped, sampled at pixel centres.
-View cameraView(const Camera& camera, glm::ivec2 size);
+/// Part of a picture, in pixels from its top left corner.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// The view of a camera on a picture of `size` pixels, or on a part of it, sampled at pixel centres. Throws
+/// InputError for a crop that is not inside the picture.
+View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop = {});
+
+/// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is
+/// the centre.
+glm::dvec2 samplePoint(int index, int count);
 
 /// The camera that a view was made of, as far as the view tells: no name, and no shift of the picture.
 Camera viewCamera(const View& view);

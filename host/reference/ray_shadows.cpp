@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <numeric>
 
 #include "raster/opacity.hpp"
 
@@ -89,10 +88,8 @@ double distanceToSphere(double distance, double radius, double cosine) {
 }  // namespace
 
 RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
-  std::vector<std::uint32_t> all(scene.objects.size());
-  std::iota(all.begin(), all.end(), 0u);
   auto blockers = std::make_shared<const Blockers>(
-      Blockers{scene, eye, findVaryingAlpha(scene), placeObjects(scene, all, glm::dmat4(1))});
+      Blockers{scene, eye, findVaryingAlpha(scene), placeObjects(scene, allObjects(scene), glm::dmat4(1))});
   return buildRayScene(scene, eye,
                        [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
 }

@@ -25,7 +25,6 @@ glm::dvec3 unitOrZero(const glm::dvec3& v) {
 }
 
 double rangeWindow(const Light& light, double distance) {
-  if (distance >= light.range) return 0;
   const double fade = 1 - std::pow(distance / light.range, 4);
   return light.window == RangeWindow::kSmooth ? fade * fade : fade;
 }
@@ -51,6 +50,7 @@ Incoming incomingLight(const Light& light, const glm::dvec3& position) {
   if (light.kind == LightKind::kDirectional) return {unitOrZero(-light.direction), 1.0};
   const glm::dvec3 way = light.position - position;
   const double distance = glm::length(way);
+  if (distance >= light.range) return {unitOrZero(way), 0.0};
   Incoming incoming{unitOrZero(way), attenuation(light, distance) * rangeWindow(light, distance)};
   if (light.kind == LightKind::kSpot)
     incoming.share *= spotEffect(light, glm::dot(-incoming.to_light, unitOrZero(light.direction)));
@@ -122,8 +122,8 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
     visibility = [&](const Light& light) {
       return lightVisibility(*rays, light, point.position, settings.shadow_samples, seed);
     };
-  return referenceFog(scene.fog, gbuffer.camera, point.position,
-                      referenceRadiance(scene, gbuffer.camera, point, settings.blinn, visibility));
+  const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, settings.blinn, visibility);
+  return settings.fog ? referenceFog(scene.fog, gbuffer.camera, point.position, radiance) : radiance;
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& 
 
 struct ReferenceSettings {
   bool blinn = false;       ///< Blinn's N·H instead of Phong's R·V
+  bool fog = true;          ///< false for vertices, whose colours meet the fog as pixels
   bool shadows = false;     ///< cast by the scene's objects, decided by rays
   int shadow_samples = 64;  ///< rays from a pixel to a light that has a size; one to a light without
   /// Called now and then, if set.

@@ -1,12 +1,10 @@
 #include "render/render.hpp"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "error.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
 #include "render/fog_cull.hpp"
@@ -14,20 +12,6 @@
 
 namespace luciole {
 namespace {
-
-View settingsView(const RenderSettings& settings) {
-  View view = cameraView(settings.camera, settings.size);
-  if (settings.crop) {
-    const Crop& crop = *settings.crop;
-    if (crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1 ||
-        crop.width > settings.size.x - crop.x || crop.height > settings.size.y - crop.y)
-      throw InputError(fmt::format("--crop {},{},{},{}: not inside the picture of {}x{} pixels", crop.x,
-                                   crop.y, crop.width, crop.height, settings.size.x, settings.size.y));
-    view.crop_origin = {crop.x, crop.y};
-    view.crop_size = {crop.width, crop.height};
-  }
-  return view;
-}
 
 ShadeSettings shadeSettings(const RenderSettings& settings) {
   ShadeSettings shade = settings.shade;
@@ -67,15 +51,6 @@ std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
   return colors;
 }
 
-void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats) {
-  stats.triangles = 0;
-  for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
-  stats.lights = scene.lights.size();
-  stats.features.clear();
-  for (std::size_t i = 0; i < kFeatureCount; ++i)
-    if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);
-}
-
 std::uint64_t coveredPixels(const GBuffer& gbuffer) {
   const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
   return std::count_if(depth, depth + gbuffer.pixels(),
@@ -104,18 +79,17 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
 
 }  // namespace
 
-glm::dvec2 samplePoint(int index, int count) {
-  // Radical inverse in base 2 (van der Corput); both coordinates are moved by half of their finest step.
-  double inverse = 0, step = 0.5;
-  for (int bits = index; bits > 0; bits >>= 1, step /= 2)
-    if (bits & 1) inverse += step;
-  double finest = 1;
-  while (finest > 1.0 / count) finest /= 2;
-  return {(index + 0.5) / count, inverse + finest / 2};
+void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats) {
+  stats.triangles = 0;
+  for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
+  stats.lights = scene.lights.size();
+  stats.features.clear();
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);
 }
 
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
-  View view = settingsView(settings);
+  View view = cameraView(settings.camera, settings.size, settings.crop);
   const ShadeSettings shade = shadeSettings(settings);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), shade);
   const bool gouraud = settings.shading == Shading::kGouraud;
@@ -169,7 +143,7 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
 }
 
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
-  const View view = settingsView(settings);
+  const View view = cameraView(settings.camera, settings.size, settings.crop);
   const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
   describeScene(scene, features, stats);

@@ -15,11 +15,6 @@
 
 namespace luciole {
 
-/// Part of a picture, in pixels from its top left corner.
-struct Crop {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
 /// Extra layers of an EXR.
 enum class Aov : std::uint8_t { kPosition, kNormal, kDepth, kDiffuse, kMaterial, kLightCount, kShadow };
 
@@ -36,9 +31,8 @@ struct RenderSettings {
   std::function<void(int done, int samples)> on_sample;  ///< called after each sample, if set
 };
 
-/// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is
-/// the centre.
-glm::dvec2 samplePoint(int index, int count);
+/// Fills in what the statistics say of the scene.
+void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
 /// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G
 /// B, then the layers). Fills in the statistics. Throws InputError for a crop outside the picture,

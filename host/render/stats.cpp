@@ -34,6 +34,7 @@ std::string statsJson(const Stats& stats) {
   }
   json["counts"] = nlohmann::ordered_json::object();
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
+  for (const auto& [name, error] : stats.errors) json["errors"][name] = error;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   json["memory"] = {{"peak_bytes", std::uint64_t(usage.ru_maxrss) * 1024},

@@ -21,6 +21,7 @@ struct Stats {
   std::vector<std::pair<std::string, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
   std::vector<std::pair<std::string, std::uint64_t>> counts;
+  std::vector<std::pair<std::string, double>> errors;  ///< measured ones, where a command measures any
   std::size_t device_bytes = 0;  ///< OpenCL buffers of one sample, those shared with the host included
 };
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -133,5 +134,12 @@ struct Scene {
   Fog fog;
   bool lighting = true;  ///< false: every surface shows its emission + diffuse colour unlit
 };
+
+/// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.
+inline std::vector<std::uint32_t> allObjects(const Scene& scene) {
+  std::vector<std::uint32_t> all(scene.objects.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
 
 }  // namespace luciole

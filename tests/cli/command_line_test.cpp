@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
@@ -170,19 +171,65 @@ TEST_F(CommandLine, StandardInputAndOutputStandForFiles) {
 TEST_F(CommandLine, CompareReportsFiguresAndFailsOverTheLimit) {
   succeed("luciole render scene.json -o a.png && luciole render scene.json --exposure 1 -o b.png");
   const Outcome outcome =
-      runLine(folder, "luciole compare a.png b.png --max-abs 0.001 --diff d.png --json -");
+      runLine(folder, "luciole compare a.png b.png --max-abs 0.001 --diff d.png --error-map e.png --json -");
   EXPECT_EQ(outcome.status, 1);
   const auto json = nlohmann::json::parse(outcome.out);
-  for (const char* key : {"max_abs", "mean_abs", "mean_signed", "rmse", "psnr", "relmse", "p99_abs",
-                          "p999_abs", "pixels_over", "worst_pixel"})
+  for (const char* key :
+       {"channels", "pixels", "max_abs", "mean_abs", "max_relative", "mean_relative", "mean_signed", "rmse",
+        "psnr", "relmse", "p99_abs", "p999_abs", "nonfinite", "pixels_over", "worst_pixel"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_GT(json["mean_signed"], 0);
+  EXPECT_EQ(json["pixels"], 96 * 54);
   EXPECT_EQ(readImage(folder / "d.png").width, 96);
+  EXPECT_GE(readImage(folder / "e.png").width, 96);
+  const std::string text = succeed("luciole compare a.png b.png");
+  for (const char* figure : {"5184 of 5184 pixels", "max_abs", "mean_abs", "max_relative", "mean_relative",
+                             "mean_signed", "rmse", "psnr", "relmse", "p99_abs", "p999_abs", "nonfinite"})
+    EXPECT_NE(text.find(figure), std::string::npos) << figure;
 }
 
-TEST_F(CommandLine, ComparingDifferentSizesIsWrongInput) {
-  succeed("luciole render scene.json -o a.png && luciole render scene.json --size 10x10 -o b.png");
-  EXPECT_EQ(runLine(folder, "luciole compare a.png b.png").status, 2);
+TEST_F(CommandLine, CompareLooksAtSampledPixelsAlone) {
+  writeImage({2, 1, {"R", "G", "B", "sampled"}, {0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 1}}, folder / "sparse.exr",
+             {});
+  writeImage({2, 1, {"R", "G", "B"}, {9, 9, 9, 0.5f, 0.5f, 0.625f}}, folder / "full.exr", {});
+  const auto json =
+      nlohmann::json::parse(succeed("luciole compare sparse.exr full.exr --max-abs 0.125 --json -"));
+  EXPECT_EQ(json["pixels"], 1);
+  EXPECT_EQ(json["channels"], (nlohmann::json{"R", "G", "B"}));
+  EXPECT_EQ(json["max_abs"], 0.125);
+  EXPECT_EQ(json["max_relative"], 0.25);
+  writeImage({2, 1, {"R", "G", "B", "sampled"}, std::vector<float>(8, 0.0f)}, folder / "none.exr", {});
+  refuse("luciole compare none.exr full.exr --error-map out.png", 2, "sampled");
+}
+
+TEST_F(CommandLine, NonFiniteDifferencesNeverPass) {
+  writeImage({1, 1, {"R", "G", "B"}, {1, 1, 1}}, folder / "a.exr", {});
+  writeImage({1, 1, {"R", "G", "B"}, {1, NAN, 1}}, folder / "b.exr", {});
+  const Outcome outcome = runLine(folder, "luciole compare a.exr b.exr --max-abs inf --json -");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["nonfinite"], 1);
+  EXPECT_TRUE(nlohmann::json::parse(outcome.out)["max_abs"].is_null());
+  succeed("luciole compare b.exr b.exr --max-abs 0");
+}
+
+TEST_F(CommandLine, ComparedPicturesOnStandardOutputStandAlone) {
+  writeImage({1, 1, {"R", "G", "B"}, {1, 1, 1}}, folder / "a.exr", {});
+  for (const char* option : {"--diff", "--error-map"}) {
+    succeed(std::string("luciole compare a.exr a.exr ") + option +
+            " file.png && luciole compare a.exr a.exr " + option +
+            " - > piped.png && luciole compare file.png piped.png --max-abs 0");
+  }
+}
+
+TEST_F(CommandLine, PicturesThatCannotBeComparedAreNamedAndLeaveNoFile) {
+  writeImage({1, 1, {"R", "G", "B"}, {1, 1, 1}}, folder / "a.exr", {});
+  writeImage({2, 1, {"R", "G", "B"}, {1, 1, 1, 1, 1, 1}}, folder / "wide.exr", {});
+  writeImage({1, 1, {"Z"}, {1}}, folder / "depth.exr", {});
+  const std::string outputs = " --diff out.png --error-map out_map.png --json out.json";
+  refuse("luciole compare a.exr wide.exr" + outputs, 2, "a.exr, wide.exr: 1 x 1 and 2 x 1 pixels");
+  refuse("luciole compare a.exr depth.exr" + outputs, 2, "'R G B' and 'Z'");
+  refuse("luciole compare depth.exr depth.exr" + outputs, 2, "out.png");
+  refuse("luciole compare a.exr a.exr --diff out.png --json nowhere/out.json", 2, "nowhere/out.json");
 }
 
 TEST_F(CommandLine, GeneratedLightsAreTheSameForTheSameSeedAndRender) {
@@ -258,6 +305,16 @@ TEST_F(CommandLine, UnknownDeviceIsNamed) {
 }
 TEST_F(CommandLine, ZeroSamplesAreRefused) {
   refuse("luciole render scene.json --samples 0 -o out.png", 2, "--samples");
+}
+
+TEST_F(CommandLine, LimitsThatNothingMeetsAreRefused) {
+  for (const char* limit : {"nan", "-1", "x"})
+    refuse(std::string("luciole compare a.exr b.exr --max-abs ") + limit, 2, "--max-abs");
+}
+TEST_F(CommandLine, OneFileForTwoOutputsIsRefused) {
+  refuse("luciole compare a.exr b.exr --diff out.png --error-map out.png", 2,
+         "out.png: named for two outputs");
+  refuse("luciole compare a.exr b.exr --error-map - --json -", 2, "named for two outputs");
 }
 
 TEST_F(CommandLine, UnknownKeyIsNamed) {

@@ -1,9 +1,12 @@
 #include "image/compare.hpp"
 
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "error.hpp"
 
@@ -50,6 +53,79 @@ TEST(Compare, FiguresOfAKnownDifference) {
   // larger.
   EXPECT_EQ(d.p99_abs, 0.125);
   EXPECT_EQ(d.p999_abs, 0.25);
+  EXPECT_EQ(d.max_relative, 0.5);
+  EXPECT_NEAR(d.mean_relative, 0.75 / 300, kTolerance);
+  EXPECT_EQ(d.pixels, 100u);
+  EXPECT_EQ(d.channels, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(d.of_pixel[3 * 10 + 7], 0.25);
+}
+
+TEST(Compare, FiguresAgreeWithOpenImageIO) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  Image a = grey(37, 23, 0.0f), b = a;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    a.pixels[i] = unit(random);
+    b.pixels[i] = unit(random);
+  }
+  const OIIO::ImageSpec spec(37, 23, 3, OIIO::TypeDesc::FLOAT);
+  const auto theirs = OIIO::ImageBufAlgo::compare(OIIO::ImageBuf(spec, a.pixels.data()),
+                                                  OIIO::ImageBuf(spec, b.pixels.data()), 0.0f, 0.0f);
+  const ImageDifference ours = compareImages(a, b);
+  // It subtracts in float, which rounds a difference below 1 by 2⁻²⁵ at most, and so the largest and the
+  // mean; the mean of the squares by twice that, relative to a root of some 0.4, and the decibels by 20 / ln
+  // 10 times.
+  const double tolerance = std::ldexp(1.0, -25);
+  EXPECT_NEAR(ours.max_abs, theirs.maxerror, tolerance);
+  EXPECT_NEAR(ours.mean_abs, theirs.meanerror, tolerance);
+  EXPECT_NEAR(ours.rmse, theirs.rms_error, 3 * tolerance);
+  EXPECT_NEAR(ours.psnr, theirs.PSNR, 9 * 8 * tolerance);
+  EXPECT_EQ(ours.worst_pixel, (std::array<int, 2>{theirs.maxx, theirs.maxy}));
+}
+
+TEST(Compare, RelativeFiguresAreSharesOfAsLargestFiniteMagnitude) {
+  const Image a{2, 1, {"R", "G", "B"}, {1, -8, 2, kInf, 1, 1}};
+  const Image b{2, 1, {"R", "G", "B"}, {3, -8, 2, kInf, 1, 32}};
+  EXPECT_EQ(compareImages(a, b).max_relative, 31.0 / 8);
+  EXPECT_EQ(compareImages(a, b).mean_relative, 33.0 / 6 / 8);
+  const Image black = grey(2, 1, 0.0f);
+  EXPECT_EQ(compareImages(black, black).max_relative, 0);
+  EXPECT_EQ(compareImages(black, a).mean_relative, kInf);
+}
+
+TEST(Compare, OnlySampledPixelsAreCompared) {
+  const Image plain{4, 1, {"R", "G", "B"}, {9, 9, 9, kNaN, 0, 0, 0.5f, 0.5f, 0.25f, 0.5f, 0.5f, 0.5f}};
+  const Image sparse{
+      4, 1, {"B", "G", "R", "sampled"}, {0, 0, 0, 0, 0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 0.5f, 0.5f, 0.5f, 1}};
+  for (const auto& [a, b] : {std::pair{sparse, plain}, {plain, sparse}}) {
+    const ImageDifference d = compareImages(a, b);
+    EXPECT_EQ(d.pixels, 2u);
+    EXPECT_EQ(d.channels.size(), 3u);
+    EXPECT_EQ(d.nonfinite, 0u);
+    EXPECT_EQ(d.max_abs, 0.25);
+    EXPECT_EQ(d.max_relative, 0.5);
+    EXPECT_EQ(d.mean_abs, 0.25 / 6);
+    EXPECT_EQ(d.p99_abs, 0.25);
+    EXPECT_EQ(d.over[2], 1u);
+    EXPECT_EQ(d.worst_pixel, (std::array<int, 2>{2, 0}));
+    EXPECT_EQ(d.of_pixel, (std::vector<double>{kNotCompared, kNotCompared, 0.25, 0}));
+    const std::vector<float> shown = differencePicture(a, b, 1).pixels;
+    EXPECT_EQ(std::vector<float>(shown.begin(), shown.begin() + 6), std::vector<float>(6, 0.0f));
+  }
+}
+
+TEST(Compare, BothPicturesMayBeSparseAndTheirMasksAreNoDifference) {
+  const Image a{3, 1, {"R", "G", "B", "sampled"}, {1, 1, 1, 1, 1, 1, 1, 0.5f, 1, 1, 1, 0}};
+  const Image b{3, 1, {"R", "G", "B", "sampled"}, {2, 2, 2, 0, 1, 1, 1, 1, 2, 2, 2, 1}};
+  EXPECT_EQ(compareImages(a, b).pixels, 1u);
+  EXPECT_EQ(compareImages(a, b).max_abs, 0);
+  EXPECT_EQ(compareImages(a, b).worst_pixel, (std::array<int, 2>{1, 0}));
+}
+
+TEST(Compare, NoSampledPixelIsAnError) {
+  const Image nothing{1, 1, {"R", "G", "B", "sampled"}, {1, 1, 1, 0}};
+  EXPECT_THROW(compareImages(nothing, grey(1, 1, 1)), InputError);
+  EXPECT_THROW(differencePicture(grey(1, 1, 1), nothing, 1), InputError);
 }
 
 TEST(Compare, BiasHasTheSignOfTheSecondPicture) {
@@ -99,6 +175,8 @@ TEST(Compare, MismatchesAreErrors) {
   EXPECT_THROW(compareImages(grey(2, 2, 0), grey(2, 3, 0)), InputError);
   EXPECT_THROW(compareImages(grey(1, 1, 0), Image{1, 1, {"Y"}, {0}}), InputError);
   EXPECT_THROW(differencePicture(grey(2, 2, 0), grey(2, 3, 0), 1), InputError);
+  EXPECT_THROW(compareImages(grey(1, 1, 0), Image{1, 1, {"R"}, {0}}), InputError);
+  EXPECT_THROW(compareImages(Image{1, 1, {"R", "Z"}, {0, 0}}, Image{1, 1, {"Z"}, {0}}), InputError);
 }
 
 TEST(Compare, DifferencePictureScalesAndShowsNonFinite) {

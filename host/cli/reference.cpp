@@ -1,0 +1,274 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <random>
+#include <unordered_set>
+
+#include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
+#include "error.hpp"
+#include "image/gbuffer_file.hpp"
+#include "reference/gbuffer_check.hpp"
+#include "reference/reference_picture.hpp"
+#include "scene/load_scene.hpp"
+
+namespace luciole {
+namespace {
+
+struct ReferenceOptions : PictureOptions {
+  std::string scene;    ///< what is shown
+  std::string gbuffer;  ///< or a file of surfaces, and
+  std::string lights;   ///< the scene that lights them
+  std::string shadows = "rays";
+  int shadow_samples = 64;
+  std::size_t pixels = 0;  ///< 0: all
+  std::uint64_t seed = 0;
+};
+
+/// Attributes by which a later run knows what a file holds.
+constexpr const char* kRequest = "luciole:reference";
+constexpr const char* kWindow = "luciole:window";
+
+/// A picture of part of a bigger one.
+struct Piece {
+  Image image;
+  Crop window;
+};
+
+void showProgress(std::size_t done, std::size_t pixels) {
+  static int shown = -1;
+  const int percent = int(100 * done / pixels);
+  if (percent == shown) return;
+  shown = percent;
+  fmt::print(stderr, "\r{} % of the reference{}", percent, done == pixels ? "\r\x1b[K" : "");
+  std::fflush(stderr);
+}
+
+ReferenceSettings referenceSettings(const ReferenceOptions& options) {
+  ReferenceSettings settings;
+  settings.blinn = options.model == "blinn-phong";
+  settings.shadows = options.shadows == "rays";
+  settings.shadow_samples = options.shadow_samples;
+  if (!options.quiet && isatty(STDERR_FILENO)) settings.on_progress = showProgress;
+  return settings;
+}
+
+/// All pixels of a picture row by row, or `count` of them, no one twice, in the same order.
+std::vector<glm::ivec2> choosePixels(const glm::ivec2& size, std::size_t count, std::uint64_t seed) {
+  const std::size_t all = std::size_t(size.x) * size.y;
+  std::vector<std::size_t> places;
+  if (count == 0 || count >= all) {
+    places.resize(all);
+    std::iota(places.begin(), places.end(), std::size_t(0));
+  } else {
+    std::mt19937_64 random(seed);
+    std::unordered_set<std::size_t> chosen;
+    while (chosen.size() < count) chosen.insert(random() % all);
+    places.assign(chosen.begin(), chosen.end());
+    std::sort(places.begin(), places.end());
+  }
+  std::vector<glm::ivec2> pixels;
+  for (const std::size_t place : places) pixels.emplace_back(int(place % size.x), int(place / size.x));
+  return pixels;
+}
+
+/// Channels R G B, and `sampled` where not every pixel is.
+Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
+                  const std::vector<glm::dvec3>& colors, double exposure) {
+  const bool sparse = pixels.size() < std::size_t(size.x) * size.y;
+  Image image{size.x, size.y, {"R", "G", "B"}, {}};
+  if (sparse) image.channels.push_back("sampled");
+  const std::size_t channels = image.channels.size();
+  image.pixels.resize(std::size_t(size.x) * size.y * channels);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    float* pixel = image.pixels.data() + (std::size_t(pixels[i].y) * size.x + pixels[i].x) * channels;
+    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(colors[i][c] * std::exp2(exposure));
+    if (sparse) pixel[3] = 1;
+  }
+  return image;
+}
+
+/// What must be equal for two crops to be parts of one picture.
+std::string requestText(const ReferenceOptions& options, const RenderSettings& settings) {
+  return fmt::format("{} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
+                     options.scene, settings.size.x, settings.size.y, settings.camera.name, settings.samples,
+                     options.shading, options.model, options.shadows, options.shadow_samples,
+                     options.exposure);
+}
+
+/// The rectangle that two make together, if they make one.
+std::optional<Crop> unite(const Crop& a, const Crop& b) {
+  const Crop both{std::min(a.x, b.x), std::min(a.y, b.y), 0, 0};
+  const int right = std::max(a.x + a.width, b.x + b.width), bottom = std::max(a.y + a.height, b.y + b.height);
+  const Crop box{both.x, both.y, right - both.x, bottom - both.y};
+  const std::int64_t common_width = std::max(0, std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x));
+  const std::int64_t common_height =
+      std::max(0, std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y));
+  const auto area = [](const Crop& crop) { return std::int64_t(crop.width) * crop.height; };
+  if (area(a) + area(b) - common_width * common_height != area(box)) return std::nullopt;
+  return box;
+}
+
+void paste(const Piece& from, Piece& to) {
+  const std::size_t channels = to.image.channels.size();
+  for (int y = 0; y < from.window.height; ++y) {
+    const float* row = from.image.pixels.data() + std::size_t(y) * from.window.width * channels;
+    const std::size_t place =
+        std::size_t(from.window.y + y - to.window.y) * to.window.width + (from.window.x - to.window.x);
+    std::copy_n(row, from.window.width * channels, to.image.pixels.begin() + place * channels);
+  }
+}
+
+/// The part of the same picture that the output file already holds, if it was made after the scene file's
+/// last change: a long reference grows crop by crop. Throws InputError where the two don't make a rectangle.
+std::optional<Piece> findEarlierPiece(const ReferenceOptions& options, const std::string& request,
+                                      const Crop& crop) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  if (options.pixels > 0 || options.scene == "-" || !fs::is_regular_file(options.output, none))
+    return std::nullopt;
+  if (readAttribute(options.output, kRequest) != request) return std::nullopt;
+  if (fs::last_write_time(options.output) < fs::last_write_time(options.scene)) return std::nullopt;
+  const std::vector<int> window =
+      parseInts(readAttribute(options.output, kWindow), ',', 4, options.output, "a window X,Y,W,H");
+  Piece piece{readImage(options.output), {window[0], window[1], window[2], window[3]}};
+  if (piece.image.channels.size() != 3) return std::nullopt;
+  if (!unite(piece.window, crop))
+    throw InputError(fmt::format(
+        "--crop {},{},{},{}: makes no rectangle with the part {},{},{},{} that {} holds "
+        "of this picture",
+        crop.x, crop.y, crop.width, crop.height, window[0], window[1], window[2], window[3], options.output));
+  return piece;
+}
+
+Piece joinPieces(const Piece& earlier, const Piece& later) {
+  const Crop window = *unite(earlier.window, later.window);
+  Piece joined{{window.width, window.height, later.image.channels, {}}, window};
+  joined.image.pixels.resize(std::size_t(window.width) * window.height * later.image.channels.size());
+  paste(earlier, joined);
+  paste(later, joined);
+  return joined;
+}
+
+void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Stats& stats) {
+  stats.counts.emplace_back("gbuffer_pixels_checked", check.pixels);
+  stats.counts.emplace_back("gbuffer_pixels_beside_edges", check.beside_edges);
+  stats.counts.emplace_back("gbuffer_pixels_at_ties", check.at_ties);
+  stats.counts.emplace_back("gbuffer_pixels_unexplained", check.unexplained);
+  stats.errors.emplace_back("gbuffer_position", check.position_error);
+  stats.errors.emplace_back("gbuffer_normal", check.normal_error);
+  if (options.quiet) return;
+  fmt::print(stderr,
+             "G-buffer against rays: position within {:.1e}, normal within {:.1e} rad; of {} pixels {} show "
+             "another surface within 1/256 pixel of an edge, {} one at the same depth, {} any other\n",
+             check.position_error, check.normal_error, check.pixels, check.beside_edges, check.at_ties,
+             check.unexplained);
+}
+
+/// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
+void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
+  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.scene); });
+  const RenderSettings settings = renderSettings(options, scene);
+  const View view = cameraView(settings.camera, settings.size, settings.crop);
+  const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
+  const std::string request = requestText(options, settings);
+  std::optional<Piece> earlier;
+  if (settings.crop) earlier = findEarlierPiece(options, request, window);
+
+  const std::vector<glm::ivec2> pixels = choosePixels(view.crop_size, options.pixels, options.seed);
+  const GBufferCheck check = timed(stats, "check G-buffer", [&] {
+    const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kPhong, {});
+    return checkGBuffer(scene, view, gbuffer, pixels);
+  });
+  const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
+    return referencePicture(scene, view, settings.shading, settings.samples, pixels,
+                            referenceSettings(options));
+  });
+  Piece piece{makePicture(view.crop_size, pixels, colors, settings.exposure), window};
+  if (earlier) piece = joinPieces(*earlier, piece);
+
+  Metadata metadata = pictureMetadata(stats.command, nullptr);
+  metadata.emplace_back(kRequest, request);
+  metadata.emplace_back(kWindow, fmt::format("{},{},{},{}", piece.window.x, piece.window.y,
+                                             piece.window.width, piece.window.height));
+  timed(stats, "write", [&] { writeImage(piece.image, options.output, metadata); });
+  describeScene(scene, {}, stats);
+  stats.width = view.crop_size.x;
+  stats.height = view.crop_size.y;
+  stats.samples = settings.samples;
+  stats.counts.emplace_back("pixels_shaded", pixels.size() * settings.samples);
+  reportCheck(options, check, stats);
+}
+
+/// Shades a G-buffer from a file.
+void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
+  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.lights); });
+  const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(options.gbuffer); });
+  const glm::ivec2 size(gbuffer.width, gbuffer.height);
+  const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
+  const std::vector<glm::dvec3> colors = timed(
+      stats, "shade", [&] { return referencePixels(scene, gbuffer, pixels, referenceSettings(options)); });
+  timed(stats, "write", [&] {
+    writeImage(makePicture(size, pixels, colors, options.exposure), options.output,
+               pictureMetadata(stats.command, nullptr));
+  });
+  describeScene(scene, {}, stats);
+  stats.width = gbuffer.width;
+  stats.height = gbuffer.height;
+  stats.counts.emplace_back("pixels_shaded", pixels.size());
+}
+
+void checkOptions(const ReferenceOptions& options) {
+  checkOutput(options);
+  if (options.scene.empty() == options.gbuffer.empty())
+    throw InputError("reference: expected a scene, or --gbuffer with --scene");
+  if (options.gbuffer.empty() != options.lights.empty())
+    throw InputError("reference: --gbuffer and --scene go together");
+  const bool of_view = !options.size.empty() || !options.camera.empty() || !options.crop.empty() ||
+                       options.samples != 1 || options.shading != "phong";
+  if (!options.gbuffer.empty() && of_view)
+    throw InputError("reference: a G-buffer has its size, camera, crop, shading and samples already");
+  if (options.pixels > 0 && std::filesystem::path(options.output).extension() != ".exr")
+    throw InputError(
+        fmt::format("--pixels: {} cannot say which pixels it holds, an .exr can", options.output));
+}
+
+}  // namespace
+
+void addReferenceCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand(
+      "reference", "the same picture in double precision: every light on every pixel, shadows by ray");
+  auto options = std::make_shared<ReferenceOptions>();
+  command->add_option("SCENE", options->scene,
+                      "a .json, .obj, .gltf or .glb file (- : JSON on standard input)");
+  command->add_option("--gbuffer", options->gbuffer, "an EXR whose surfaces to light instead");
+  command->add_option("--scene", options->lights, "with --gbuffer: the scene that lights it");
+  addPictureOptions(*command, *options, kViewOptions | kSampleOption | kModelOptions);
+  command->add_option("--shadows", options->shadows, "by a ray to each light, or none")
+      ->check(CLI::IsMember({"off", "rays"}))
+      ->capture_default_str();
+  command
+      ->add_option("--shadow-samples", options->shadow_samples,
+                   "rays from a pixel to a light that has a size (others need one)")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  command->add_option("--pixels", options->pixels,
+                      "only so many pixels, chosen at random; compare looks at those only");
+  command->add_option("--seed", options->seed, "which ones")->capture_default_str();
+  command->callback([&context, options] {
+    checkOptions(*options);
+    Stats stats;
+    stats.command = context.command_line;
+    if (options->gbuffer.empty())
+      referenceOfScene(*options, stats);
+    else
+      referenceOfGBuffer(*options, stats);
+    reportStats(*options, stats);
+  });
+}
+
+}  // namespace luciole

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "image/compare.hpp"
+#include "image/image.hpp"
+
+namespace luciole {
+
+/// A picture to look at, linear R G B as any: each pixel's largest difference in false colours (viridis) on a
+/// logarithmic scale of the whole decades that hold them, three to six, what is smaller as the lowest. Equal
+/// pixels are black, those not compared dark grey, those where one picture alone is not finite red. Small
+/// pictures are enlarged by a whole factor, and under the picture is a scale bar. Throws MachineError where
+/// there is no font for its labels, DejaVu Sans.
+Image errorMap(const ImageDifference& difference);
+
+}  // namespace luciole

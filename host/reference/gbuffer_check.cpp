@@ -1,0 +1,288 @@
+#include "reference/gbuffer_check.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "raster/geometry.hpp"
+#include "raster/opacity.hpp"
+#include "scene/ray_cast.hpp"
+
+namespace luciole {
+namespace {
+
+/// Nearer to each other than this share of their distance from the eye, two surfaces are one place.
+constexpr double kSamePlace = 1e-6;
+
+/// Normals farther apart than this, in radians, belong to different surfaces.
+constexpr double kSameNormal = 1e-5;
+
+/// What is needed to follow a ray, all in view space.
+struct Tracer {
+  const Scene& scene;
+  const View& view;
+  glm::dmat4 view_to_world;
+  Geometry geometry;
+  ViewPlane plane;
+  std::vector<bool> varying_alpha;
+  RayScene rays;
+};
+
+/// A surface on a pixel's ray.
+struct Meeting {
+  std::uint32_t triangle;
+  glm::dvec3 position;
+  glm::dvec3 normal;  ///< as shaded: interpolated, on the side of the eye
+  double depth;       ///< metres along the view axis
+};
+
+/// What the ray that Embree follows on this thread has met so far.
+thread_local std::vector<std::uint32_t> met_triangles;
+
+Tracer makeTracer(const Scene& scene, const View& view) {
+  // Every triangle lets the rays through, so that they meet all: which is nearest is decided in double.
+  const PassesThrough note = [](const RayMeeting& meeting) {
+    met_triangles.push_back(meeting.triangle);
+    return true;
+  };
+  const glm::dmat4 view_to_world = viewCamera(view).camera_to_world;
+  return {scene,
+          view,
+          view_to_world,
+          transformObjects(scene, allObjects(scene), view),
+          viewPlane(view),
+          findVaryingAlpha(scene),
+          buildRayScene(scene, glm::dvec3(view_to_world[3]), note)};
+}
+
+struct Ray {
+  glm::dvec3 from, direction;  ///< view space; the direction is 1 long along the view axis
+};
+
+/// (x, y): pixels of the whole picture from the sample of its first, as in ScreenVertex.
+Ray viewRay(const ViewPlane& plane, const glm::dvec2& at) {
+  const glm::dvec2 place = plane.offset + plane.scale * at;
+  return plane.perspective ? Ray{glm::dvec3(0), glm::dvec3(place, -1)}
+                           : Ray{glm::dvec3(place, 0), glm::dvec3(0, 0, -1)};
+}
+
+std::array<glm::dvec3, 3> cornersOf(const Geometry& geometry, std::uint32_t triangle) {
+  const PlacedObject& object = objectOfTriangle(geometry, triangle);
+  const glm::uvec3 corners = object.mesh->triangles[triangle - object.first_triangle];
+  const glm::dvec3* positions = geometry.positions.data() + object.first_vertex;
+  return {positions[corners[0]], positions[corners[1]], positions[corners[2]]};
+}
+
+/// Where the ray meets the triangle's plane; nothing for a triangle that the picture leaves out: turned away
+/// and single-sided, a hole at this pixel, or not between the near and the far plane.
+std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
+                            const glm::ivec2& pixel) {
+  const PlacedObject& object = objectOfTriangle(tracer.geometry, triangle);
+  const std::uint32_t in_mesh = triangle - object.first_triangle;
+  const Material& material = materialOf(tracer.scene, object, in_mesh);
+  const auto [a, b, c] = cornersOf(tracer.geometry, triangle);
+  const glm::dvec3 edge1 = b - a, edge2 = c - a;
+  // Möller and Trumbore 1997.
+  const glm::dvec3 p = glm::cross(ray.direction, edge2);
+  const double determinant = glm::dot(edge1, p);
+  const bool front = (determinant > 0) != object.mirrored;
+  if (determinant == 0 || (!front && !material.double_sided)) return std::nullopt;
+  const glm::dvec3 t = ray.from - a, q = glm::cross(t, edge1);
+  const double second = glm::dot(t, p) / determinant, third = glm::dot(ray.direction, q) / determinant;
+  Meeting meeting;
+  meeting.triangle = triangle;
+  meeting.depth = glm::dot(edge2, q) / determinant - ray.from.z;
+  meeting.position = ray.from + ray.direction * (meeting.depth + ray.from.z);
+  const glm::dvec4 clip = tracer.view.projection * glm::dvec4(meeting.position, 1);
+  if (!(clip.z >= 0 && clip.z <= clip.w)) return std::nullopt;
+  if (material.alpha_cutoff > 0 && isHole(tracer.scene, tracer.varying_alpha,
+                                          makeSurface(tracer.scene, tracer.geometry, triangle, tracer.plane),
+                                          tracer.plane, pixel.x, pixel.y))
+    return std::nullopt;
+  const glm::uvec3 corners = object.mesh->triangles[in_mesh];
+  const std::vector<glm::vec3>& normals = object.mesh->normals;
+  const glm::dvec3 sum = object.normal_to_view *
+                         ((1 - second - third) * glm::dvec3(normals[corners.x]) +
+                          second * glm::dvec3(normals[corners.y]) + third * glm::dvec3(normals[corners.z]));
+  const double length = glm::length(sum);
+  const glm::dvec3 own = glm::normalize(glm::cross(edge1, edge2)) * (object.mirrored ? -1.0 : 1.0);
+  meeting.normal = (length > 0 ? sum / length : own) * (front ? 1.0 : -1.0);
+  return meeting;
+}
+
+/// All that the pixel's ray through `at` meets and the picture could show, nearest first.
+std::vector<Meeting> follow(const Tracer& tracer, const glm::dvec2& at, const glm::ivec2& pixel) {
+  const Ray ray = viewRay(tracer.plane, at);
+  met_triangles.clear();
+  castRay(tracer.rays, glm::dvec3(tracer.view_to_world * glm::dvec4(ray.from, 1)),
+          glm::normalize(glm::dmat3(tracer.view_to_world) * ray.direction));
+  // Embree may meet a triangle that lies in two leaves of its tree twice.
+  std::sort(met_triangles.begin(), met_triangles.end());
+  met_triangles.erase(std::unique(met_triangles.begin(), met_triangles.end()), met_triangles.end());
+  std::vector<Meeting> meetings;
+  for (const std::uint32_t triangle : met_triangles)
+    if (const auto meeting = meet(tracer, ray, triangle, pixel)) meetings.push_back(*meeting);
+  std::sort(meetings.begin(), meetings.end(),
+            [](const Meeting& a, const Meeting& b) { return a.depth < b.depth; });
+  return meetings;
+}
+
+/// Distance in pixels of a place on the picture from the nearest of the lines that a triangle's edges lie on.
+double distanceToEdges(const Tracer& tracer, std::uint32_t triangle, const glm::dvec2& at) {
+  const std::array<glm::dvec3, 3> corners = cornersOf(tracer.geometry, triangle);
+  // Homogeneous pixel coordinates, which hold behind the eye too.
+  const auto pixels = [&](const glm::dvec3& corner) {
+    const double w = tracer.plane.perspective ? -corner.z : 1.0;
+    return glm::dvec3((glm::dvec2(corner) - tracer.plane.offset * w) / tracer.plane.scale, w);
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 line = glm::cross(pixels(corners[i]), pixels(corners[(i + 1) % 3]));
+    nearest = std::min(nearest, std::abs(glm::dot(line, glm::dvec3(at, 1))) / glm::length(glm::dvec2(line)));
+  }
+  return nearest;
+}
+
+double distanceToTriangle(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& p) {
+  const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  bool inside = true;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 a = corners[i], edge = corners[(i + 1) % 3] - a;
+    inside &= glm::dot(glm::cross(edge, p - a), normal) >= 0;
+    const double share = std::clamp(glm::dot(p - a, edge) / glm::dot(edge, edge), 0.0, 1.0);
+    nearest = std::min(nearest, glm::distance(p, a + share * edge));
+  }
+  return inside ? std::abs(glm::dot(normal, p - corners[0])) / glm::length(normal) : nearest;
+}
+
+/// The G-buffer's answer for a pixel.
+struct Shown {
+  glm::dvec3 position;
+  glm::dvec3 normal;
+  bool surface;
+};
+
+Shown shownAt(const GBuffer& gbuffer, const glm::ivec2& pixel) {
+  const std::size_t n = gbuffer.pixels(), i = gbuffer.index(pixel.x, pixel.y);
+  return {{gbuffer.position[i], gbuffer.position[i + n], gbuffer.position[i + 2 * n]},
+          {gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]},
+          std::isfinite(gbuffer.position[i + 2 * n])};
+}
+
+double positionError(const Shown& shown, const Meeting& meeting) {
+  return glm::distance(shown.position, meeting.position) / glm::length(meeting.position);
+}
+
+/// The angle, from the chord, which keeps the digits of small ones.
+double normalError(const Shown& shown, const Meeting& meeting) {
+  return 2 * std::asin(std::min(glm::distance(shown.normal, meeting.normal) / 2, 1.0));
+}
+
+bool isSame(const Shown& shown, const Meeting& meeting) {
+  return positionError(shown, meeting) <= kSamePlace && normalError(shown, meeting) <= kSameNormal;
+}
+
+/// Whether the point that is shown lies on the rim of a triangle that the sample's ray passes beside: it is
+/// seen within kEdgePixels of the sample, and a ray close around it meets the triangle.
+bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
+                   const glm::dvec2& at, const glm::ivec2& pixel) {
+  const double w = tracer.plane.perspective ? -shown.position.z : 1.0;
+  const glm::dvec2 seen = (glm::dvec2(shown.position) / w - tracer.plane.offset) / tracer.plane.scale;
+  if (glm::distance(seen, at) > kEdgePixels) return false;
+  const auto passesBeside = [&](std::uint32_t triangle) {
+    return std::none_of(meetings.begin(), meetings.end(),
+                        [&](const Meeting& meeting) { return meeting.triangle == triangle; });
+  };
+  for (const double radius : {kEdgePixels / 8, kEdgePixels}) {
+    for (int i = 0; i < 8; ++i) {
+      const double angle = i * std::numbers::pi / 4;
+      const glm::dvec2 around = seen + radius * glm::dvec2(std::cos(angle), std::sin(angle));
+      for (const Meeting& meeting : follow(tracer, around, pixel))
+        if (passesBeside(meeting.triangle) &&
+            distanceToTriangle(cornersOf(tracer.geometry, meeting.triangle), shown.position) <=
+                kSamePlace * glm::length(shown.position))
+          return true;
+    }
+  }
+  return false;
+}
+
+/// Whether snapping explains why the pixel shows this instead of the first of the meetings: what lies in
+/// front of it has an edge beside the sample, and so has the surface itself, unless the ray meets it.
+bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
+                  const glm::dvec2& at, const glm::ivec2& pixel) {
+  bool met = !shown.surface;
+  for (const Meeting& meeting : meetings) {
+    if (shown.surface && isSame(shown, meeting)) met = true;
+    const bool in_front =
+        !shown.surface || meeting.depth < -shown.position.z - kSamePlace * glm::length(shown.position);
+    if (in_front && distanceToEdges(tracer, meeting.triangle, at) > kEdgePixels) return false;
+  }
+  return met || isOnRimBeside(tracer, shown, meetings, at, pixel);
+}
+
+void checkPixel(const Tracer& tracer, const GBuffer& gbuffer, const glm::ivec2& in_crop,
+                GBufferCheck& check) {
+  const glm::ivec2 pixel = in_crop + gbuffer.crop_origin;
+  const glm::dvec2 at(pixel);
+  const Shown shown = shownAt(gbuffer, in_crop);
+  const std::vector<Meeting> meetings = follow(tracer, at, pixel);
+  ++check.pixels;
+  if (meetings.empty() && !shown.surface) return;
+  for (const Meeting& meeting : meetings) {
+    if (!shown.surface || !isSame(shown, meeting)) continue;
+    if (meeting.depth - meetings.front().depth > kSamePlace * glm::length(meeting.position)) break;
+    if (&meeting != &meetings.front()) ++check.at_ties;
+    if (distanceToEdges(tracer, meeting.triangle, at) <= kEdgePixels) return;
+    const double error = positionError(shown, meeting);
+    if (error > check.position_error && check.unexplained == 0) check.worst_pixel = pixel;
+    check.position_error = std::max(check.position_error, error);
+    check.normal_error = std::max(check.normal_error, normalError(shown, meeting));
+    return;
+  }
+  if (isBesideEdge(tracer, shown, meetings, at, pixel)) {
+    ++check.beside_edges;
+    return;
+  }
+  ++check.unexplained;
+  check.worst_pixel = pixel;
+}
+
+GBufferCheck sum(const GBufferCheck& a, const GBufferCheck& b) {
+  GBufferCheck both = a;
+  both.pixels += b.pixels;
+  both.beside_edges += b.beside_edges;
+  both.at_ties += b.at_ties;
+  both.unexplained += b.unexplained;
+  const bool b_is_worse =
+      (b.unexplained > 0) != (a.unexplained > 0) ? b.unexplained > 0 : b.position_error > a.position_error;
+  if (b_is_worse) both.worst_pixel = b.worst_pixel;
+  both.position_error = std::max(a.position_error, b.position_error);
+  both.normal_error = std::max(a.normal_error, b.normal_error);
+  return both;
+}
+
+}  // namespace
+
+GBufferCheck checkGBuffer(const Scene& scene, const View& view, const GBuffer& gbuffer,
+                          std::span<const glm::ivec2> pixels) {
+  const Tracer tracer = makeTracer(scene, view);
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, pixels.size(), 256), GBufferCheck{},
+      [&](const tbb::blocked_range<std::size_t>& range, GBufferCheck check) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          checkPixel(tracer, gbuffer, pixels[i], check);
+        return check;
+      },
+      sum);
+}
+
+}  // namespace luciole

@@ -1,0 +1,47 @@
+#include "reference/reference_picture.hpp"
+
+namespace luciole {
+namespace {
+
+/// Radiance of the scene's vertices, in the order of gatherVertices(), before fog, which is for pixels.
+std::vector<glm::vec3> lightVertices(const Scene& scene, const std::vector<std::uint32_t>& objects,
+                                     const View& view, const ReferenceSettings& settings) {
+  ReferenceSettings clear = settings;
+  clear.fog = false;
+  const GBuffer vertices = gatherVertices(scene, objects, view, {true, true, true});
+  std::vector<glm::ivec2> places;
+  for (int y = 0; y < vertices.height; ++y)
+    for (int x = 0; x < vertices.width; ++x) places.emplace_back(x, y);
+  const std::vector<glm::dvec3> colors = referencePixels(scene, vertices, places, clear);
+  std::vector<glm::vec3> of_vertex(vertices.pixels());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    of_vertex[vertices.index(places[i].x, places[i].y)] = glm::vec3(colors[i]);
+  return of_vertex;
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, Shading shading, int samples,
+                                         std::span<const glm::ivec2> pixels,
+                                         const ReferenceSettings& settings) {
+  const std::vector<std::uint32_t> objects = allObjects(scene);
+  std::vector<glm::vec3> vertex_colors;
+  if (shading == Shading::kGouraud) vertex_colors = lightVertices(scene, objects, view, settings);
+  std::vector<glm::dvec3> sum(pixels.size());
+  View sample_view = view;
+  for (int sample = 0; sample < samples; ++sample) {
+    sample_view.sample = samplePoint(sample, samples);
+    const GBuffer gbuffer =
+        rasterize(scene, objects, sample_view, shading, {true, true, true}, vertex_colors);
+    ReferenceSettings of_sample = settings;
+    if (settings.on_progress)
+      of_sample.on_progress = [&](std::size_t done, std::size_t count) {
+        settings.on_progress(sample * count + done, samples * count);
+      };
+    const std::vector<glm::dvec3> colors = referencePixels(scene, gbuffer, pixels, of_sample);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += colors[i] / double(samples);
+  }
+  return sum;
+}
+
+}  // namespace luciole

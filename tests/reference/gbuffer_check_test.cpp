@@ -1,0 +1,87 @@
+// G-buffers against primary rays, in this project's own scenes and the shared ones.
+#include "reference/gbuffer_check.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "raster/rasterize.hpp"
+#include "render_json.hpp"
+
+namespace luciole::test {
+namespace {
+
+struct Seen {
+  Scene scene;
+  View view;
+  GBuffer gbuffer;
+};
+
+Seen see(const Scene& scene, glm::ivec2 size) {
+  Seen seen{scene, cameraView(scene.cameras.front(), size), {}};
+  seen.gbuffer = rasterize(seen.scene, allObjects(seen.scene), seen.view, Shading::kPhong, {});
+  return seen;
+}
+
+GBufferCheck check(const Seen& seen) {
+  std::vector<glm::ivec2> pixels;
+  for (int y = 0; y < seen.gbuffer.height; ++y)
+    for (int x = 0; x < seen.gbuffer.width; ++x) pixels.emplace_back(x, y);
+  return checkGBuffer(seen.scene, seen.view, seen.gbuffer, pixels);
+}
+
+/// Positions are stored as floats, each coordinate within 2^-24 of itself: 6e-8 of the distance. A normal's
+/// three roundings turn it by 1e-7.
+void expectRight(const std::string& path) {
+  const Seen seen = see(loadScene(path), {480, 270});
+  const GBufferCheck result = check(seen);
+  fmt::print("position {:.1e}, normal {:.1e} rad; of {} pixels {} beside edges, {} at ties, {} unexplained\n",
+             result.position_error, result.normal_error, result.pixels, result.beside_edges, result.at_ties,
+             result.unexplained);
+  EXPECT_EQ(result.pixels, 480u * 270u);
+  EXPECT_LE(result.position_error, 1e-7);
+  EXPECT_LE(result.normal_error, 2e-7);
+  EXPECT_EQ(result.unexplained, 0u) << "such as at " << result.worst_pixel.x << ", " << result.worst_pixel.y;
+}
+
+class GBufferOf : public testing::TestWithParam<const char*> {};
+TEST_P(GBufferOf, ShowsWhatPrimaryRaysMeet) {
+  expectRight(fmt::format("{}/scenes/{}.json", LUCIOLE_SOURCE_DIR, GetParam()));
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, GBufferOf,
+                         testing::Values("fireflies", "underwater", "colonnade", "city", "spheres",
+                                         "cornell"));
+
+class GBufferOfShared : public testing::TestWithParam<const char*> {};
+TEST_P(GBufferOfShared, ShowsWhatPrimaryRaysMeet) {
+  LUCIOLE_NEEDS_SHARED();
+  expectRight((sharedScenes() / GetParam()).string());
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, GBufferOfShared,
+                         testing::Values("sponza_crytek_obj/sponza.obj", "quake_e1m1/e1m1.gltf"));
+
+TEST(GBufferCheck, FindsWhatIsWrong) {
+  Seen seen = see(sceneFromJson(R"({"camera": {"eye": [0, 2, 4], "target": [0, 0, 0]},
+                                    "objects": [{"primitive": "plane", "scale": 100}]})"),
+                  {64, 36});
+  const std::size_t n = seen.gbuffer.pixels();
+  EXPECT_EQ(check(seen).unexplained, 0u);
+
+  const std::size_t moved = seen.gbuffer.index(20, 30), turned = seen.gbuffer.index(40, 30),
+                    lost = seen.gbuffer.index(50, 30), near = seen.gbuffer.index(10, 30);
+  seen.gbuffer.position[moved] += 1e-4f;
+  EXPECT_EQ(check(seen).unexplained, 1u);
+  EXPECT_EQ(check(seen).worst_pixel, glm::ivec2(20, 30));
+  seen.gbuffer.normal[turned] += 1e-3f;
+  EXPECT_EQ(check(seen).unexplained, 2u);
+  seen.gbuffer.position[lost + 2 * n] = -std::numeric_limits<float>::infinity();
+  EXPECT_EQ(check(seen).unexplained, 3u);
+  // Small errors are measured: 8e-7 of the distance.
+  const glm::vec3 place(seen.gbuffer.position[near], seen.gbuffer.position[near + n],
+                        seen.gbuffer.position[near + 2 * n]);
+  seen.gbuffer.position[near] += 8e-7f * glm::length(place);
+  EXPECT_EQ(check(seen).unexplained, 3u);
+  EXPECT_NEAR(check(seen).position_error, 8e-7, 2e-7) << "two roundings of 6e-8 and one of the sum";
+}
+
+}  // namespace
+}  // namespace luciole::test
