@@ -190,6 +190,25 @@ bool isSame(const Shown& shown, const Meeting& meeting) {
   return positionError(shown, meeting) <= kSamePlace && normalError(shown, meeting) <= kSameNormal;
 }
 
+/// Places around another at a distance of `radius` pixels.
+std::array<glm::dvec2, 8> placesAround(const glm::dvec2& at, double radius) {
+  std::array<glm::dvec2, 8> places;
+  for (int i = 0; i < 8; ++i) {
+    const double angle = i * std::numbers::pi / 4;
+    places[i] = at + radius * glm::dvec2(std::cos(angle), std::sin(angle));
+  }
+  return places;
+}
+
+/// Whether a triangle ends within kEdgePixels of a place: at an edge, or where the near or far plane cuts it.
+bool endsBeside(const Tracer& tracer, std::uint32_t triangle, const glm::dvec2& at, const glm::ivec2& pixel) {
+  if (distanceToEdges(tracer, triangle, at) <= kEdgePixels) return true;
+  const auto around = placesAround(at, kEdgePixels);
+  return std::any_of(around.begin(), around.end(), [&](const glm::dvec2& place) {
+    return !meet(tracer, viewRay(tracer.plane, place), triangle, pixel);
+  });
+}
+
 /// Whether the point that is shown lies on the rim of a triangle that the sample's ray passes beside: it is
 /// seen within kEdgePixels of the sample, and a ray close around it meets the triangle.
 bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
@@ -202,9 +221,7 @@ bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<M
                         [&](const Meeting& meeting) { return meeting.triangle == triangle; });
   };
   for (const double radius : {kEdgePixels / 8, kEdgePixels}) {
-    for (int i = 0; i < 8; ++i) {
-      const double angle = i * std::numbers::pi / 4;
-      const glm::dvec2 around = seen + radius * glm::dvec2(std::cos(angle), std::sin(angle));
+    for (const glm::dvec2& around : placesAround(seen, radius)) {
       for (const Meeting& meeting : follow(tracer, around, pixel))
         if (passesBeside(meeting.triangle) &&
             distanceToTriangle(cornersOf(tracer.geometry, meeting.triangle), shown.position) <=
@@ -224,7 +241,7 @@ bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<Me
     if (shown.surface && isSame(shown, meeting)) met = true;
     const bool in_front =
         !shown.surface || meeting.depth < -shown.position.z - kSamePlace * glm::length(shown.position);
-    if (in_front && distanceToEdges(tracer, meeting.triangle, at) > kEdgePixels) return false;
+    if (in_front && !endsBeside(tracer, meeting.triangle, at, pixel)) return false;
   }
   return met || isOnRimBeside(tracer, shown, meetings, at, pixel);
 }

@@ -59,6 +59,25 @@ TEST_P(GBufferOfShared, ShowsWhatPrimaryRaysMeet) {
 INSTANTIATE_TEST_SUITE_P(Scenes, GBufferOfShared,
                          testing::Values("sponza_crytek_obj/sponza.obj", "quake_e1m1/e1m1.gltf"));
 
+TEST(GBufferCheck, KnowsWhatAPictureLeavesOut) {
+  // An invisible ball before a mirrored torus and a box around the camera whose near faces are turned away.
+  const char* objects = R"("materials": {"air": {"alpha": 0.3, "alpha_cutoff": 0.5}},
+    "objects": [{"primitive": "sphere", "translate": [0, 0, 2], "material": "air"},
+                {"primitive": "torus", "scale": [-1.5, 1, 1], "rotate": [70, 10, 0]},
+                {"primitive": "box", "scale": [-9, 9, 9]}]})";
+  for (const char* kind : {"\"fov_y\": 60", "\"orthographic\": 3"}) {
+    const Seen seen =
+        see(sceneFromJson(std::string(R"({"camera": {"eye": [1, 2, 4], "target": [0, 0, 0], )") + kind +
+                          "}, " + objects),
+            {160, 90});
+    const GBufferCheck result = check(seen);
+    EXPECT_EQ(result.unexplained, 0u) << kind;
+    EXPECT_LT(result.beside_edges, 160u) << kind;
+    EXPECT_LE(result.position_error, 1e-7) << kind;
+    EXPECT_GT(result.position_error, 0) << kind;
+  }
+}
+
 TEST(GBufferCheck, FindsWhatIsWrong) {
   Seen seen = see(sceneFromJson(R"({"camera": {"eye": [0, 2, 4], "target": [0, 0, 0]},
                                     "objects": [{"primitive": "plane", "scale": 100}]})"),

@@ -117,6 +117,21 @@ TEST_F(JsonScene, SpotWithCutoff180IsAPointLight) {
   EXPECT_EQ(scene.lights[0].kind, LightKind::kPoint);
 }
 
+TEST_F(JsonScene, LightsMayHaveASize) {
+  const Scene scene = load(R"({"lights": [
+      {"type": "point", "position": [0,0,0], "radius": 0.25}, {"type": "point", "position": [0,0,0]},
+      {"type": "directional", "direction": [0,-1,0], "angle": 0.5}]})");
+  EXPECT_EQ(scene.lights[0].radius, 0.25);
+  EXPECT_EQ(scene.lights[1].radius, 0);
+  EXPECT_EQ(scene.lights[2].half_angle, glm::radians(0.25));
+  for (const char* wrong : {R"({"type": "point", "position": [0,0,0], "radius": -1})",
+                            R"({"type": "point", "position": [0,0,0], "angle": 1})",
+                            R"({"type": "directional", "direction": [0,-1,0], "radius": 1})",
+                            R"({"type": "directional", "direction": [0,-1,0], "angle": 91})"})
+    EXPECT_THAT(refusal(std::string(R"({"lights": [)") + wrong + "]}"), HasSubstr("scene.json: lights[0]"))
+        << wrong;
+}
+
 TEST_F(JsonScene, CamerasKeepTheOrderOfTheFile) {
   const Scene scene =
       load(R"({"cameras": {"z": {"eye":[0,0,1],"target":[0,0,0]}, "a": {"eye":[0,0,2],"target":[0,0,0],
