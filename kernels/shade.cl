@@ -8,6 +8,7 @@
 #include "features.clh"
 #include "fog.clh"
 #include "lanes.clh"
+#include "long_sum.clh"
 #include "math.clh"
 #include "phong.clh"
 #include "shadow.clh"
@@ -18,6 +19,10 @@ typedef struct {
   vec3L position, normal, to_eye;
   floatL shininess;
   vec3L ambient_sum, diffuse_sum, specular_sum;
+#if LONG_SUMS
+  LongSum long_ambient, long_diffuse, long_specular;  // the sums above are their open blocks,
+  intL terms;                                         // of so many terms
+#endif
 #if OUTPUT_SHADOW
   floatL visible, shadow_lights;
 #endif
@@ -60,6 +65,9 @@ INLINE void add_light(Pixels *pixels, __global const ShadeLight *light, __global
 #endif
 #if LIGHT_AMBIENT
   add_scaled(&pixels->ambient_sum, light->ambient, strength);
+#if LONG_SUMS
+  pixels->terms += strength > 0.0f ? (intL)(1) : (intL)(0);
+#endif
 #endif
   floatL n_dot_l = dot3(pixels->normal, to_light);
   intL facing = n_dot_l > 0.0f;
@@ -76,26 +84,40 @@ INLINE void add_light(Pixels *pixels, __global const ShadeLight *light, __global
     strength *= visibility;
   }
 #endif
+  if (!any_lane(strength > 0.0f)) return;
+#if LONG_SUMS && !LIGHT_AMBIENT
+  pixels->terms += strength > 0.0f ? (intL)(1) : (intL)(0);
+#endif
   add_scaled(&pixels->diffuse_sum, light->diffuse, strength * max_lanes(n_dot_l, (floatL)(0.0f)));
 #if SPECULAR
-  if (any_lane(strength > 0.0f)) {
-    floatL highlight;
+  floatL highlight;
 #if PHONG_SPECULAR
 #if BLINN_SPECULAR
-    if (!blinn)
+  if (!blinn)
 #endif
-      highlight = phong_lobe(pixels->normal, to_light, n_dot_l, pixels->to_eye, pixels->shininess);
+    highlight = phong_lobe(pixels->normal, to_light, n_dot_l, pixels->to_eye, pixels->shininess);
 #endif
 #if BLINN_SPECULAR
 #if PHONG_SPECULAR
-    if (blinn)
+  if (blinn)
 #endif
-      highlight = blinn_lobe(pixels->normal, to_light, pixels->to_eye, pixels->shininess);
+    highlight = blinn_lobe(pixels->normal, to_light, pixels->to_eye, pixels->shininess);
 #endif
-    add_scaled(&pixels->specular_sum, light->specular, strength * highlight);
-  }
+  add_scaled(&pixels->specular_sum, light->specular, strength * highlight);
 #endif
 }
+
+#if LONG_SUMS
+// Closes the blocks that are full. Returns one more than the terms of the fullest block then.
+INLINE uint close_full_blocks(Pixels *pixels) {
+  intL full = pixels->terms >= kSumBlock;
+  close_block(&pixels->long_ambient, &pixels->ambient_sum, full);
+  close_block(&pixels->long_diffuse, &pixels->diffuse_sum, full);
+  close_block(&pixels->long_specular, &pixels->specular_sum, full);
+  pixels->terms = full ? (intL)(0) : pixels->terms;
+  return (uint)largest_lane(pixels->terms) + 1;
+}
+#endif
 #endif
 
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
@@ -123,6 +145,14 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
     pixels.ambient_sum = seen;
     pixels.diffuse_sum = seen;
     pixels.specular_sum = seen;
+#if LONG_SUMS
+    LongSum nothing = {seen, seen};
+    pixels.long_ambient = nothing;
+    pixels.long_diffuse = nothing;
+    pixels.long_specular = nothing;
+    pixels.terms = 0;
+    uint fullest = 0;  // no block has more terms
+#endif
     pixels.normal = load_vec3(normal + first, stride);
 #if SPECULAR
     pixels.shininess = load_lanes(specular + first + 3 * stride);
@@ -133,16 +163,28 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
 #else
     pixels.to_eye = scale3(pixels.position, (floatL)(-1.0f));
 #endif
-    pixels.to_eye = scale3(pixels.to_eye, rsqrt_lanes(dot3(pixels.to_eye, pixels.to_eye)));
+    pixels.to_eye = normalize_lanes(pixels.to_eye);
 #endif
 #if LIGHT_LISTS
     uint tile = first / kTilePixels;
-    uint end = list_starts[tile + 1];
-    for (uint entry = list_starts[tile]; entry < end; ++entry)
+    uint entry = list_starts[tile], end = list_starts[tile + 1];
+#else
+    uint entry = 0, end = frame.light_count;
+#endif
+    for (; entry < end; ++entry) {
+#if LONG_SUMS
+      if (++fullest > kSumBlock) fullest = close_full_blocks(&pixels);
+#endif
+#if LIGHT_LISTS
       add_light(&pixels, lights + list[entry], shadow_maps, shadow_depths, frame.blinn);
 #else
-    for (uint light = 0; light < frame.light_count; ++light)
-      add_light(&pixels, lights + light, shadow_maps, shadow_depths, frame.blinn);
+      add_light(&pixels, lights + entry, shadow_maps, shadow_depths, frame.blinn);
+#endif
+    }
+#if LONG_SUMS
+    finish_sum(pixels.long_ambient, &pixels.ambient_sum);
+    finish_sum(pixels.long_diffuse, &pixels.diffuse_sum);
+    finish_sum(pixels.long_specular, &pixels.specular_sum);
 #endif
     vec3L kd = load_vec3(diffuse + first, stride);
     seen.x += pixels.diffuse_sum.x * kd.x;

@@ -23,6 +23,9 @@ enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
 #define kNoShadow 0xffffffffu
 
+// Lights whose contributions to a pixel may be added one by one, see long_sum.clh.
+enum { kSumBlock = 128 };
+
 // A light as the shade stage sees it. View space, metres, linear colours with the intensity multiplied in.
 typedef struct {
   float4 position;     // xyz place; w: 1 / range², 0 where the light reaches everywhere. Directional: xyz unit, towards the light

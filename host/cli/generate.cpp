@@ -14,6 +14,9 @@
 namespace luciole {
 namespace {
 
+constexpr glm::vec3 kLampColors[]{
+    {1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
+
 struct LightsOptions {
   std::string mesh, output = "-";
   std::uint64_t count = 1000, seed = 0;
@@ -36,8 +39,7 @@ void generateLights(const LightsOptions& options) {
     field.high = bounds.high;
   }
   if (options.colors.empty()) {
-    field.colors = {
-        {1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
+    field.colors.assign(std::begin(kLampColors), std::end(kLampColors));
   } else {
     field.colors.clear();
     for (std::size_t i = 0; i + 2 < options.colors.size(); i += 3)

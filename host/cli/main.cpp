@@ -44,6 +44,7 @@ int main(int argument_count, char** arguments) {
   addShadeCommand(app, context);
   addReferenceCommand(app, context);
   addCompareCommand(app, context);
+  addBenchCommand(app, context);
   addGenerateCommand(app, context);
   addDevicesCommand(app, context);
   std::string topic;

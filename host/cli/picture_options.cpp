@@ -119,7 +119,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "which lights a pixel goes through; never changes the picture")
         ->check(CLI::IsMember({"none", "tiles", "auto"}))
         ->capture_default_str();
-    command.add_option("--shadows", options.shadows, "how shadow maps are looked up")
+    command
+        .add_option("--shadows", options.shadows,
+                    "how shadow maps are looked up: the nearest depth, or a soft blend of 16")
         ->check(CLI::IsMember({"off", "hard", "pcf"}))
         ->capture_default_str();
     command.add_option("--aov", options.aovs,

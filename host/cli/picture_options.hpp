@@ -19,7 +19,7 @@ struct PictureOptions {
   std::string shading = "phong";
   std::string model = "phong";
   std::string culling = "auto";
-  std::string shadows = "pcf";
+  std::string shadows = "hard";
   std::string aovs;
   double exposure = 0;
   std::string device;

@@ -86,7 +86,7 @@ Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
   image.pixels.resize(std::size_t(size.x) * size.y * channels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     float* pixel = image.pixels.data() + (std::size_t(pixels[i].y) * size.x + pixels[i].x) * channels;
-    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(colors[i][c] * std::exp2(exposure));
+    for (int c = 0; c < 3; ++c) pixel[c] = pictureValue(colors[i][c] * std::exp2(exposure));
     if (sparse) pixel[3] = 1;
   }
   return image;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,8 +56,10 @@ std::vector<std::string> channelNames(const GBuffer& gbuffer) {
 struct Pixels {
   std::string path;
   int width = 0;
+  std::size_t count = 0;
   std::vector<std::string> channels;
-  std::vector<float> values;
+  /// Made unwritten, so that what a damaged file promises and doesn't hold takes no memory.
+  std::unique_ptr<float[]> values;
 
   /// The place of a channel, case ignored; -1: none.
   int find(const std::string& name) const {
@@ -107,8 +110,7 @@ std::vector<glm::dvec3> visiblePoints(const Pixels& file, const std::array<int, 
                                       const std::array<int, 3>& normal) {
   std::vector<glm::dvec3> points;
   if (!isThere(position)) return points;
-  const std::size_t count = file.values.size() / file.channels.size();
-  for (std::size_t p = 0; p < count; p += 1 + count / 1000) {
+  for (std::size_t p = 0; p < file.count; p += 1 + file.count / 1000) {
     const glm::vec3 point = file.three(p, position), n = file.three(p, normal);
     if (isFinite(point) && isFinite(n) && n != glm::vec3(0.0f)) points.push_back(point);
   }
@@ -251,9 +253,9 @@ void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadat
 GBuffer readGBuffer(const std::string& path) {
   const auto input = openPicture(path, path);
   const OIIO::ImageSpec spec = input->spec();
-  Pixels file{path, spec.width, spec.channelnames, {}};
-  file.values.resize(std::size_t(spec.width) * spec.height * spec.nchannels);
-  readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.data());
+  Pixels file{path, spec.width, std::size_t(spec.width) * spec.height, spec.channelnames, {}};
+  file.values = std::make_unique_for_overwrite<float[]>(file.count * spec.nchannels);
+  readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
 
   GBuffer gbuffer = emptyGBuffer(spec);
   const Surface surface(file, spec, gbuffer);
@@ -261,7 +263,7 @@ GBuffer readGBuffer(const std::string& path) {
   const auto ambient = file.findThree("ambient", "RGB"), emission = file.findThree("emission", "RGB");
   const int shininess = file.find("shininess");
   const std::size_t stride = gbuffer.pixels();
-  for (std::size_t p = 0; p < std::size_t(spec.width) * spec.height; ++p) {
+  for (std::size_t p = 0; p < file.count; ++p) {
     glm::vec3 position, normal;
     if (!surface.at(p, position, normal)) continue;
     const std::size_t at = gbuffer.index(int(p % spec.width), int(p / spec.width));

@@ -32,12 +32,16 @@ glm::dmat4 orthographicProjection(double left, double right, double bottom, doub
   return projection;
 }
 
+glm::dmat4 worldToView(const Camera& camera) {
+  const glm::dmat3 rotation = glm::transpose(glm::dmat3(camera.camera_to_world));
+  glm::dmat4 to_view(rotation);
+  to_view[3] = glm::dvec4(-(rotation * glm::dvec3(camera.camera_to_world[3])), 1.0);
+  return to_view;
+}
+
 View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop) {
   View view;
-  // The inverse of a rigid motion, written out so that it is rigid to the last bit.
-  const glm::dmat3 to_view = glm::transpose(glm::dmat3(camera.camera_to_world));
-  view.world_to_view = glm::dmat4(to_view);
-  view.world_to_view[3] = glm::dvec4(-(to_view * glm::dvec3(camera.camera_to_world[3])), 1.0);
+  view.world_to_view = worldToView(camera);
   const double aspect = double(size.x) / size.y;
   if (camera.orthographic) {
     const double half_width = camera.half_height * aspect;

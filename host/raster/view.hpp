@@ -24,6 +24,9 @@ glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, doubl
 glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near,
                                   double far);
 
+/// The inverse of camera_to_world, rigid to the last bit.
+glm::dmat4 worldToView(const Camera& camera);
+
 /// Part of a picture, in pixels from its top left corner.
 struct Crop {
   int x = 0, y = 0, width = 0, height = 0;

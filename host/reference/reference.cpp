@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -185,13 +186,17 @@ std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuff
   return colors;
 }
 
+float pictureValue(double channel) {
+  return static_cast<float>(std::min(channel, double(std::numeric_limits<float>::max())));
+}
+
 Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings) {
   std::vector<glm::ivec2> pixels;
   for (int y = 0; y < gbuffer.height; ++y)
     for (int x = 0; x < gbuffer.width; ++x) pixels.emplace_back(x, y);
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
   for (const glm::dvec3& color : referencePixels(scene, gbuffer, pixels, settings))
-    for (int c = 0; c < 3; ++c) image.pixels.push_back(static_cast<float>(color[c]));
+    for (int c = 0; c < 3; ++c) image.pixels.push_back(pictureValue(color[c]));
   return image;
 }
 

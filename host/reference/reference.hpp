@@ -48,6 +48,9 @@ std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuff
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings);
 
+/// A colour's channel as pictures keep it: in float, the largest where it is more.
+float pictureValue(double channel);
+
 /// The whole of it: channels R G B.
 Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace luciole {
 namespace {
@@ -45,6 +46,12 @@ WorldPlanes worldPlanes(const GBuffer& gbuffer) {
     world.depth[i] = float(-p.z);
   });
   return world;
+}
+
+/// As finite_color in the kernels: bright samples may add up to more than a float holds.
+float finiteColor(float color) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  return std::max(color < kLargest ? color : kLargest, -kLargest);
 }
 
 }  // namespace
@@ -100,7 +107,7 @@ Image assemblePicture(const GBuffer& gbuffer, const LitPlanes& first, const Plan
     for (int x = 0; x < image.width; ++x) {
       const std::size_t place = gbuffer.index(x, y);
       for (std::size_t c = 0; c < layers.size(); ++c)
-        *out++ = layers[c].plane[place] * (c < 3 ? scale : 1.0f);
+        *out++ = c < 3 ? finiteColor(layers[c].plane[place] * scale) : layers[c].plane[place];
     }
   });
   return image;

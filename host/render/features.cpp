@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "kernels/shared.h"
 #include "shadow/shadow_maps.hpp"
 
 namespace luciole {
@@ -32,6 +33,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"FOG_RADIAL", "radial fog", "fog by distance instead of depth"},
     {"PARALLEL_VIEW", "parallel view", "an orthographic camera's constant view vector"},
     {"LIGHT_LISTS", "light lists", "a list of lights per tile instead of all lights"},
+    {"LONG_SUMS", "long sums", "more lights than float adds up one by one"},
     {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
 }};
 
@@ -101,6 +103,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   if (surfaces.specular && light_specular)
     features.set(settings.blinn ? Feature::kBlinnSpecular : Feature::kPhongSpecular);
   features.set(Feature::kLightLists, settings.culling == Culling::kTiles && !scene.lights.empty());
+  features.set(Feature::kLongSums, scene.lights.size() > kSumBlock);
   return features;
 }
 

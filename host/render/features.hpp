@@ -34,6 +34,7 @@ enum class Feature : unsigned {
   kFogRadial,
   kParallelView,
   kLightLists,
+  kLongSums,
   kOutputShadow,
   kCount
 };
@@ -73,7 +74,7 @@ enum class Culling : std::uint8_t { kNone, kTiles };
 struct ShadeSettings {
   bool blinn = false;  ///< Blinn's N·H instead of Phong's R·V
   Culling culling = Culling::kTiles;
-  ShadowMethod shadows = ShadowMethod::kPcf;
+  ShadowMethod shadows = ShadowMethod::kHard;
   bool shadow_layer = false;  ///< also write the share of shadowed lights that reaches each pixel
   int shadow_size = 4096;     ///< texels a side of a directional light's map (see drawShadowMaps)
   int log2_degree = 8;        ///< of the polynomials in kernels/math.clh, which lists the degrees there are

@@ -39,7 +39,7 @@ TextureUse textureUse(const MtlEntry& entry, const char* statement, std::string 
   }
   std::replace(name.begin(), name.end(), '\\', '/');
   const std::filesystem::path path = std::filesystem::path(entry.file).parent_path() / name;
-  if (!std::filesystem::is_regular_file(path)) {
+  if (!isFile(path)) {
     fail(entry, fmt::format("{}: there is no picture '{}'", statement, forMessage(path.string())));
   }
   use.texture = addTexture(scene, path.string());

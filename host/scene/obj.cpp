@@ -80,14 +80,14 @@ std::string withSlashes(const std::string& words) {
 /// one.
 std::vector<std::string> materialPaths(const std::filesystem::path& folder, const std::string& arguments) {
   const std::filesystem::path whole = folder / withSlashes(arguments);
-  if (std::filesystem::is_regular_file(whole)) return {whole.string()};
+  if (isFile(whole)) return {whole.string()};
   std::vector<std::string> paths;
   for (std::size_t begin = 0; begin < arguments.size();) {
     std::size_t end = begin;
     while (end < arguments.size() && (arguments[end] != ' ' || (end > begin && arguments[end - 1] == '\\')))
       ++end;
     const std::filesystem::path path = folder / withSlashes(arguments.substr(begin, end - begin));
-    if (end > begin && std::filesystem::is_regular_file(path)) paths.push_back(path.string());
+    if (end > begin && isFile(path)) paths.push_back(path.string());
     begin = end + 1;
   }
   return paths;

@@ -1,6 +1,5 @@
 #include "scene/text_file.hpp"
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -8,8 +7,14 @@
 
 namespace luciole {
 
+bool isFile(const std::filesystem::path& path) {
+  std::error_code refused;
+  return std::filesystem::is_regular_file(path, refused);
+}
+
 std::string readFile(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw InputError(path + ": is a folder, expected a file");
+  std::error_code refused;
+  if (std::filesystem::is_directory(path, refused)) throw InputError(path + ": is a folder, expected a file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": can't be opened, expected a readable file");
   std::string bytes;

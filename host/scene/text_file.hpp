@@ -1,9 +1,14 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace luciole {
+
+/// Whether there is a regular file of this name. False, too, for a name that the system refuses, such as one
+/// of thousands of characters, for which std::filesystem throws.
+bool isFile(const std::filesystem::path& path);
 
 /// The whole file. Throws InputError where it can't be read.
 std::string readFile(const std::string& path);

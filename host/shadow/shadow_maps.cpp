@@ -25,6 +25,9 @@ constexpr double kBorder = 4.0;
 /// Nearest occluder of a light with a place, as a share of its reach.
 constexpr double kNearShare = 5e-4;
 
+/// Metres; in place of 0, where all of a scene is one point. Files may have lengths from here on.
+constexpr double kSmallestLength = 1e-18;
+
 constexpr double kWidestSpot = 60.0 * 3.14159265358979323846 / 180.0;
 
 using Polygon = std::vector<glm::dvec3>;
@@ -141,8 +144,10 @@ PlannedMap planParallel(const Light& light, const View& camera_view, const Bound
   for (const glm::dvec3& corner : box)  // everything between what is seen and the light casts
     high.z = std::max(high.z, (world_to_light * glm::dvec4(corner, 1)).z);
 
-  // Room for the lookup's reach at the rim, and for scenes that are flat in some direction.
-  const double least = 1e-6 * std::max({1e-3, glm::length(scene.high - scene.low), glm::length(high)});
+  // Room for the lookup's reach at the rim, and for scenes that are flat in some direction: more than what
+  // doubles lose far from the origin, 2⁻⁵³ of the distance in each of some ten operations.
+  const double least =
+      std::max({kSmallestLength, 1e-6 * glm::length(scene.high - scene.low), 1e-14 * glm::length(high)});
   const glm::dvec3 margin = glm::max((high - low) * (kBorder / size), glm::dvec3(least));
   low -= margin;
   high += margin;
@@ -158,7 +163,7 @@ PlannedMap planParallel(const Light& light, const View& camera_view, const Bound
 /// Distance that a light with a place can cast shadows over: its range, or to the scene's farthest corner.
 double lightReach(const Light& light, const Bounds& scene) {
   if (std::isfinite(light.range)) return light.range;
-  double reach = 1e-3;
+  double reach = kSmallestLength;
   for (const glm::dvec3& corner : boxCorners(scene))
     reach = std::max(reach, glm::distance(corner, light.position));
   return reach * 1.001;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <cstring>
@@ -9,6 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "cli/run_program.hpp"
 #include "error.hpp"
 #include "image/camera_header.hpp"
 #include "image/oiio.hpp"
@@ -19,6 +21,7 @@ namespace {
 
 using test::TemporaryFolder;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
@@ -313,6 +316,33 @@ TEST(GBufferFile, OnlyExrIsWritten) {
   const TemporaryFolder folder;
   EXPECT_THROW(writeGBuffer(somePicture(1, 1, someCamera()), folder / "g.png", {}), InputError);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+/// The most memory this process has had, bytes.
+std::size_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::size_t(usage.ru_maxrss) * 1024;
+}
+
+TEST(GBufferFile, APromiseThatTheFileDoesNotKeepTakesNoMemory) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "promise.exr";
+  writeGBuffer(somePicture(16, 16, someCamera()), path, {});
+  std::string bytes = test::readText(path);
+  const std::int32_t last[2] = {65535, 255};
+  for (const std::string name : {"dataWindow", "displayWindow"}) {
+    // Name and type, each with its end, then the length and the box's first x and y.
+    const std::size_t at = bytes.find(name + '\0') + name.size() + 1 + sizeof "box2i" + 4 + 8;
+    bytes.replace(at, sizeof last, reinterpret_cast<const char*>(last), sizeof last);
+  }
+  bytes.resize(100'000);  // with less, the size alone gives the header away
+  test::writeText(path, bytes);
+  const std::size_t before = peakMemory();
+  EXPECT_THAT([&] { readGBuffer(path); }, ThrowsMessage<InputError>(HasSubstr("damaged")));
+  // 20 channels at least are promised, of 65536 × 256 floats each; a decoder's block is 16 rows of them.
+  constexpr std::size_t kPlane = std::size_t(65536) * 256 * sizeof(float);
+  EXPECT_LT(peakMemory() - before, 10 * kPlane);
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
 // Every function of math.clh, and of lanes.clh what computes, a kernel each.
+#if APART
+#pragma OPENCL FP_CONTRACT OFF
+#endif
 #include "lanes.clh"
 #include "math.clh"
 
@@ -13,14 +16,27 @@
     store_lanes(out + first, function(load_lanes(in + first), load_lanes(in + first + stride))); \
   }
 
+// √x as fog and shadows take it.
+INLINE floatL root(floatL x) { return x * rsqrt_lanes(x); }
+
 PROBE_1(probe_rsqrt, rsqrt_lanes)
+PROBE_1(probe_sqrt, root)
 PROBE_1(probe_exp2, exp2_lanes)
+PROBE_1(probe_exp, exp_lanes)
 PROBE_1(probe_log2_one_minus, log2_one_minus)
 PROBE_1(probe_finite_color, finite_color)
 PROBE_1(probe_clamp01, clamp01)
 PROBE_2(probe_pow_one_minus, pow_one_minus)
 PROBE_2(probe_max, max_lanes)
 PROBE_2(probe_min, min_lanes)
+
+__kernel void probe_normalize(__global const float *in, __global float *out, uint stride) {
+  uint first = get_global_id(0) * LANES;
+  vec3L unit = normalize_lanes(load_vec3(in + first, stride));
+  store_lanes(out + first, unit.x);
+  store_lanes(out + first + stride, unit.y);
+  store_lanes(out + first + 2 * stride, unit.z);
+}
 
 // 1 in every lane of a row where any lane is above 0, else 0.
 __kernel void probe_any_lane(__global const float *in, __global float *out, uint stride) {

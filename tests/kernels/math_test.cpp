@@ -1,66 +1,70 @@
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
-#include <cstring>
+#include <glm/glm.hpp>
 #include <limits>
+#include <string>
+#include <utility>
 
-#include "kernels/probe.hpp"
+#include "error.hpp"
+#include "kernels/math_functions.hpp"
 
 namespace luciole::test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr float kSmallestNormal = std::numeric_limits<float>::min();
-constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
-const float kBelowOne = std::nextafter(1.0f, 0.0f);
+constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 
-/// Distance of neighbouring floats at `exact`.
-double ulp(double exact) {
-  const int exponent = std::max(std::ilogb(exact), -126);
-  return std::ldexp(1.0, exponent - 23);
-}
+// A compiler may fuse products into sums; the bounds hold where it does and where it doesn't.
+constexpr const char* kFusings[] = {"", "-DAPART=1 "};
 
-/// About `count` floats between two positive ones, evenly spread over their bit patterns, both ends included:
-/// as dense in every binade.
-Column sweep(float low, float high, std::uint32_t count) {
-  const auto from = std::bit_cast<std::uint32_t>(low), to = std::bit_cast<std::uint32_t>(high);
-  const std::uint32_t step =
-      std::max<std::uint32_t>((to - from) / count, 1) | 1;  // odd: reaches all low bits
-  Column values;
-  for (std::uint64_t bits = from; bits < to; bits += step)
-    values.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-  values.push_back(high);
-  return values;
-}
+/// Degrees of the two polynomials, and the largest relative errors that kernels/math.clh states for them.
+struct Degrees {
+  int log2, exp2;
+  double log2_error, exp2_error;
+};
+constexpr Degrees kUsual{8, 6, 4 * kUnit, 1.6 * kUnit};
+const Degrees kOthers[] = {
+    {3, 2, std::exp2(-11.4), std::exp2(-8.7)},  {4, 3, std::exp2(-14.2), std::exp2(-11.1)},
+    {5, 4, std::exp2(-17.0), std::exp2(-18.0)}, {6, 5, std::exp2(-19.5), std::exp2(-20.8)},
+    {7, 5, std::exp2(-21.3), std::exp2(-20.8)}, {9, 7, std::exp2(-22.1), std::exp2(-23.4)}};
 
-void append(Column& column, const Column& more) { column.insert(column.end(), more.begin(), more.end()); }
-
-Column negated(Column column) {
-  for (float& value : column) value = -value;
-  return column;
+/// Calls `check(device, degrees, defines)` for the usual degrees at every width, products and sums fused or
+/// not, and for the others with the extremes.
+template <class Check>
+void forEachProgram(Check&& check) {
+  for (const int lanes : kAllLanes) {
+    for (const char* fusing : kFusings) {
+      SCOPED_TRACE(fmt::format("{} lanes {}", lanes, fusing));
+      check(deviceWithLanes(lanes), kUsual, fusing);
+    }
+  }
+  for (const Degrees& others : kOthers) {
+    const std::string defines = degreeDefines(others.log2, others.exp2);
+    for (const int lanes : lanesFor(defines)) {
+      SCOPED_TRACE(fmt::format("{} lanes {}", lanes, defines));
+      check(deviceWithLanes(lanes), others, defines);
+    }
+  }
 }
 
 Column run(int lanes, const char* kernel, const std::vector<Column>& in) {
   return probe(deviceWithLanes(lanes), "math_probe.cl", kernel, in, 1)[0];
 }
 
-TEST(MathKernels, ReciprocalRoot) {
-  const Column x = sweep(2 * kSmallestNormal, kLargest, 300000);
+TEST(MathKernels, ReciprocalRootAndRoot) {
+  const MathFunction rsqrt = rsqrtFunction(), sqrt = sqrtFunction();
   for (const int lanes : kAllLanes) {
-    const Column y = run(lanes, "probe_rsqrt", {x});
-    double worst = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double exact = 1 / std::sqrt(double(x[i]));
-      worst = std::max(worst, std::abs(y[i] - exact) / ulp(exact));
+    for (const char* fusing : kFusings) {
+      EXPECT_LE(measureErrors(deviceWithLanes(lanes), rsqrt, fusing).max_ulp, 1.5) << lanes << fusing;
+      EXPECT_LE(measureErrors(deviceWithLanes(lanes), sqrt, fusing).max_ulp, 3) << lanes << fusing;
     }
-    EXPECT_LE(worst, 3) << lanes << " lanes";
+    EXPECT_EQ(run(lanes, "probe_sqrt", {{0}}), Column{0}) << lanes << " lanes";
   }
 }
 
-TEST(MathKernels, ReciprocalRootOfAlmostNothingIsFinite) {
+TEST(MathKernels, ReciprocalRootOfAlmostNothingIsFiniteAndOfInfinityNone) {
   const Column x{0.0f, kSmallest, std::nextafter(kSmallestNormal, 0.0f), kSmallestNormal,
                  1.5f * kSmallestNormal};
   for (const int lanes : kAllLanes) {
@@ -68,87 +72,150 @@ TEST(MathKernels, ReciprocalRootOfAlmostNothingIsFinite) {
       EXPECT_TRUE(std::isfinite(y)) << lanes << " lanes";
       EXPECT_GT(y, 1e18f) << lanes << " lanes";
     }
+    EXPECT_TRUE(std::isnan(run(lanes, "probe_rsqrt", {{kInfinity}})[0])) << lanes << " lanes";
   }
 }
 
-TEST(MathKernels, PowerOfTwo) {
-  Column x = sweep(1e-12f, 127.0f, 150000);
-  append(x, negated(sweep(1e-12f, 126.0f, 150000)));
-  for (int n = -126; n < 127; ++n)
-    append(x, {n + 0.5f, std::nextafter(n + 0.5f, 200.0f), std::nextafter(n + 0.5f, -200.0f)});
+TEST(MathKernels, UnitVectors) {
+  const MathFunction normalize = normalizeFunction();
   for (const int lanes : kAllLanes) {
-    const Column y = run(lanes, "probe_exp2", {x});
-    double worst = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double exact = std::exp2(double(x[i]));
-      worst = std::max(worst, std::abs(y[i] - exact) / ulp(exact));
+    for (const char* fusing : kFusings) {
+      const auto out =
+          probe(deviceWithLanes(lanes), "math_probe.cl", normalize.kernel, normalize.in, 3, {}, fusing);
+      double length_error = 0, angle = 0;
+      for (std::size_t i = 0; i < out[0].size(); ++i) {
+        const glm::dvec3 v(normalize.in[0][i], normalize.in[1][i], normalize.in[2][i]);
+        const glm::dvec3 unit(out[0][i], out[1][i], out[2][i]);
+        length_error = std::max(length_error, std::abs(glm::length(unit) - 1));
+        angle = std::max(angle, glm::length(glm::cross(unit, v)) / glm::length(v) / glm::length(unit));
+      }
+      // The square of the length has 3 roundings in a row, which its root halves; the reciprocal root's 1.3
+      // ulp are below 1.7 roundings, and the scaling rounds once more. Only the scaling treats the components
+      // differently.
+      EXPECT_LE(length_error, 4.2 * kUnit) << lanes << fusing;
+      EXPECT_LE(angle, 1.001 * kUnit) << lanes << fusing;
     }
-    EXPECT_LE(worst, 2) << lanes << " lanes";
-    const Column whole = run(lanes, "probe_exp2", {{0.0f, -0.0f, kSmallest, 1.0f, -1.0f, 127.0f, -126.0f}});
-    EXPECT_EQ(whole, (Column{1, 1, 1, 2, 0.5f, 0x1p127f, 0x1p-126f})) << lanes << " lanes";
-  }
-}
-
-TEST(MathKernels, PowerOfTwoIsZeroBelowTheNormals) {
-  const Column x{std::nextafter(-126.0f, -200.0f), -126.5f, -127.0f, -150.0f, -1e9f, -kLargest, -kInfinity};
-  for (const int lanes : kAllLanes)
-    EXPECT_EQ(run(lanes, "probe_exp2", {x}), Column(x.size(), 0.0f)) << lanes << " lanes";
-}
-
-TEST(MathKernels, LogarithmOfOneMinus) {
-  Column t = sweep(kSmallestNormal, 0x1p-8f, 50000);
-  append(t, sweep(0x1p-8f, kBelowOne, 400000));
-  for (const int lanes : kAllLanes) {
-    const Column y = run(lanes, "probe_log2_one_minus", {t});
-    double worst = 0;
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      const double exact = std::log1p(-double(t[i])) / std::log(2.0);
-      worst = std::max(worst, std::abs(y[i] - exact) / std::abs(exact));
-    }
-    EXPECT_LE(worst, std::ldexp(1.0, -22)) << lanes << " lanes";
-    EXPECT_EQ(run(lanes, "probe_log2_one_minus", {{0.0f, kSmallest, 1.0f}}), (Column{0, 0, -1e9f}))
+    EXPECT_EQ(probe(deviceWithLanes(lanes), "math_probe.cl", "probe_normalize", {{0}, {0}, {0}}, 3),
+              (std::vector<Column>{{0}, {0}, {0}}))
         << lanes << " lanes";
   }
 }
 
-TEST(MathKernels, PowerOfOneMinus) {
-  Column t, n;
-  for (const float exponent : {1e-6f, 0.1f, 1.0f, 2.0f, 32.0f, 128.0f, 1e4f, 1e6f}) {
-    Column values = sweep(1e-12f, kBelowOne, 40000);
-    append(t, values);
-    n.resize(t.size(), exponent);
-  }
-  for (const int lanes : kAllLanes) {
-    const Column y = run(lanes, "probe_pow_one_minus", {t, n});
-    double worst = 0;  // as a share of the bound
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      const double exponent = n[i] * std::log1p(-double(t[i])) / std::log(2.0);
-      const double exact = std::exp2(exponent);
-      if (exact < 2.0 * kSmallestNormal) {
-        ASSERT_TRUE(y[i] >= 0 && y[i] < 4 * kSmallestNormal)
-            << t[i] << "^" << n[i] << " at " << lanes << " lanes";
-        continue;
-      }
-      const double bound = exact * -exponent * std::ldexp(1.0, -22) + 2 * ulp(exact);
-      worst = std::max(worst, std::abs(y[i] - exact) / bound);
+TEST(MathKernels, PowerOfTwoAtEveryDegree) {
+  const MathFunction exp2 = exp2Function();
+  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+    const MathErrors errors = measureErrors(device, exp2, defines);
+    EXPECT_LE(errors.max_relative, degrees.exp2_error);
+    if (degrees.exp2 == kUsual.exp2) {
+      EXPECT_LE(errors.max_ulp, 1.2);
     }
-    EXPECT_LE(worst, 1) << lanes << " lanes";
+    const std::vector<Column> whole{{0.0f, -0.0f, kSmallest, -kSmallest, 1.0f, -1.0f, 127.0f, -126.0f}};
+    EXPECT_EQ(probe(device, "math_probe.cl", "probe_exp2", whole, 1, {}, defines)[0],
+              (Column{1, 1, 1, 1, 2, 0.5f, 0x1p127f, 0x1p-126f}));
+  });
+}
+
+TEST(MathKernels, PowersBelowTheNormalsAreZero) {
+  const Column x{std::nextafter(-126.0f, -200.0f), -126.5f, -127.0f, -150.0f, -1e9f, -kLargest, -kInfinity};
+  for (const int lanes : kAllLanes) {
+    EXPECT_EQ(run(lanes, "probe_exp2", {x}), Column(x.size(), 0.0f)) << lanes << " lanes";
+    EXPECT_EQ(run(lanes, "probe_exp", {x}), Column(x.size(), 0.0f)) << lanes << " lanes";
   }
+}
+
+TEST(MathKernels, ExponentialAtEveryDegree) {
+  const MathFunction exp = expFunction();
+  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+    double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
+    forEachResult(device, exp, defines, [&](const double* x, float result, double exact) {
+      const double error = std::abs(result - exact);
+      // The constant log2(e) is off by 0.23 roundings, its product with x rounds once.
+      worst = std::max(worst, error / exact / (1.23 * kUnit * -x[0] + degrees.exp2_error));
+      worst_absolute = std::max(worst_absolute, error);
+    });
+    EXPECT_LE(worst, 1);
+    if (degrees.exp2 == kUsual.exp2) {
+      EXPECT_LE(worst_absolute, 1.6 * kUnit);
+    }
+    EXPECT_EQ(probe(device, "math_probe.cl", "probe_exp", {{0.0f, -0.0f, -kSmallest}}, 1, {}, defines)[0],
+              (Column{1, 1, 1}));
+  });
+}
+
+TEST(MathKernels, LogarithmOfOneMinusAtEveryDegree) {
+  const MathFunction log2 = log2OneMinusFunction();
+  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+    const MathErrors errors = measureErrors(device, log2, defines);
+    EXPECT_LE(errors.max_relative, degrees.log2_error);
+    if (degrees.log2 == kUsual.log2) {
+      EXPECT_LE(errors.max_ulp, 2.1);
+    }
+  });
+}
+
+TEST(MathKernels, LogarithmOfOneMinusAtItsEnds) {
+  for (const int lanes : kAllLanes) {
+    EXPECT_EQ(run(lanes, "probe_log2_one_minus", {{0.0f, 1.0f, 1.5f, kLargest, kInfinity, kNaN}}),
+              (Column{0, -1e9f, -1e9f, -1e9f, -1e9f, -1e9f}))
+        << lanes << " lanes";
+    // A denormal gives a denormal or 0.
+    EXPECT_LE(std::abs(run(lanes, "probe_log2_one_minus", {{kSmallest}})[0]), 2 * kSmallest);
+  }
+}
+
+TEST(MathKernels, PowerOfOneMinusAtEveryDegree) {
+  const MathFunction pow = powOneMinusFunction();
+  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+    double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
+    forEachResult(device, pow, defines, [&](const double* a, float result, double exact) {
+      // What the logarithm is off and the rounding of its product with n move the exponent.
+      const double moved = -exponentOf(a[0], a[1]) * (degrees.log2_error + kUnit);
+      const double bound = std::exp2(moved) * (1 + degrees.exp2_error) - 1;
+      worst = std::max(worst, std::abs(result - exact) / exact / bound);
+      worst_absolute = std::max(worst_absolute, std::abs(result - exact));
+    });
+    EXPECT_LE(worst, 1);
+    if (degrees.log2 == kUsual.log2) {
+      EXPECT_LE(worst_absolute, 2.6 * kUnit);
+    }
+  });
 }
 
 TEST(MathKernels, PowerOfOneMinusAtItsEnds) {
-  const Column t{0, 0, 0, 1, 1, 1, 1, 0.5f, kSmallest};
-  const Column n{0, 1, 1e6f, 0, 1, 1e-6f, 1e6f, 0, 1e6f};
+  const Column t{0, 0, 0, 0, 1, 1, 1, 1, 1, 0.5f, kSmallest, kBelowOne, 0.5f, 1.5f, kInfinity, kNaN};
+  const Column n{0, 1, 1e6f, kLargest, 0, 1, 1e-6f, 1e6f, kLargest, 0, 1e6f, 1e6f, kInfinity, 1, 1, 1};
   for (const int lanes : kAllLanes)
-    EXPECT_EQ(run(lanes, "probe_pow_one_minus", {t, n}), (Column{1, 1, 1, 1, 0, 0, 0, 1, 1}))
+    EXPECT_EQ(run(lanes, "probe_pow_one_minus", {t, n}),
+              (Column{1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0}))
         << lanes << " lanes";
 }
 
+TEST(MathKernels, PowersBelowTheNormalsNeverReturn) {
+  Column t, n;
+  for (const float exponent : {2.0f, 32.0f, 1e4f, 1e6f}) {
+    for (const float value : sweep(1e-6f, 1.0f, 40000)) {
+      if (exponentOf(value, exponent) > -125) continue;
+      t.push_back(value);
+      n.push_back(exponent);
+    }
+  }
+  for (const int lanes : kAllLanes)
+    for (const float y : run(lanes, "probe_pow_one_minus", {t, n}))
+      ASSERT_TRUE(y >= 0 && y < 2.1f * kSmallestNormal) << lanes << " lanes";
+}
+
+TEST(MathKernels, DegreesThatAreNotThereAreRefused) {
+  for (const auto& [log2, exp2] : {std::pair{8, 1}, {8, 8}, {2, 6}, {10, 6}})
+    EXPECT_THROW(
+        probe(deviceWithLanes(1), "math_probe.cl", "probe_exp2", {{0}}, 1, {}, degreeDefines(log2, exp2)),
+        MachineError);
+}
+
 TEST(MathKernels, NothingButFiniteColoursLeave) {
-  const Column c{0, 1, 0x1p100f, kLargest, kInfinity, kNaN, -kNaN};
+  const Column c{0, 1, 0x1p100f, kLargest, kInfinity, kNaN, -kNaN, -1, -kLargest, -kInfinity};
   for (const int lanes : kAllLanes)
     EXPECT_EQ(run(lanes, "probe_finite_color", {c}),
-              (Column{0, 1, 0x1p100f, kLargest, kLargest, kLargest, kLargest}))
+              (Column{0, 1, 0x1p100f, kLargest, kLargest, kLargest, kLargest, -1, -kLargest, -kLargest}))
         << lanes << " lanes";
 }
 

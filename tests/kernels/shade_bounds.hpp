@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "kernels/shared.h"
 #include "raster/gbuffer.hpp"
 #include "scene/scene.hpp"
 
@@ -166,9 +167,9 @@ inline Interval shadeInterval(const Scene& scene, const GBuffer& gbuffer, std::s
       seen = seen + strength * (reflected + Interval{light_ambient, light_ambient});
     }
   }
-  // Sums of positive terms: one rounding a light, and a dozen for the products with the light and the
-  // material.
-  seen = seen.widened((double(scene.lights.size()) + 12) * kUnit);
+  // Sums of positive terms: one rounding a light, but no more than kernels/long_sum.clh states, and a dozen for
+  // the products with the light and the material.
+  seen = seen.widened((std::min(double(scene.lights.size()), double(kSumBlock) + 4) + 12) * kUnit);
   const double distance = scene.fog.radial ? glm::length(position) : -position.z;
   const Interval share = fogInterval(scene.fog, scene.fog.density[c], distance);
   const Interval fogged{std::max(1 - share.high - kUnit, 0.0), 1 - share.low + kUnit};

@@ -5,7 +5,6 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <random>
 #include <vector>
@@ -53,12 +52,6 @@ inline Scene rectangleScene(float half_width, float half_height, float z,
                           {{0, 1, 2}, {0, 2, 3}}, material);
   scene.meshes[0].uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
   return scene;
-}
-
-inline std::vector<std::uint32_t> allObjects(const Scene& scene) {
-  std::vector<std::uint32_t> objects(scene.objects.size());
-  std::iota(objects.begin(), objects.end(), 0u);
-  return objects;
 }
 
 /// At the origin, looking along −z.

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -16,48 +15,11 @@
 #include "scene/gltf.hpp"
 #include "scene/obj.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_fault.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
 namespace {
-
-/// What is wrong with a scene that a loader let through; empty: nothing.
-std::string fault(const Scene& scene) {
-  for (const Mesh& mesh : scene.meshes) {
-    const std::size_t count = mesh.positions.size();
-    if (mesh.triangles.empty()) return "a mesh without triangles";
-    if (mesh.normals.size() != count) return "normals are missing";
-    if (!mesh.uvs.empty() && mesh.uvs.size() != count) return "as many uvs as vertices expected";
-    if (!mesh.colors.empty() && mesh.colors.size() != count) return "as many colours as vertices expected";
-    if (mesh.triangle_materials.size() != mesh.triangles.size()) return "a material a triangle expected";
-    for (const glm::uvec3& t : mesh.triangles) {
-      if (t.x >= count || t.y >= count || t.z >= count) return "a triangle's vertex is out of range";
-    }
-    for (const std::uint32_t material : mesh.triangle_materials) {
-      if (material >= scene.materials.size()) return "a triangle's material is out of range";
-    }
-    for (const glm::vec3& p : mesh.positions) {
-      if (!std::isfinite(p.x + p.y + p.z)) return "a position is not finite";
-    }
-    for (const glm::vec3& n : mesh.normals) {
-      // A unit vector rounded to float: each component is off by 2^-24 at most, so the length by less than
-      // 2^-23.
-      if (!(std::abs(glm::length(glm::dvec3(n)) - 1) < 1.0 / (1 << 23))) return "a normal is not unit";
-    }
-  }
-  for (const Material& material : scene.materials) {
-    for (const TextureUse& use : {material.diffuse_map, material.emission_map, material.alpha_map}) {
-      if (use.texture >= static_cast<int>(scene.textures.size())) return "a texture is out of range";
-    }
-  }
-  for (const Texture& texture : scene.textures) {
-    if (texture.levels.empty()) return "a texture was not decoded";
-  }
-  for (const Object& object : scene.objects) {
-    if (object.mesh >= scene.meshes.size()) return "an object's mesh is out of range";
-  }
-  return "";
-}
 
 /// How loading a file ended.
 struct Ending {
@@ -79,7 +41,7 @@ Ending loadHere(const std::string& path) {
   } catch (const std::exception& error) {
     return {false, '?', error.what()};
   }
-  return {false, 'S', fault(scene)};
+  return {false, 'S', test::sceneFault(scene)};
 }
 
 /// Loads in a child process, so that a crash is reported with the file's name and the other files are still
@@ -294,6 +256,18 @@ TEST(MalformedMeshes, BinaryJunkAsObjIsRefused) {
   EXPECT_EQ(loadInChild(folder.path().string()).kind, 'I') << "a folder";
   EXPECT_EQ(loadInChild(folder / "missing.obj").kind, 'I');
   EXPECT_EQ(loadInChild(folder / "missing.glb").kind, 'I');
+}
+
+TEST(MalformedMeshes, ANameTooLongForTheSystemIsThatOfAMissingFile) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "file.obj";
+  const std::string name(5000, 'n'), triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+  writeBytes(path, "mtllib " + name + "\n" + triangle);
+  EXPECT_EQ(loadInChild(path).kind, 'S');
+  writeBytes(path, "mtllib file.obj\nnewmtl red\nmap_Kd " + name + "\n" + triangle);
+  const Ending ending = loadInChild(path);
+  EXPECT_EQ(ending.kind, 'I');
+  EXPECT_NE(ending.words.find("there is no picture"), std::string::npos) << ending.words;
 }
 
 }  // namespace

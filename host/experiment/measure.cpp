@@ -1,0 +1,136 @@
+#include "experiment/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <thread>
+
+#include "experiment/truth.hpp"
+#include "reference/reference.hpp"
+
+namespace luciole {
+namespace {
+
+/// The chosen device, opened for each lane width that a variant asks for.
+using Devices = std::map<int, Device>;
+
+Devices openDevices(const std::string& selector, const std::vector<VariantGroup>& groups) {
+  Devices devices;
+  const std::string name = selector.substr(0, selector.find(",lanes="));
+  for (const VariantGroup& group : groups)
+    for (const Variant& variant : group.variants)
+      if (const auto [place, is_new] = devices.try_emplace(variant.lanes); is_new)
+        openDevice(fmt::format("{},lanes={}", name, variant.lanes), place->second);
+  return devices;
+}
+
+/// "model name" of Linux's /proc/cpuinfo; "unknown" where there is none.
+std::string processorName() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(std::min(line.find(": ") + 2, line.size()));
+  return "unknown";
+}
+
+/// Milliseconds of the stages that count for the group.
+double countedTime(const Stats& stats, const VariantGroup& group) {
+  double sum = 0;
+  for (const auto& [stage, milliseconds] : stats.stages) {
+    const bool counts = group.stages.empty() ? stage != "compile kernels"
+                                             : std::find(group.stages.begin(), group.stages.end(), stage) !=
+                                                   group.stages.end();
+    if (counts) sum += milliseconds;
+  }
+  return sum;
+}
+
+/// What the runs of a group share.
+struct Bench {
+  const Scene& scene;
+  const BenchSettings& settings;
+  Devices& devices;
+  const GBuffer& gbuffer;
+};
+
+/// Makes a variant's picture.
+Image runVariant(const Bench& bench, const VariantGroup& group, const Variant& variant, Stats& stats) {
+  RenderSettings picture = bench.settings.picture;
+  picture.shade = variant.shade;
+  picture.samples = variant.samples;
+  Device& device = bench.devices.at(variant.lanes);
+  return group.samples ? renderScene(device, bench.scene, picture, stats)
+                       : shadeGBuffer(device, bench.scene, bench.gbuffer, picture, stats);
+}
+
+void report(const BenchSettings& settings, const std::string& what, std::size_t done, std::size_t total) {
+  if (settings.on_progress) settings.on_progress(what, done, total);
+}
+
+Truth makeTruth(const Bench& bench, const VariantGroup& group) {
+  ReferenceSettings settings{.shadows = group.shadows};
+  settings.on_progress = [&](std::size_t done, std::size_t total) {
+    report(bench.settings, group.name + ": the truth", done, total);
+  };
+  const RenderSettings& picture = bench.settings.picture;
+  if (group.samples) return sampledTruth(bench.scene, cameraView(picture.camera, picture.size), settings);
+  return {referenceShade(bench.scene, bench.gbuffer, settings)};
+}
+
+BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
+  const Truth truth = makeTruth(bench, group);
+  BenchGroup result{.group = group, .truth_error = truth.own_error};
+  // More than 0, for shares of it in a black picture.
+  result.brightest = std::max(*std::max_element(truth.image.pixels.begin(), truth.image.pixels.end()),
+                              std::numeric_limits<float>::min());
+  const std::size_t count = group.variants.size(), repeats = std::size_t(bench.settings.repeats);
+  // A first run compiles and gives the picture, which no later one changes.
+  for (const Variant& variant : group.variants) {
+    report(bench.settings, group.name + ": errors", result.rows.size(), count);
+    Stats ignored;
+    const Image picture = runVariant(bench, group, variant, ignored);
+    result.rows.push_back({.variant = variant, .error = compareImages(truth.image, picture)});
+  }
+  std::vector<std::vector<double>> times(count);
+  for (std::size_t run = 0; run < repeats * count; ++run) {
+    report(bench.settings, group.name + ": times", run, repeats * count);
+    const std::size_t round = run / count, place = (run + round) % count;
+    Stats stats;
+    runVariant(bench, group, group.variants[place], stats);
+    times[place].push_back(countedTime(stats, group));
+  }
+  std::vector<SpeedAndError> figures;
+  for (std::size_t i = 0; i < count; ++i) {
+    result.rows[i].time = summarize(times[i]);
+    figures.push_back({result.rows[i].time, result.rows[i].error.mean_abs});
+  }
+  const std::vector<bool> front = paretoFront(figures);
+  for (std::size_t i = 0; i < count; ++i) result.rows[i].front = front[i];
+  return result;
+}
+
+}  // namespace
+
+BenchResult runBench(const Scene& scene, const BenchSettings& settings) {
+  Device usual;
+  openDevice(settings.device, usual);
+  const std::vector<VariantGroup> groups = benchVariants(scene, usual.description.lanes);
+  Devices devices = openDevices(settings.device, groups);
+  Stats stats;
+  const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings.picture, stats);
+  BenchResult result{
+      .machine = {processorName(), std::thread::hardware_concurrency(), usual.description, __VERSION__},
+      .scene = scene.name,
+      .triangles = stats.triangles,
+      .lights = stats.lights,
+      .width = gbuffer.width,
+      .height = gbuffer.height,
+      .repeats = settings.repeats};
+  const Bench bench{scene, settings, devices, gbuffer};
+  for (const VariantGroup& group : groups) result.groups.push_back(measureGroup(bench, group));
+  return result;
+}
+
+}  // namespace luciole

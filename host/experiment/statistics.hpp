@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+namespace luciole {
+
+/// Milliseconds of repeated runs.
+struct Timing {
+  double median = 0;
+  double spread = 0;  ///< half the distance between the quartiles: half of the runs lie about this near
+};
+
+/// Quartiles lie between the runs next to them, by linear interpolation of ranks. There is one run at least.
+Timing summarize(std::vector<double> milliseconds);
+
+/// What a row of the experiment cost and how wrong it was.
+struct SpeedAndError {
+  Timing time;
+  double error = 0;  ///< mean absolute
+};
+
+/// An error as tables print it, two digits: errors that print alike count as equal.
+double printedError(double error);
+
+/// Which rows are on the Pareto front: those that no other row beats. One row beats another where it is
+/// nearer to the truth and not slower by more than both their spreads, or as near and faster by more than
+/// both. Nobody beats a row in a circle, so the front is never empty.
+std::vector<bool> paretoFront(const std::vector<SpeedAndError>& rows);
+
+}  // namespace luciole

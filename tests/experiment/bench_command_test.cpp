@@ -1,0 +1,123 @@
+// luciole bench as a person types it, on a picture of few pixels.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/run_program.hpp"
+#include "error.hpp"
+#include "experiment/gnuplot.hpp"
+
+namespace luciole::test {
+namespace {
+
+bool gnuplotIsThere() {
+  try {
+    requireGnuplot();
+    return true;
+  } catch (const MachineError&) {
+    return false;
+  }
+}
+
+/// A power, an exponential, a shadow and some lights to cull. The shadow is a spot's, whose maps are small.
+constexpr const char* kScene = R"({
+  "camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0]}, "background": [0.2, 0.3, 0.4],
+  "fog": {"mode": "exp2", "density": 0.05, "color": [0.2, 0.3, 0.4]},
+  "materials": {"stone": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
+  "objects": [{"primitive": "plane", "scale": 10, "material": "stone"},
+              {"primitive": "sphere", "translate": [0, 1, 0], "material": "stone"}],
+  "lights": [{"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "cutoff": 40, "exponent": 4, "shadow": true}],
+  "light_fields": [{"count": 50, "seed": 3, "min": [-4, 0, -4], "max": [4, 2, 4], "range": 0.8, "intensity": 0.5}]
+})";
+
+const nlohmann::json& defaultRow(const nlohmann::json& group) {
+  for (const auto& row : group["rows"])
+    if (row["default"]) return row;
+  throw std::logic_error("no default in " + group["name"].get<std::string>());
+}
+
+TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
+  const TemporaryFolder folder;
+  writeText(folder / "scene.json", kScene);
+  const Outcome outcome =
+      runLine(folder, "luciole bench scene.json --size 64x36 --repeats 1 --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");  // no progress line but on a terminal
+  EXPECT_NE(outcome.out.find("samples 1 (default)"), std::string::npos) << outcome.out;
+  const auto json = nlohmann::json::parse(readText(folder / "out.json"));
+  ASSERT_EQ(json["groups"].size(), 3u);
+  std::set<std::string> settings;
+  for (const auto& group : json["groups"]) {
+    int on_front = 0;
+    for (const auto& row : group["rows"]) {
+      settings.insert(group["name"].get<std::string>() + row["settings"].dump());
+      EXPECT_GT(row["milliseconds"]["median"], 0) << row;
+      EXPECT_GT(row["error"]["steps"]["max"], 0) << row;
+      EXPECT_GE(row["error"]["steps"]["max"], row["error"]["steps"]["mean"]) << row;
+      on_front += row["front"].get<bool>();
+    }
+    EXPECT_GE(on_front, 1) << group["name"];
+  }
+  // Each row is another variant: 16 of shading, 9 of shadows, 5 of samples.
+  EXPECT_EQ(settings.size(), 16u + 9 + 5);
+
+  const auto& shading = json["groups"][0];
+  const auto& usual = defaultRow(shading)["error"]["steps"];
+  for (const auto& row : shading["rows"]) {
+    const auto& error = row["error"]["steps"];
+    if (row["name"] == "no culling") {
+      EXPECT_EQ(error, usual);  // culling changes no bit
+    }
+    // The default polynomials are nearer than float rounds, so that other degrees, and lanes, only deal
+    // roundings anew: the mean of 6912 of them scatters by 1 / sqrt(6912), 1.2 % of one; four times that is
+    // allowed.
+    EXPECT_GE(error["mean"].get<double>(), 0.95 * usual["mean"].get<double>()) << row["name"];
+  }
+
+  const auto& samples = json["groups"][2]["rows"];
+  EXPECT_LT(samples[4]["error"]["steps"]["mean"], samples[0]["error"]["steps"]["mean"]);
+  // The truth must be nearer to itself than what it judges.
+  EXPECT_LT(json["groups"][2]["truth_error_steps"], samples[4]["error"]["steps"]["mean"]);
+}
+
+TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
+  if (!gnuplotIsThere()) GTEST_SKIP() << "needs gnuplot (gnuplot-nox)";
+  const TemporaryFolder folder;
+  std::string scene = kScene;
+  scene.replace(scene.find("\"shadow\": true"), 14, "\"shadow\": false");
+  writeText(folder / "bare.json", scene);
+  const Outcome outcome =
+      runLine(folder, "luciole bench bare.json --size 64x36 --repeats 1 --json - --plot out.svg");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);  // nothing else on standard output
+  ASSERT_EQ(json["groups"].size(), 2u);
+  EXPECT_NE(readText(folder / "out.svg").find("</svg>"), std::string::npos);
+}
+
+/// Expects one line on standard error that mentions `what`, this exit status, and no file.
+void refuse(const std::string& line, int status, const std::string& what) {
+  const TemporaryFolder folder;
+  const Outcome outcome = runLine(folder, line);
+  EXPECT_EQ(outcome.status, status) << line << "\n" << outcome.err;
+  EXPECT_TRUE(isOneLine(outcome.err)) << line << "\n" << outcome.err;
+  EXPECT_NE(outcome.err.find(what), std::string::npos) << line << "\n" << outcome.err;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << line;
+}
+
+TEST(BenchCommand, RefusesWrongInputBeforeItMeasures) {
+  refuse("luciole bench none.json", 2, "none.json");
+  refuse("luciole bench --json none/out.json", 2, "none/out.json: no such folder");
+  refuse("luciole bench --plot none/out.svg", 2, "none/out.svg: no such folder");
+  refuse("luciole bench --plot out.png", 2, "out.png: expected a .svg file");
+  refuse("luciole bench --size 64", 2, "--size");
+  refuse("luciole bench --repeats 0", 2, "--repeats");
+  refuse("luciole bench --device no-such-device", 2, "no-such-device");
+}
+
+TEST(BenchCommand, AMissingGnuplotIsSaidBeforeAnythingIsMeasured) {
+  refuse("PATH=/none luciole bench --plot out.svg", 3, "apt-get install gnuplot-nox");
+}
+
+}  // namespace
+}  // namespace luciole::test

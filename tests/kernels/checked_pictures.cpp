@@ -1,0 +1,90 @@
+// Small pictures of random scenes, for a checking OpenCL runtime to watch the kernels that light them.
+//
+//   checked_pictures NUMBER    one of the pictures, any number
+//   checked_pictures MISTAKE   a kernel of mistake_probe.cl
+#include <charconv>
+#include <glm/gtc/matrix_transform.hpp>
+#include <string_view>
+#include <utility>
+
+#include "kernels/probe.hpp"
+#include "kernels/random_scene.hpp"
+#include "raster/view.hpp"
+#include "render/lighting.hpp"
+#include "scene/primitives.hpp"
+
+namespace luciole::test {
+namespace {
+
+constexpr int kWidth = 33, kHeight = 17;  // tiles cut on both sides
+
+/// Buffers with the host's bytes in place look unwritten to Oclgrind 21.10, so they are copied.
+void openChecked(int lanes, Device& device) {
+  openDevice(",lanes=" + std::to_string(lanes), device);
+  device.shares_host_memory = false;
+}
+
+/// A box and a wall, for shadows.
+void addObjects(const Camera& camera, Scene& scene) {
+  scene.materials.emplace_back();
+  scene.meshes.push_back(makePrimitive({.kind = PrimitiveKind::kBox}, 0));
+  for (const auto& [depth, side] : {std::pair(-8.0, 2.0), std::pair(-25.0, 20.0)}) {
+    const glm::dmat4 place = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, depth));
+    scene.objects.push_back({0, camera.camera_to_world * glm::scale(place, glm::dvec3(side)), -1});
+  }
+}
+
+/// Twelve in a row have every fog with rows of 1, 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for
+/// unwritten where a function is called with it), every shadow method with each of them, and either choice of
+/// all else.
+///
+/// One a process: where a buffer takes the place of a smaller one that was freed, Oclgrind 21.10 takes its
+/// end for unwritten. That is also why nothing is rendered here, which lights more than one G-buffer.
+void lightPicture(unsigned number) {
+  constexpr int kLanes[] = {1, 4, 8};
+  Device device;
+  openChecked(kLanes[number % 3], device);
+  Random random(number);
+  Camera camera = randomCamera(random);
+  camera.orthographic = number % 4 == 3;
+  Scene scene = randomScene(camera, 12, random);
+  for (std::size_t i = 0; i < scene.lights.size(); i += 2) scene.lights[i].shadow = true;
+  scene.fog = randomFog(static_cast<FogMode>(number / 3 % 4), random);
+  addObjects(camera, scene);
+  ShadeSettings settings;
+  settings.shadows = static_cast<ShadowMethod>((number + number / 3) % 3);
+  settings.shadow_layer = true;
+  settings.shadow_size = 64;
+  settings.blinn = number % 2 == 1;
+  settings.culling = number % 4 == 1 ? Culling::kNone : Culling::kTiles;
+
+  const GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  const View view = cameraView(camera, {kWidth, kHeight});
+  const FeatureSet features = neededFeatures(scene, camera, {.specular = true, .emission = true}, settings);
+  Lighting lighting;
+  Stats stats;
+  prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
+  lightGBuffer(device, lighting, features, gbuffer, true, stats);
+}
+
+void makeMistake(const char* mistake) {
+  Device device;
+  openChecked(1, device);
+  cl::Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), mistake, "");
+  const cl::Buffer values = deviceBuffer(device, 16 * sizeof(float));
+  kernel.setArg(0, values);
+  launch(device, kernel, 16, 16);
+}
+
+}  // namespace
+}  // namespace luciole::test
+
+int main(int, char** words) {
+  const std::string_view word = words[1];
+  unsigned number = 0;
+  if (std::from_chars(word.data(), word.data() + word.size(), number).ec == std::errc()) {
+    luciole::test::lightPicture(number);
+  } else {
+    luciole::test::makeMistake(words[1]);
+  }
+}

@@ -1,0 +1,83 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "cl/kernel_source.hpp"
+#include "cli/run_program.hpp"
+
+// The kernels under Oclgrind, which interprets them and reports data races between work-items, decisions on
+// values that were never written, and accesses outside a buffer.
+namespace luciole::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+struct Checked {
+  std::string reports;
+  std::set<std::string> kernels;  ///< those that ran
+};
+
+/// Runs tests/kernels/checked_pictures.cpp under Oclgrind. Left to the compiler's passes, as PoCL's are,
+/// kernels hold vectors of which some elements are never written nor used, and Oclgrind 21.10 with LLVM 14
+/// doesn't know those.
+Checked runChecked(const std::string& argument) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      runLine(folder,
+              "oclgrind --data-races --uninitialized --check-api --inst-counts --max-errors 3 --log reports"
+              " --build-options -disable-llvm-passes '" LUCIOLE_CHECKED_PICTURES "' " +
+                  argument);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  Checked checked{readText(folder / "reports"), {}};
+  const std::regex ran("for kernel '(\\w+)'");
+  for (std::sregex_iterator it(outcome.out.begin(), outcome.out.end(), ran), end; it != end; ++it)
+    checked.kernels.insert((*it)[1]);
+  return checked;
+}
+
+std::set<std::string> allKernels() {
+  std::set<std::string> names;
+  const std::regex declared("__kernel void (\\w+)");
+  for (const EmbeddedFile& file : embeddedKernels()) {
+    const std::string text(file.text);
+    for (std::sregex_iterator it(text.begin(), text.end(), declared), end; it != end; ++it)
+      names.insert((*it)[1]);
+  }
+  return names;
+}
+
+#define LUCIOLE_NEEDS_OCLGRIND()                                \
+  if (std::system("command -v oclgrind > /dev/null 2>&1") != 0) \
+  GTEST_SKIP() << "needs Oclgrind (apt install oclgrind)"
+
+TEST(CheckedKernels, AMistakeIsReported) {
+  LUCIOLE_NEEDS_OCLGRIND();
+  EXPECT_THAT(runChecked("race").reports, HasSubstr("data race"));
+  EXPECT_THAT(runChecked("uninitialized").reports, HasSubstr("uninitialized value"));
+  EXPECT_THAT(runChecked("overrun").reports, HasSubstr("Invalid write"));
+}
+
+class CheckedPictures : public testing::TestWithParam<int> {};
+
+TEST_P(CheckedPictures, HaveNoReports) {
+  LUCIOLE_NEEDS_OCLGRIND();
+  const Checked checked = runChecked(std::to_string(GetParam()));
+  EXPECT_EQ(checked.reports, "");
+  EXPECT_THAT(checked.kernels, IsSupersetOf({"shade", "count_in_range"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 12), testing::PrintToStringParamName());
+
+TEST(CheckedKernels, APictureRunsThemAll) {
+  LUCIOLE_NEEDS_OCLGRIND();
+  EXPECT_EQ(runChecked("0").kernels, allKernels());
+}
+
+}  // namespace
+}  // namespace luciole::test
