@@ -18,6 +18,7 @@
 #include <system_error>
 
 #include "error.hpp"
+#include "image/exr_header.hpp"
 #include "image/image.hpp"
 #include "image/write_file.hpp"
 
@@ -169,6 +170,7 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
   if (access(path.c_str(), R_OK) != 0)
     throw InputError(fmt::format("{}: can't read: {}", name, systemReason()));
   const std::uint64_t file_size = std::filesystem::file_size(path, error);
+  checkExrHeader(path, name, kMaxSide);
 
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);

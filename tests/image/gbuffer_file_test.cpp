@@ -345,5 +345,39 @@ TEST(GBufferFile, APromiseThatTheFileDoesNotKeepTakesNoMemory) {
   EXPECT_LT(peakMemory() - before, 10 * kPlane);
 }
 
+/// A header of these attributes (name, type, value), and nothing after it.
+std::string exrHeader(const std::vector<std::array<std::string, 3>>& attributes) {
+  std::string bytes("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  for (const auto& [name, type, value] : attributes) {
+    const auto length = std::int32_t(value.size());
+    bytes += name + '\0' + type + '\0' + std::string(reinterpret_cast<const char*>(&length), 4) + value;
+  }
+  return bytes + '\0';
+}
+
+TEST(GBufferFile, AttributesThatPromiseTooMuchAreRefusedBeforeThereIsRoomForThem) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "header.exr";
+  const auto numbers = [](std::vector<std::int32_t> values) {
+    return std::string(reinterpret_cast<const char*>(values.data()), 4 * values.size());
+  };
+  const auto expectRefused = [&](const std::string& bytes, const char* why) {
+    test::writeText(path, bytes);
+    const std::size_t before = peakMemory();
+    EXPECT_THAT([&] { readGBuffer(path); }, ThrowsMessage<InputError>(HasSubstr(why)));
+    // What OpenImageIO takes for its own start, and far below the 2 GB that each of these asks for.
+    EXPECT_LT(peakMemory() - before, std::size_t(200) << 20) << why;
+  };
+  std::string text = exrHeader({{"comments", "string", "abcd"}});
+  text.replace(text.find("abcd") - 4, 4, numbers({0x7869701f}));
+  expectRefused(text, "'comments'");
+  expectRefused(exrHeader({{"dataWindow", "box2i", numbers({0, -1000000000, 15, 1000000000})}}), "a side");
+  expectRefused(exrHeader({{"dataWindow", "box2i", numbers({0, 5, 15, 4})}}), "a side");
+  expectRefused(exrHeader({{"tiles", "tiledesc", numbers({100000000, 16}) + '\0'}}), "tiles of");
+  expectRefused(exrHeader({{"preview", "preview", numbers({30000, 30000})}}), "a preview");
+  expectRefused(exrHeader({{"chunkCount", "int", numbers({0x7fffffff})}}), "chunks");
+  expectRefused(exrHeader({{"comments", "string", "abcd"}}).substr(0, 20), "ends inside its header");
+}
+
 }  // namespace
 }  // namespace luciole
