@@ -40,7 +40,7 @@ struct Source {
 std::string faultOf(Source& source, const std::string& attribute, std::int64_t length,
                     std::int64_t largest_side) {
   if (length < 0 || length > source.left())
-    return fmt::format("{} bytes for '{}', and {} are left", length, attribute, source.left());
+    return fmt::format("an attribute of {} bytes, and {} are left", length, source.left());
   if (attribute == "dataWindow" && length == 16) {
     const auto window = source.number<std::array<std::int32_t, 4>>();
     for (int axis = 0; axis < 2; ++axis) {
