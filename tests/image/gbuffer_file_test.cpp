@@ -373,6 +373,11 @@ TEST(GBufferFile, AttributesThatPromiseTooMuchAreRefusedBeforeThereIsRoomForThem
   expectRefused(text, "an attribute of");
   expectRefused(exrHeader({{"dataWindow", "box2i", numbers({0, -1000000000, 15, 1000000000})}}), "a side");
   expectRefused(exrHeader({{"dataWindow", "box2i", numbers({0, 5, 15, 4})}}), "a side");
+  expectRefused(exrHeader({{"lines", "lineOrder", "abcd"}}), "doesn't fill");
+  expectRefused(
+      exrHeader({{"channels", "chlist", "R" + std::string(17, '\0') + "G" + std::string(17, '\0')}}),
+      "doesn't fill");
+  expectRefused(exrHeader({{"names", "stringvector", numbers({3}) + "ab"}}), "doesn't fill");
   expectRefused(exrHeader({{"tiles", "tiledesc", numbers({100000000, 16}) + '\0'}}), "tiles of");
   expectRefused(exrHeader({{"preview", "preview", numbers({30000, 30000})}}), "a preview");
   expectRefused(exrHeader({{"chunkCount", "int", numbers({0x7fffffff})}}), "chunks");
