@@ -1,5 +1,6 @@
 #include "render/fog_cull.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,16 +48,14 @@ TEST(FogCull, WithoutFogOrDensityNothingIsHidden) {
   EXPECT_TRUE(std::isinf(fogLimit(fog, 1)));
 }
 
-constexpr const char* kRow =
-    R"({"camera": {"eye": [0, 0, 0], "target": [0, 0, -1], "far": 500}, "background": [%],
-  "fog": {"mode": "exp", "density": 0.5, "color": [0.5, 0.6, 0.7]},
-  "lights": [{"type": "directional", "direction": [0, 0, -1]}],
-  "objects": [{"primitive": "box", "translate": [0, 0, -3]}, {"primitive": "box", "translate": [0, 5, -100]},
-              {"primitive": "box", "translate": [0, 2, -10]}]})";
-
-std::string rowScene(const std::string& background) {
-  std::string json = kRow;
-  return json.replace(json.find('%'), 1, background);
+std::string rowScene(const char* background) {
+  return fmt::format(
+      R"({{"camera": {{"eye": [0, 0, 0], "target": [0, 0, -1], "far": 500}}, "background": [{}],
+  "fog": {{"mode": "exp", "density": 0.5, "color": [0.5, 0.6, 0.7]}},
+  "lights": [{{"type": "directional", "direction": [0, 0, -1]}}],
+  "objects": [{{"primitive": "box", "translate": [0, 0, -3]}}, {{"primitive": "box", "translate": [0, 5, -100]}},
+              {{"primitive": "box", "translate": [0, 2, -10]}}]}})",
+      background);
 }
 
 TEST(FogCull, HidesOnlyObjectsWhollyBeyondTheLimit) {

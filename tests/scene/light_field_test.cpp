@@ -56,7 +56,8 @@ TEST(LightField, LooksMoveNoLightAndSeedsDo) {
   LightField field;
   field.count = 3;
   const std::vector<Light> plain = expand(field);
-  field.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  field.colors.emplace_back(1, 0, 0);
+  field.colors.emplace_back(0, 1, 0);
   field.range = {2, 9};
   EXPECT_EQ(expand(field)[2].position, plain[2].position);
   field.seed = 1;
