@@ -32,7 +32,21 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+inline bool programIsThere(const std::string& name) {
+  return std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0;
+}
+
 }  // namespace luciole::test
+
+/// For tests that run another program. The launcher installs them for tests; where everything is demanded
+/// ($LUCIOLE_SHARED is set, as CI does), one that is missing is a failure.
+#define LUCIOLE_NEEDS_PROGRAM(name, package)                                                \
+  do {                                                                                      \
+    if (!luciole::test::programIsThere(name)) {                                             \
+      if (std::getenv("LUCIOLE_SHARED")) FAIL() << "no " name " (apt install " package ")"; \
+      GTEST_SKIP() << "needs " name " (apt install " package ")";                           \
+    }                                                                                       \
+  } while (false)
 
 /// For tests that need the shared scenes. Where $LUCIOLE_SHARED says where they are, missing files are a
 /// failure; without them anywhere, the test says that it was skipped.

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
+#include <iterator>
+#include <optional>
 #include <random>
-#include <unordered_set>
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
@@ -48,32 +48,29 @@ void showProgress(std::size_t done, std::size_t pixels) {
   std::fflush(stderr);
 }
 
-ReferenceSettings referenceSettings(const ReferenceOptions& options) {
+/// rays: of the scene, if shadows are asked for.
+ReferenceSettings referenceSettings(const ReferenceOptions& options, const std::optional<RayScene>& rays) {
   ReferenceSettings settings;
   settings.blinn = options.model == "blinn-phong";
-  settings.shadows = options.shadows == "rays";
+  settings.shadow_rays = rays ? &*rays : nullptr;
   settings.shadow_samples = options.shadow_samples;
   if (!options.quiet && isatty(STDERR_FILENO)) settings.on_progress = showProgress;
   return settings;
 }
 
+std::optional<RayScene> shadowRays(const ReferenceOptions& options, const Scene& scene,
+                                   const Camera& camera) {
+  if (options.shadows != "rays") return std::nullopt;
+  return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3]));
+}
+
 /// All pixels of a picture row by row, or `count` of them, no one twice, in the same order.
 std::vector<glm::ivec2> choosePixels(const glm::ivec2& size, std::size_t count, std::uint64_t seed) {
-  const std::size_t all = std::size_t(size.x) * size.y;
-  std::vector<std::size_t> places;
-  if (count == 0 || count >= all) {
-    places.resize(all);
-    std::iota(places.begin(), places.end(), std::size_t(0));
-  } else {
-    std::mt19937_64 random(seed);
-    std::unordered_set<std::size_t> chosen;
-    while (chosen.size() < count) chosen.insert(random() % all);
-    places.assign(chosen.begin(), chosen.end());
-    std::sort(places.begin(), places.end());
-  }
-  std::vector<glm::ivec2> pixels;
-  for (const std::size_t place : places) pixels.emplace_back(int(place % size.x), int(place / size.x));
-  return pixels;
+  const std::vector<glm::ivec2> all = allPixels(size);
+  if (count == 0) return all;
+  std::vector<glm::ivec2> chosen;
+  std::sample(all.begin(), all.end(), std::back_inserter(chosen), count, std::mt19937_64(seed));
+  return chosen;
 }
 
 /// Channels R G B, and `sampled` where not every pixel is.
@@ -102,9 +99,9 @@ std::string requestText(const ReferenceOptions& options, const RenderSettings& s
 
 /// The rectangle that two make together, if they make one.
 std::optional<Crop> unite(const Crop& a, const Crop& b) {
-  const Crop both{std::min(a.x, b.x), std::min(a.y, b.y), 0, 0};
+  const int left = std::min(a.x, b.x), top = std::min(a.y, b.y);
   const int right = std::max(a.x + a.width, b.x + b.width), bottom = std::max(a.y + a.height, b.y + b.height);
-  const Crop box{both.x, both.y, right - both.x, bottom - both.y};
+  const Crop box{left, top, right - left, bottom - top};
   const std::int64_t common_width = std::max(0, std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x));
   const std::int64_t common_height =
       std::max(0, std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y));
@@ -185,8 +182,9 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
     return checkGBuffer(scene, view, gbuffer, pixels);
   });
   const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
+    const auto rays = shadowRays(options, scene, settings.camera);
     return referencePicture(scene, view, settings.shading, settings.samples, pixels,
-                            referenceSettings(options));
+                            referenceSettings(options, rays));
   });
   Piece piece{makePicture(view.crop_size, pixels, colors, settings.exposure), window};
   if (earlier) piece = joinPieces(*earlier, piece);
@@ -210,8 +208,10 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(options.gbuffer); });
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
-  const std::vector<glm::dvec3> colors = timed(
-      stats, "shade", [&] { return referencePixels(scene, gbuffer, pixels, referenceSettings(options)); });
+  const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
+    const auto rays = shadowRays(options, scene, gbuffer.camera);
+    return referencePixels(scene, gbuffer, pixels, referenceSettings(options, rays));
+  });
   timed(stats, "write", [&] {
     writeImage(makePicture(size, pixels, colors, options.exposure), options.output,
                pictureMetadata(stats.command, nullptr));

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "experiment/truth.hpp"
@@ -70,7 +71,11 @@ void report(const BenchSettings& settings, const std::string& what, std::size_t 
 }
 
 Truth makeTruth(const Bench& bench, const VariantGroup& group) {
-  ReferenceSettings settings{.shadows = group.shadows};
+  ReferenceSettings settings;
+  std::optional<RayScene> rays;
+  if (group.shadows)
+    settings.shadow_rays =
+        &rays.emplace(buildShadowRays(bench.scene, glm::dvec3(bench.gbuffer.camera.camera_to_world[3])));
   settings.on_progress = [&](std::size_t done, std::size_t total) {
     report(bench.settings, group.name + ": the truth", done, total);
   };

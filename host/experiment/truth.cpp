@@ -12,9 +12,7 @@ constexpr int kSamples[2] = {32, 48};
 }  // namespace
 
 Truth sampledTruth(const Scene& scene, const View& view, const ReferenceSettings& settings) {
-  std::vector<glm::ivec2> pixels;
-  for (int y = 0; y < view.crop_size.y; ++y)
-    for (int x = 0; x < view.crop_size.x; ++x) pixels.emplace_back(x, y);
+  const std::vector<glm::ivec2> pixels = allPixels(view.crop_size);
   Image sets[2], mean{view.crop_size.x, view.crop_size.y, {"R", "G", "B"}, {}};
   for (int set = 0; set < 2; ++set) {
     ReferenceSettings of_set = settings;

@@ -108,9 +108,9 @@ Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> obj
   return geometry;
 }
 
-const PlacedObject& objectOfTriangle(const Geometry& geometry, std::uint32_t triangle) {
+const PlacedObject& objectOfTriangle(const std::vector<PlacedObject>& objects, std::uint32_t triangle) {
   return *(std::upper_bound(
-               geometry.objects.begin(), geometry.objects.end(), triangle,
+               objects.begin(), objects.end(), triangle,
                [](std::uint32_t t, const PlacedObject& object) { return t < object.first_triangle; }) -
            1);
 }

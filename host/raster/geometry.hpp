@@ -64,7 +64,7 @@ ScreenVertex toScreen(const glm::dvec4& clip, const View& view);
 Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view);
 
 /// The object that a triangle belongs to, by the triangle's number among all.
-const PlacedObject& objectOfTriangle(const Geometry& geometry, std::uint32_t triangle);
+const PlacedObject& objectOfTriangle(const std::vector<PlacedObject>& objects, std::uint32_t triangle);
 
 /// The material of a mesh's triangle.
 inline const Material& materialOf(const Scene& scene, const PlacedObject& object, std::uint32_t in_mesh) {

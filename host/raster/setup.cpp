@@ -138,7 +138,7 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
   tbb::parallel_for(std::size_t(0), runs, [&](std::size_t run) {
     std::uint32_t number = std::uint32_t(run * kRun);
     const std::uint32_t end = std::uint32_t(std::min<std::size_t>(geometry.triangle_count, (run + 1) * kRun));
-    const PlacedObject* object = &objectOfTriangle(geometry, number);
+    const PlacedObject* object = &objectOfTriangle(geometry.objects, number);
     for (; number < end; ++object) {
       const std::size_t object_end = std::size_t(object->first_triangle) + object->mesh->triangles.size();
       for (; number < end && number < object_end; ++number)

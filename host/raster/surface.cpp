@@ -68,7 +68,7 @@ ViewPlane viewPlane(const View& view) {
 Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t triangle,
                     const ViewPlane& plane) {
   Surface surface;
-  const PlacedObject& object = objectOfTriangle(geometry, triangle);
+  const PlacedObject& object = objectOfTriangle(geometry.objects, triangle);
   const std::uint32_t in_mesh = triangle - object.first_triangle;
   surface.object = &object;
   surface.material = &materialOf(scene, object, in_mesh);

@@ -74,7 +74,7 @@ Ray viewRay(const ViewPlane& plane, const glm::dvec2& at) {
 }
 
 std::array<glm::dvec3, 3> cornersOf(const Geometry& geometry, std::uint32_t triangle) {
-  const PlacedObject& object = objectOfTriangle(geometry, triangle);
+  const PlacedObject& object = objectOfTriangle(geometry.objects, triangle);
   const glm::uvec3 corners = object.mesh->triangles[triangle - object.first_triangle];
   const glm::dvec3* positions = geometry.positions.data() + object.first_vertex;
   return {positions[corners[0]], positions[corners[1]], positions[corners[2]]};
@@ -84,7 +84,7 @@ std::array<glm::dvec3, 3> cornersOf(const Geometry& geometry, std::uint32_t tria
 /// and single-sided, a hole at this pixel, or not between the near and the far plane.
 std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
                             const glm::ivec2& pixel) {
-  const PlacedObject& object = objectOfTriangle(tracer.geometry, triangle);
+  const PlacedObject& object = objectOfTriangle(tracer.geometry.objects, triangle);
   const std::uint32_t in_mesh = triangle - object.first_triangle;
   const Material& material = materialOf(tracer.scene, object, in_mesh);
   const auto [a, b, c] = cornersOf(tracer.geometry, triangle);

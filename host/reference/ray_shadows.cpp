@@ -23,15 +23,8 @@ struct Blockers {
   std::vector<bool> varying_alpha;
   std::vector<PlacedObject> objects;  ///< in world space
 
-  const PlacedObject& objectOf(std::uint32_t triangle) const {
-    const auto after = std::upper_bound(
-        objects.begin(), objects.end(), triangle,
-        [](std::uint32_t wanted, const PlacedObject& object) { return wanted < object.first_triangle; });
-    return *(after - 1);
-  }
-
   bool passesThrough(const RayMeeting& meeting) const {
-    const PlacedObject& object = objectOf(meeting.triangle);
+    const PlacedObject& object = objectOfTriangle(objects, meeting.triangle);
     const std::uint32_t in_mesh = meeting.triangle - object.first_triangle;
     const glm::uvec3 corners = object.mesh->triangles[in_mesh];
     return liesInPlane(object, corners, meeting.from) || isHoleAt(object, in_mesh, corners, meeting);

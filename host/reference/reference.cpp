@@ -7,9 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <optional>
-
-#include "reference/ray_shadows.hpp"
 
 namespace luciole {
 namespace {
@@ -102,9 +99,8 @@ std::uint32_t pixelSeed(const glm::ivec2& pixel) {
   return bits ^ bits >> 13;
 }
 
-/// rays: null without shadows.
 glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
-                      const RayScene* rays, const ReferenceSettings& settings) {
+                      const ReferenceSettings& settings) {
   const std::size_t stride = gbuffer.pixels(), place = gbuffer.index(pixel.x, pixel.y);
   const glm::dvec3 view_position = triple(gbuffer.position, stride, place);
   if (!std::isfinite(view_position.z)) return scene.background;
@@ -119,9 +115,9 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
   point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
   const std::uint32_t seed = pixelSeed(pixel + gbuffer.crop_origin);
   Visibility visibility;
-  if (rays)
+  if (settings.shadow_rays)
     visibility = [&](const Light& light) {
-      return lightVisibility(*rays, light, point.position, settings.shadow_samples, seed);
+      return lightVisibility(*settings.shadow_rays, light, point.position, settings.shadow_samples, seed);
     };
   const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, settings.blinn, visibility);
   return settings.fog ? referenceFog(scene.fog, gbuffer.camera, point.position, radiance) : radiance;
@@ -167,17 +163,23 @@ glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& 
   return seen;
 }
 
+std::vector<glm::ivec2> allPixels(const glm::ivec2& size) {
+  std::vector<glm::ivec2> pixels;
+  pixels.reserve(std::size_t(size.x) * size.y);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) pixels.emplace_back(x, y);
+  return pixels;
+}
+
 std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings) {
-  std::optional<RayScene> rays;
-  if (settings.shadows) rays = buildShadowRays(scene, eyePosition(gbuffer.camera));
   std::vector<glm::dvec3> colors(pixels.size());
   std::size_t done = 0;
   std::mutex progress;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
-      colors[i] = shadePixel(scene, gbuffer, pixels[i], rays ? &*rays : nullptr, settings);
+      colors[i] = shadePixel(scene, gbuffer, pixels[i], settings);
     if (!settings.on_progress) return;
     const std::lock_guard lock(progress);
     done += range.size();
@@ -191,9 +193,7 @@ float pictureValue(double channel) {
 }
 
 Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings) {
-  std::vector<glm::ivec2> pixels;
-  for (int y = 0; y < gbuffer.height; ++y)
-    for (int x = 0; x < gbuffer.width; ++x) pixels.emplace_back(x, y);
+  const std::vector<glm::ivec2> pixels = allPixels({gbuffer.width, gbuffer.height});
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
   for (const glm::dvec3& color : referencePixels(scene, gbuffer, pixels, settings))
     for (int c = 0; c < 3; ++c) image.pixels.push_back(pictureValue(color[c]));

@@ -7,6 +7,7 @@
 
 #include "image/image.hpp"
 #include "raster/gbuffer.hpp"
+#include "reference/ray_shadows.hpp"
 #include "scene/scene.hpp"
 
 // The lighting equations in double precision, written from the textbooks and independently of kernels/: what
@@ -34,13 +35,16 @@ glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& 
                         const glm::dvec3& radiance);
 
 struct ReferenceSettings {
-  bool blinn = false;       ///< Blinn's N·H instead of Phong's R·V
-  bool fog = true;          ///< false for vertices, whose colours meet the fog as pixels
-  bool shadows = false;     ///< cast by the scene's objects, decided by rays
+  bool blinn = false;                     ///< Blinn's N·H instead of Phong's R·V
+  bool fog = true;                        ///< false for vertices, whose colours meet the fog as pixels
+  const RayScene* shadow_rays = nullptr;  ///< of this scene, by buildShadowRays; null: nothing casts a shadow
   int shadow_samples = 64;  ///< rays from a pixel to a light that has a size; one to a light without
   /// Called now and then, if set.
   std::function<void(std::size_t done, std::size_t pixels)> on_progress = {};
 };
+
+/// Every pixel of a picture, row by row.
+std::vector<glm::ivec2> allPixels(const glm::ivec2& size);
 
 /// Some pixels of a G-buffer shaded so, linear R G B each; (x, y) counted from its top left. On all cores;
 /// the result depends neither on their number nor on which other pixels are asked for.

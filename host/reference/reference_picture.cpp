@@ -9,9 +9,7 @@ std::vector<glm::vec3> lightVertices(const Scene& scene, const std::vector<std::
   ReferenceSettings clear = settings;
   clear.fog = false;
   const GBuffer vertices = gatherVertices(scene, objects, view, {true, true, true});
-  std::vector<glm::ivec2> places;
-  for (int y = 0; y < vertices.height; ++y)
-    for (int x = 0; x < vertices.width; ++x) places.emplace_back(x, y);
+  const std::vector<glm::ivec2> places = allPixels({vertices.width, vertices.height});
   const std::vector<glm::dvec3> colors = referencePixels(scene, vertices, places, clear);
   std::vector<glm::vec3> of_vertex(vertices.pixels());
   for (std::size_t i = 0; i < places.size(); ++i)

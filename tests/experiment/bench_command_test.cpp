@@ -5,20 +5,9 @@
 #include <set>
 
 #include "cli/run_program.hpp"
-#include "error.hpp"
-#include "experiment/gnuplot.hpp"
 
 namespace luciole::test {
 namespace {
-
-bool gnuplotIsThere() {
-  try {
-    requireGnuplot();
-    return true;
-  } catch (const MachineError&) {
-    return false;
-  }
-}
 
 /// A power, an exponential, a shadow and some lights to cull. The shadow is a spot's, whose maps are small.
 constexpr const char* kScene = R"({
@@ -82,7 +71,7 @@ TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
 }
 
 TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
-  if (!gnuplotIsThere()) GTEST_SKIP() << "needs gnuplot (gnuplot-nox)";
+  LUCIOLE_NEEDS_PROGRAM("gnuplot", "gnuplot-nox");
   const TemporaryFolder folder;
   std::string scene = kScene;
   scene.replace(scene.find("\"shadow\": true"), 14, "\"shadow\": false");

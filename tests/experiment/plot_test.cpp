@@ -6,6 +6,7 @@
 #include "error.hpp"
 #include "experiment/gnuplot.hpp"
 #include "experiment/made_up_result.hpp"
+#include "shared_files.hpp"
 
 namespace luciole::test {
 namespace {
@@ -15,13 +16,7 @@ using testing::HasSubstr;
 
 class Plot : public testing::Test {
  protected:
-  void SetUp() override {
-    try {
-      requireGnuplot();
-    } catch (const MachineError& error) {
-      GTEST_SKIP() << error.what();
-    }
-  }
+  void SetUp() override { LUCIOLE_NEEDS_PROGRAM("gnuplot", "gnuplot-nox"); }
 };
 
 TEST(LogTicks, ArePowersOfTenOverDecadesAndFinerOverLess) {

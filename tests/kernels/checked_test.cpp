@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -52,12 +51,8 @@ std::set<std::string> allKernels() {
   return names;
 }
 
-#define LUCIOLE_NEEDS_OCLGRIND()                                \
-  if (std::system("command -v oclgrind > /dev/null 2>&1") != 0) \
-  GTEST_SKIP() << "needs Oclgrind (apt install oclgrind)"
-
 TEST(CheckedKernels, AMistakeIsReported) {
-  LUCIOLE_NEEDS_OCLGRIND();
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
   EXPECT_THAT(runChecked("race").reports, HasSubstr("data race"));
   EXPECT_THAT(runChecked("uninitialized").reports, HasSubstr("uninitialized value"));
   EXPECT_THAT(runChecked("overrun").reports, HasSubstr("Invalid write"));
@@ -66,7 +61,7 @@ TEST(CheckedKernels, AMistakeIsReported) {
 class CheckedPictures : public testing::TestWithParam<int> {};
 
 TEST_P(CheckedPictures, HaveNoReports) {
-  LUCIOLE_NEEDS_OCLGRIND();
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
   const Checked checked = runChecked(std::to_string(GetParam()));
   EXPECT_EQ(checked.reports, "");
   EXPECT_THAT(checked.kernels, IsSupersetOf({"shade", "count_in_range"}));
@@ -75,7 +70,7 @@ TEST_P(CheckedPictures, HaveNoReports) {
 INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 12), testing::PrintToStringParamName());
 
 TEST(CheckedKernels, APictureRunsThemAll) {
-  LUCIOLE_NEEDS_OCLGRIND();
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
   EXPECT_EQ(runChecked("0").kernels, allKernels());
 }
 

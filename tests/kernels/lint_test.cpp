@@ -11,6 +11,7 @@
 
 #include "kernels/probe.hpp"
 #include "render/features.hpp"
+#include "shared_files.hpp"
 
 // The kernels through a compiler that, unlike an OpenCL runtime's, warns.
 namespace luciole::test {
@@ -20,8 +21,8 @@ std::string findClang() {
   std::vector<std::string> names{"clang"};
   for (int version = 25; version >= 13; --version) names.push_back("clang-" + std::to_string(version));
   for (const std::string& name : names)
-    if (std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0) return name;
-  return "";
+    if (programIsThere(name)) return name;
+  return "clang";
 }
 
 std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'", path.string()); }
@@ -55,12 +56,9 @@ void expectClean(const std::string& clang, const std::string& options) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << options << "\n" << output;
 }
 
-#define LUCIOLE_NEEDS_CLANG(clang) \
-  if (clang.empty()) GTEST_SKIP() << "needs clang, any of 13 to 25 (apt install clang)"
-
 TEST(KernelLint, EachFileAloneWithoutWarningsAtEveryWidth) {
   const std::string clang = findClang();
-  LUCIOLE_NEEDS_CLANG(clang);
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
   const std::string files = filesIn("kernels", {".cl", ".clh", ".h"}) + filesIn("tests/kernels", {".cl"}) +
                             filesIn("tests/cl", {".cl"});
   for (const int lanes : kAllLanes) expectClean(clang, "-DLANES=" + std::to_string(lanes) + files);
@@ -68,7 +66,7 @@ TEST(KernelLint, EachFileAloneWithoutWarningsAtEveryWidth) {
 
 TEST(KernelLint, EachFeatureAloneAndNoneWithoutWarnings) {
   const std::string clang = findClang();
-  LUCIOLE_NEEDS_CLANG(clang);
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
   const std::string files = filesIn("kernels", {".cl"});
   expectClean(clang, featureDefines(FeatureSet{}) + files);
   for (std::size_t i = 0; i < kFeatureCount; ++i) {

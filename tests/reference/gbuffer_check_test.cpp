@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "raster/rasterize.hpp"
+#include "reference/reference.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {
@@ -23,10 +24,8 @@ Seen see(const Scene& scene, glm::ivec2 size) {
 }
 
 GBufferCheck check(const Seen& seen) {
-  std::vector<glm::ivec2> pixels;
-  for (int y = 0; y < seen.gbuffer.height; ++y)
-    for (int x = 0; x < seen.gbuffer.width; ++x) pixels.emplace_back(x, y);
-  return checkGBuffer(seen.scene, seen.view, seen.gbuffer, pixels);
+  return checkGBuffer(seen.scene, seen.view, seen.gbuffer,
+                      allPixels({seen.gbuffer.width, seen.gbuffer.height}));
 }
 
 /// Positions are stored as floats, each coordinate within 2^-24 of itself: 6e-8 of the distance. A normal's

@@ -69,9 +69,7 @@ TEST(Promise, HoldsForGouraudShadingToo) {
   settings.shade.shadows = ShadowMethod::kOff;
   Stats stats;
   const Image ours = renderScene(testDevice(), scene, settings, stats);
-  std::vector<glm::ivec2> pixels;
-  for (int y = 0; y < 180; ++y)
-    for (int x = 0; x < 320; ++x) pixels.emplace_back(x, y);
+  const std::vector<glm::ivec2> pixels = allPixels({320, 180});
   const auto truth =
       referencePicture(scene, cameraView(settings.camera, settings.size), Shading::kGouraud, 1, pixels, {});
   double most = 0, worst = 0;

@@ -156,14 +156,6 @@ TEST(RayShadows, HolesLetLightThrough) {
   EXPECT_EQ(lightVisibility(solid, sun({0, -1, 0}), {-1, 0, 0}, 1, 0), 0);
 }
 
-/// All pixels of a picture.
-std::vector<glm::ivec2> everyPixel(glm::ivec2 size) {
-  std::vector<glm::ivec2> pixels;
-  for (int y = 0; y < size.y; ++y)
-    for (int x = 0; x < size.x; ++x) pixels.emplace_back(x, y);
-  return pixels;
-}
-
 TEST(ReferencePicture, ShadowTakesALightsReflectionAndLeavesItsAmbient) {
   std::string json = kSheet;
   json.replace(json.find(R"("lights": [])"), 12,
@@ -174,8 +166,9 @@ TEST(ReferencePicture, ShadowTakesALightsReflectionAndLeavesItsAmbient) {
   Camera camera = scene.cameras.front();
   camera.camera_to_world = glm::dmat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0.5, 0, 1});
   const View view = cameraView(camera, {9, 5});
-  const auto pixels = everyPixel({9, 5});
-  const auto colors = referencePicture(scene, view, Shading::kPhong, 1, pixels, {.shadows = true});
+  const auto pixels = allPixels({9, 5});
+  const RayScene rays = buildShadowRays(scene, {0, 0.5, 0});
+  const auto colors = referencePicture(scene, view, Shading::kPhong, 1, pixels, {.shadow_rays = &rays});
   const auto unshadowed = referencePicture(scene, view, Shading::kPhong, 1, pixels, {});
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     // The floats of 0.8 are all that rounds.
@@ -189,8 +182,9 @@ TEST(ReferencePicture, ShadowTakesALightsReflectionAndLeavesItsAmbient) {
 TEST(ReferencePicture, SomePixelsAreThoseOfTheWhole) {
   const Scene scene = loadScene(LUCIOLE_SOURCE_DIR "/scenes/cornell.json");
   const View view = cameraView(scene.cameras.front(), {48, 27});
-  const ReferenceSettings settings{.shadows = true, .shadow_samples = 4};
-  const auto whole = referencePicture(scene, view, Shading::kPhong, 2, everyPixel({48, 27}), settings);
+  const RayScene rays = buildShadowRays(scene, glm::dvec3(scene.cameras.front().camera_to_world[3]));
+  const ReferenceSettings settings{.shadow_rays = &rays, .shadow_samples = 4};
+  const auto whole = referencePicture(scene, view, Shading::kPhong, 2, allPixels({48, 27}), settings);
   const std::vector<glm::ivec2> some{{3, 2}, {20, 20}, {47, 26}};
   const auto few = referencePicture(scene, view, Shading::kPhong, 2, some, settings);
   for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(few[i], whole[some[i].y * 48 + some[i].x]);
