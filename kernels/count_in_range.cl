@@ -1,30 +1,20 @@
 // How many lights truly reach each pixel: within range, whatever way the surface faces. For statistics and the light_count
 // layer; shading does not need it.
 #include "falloff.clh"
-#include "features.clh"
 #include "lanes.clh"
 #include "shared.h"
 
-// counts: one float a pixel.
+// list_starts, list: see cull.cl; lists by range alone. counts: one float a pixel.
 __kernel void count_in_range(__global const float *position, uint plane_stride, __global const ShadeLight *lights,
-                             uint light_count, __global const uint *list_starts, __global const uint *list,
-                             __global float *counts) {
+                             uint list_shift, __global const uint *list_starts,
+                             __global const uint *list, __global float *counts) {
   uint first = get_global_id(0) * LANES;
   vec3L p = load_vec3(position + first, plane_stride);
   intL covered = p.z > -INFINITY;
-#if LIGHT_LISTS
-  uint tile = first / kTilePixels;
-  uint entry = list_starts[tile], end = list_starts[tile + 1];
-#else
-  uint entry = 0, end = light_count;
-#endif
+  uint at = LIST_OF_PIXEL(first, list_shift);
   floatL sum = 0.0f;
-  for (; entry < end; ++entry) {
-#if LIGHT_LISTS
+  for (uint entry = list_starts[at]; entry < list_starts[at + 1]; ++entry) {
     __global const ShadeLight *light = lights + list[entry];
-#else
-    __global const ShadeLight *light = lights + entry;
-#endif
     floatL ratio2 = 0.0f;
     if (light->kind != kDirectionalLight) {
       floatL dx = light->position.x - p.x, dy = light->position.y - p.y, dz = light->position.z - p.z;

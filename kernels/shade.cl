@@ -16,12 +16,14 @@
 
 // A row of pixels on its way through the lights.
 typedef struct {
-  vec3L position, normal, to_eye;
+  vec3L position, normal;
+  vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
   vec3L ambient_sum, diffuse_sum, specular_sum;
 #if LONG_SUMS
   LongSum long_ambient, long_diffuse, long_specular;  // the sums above are their open blocks,
   intL terms;                                         // of so many terms
+  uint fullest;                                       // and none of more than this
 #endif
 #if OUTPUT_SHADOW
   floatL visible, shadow_lights;
@@ -29,18 +31,31 @@ typedef struct {
 } Pixels;
 
 #if LIT
-INLINE void add_light(Pixels *pixels, __global const ShadeLight *light, __global const ShadowMap *shadow_maps,
-                      __global const float *shadow_depths, uint blinn) {
-  vec3L to_light;
-  floatL strength = 1.0f;
+// A light and a row of pixels that it may light.
+//
+// ABREAST pairs go through each stage side by side. Inside a pair every operation waits for the one before, some 130 cycles
+// from the light's place to its highlight. A core looks some 200 instructions ahead, which is two pairs: one pair after another
+// it would wait half of the time.
+typedef struct {
+  vec3L to_light;    // from the surface; unit once multiplied by
+  floatL inverse_d;  // 1/m
+  floatL n_dot_l;
+  floatL reach;      // falloff × spot effect
+  floatL strength;   // reach × visibility where the surface faces the light, else 0
+  floatL highlight;
+} Pair;
+
+INLINE void meet_light(Pair *pair, const Pixels *pixels, __global const ShadeLight *light) {
+  pair->reach = 1.0f;
+  pair->inverse_d = 1.0f;
 #if DIRECTIONAL_LIGHTS
 #if PLACED_LIGHTS
   if (light->kind == kDirectionalLight)
 #endif
   {
-    to_light.x = light->position.x;
-    to_light.y = light->position.y;
-    to_light.z = light->position.z;
+    pair->to_light.x = light->position.x;
+    pair->to_light.y = light->position.y;
+    pair->to_light.z = light->position.z;
   }
 #endif
 #if PLACED_LIGHTS
@@ -48,80 +63,120 @@ INLINE void add_light(Pixels *pixels, __global const ShadeLight *light, __global
   if (light->kind != kDirectionalLight)
 #endif
   {
-    to_light.x = light->position.x - pixels->position.x;
-    to_light.y = light->position.y - pixels->position.y;
-    to_light.z = light->position.z - pixels->position.z;
+    vec3L to_light = {light->position.x - pixels->position.x, light->position.y - pixels->position.y,
+                      light->position.z - pixels->position.z};
     floatL d2 = SQUARED_LENGTH(to_light.x, to_light.y, to_light.z);
-    floatL inverse_d = rsqrt_lanes(d2);
-    to_light = scale3(to_light, inverse_d);
-    strength = distance_falloff(light, d2, inverse_d);
+    pair->to_light = to_light;
+    pair->inverse_d = rsqrt_lanes(d2);
+    pair->reach = distance_falloff(light, d2, pair->inverse_d);
 #if SPOT_LIGHTS
 #if POINT_LIGHTS || DIRECTIONAL_LIGHTS
     if (light->kind == kSpotLight)
 #endif
-      strength *= spot_falloff(light, to_light);
+      pair->reach *= spot_falloff(light, to_light, pair->inverse_d);
 #endif
   }
 #endif
-#if LIGHT_AMBIENT
-  add_scaled(&pixels->ambient_sum, light->ambient, strength);
-#if LONG_SUMS
-  pixels->terms += strength > 0.0f ? (intL)(1) : (intL)(0);
-#endif
-#endif
-  floatL n_dot_l = dot3(pixels->normal, to_light);
-  intL facing = n_dot_l > 0.0f;
-  strength = facing ? strength : (floatL)(0.0f);
+  pair->n_dot_l = dot3(pixels->normal, pair->to_light) * pair->inverse_d;
+}
+
 #if SHADOWS
-  if (light->shadow != kNoShadow && any_lane(strength > 0.0f)) {
-    floatL visibility = light_visibility(shadow_maps + light->shadow, shadow_depths, pixels->position, pixels->normal,
-                                         n_dot_l);
+INLINE void cast_shadow(Pair *pair, Pixels *pixels, __global const ShadeLight *light, __global const ShadowMap *shadow_maps,
+                        __global const float *shadow_depths) {
+  if (light->shadow == kNoShadow || !any_lane(pair->strength > 0.0f)) return;
+  floatL visibility = light_visibility(shadow_maps + light->shadow, shadow_depths, pixels->position, pixels->normal,
+                                       pair->n_dot_l);
 #if OUTPUT_SHADOW
-    floatL counted = strength > 0.0f ? (floatL)(1.0f) : (floatL)(0.0f);
-    pixels->visible += visibility * counted;
-    pixels->shadow_lights += counted;
+  floatL counted = pair->strength > 0.0f ? (floatL)(1.0f) : (floatL)(0.0f);
+  pixels->visible += visibility * counted;
+  pixels->shadow_lights += counted;
 #endif
-    strength *= visibility;
-  }
+  pair->strength *= visibility;
+}
 #endif
-  if (!any_lane(strength > 0.0f)) return;
-#if LONG_SUMS && !LIGHT_AMBIENT
-  pixels->terms += strength > 0.0f ? (intL)(1) : (intL)(0);
-#endif
-  add_scaled(&pixels->diffuse_sum, light->diffuse, strength * max_lanes(n_dot_l, (floatL)(0.0f)));
-#if SPECULAR
-  floatL highlight;
+
+INLINE floatL lobe_spread(const Pair *pair, const Pixels *pixels, uint blinn) {
+  floatL spread = 0.0f;
 #if PHONG_SPECULAR
 #if BLINN_SPECULAR
   if (!blinn)
 #endif
-    highlight = phong_lobe(pixels->normal, to_light, n_dot_l, pixels->to_eye, pixels->shininess);
+    spread = phong_spread(pair->to_light, pair->inverse_d, pixels->mirrored_eye);
 #endif
 #if BLINN_SPECULAR
 #if PHONG_SPECULAR
   if (blinn)
 #endif
-    highlight = blinn_lobe(pixels->normal, to_light, pixels->to_eye, pixels->shininess);
+    spread = blinn_spread(pair->to_light, pair->inverse_d, pixels->to_eye, pixels->normal);
 #endif
-  add_scaled(&pixels->specular_sum, light->specular, strength * highlight);
-#endif
+  return spread;
 }
 
 #if LONG_SUMS
-// Closes the blocks that are full. Returns one more than the terms of the fullest block then.
-INLINE uint close_full_blocks(Pixels *pixels) {
+// Closes the blocks that are full.
+INLINE void close_full_blocks(Pixels *pixels) {
   intL full = pixels->terms >= kSumBlock;
   close_block(&pixels->long_ambient, &pixels->ambient_sum, full);
   close_block(&pixels->long_diffuse, &pixels->diffuse_sum, full);
   close_block(&pixels->long_specular, &pixels->specular_sum, full);
   pixels->terms = full ? (intL)(0) : pixels->terms;
-  return (uint)largest_lane(pixels->terms) + 1;
+  pixels->fullest = (uint)largest_lane(pixels->terms);
 }
 #endif
+
+INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight *light) {
+#if LONG_SUMS
+  if (pixels->fullest == kSumBlock) close_full_blocks(pixels);
+  pixels->fullest += 1;
+#if LIGHT_AMBIENT
+  pixels->terms += pair->reach > 0.0f ? (intL)(1) : (intL)(0);
+#else
+  pixels->terms += pair->strength > 0.0f ? (intL)(1) : (intL)(0);
+#endif
+#endif
+#if LIGHT_AMBIENT
+  add_scaled(&pixels->ambient_sum, light->ambient, pair->reach);
+#endif
+  add_scaled(&pixels->diffuse_sum, light->diffuse, pair->strength * max_lanes(pair->n_dot_l, (floatL)(0.0f)));
+#if SPECULAR
+  add_scaled(&pixels->specular_sum, light->specular, pair->strength * pair->highlight);
+#endif
+}
+
+// Adds the first `count` of ABREAST lights, which are all there.
+INLINE void add_lights(Pixels *pixels, __global const ShadeLight *const *light, uint count,
+                       __global const ShadowMap *shadow_maps, __global const float *shadow_depths, uint blinn) {
+  Pair pairs[ABREAST];
+  intL lit = 0;
+  EACH_ABREAST(k) {
+    Pair *pair = pairs + k;
+    meet_light(pair, pixels, light[k]);
+    pair->reach = k < count ? pair->reach : (floatL)(0.0f);
+    pair->strength = pair->n_dot_l > 0.0f ? pair->reach : (floatL)(0.0f);
+#if LIGHT_AMBIENT
+    lit |= pair->reach > 0.0f;
+#endif
+  }
+#if SHADOWS
+  EACH_ABREAST(k) cast_shadow(pairs + k, pixels, light[k], shadow_maps, shadow_depths);
+#endif
+#if !LIGHT_AMBIENT
+  EACH_ABREAST(k) lit |= pairs[k].strength > 0.0f;
+#endif
+  if (!any_lane(lit)) return;
+#if SPECULAR
+  // pow_one_minus_half(), a step at a time.
+  floatL spread[ABREAST], log2_cosine[ABREAST];
+  EACH_ABREAST(k) spread[k] = lobe_spread(pairs + k, pixels, blinn);
+  EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(spread[k]);
+  EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels->shininess, log2_cosine[k]);
+#endif
+  EACH_ABREAST(k) add_pair(pixels, pairs + k, light[k]);
+}
 #endif
 
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
-// list_starts: a tile's entries in `list` are [list_starts[tile], list_starts[tile + 1]); an entry indexes `lights`.
+// list_starts, list: see cull.cl; an entry of the list indexes `lights`.
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
                     __global const float *emission, __global const ShadeLight *lights, __global const uint *list_starts,
@@ -151,7 +206,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
     pixels.long_diffuse = nothing;
     pixels.long_specular = nothing;
     pixels.terms = 0;
-    uint fullest = 0;  // no block has more terms
+    pixels.fullest = 0;
 #endif
     pixels.normal = load_vec3(normal + first, stride);
 #if SPECULAR
@@ -164,24 +219,28 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
     pixels.to_eye = scale3(pixels.position, (floatL)(-1.0f));
 #endif
     pixels.to_eye = normalize_lanes(pixels.to_eye);
+    pixels.mirrored_eye = mirror(pixels.to_eye, pixels.normal);
 #endif
 #if LIGHT_LISTS
-    uint tile = first / kTilePixels;
+    uint tile = LIST_OF_PIXEL(first, frame.list_shift);
     uint entry = list_starts[tile], end = list_starts[tile + 1];
 #else
     uint entry = 0, end = frame.light_count;
 #endif
-    for (; entry < end; ++entry) {
-#if LONG_SUMS
-      if (++fullest > kSumBlock) fullest = close_full_blocks(&pixels);
-#endif
+    for (; entry < end; entry += ABREAST) {
+      __global const ShadeLight *abreast[ABREAST];
+      EACH_ABREAST(k) {
+        uint at = min(entry + k, end - 1);
 #if LIGHT_LISTS
-      add_light(&pixels, lights + list[entry], shadow_maps, shadow_depths, frame.blinn);
-#else
-      add_light(&pixels, lights + entry, shadow_maps, shadow_depths, frame.blinn);
+        at = list[at];
 #endif
+        abreast[k] = lights + at;
+      }
+      add_lights(&pixels, abreast, end - entry, shadow_maps, shadow_depths, frame.blinn);
     }
 #if LONG_SUMS
+    // A block that is just full is closed even where no more lights come: lights that add nothing must not decide it.
+    close_full_blocks(&pixels);
     finish_sum(pixels.long_ambient, &pixels.ambient_sum);
     finish_sum(pixels.long_diffuse, &pixels.diffuse_sum);
     finish_sum(pixels.long_specular, &pixels.specular_sum);
@@ -222,12 +281,12 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
     color.y = covered ? finite_color(seen.y) : color.y;
     color.z = covered ? finite_color(seen.z) : color.z;
   }
-  store_lanes(image + first, color.x);
-  store_lanes(image + first + stride, color.y);
-  store_lanes(image + first + 2 * stride, color.z);
+  stream_lanes(image + first, color.x);
+  stream_lanes(image + first + stride, color.y);
+  stream_lanes(image + first + 2 * stride, color.z);
 #if OUTPUT_SHADOW
   // No shadowed light facing the surface: fully visible.
   floatL share = pixels.visible / max_lanes(pixels.shadow_lights, (floatL)(1.0f));
-  store_lanes(image + first + 3 * stride, pixels.shadow_lights > 0.0f ? share : (floatL)(1.0f));
+  stream_lanes(image + first + 3 * stride, pixels.shadow_lights > 0.0f ? share : (floatL)(1.0f));
 #endif
 }

@@ -15,9 +15,21 @@ struct alignas(16) float4 {
 #endif
 
 enum {
-  kTileSize = 16,                        // pixels a side of a G-buffer tile
-  kTilePixels = kTileSize * kTileSize,   // a tile's rows lie one after another
+  kTileSize = 16,                        // pixels a side of the squares that a G-buffer is stored in
+  kTilePixels = kTileSize * kTileSize,   // in Z order
 };
+
+// Light lists. One serves a square of 4, 8 or 16 pixels a side, 1 << shift pixels with a shift of 4, 6 or 8, which lie in one
+// piece; a G-buffer tile has room for the lists of its sixteen smallest squares. The list of a pixel, by its place in the planes:
+enum { kListsPerTile = 16 };
+#define LIST_OF_PIXEL(place, shift) ((place) / kTilePixels * kListsPerTile + ((place) % kTilePixels >> (shift)))
+
+// What leaves a light out of a list: that it is out of range, and by choice (bits) that no point lies in a spot's cone, and that
+// every point faces away from it, which is right where no light gives ambient light.
+enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
+
+// The tree over the lights has so many children a node.
+enum { kTreeArity = 16 };
 
 enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
@@ -80,7 +92,7 @@ typedef struct {
   uint light_count;
   uint plane_stride;   // floats from a plane to the next of its group
   uint fog_radial;     // 1: fog by distance from the eye, 0: by depth along the view axis
-  uint pad;
+  uint list_shift;     // see LIST_OF_PIXEL
 } ShadeFrame;
 SHARED_SIZE(ShadeFrame, 112);
 

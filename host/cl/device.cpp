@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <chrono>
+#include <memory>
+#include <new>
 #include <optional>
 
+#include "array_memory.hpp"
 #include "cl/kernel_source.hpp"
 #include "error.hpp"
 
@@ -71,6 +75,18 @@ std::optional<std::size_t> parseNumber(std::string_view text) {
   return value;
 }
 
+/// Memory of ours that a buffer lies in.
+struct HostArray {
+  void* memory;
+  std::size_t bytes;
+  explicit HostArray(std::size_t size) : memory(allocateArray(size)), bytes(size) {}
+  HostArray(const HostArray&) = delete;
+  HostArray& operator=(const HostArray&) = delete;
+  ~HostArray() { freeArray(memory, bytes); }
+};
+
+void CL_CALLBACK freeHostArray(cl_mem, void* array) { delete static_cast<HostArray*>(array); }
+
 MachineError deviceError(const cl::Error& error, const std::string& device) {
   if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_HOST_MEMORY ||
       error.err() == CL_OUT_OF_RESOURCES || error.err() == CL_INVALID_BUFFER_SIZE)
@@ -108,6 +124,7 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
 }
 
 void openDevice(const std::string& selector, Device& device) {
+  const auto start = std::chrono::steady_clock::now();
   const std::vector<FoundDevice> found = findDevices();
   std::vector<DeviceDescription> descriptions;
   for (const FoundDevice& one : found) descriptions.push_back(one.description);
@@ -127,24 +144,35 @@ void openDevice(const std::string& selector, Device& device) {
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
+  device.milliseconds_to_open =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-cl::Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
-  return makeKernelFromSource(device, kernelSource(file), name, defines);
+void startDevice(const std::string& selector, Device& device) {
+  device.opening =
+      std::async(std::launch::async, [selector, &device] { openDevice(selector, device); }).share();
 }
 
-cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
-                                const std::string& defines) {
-  const std::string options = fmt::format("-cl-std=CL1.2 -cl-mad-enable -cl-denorms-are-zero -DLANES={} {}",
-                                          device.description.lanes, defines);
-  const std::string key = options + source;
+void awaitDevice(const Device& device) {
+  if (device.opening.valid()) device.opening.get();
+}
+
+namespace {
+
+/// The kernel `name` of the program known by `key`, which is built from the source that source() gives where
+/// it isn't there yet.
+template <class Source>
+cl::Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
+                        Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
-    auto place = device.programs.find(key);
+    const std::string options = fmt::format("-cl-std=CL1.2 -cl-mad-enable -cl-denorms-are-zero -DLANES={} {}",
+                                            device.description.lanes, defines);
+    auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {
-      cl::Program program(device.context, source);
+      cl::Program program(device.context, source());
       program.build({device.device}, options.c_str());
-      place = device.programs.emplace(key, std::move(program)).first;
+      place = device.programs.emplace(options + key, std::move(program)).first;
     }
     return cl::Kernel(place->second, name);
   } catch (const cl::BuildError& error) {
@@ -158,6 +186,17 @@ cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const
   }
 }
 
+}  // namespace
+
+cl::Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
+  return makeKernelOf(device, file, name, defines, [&] { return kernelSource(file); });
+}
+
+cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+                                const std::string& defines) {
+  return makeKernelOf(device, source, name, defines, [&] { return source; });
+}
+
 cl::Buffer inputBuffer(Device& device, const void* data, std::size_t bytes) {
   if (bytes == 0) return deviceBuffer(device, sizeof(cl_float4));
   try {
@@ -169,17 +208,42 @@ cl::Buffer inputBuffer(Device& device, const void* data, std::size_t bytes) {
 }
 
 cl::Buffer deviceBuffer(Device& device, std::size_t bytes) {
+  bytes = std::max(bytes, sizeof(cl_float4));
   try {
-    return cl::Buffer(device.context, CL_MEM_READ_WRITE, std::max(bytes, sizeof(cl_float4)));
+    if (!device.shares_host_memory) return cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes);
+    // Our own memory, for its larger pages.
+    auto array = std::make_unique<HostArray>(bytes);
+    cl::Buffer buffer(device.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, array->memory);
+    buffer.setDestructorCallback(freeHostArray, array.get());
+    array.release();
+    return buffer;
+  } catch (const std::bad_alloc&) {
+    throw MachineError(fmt::format("{}: out of memory", device.description.name));
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
 }
 
-void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes) {
+cl::Buffer outputBuffer(Device& device, void* data, std::size_t bytes) {
+  if (!device.shares_host_memory || bytes == 0) return deviceBuffer(device, bytes);
+  try {
+    return cl::Buffer(device.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, data);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
   if (bytes == 0) return;
   try {
-    device.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, data);
+    if (buffer.getInfo<CL_MEM_HOST_PTR>() == data && offset == 0) {
+      // The buffer is this very memory: mapping it is what makes its content the host's.
+      void* mapped = device.queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_READ, 0, bytes);
+      device.queue.enqueueUnmapMemObject(buffer, mapped);
+      device.queue.finish();
+      return;
+    }
+    device.queue.enqueueReadBuffer(buffer, CL_TRUE, offset, bytes, data);
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
@@ -189,6 +253,13 @@ void launch(Device& device, cl::Kernel& kernel, std::size_t items, std::size_t g
   if (items == 0) return;
   try {
     device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+void finish(Device& device) {
+  try {
     device.queue.finish();
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);

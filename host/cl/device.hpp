@@ -2,6 +2,7 @@
 
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
+#include <future>
 #include <map>
 #include <mutex>
 #include <span>
@@ -26,9 +27,13 @@ struct Device {
   cl::CommandQueue queue;  ///< in order
   bool shares_host_memory = false;
 
-  /// Programs built so far, by options and source; guarded by `programs_mutex`.
+  /// Programs built so far, by options and file or source; guarded by `programs_mutex`.
   std::map<std::string, cl::Program> programs;
   std::mutex programs_mutex;
+
+  /// The thread of startDevice. Last, so that it has ended before anything it works on goes.
+  std::shared_future<void> opening;
+  double milliseconds_to_open = 0;
 };
 
 /// All OpenCL devices of all platforms, in the order the runtime names them. Empty where there is none.
@@ -43,6 +48,13 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
 /// Opens the device that `selector` means, its lanes forced where the selector ends in ",lanes=N".
 /// Throws as selectDevice does, and MachineError if the device fails.
 void openDevice(const std::string& selector, Device& device);
+
+/// The same in a thread of its own. Until awaitDevice() returns, `device` is the thread's.
+void startDevice(const std::string& selector, Device& device);
+
+/// Waits until the device is open. Throws what openDevice() threw. For a device that no thread opens it does
+/// nothing.
+void awaitDevice(const Device& device);
 
 /// The kernel `name` of kernels/`file`, compiled for the device with LANES and the given -D options. A
 /// program is built once a device. Throws MachineError with the compiler's first message.
@@ -63,10 +75,18 @@ cl::Buffer inputBuffer(Device& device, const Container& values) {
 /// A buffer on the device for `bytes` bytes, contents undefined. Throws MachineError where they don't fit.
 cl::Buffer deviceBuffer(Device& device, std::size_t bytes);
 
-/// Copies the buffer's first `bytes` bytes to the host once everything queued is done.
-void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes);
+/// A buffer for `bytes` bytes to write, which readBuffer() brings to `data`; in place where device and host
+/// share memory, so `data` must outlive it.
+cl::Buffer outputBuffer(Device& device, void* data, std::size_t bytes);
 
-/// Queues `items` work-items in groups of `group` (which divides them) and waits.
+/// Copies `bytes` bytes of the buffer, from the byte `offset` on, to the host once everything queued is done.
+void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes,
+                std::size_t offset = 0);
+
+/// Queues `items` work-items in groups of `group` (which divides them).
 void launch(Device& device, cl::Kernel& kernel, std::size_t items, std::size_t group);
+
+/// Waits until everything queued is done.
+void finish(Device& device);
 
 }  // namespace luciole

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "error.hpp"
+#include "experiment/bench.hpp"
 #include "experiment/bench_scene.hpp"
 #include "experiment/gnuplot.hpp"
-#include "experiment/measure.hpp"
 #include "experiment/plot.hpp"
 #include "experiment/report.hpp"
 #include "image/write_file.hpp"
@@ -18,6 +21,7 @@ namespace {
 struct BenchOptions {
   PictureOptions picture;  ///< of which --size, --device and --quiet are options here
   std::string scene, json, plot;
+  std::vector<std::string> only;
   int repeats = 9;
 };
 
@@ -27,11 +31,20 @@ void showProgress(const std::string& what, std::size_t percent) {
   std::fflush(stderr);
 }
 
+bool isPlotted(const std::string& name) {
+  return name == "shading" || name == "shadows" || name == "samples";
+}
+
+std::string joinedNames() { return fmt::format("{}", fmt::join(benchNames(), ", ")); }
+
 void bench(const BenchOptions& options) {
   if (!options.json.empty()) checkPlace(options.json);
   if (!options.plot.empty()) {
     if (!options.plot.ends_with(".svg"))
       throw InputError(fmt::format("--plot {}: expected a .svg file", options.plot));
+    if (!options.only.empty() && std::none_of(options.only.begin(), options.only.end(), isPlotted))
+      throw InputError(fmt::format(
+          "--plot {}: shows shading, shadows and samples, of which --only names none", options.plot));
     checkPlace(options.plot);
     requireGnuplot();
   }
@@ -48,7 +61,11 @@ void bench(const BenchOptions& options) {
       if (percent != shown) showProgress(what, percent);
       shown = percent;
     };
-  const BenchResult result = runBench(scene, settings);
+  BenchChoice choice{.only = options.only,
+                     .named_scene = !options.scene.empty(),
+                     .program = std::filesystem::read_symlink("/proc/self/exe")};
+  if (!options.picture.size.empty()) choice.size = settings.picture.size;
+  const BenchResult result = runBench(scene, settings, choice);
   if (progress) fmt::print(stderr, "\r\x1b[K");
   if (!options.json.empty()) writeTextFile(options.json, benchJson(result));
   if (!options.plot.empty()) writeTextFile(options.plot, benchPlot(result));
@@ -58,15 +75,19 @@ void bench(const BenchOptions& options) {
 }  // namespace
 
 void addBenchCommand(CLI::App& app, CommandContext&) {
-  CLI::App* command = app.add_subcommand("bench", "speed against error: a table with one row a variant");
+  CLI::App* command = app.add_subcommand(
+      "bench", "what everything costs: speed against error, and each stage's speed, in tables");
   auto options = std::make_shared<BenchOptions>();
   command->add_option("SCENE", options->scene,
-                      "what to draw (default: a built-in scene that uses everything)");
+                      "what speed against error and the rasterizer draw (default: built-in scenes)");
+  command->add_option("--only", options->only, "measure this alone (repeatable): " + joinedNames())
+      ->check(CLI::IsMember(benchNames()));
   command->add_option("--json", options->json,
                       "write all figures as JSON (- : standard output, without the table)");
   command->add_option("--plot", options->plot, "write speed against error as an SVG picture (by gnuplot)");
-  command->add_option("--size", options->picture.size, "WxH pixels (default: the scene's, or 1280x720)");
-  command->add_option("--repeats", options->repeats, "timed runs of each variant")
+  command->add_option("--size", options->picture.size,
+                      "WxH pixels of every picture (default: each one's own)");
+  command->add_option("--repeats", options->repeats, "timed runs of each row")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--device", options->picture.device,

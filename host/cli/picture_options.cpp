@@ -1,7 +1,6 @@
 #include "cli/picture_options.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -20,10 +19,6 @@ const std::map<std::string, Aov> kAovs{{"position", Aov::kPosition}, {"normal", 
                                        {"depth", Aov::kDepth},       {"diffuse", Aov::kDiffuse},
                                        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
                                        {"shadow", Aov::kShadow}};
-
-/// Host and device bytes that a pixel takes while it is rendered: visibility, at most 20 G-buffer planes,
-/// colours.
-constexpr double kBytesPerPixel = 130;
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -63,15 +58,6 @@ const Camera& findCamera(const Scene& scene, const std::string& wanted) {
       fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
                   scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
                   names.empty() ? "unnamed" : names));
-}
-
-void checkMemory(glm::ivec2 size) {
-  const double needed = kBytesPerPixel * size.x * size.y;
-  const double machine = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-  if (needed > 0.9 * machine)
-    throw MachineError(
-        fmt::format("a picture of {}x{} pixels needs about {:.0f} GiB of memory, and the machine has {:.0f}",
-                    size.x, size.y, needed / (1 << 30), machine / (1 << 30)));
 }
 
 }  // namespace
@@ -120,6 +106,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(CLI::IsMember({"none", "tiles", "auto"}))
         ->capture_default_str();
     command
+        .add_option("--tile", options.tile,
+                    "pixels a side of the squares that share a light list; never changes the picture")
+        ->check(CLI::IsMember({4, 8, 16}))
+        ->capture_default_str();
+    command
         .add_option("--shadows", options.shadows,
                     "how shadow maps are looked up: the nearest depth, or a soft blend of 16")
         ->check(CLI::IsMember({"off", "hard", "pcf"}))
@@ -147,9 +138,6 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   if (!options.crop.empty()) {
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");
     settings.crop = Crop{crop[0], crop[1], crop[2], crop[3]};
-    checkMemory({crop[2], crop[3]});
-  } else {
-    checkMemory(settings.size);
   }
   settings.samples = options.samples;
   settings.shading = options.shading == "flat"      ? Shading::kFlat
@@ -157,6 +145,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                                                     : Shading::kPhong;
   settings.shade.blinn = options.model == "blinn-phong";
   settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
+  settings.shade.tile_size = options.tile;
   settings.shade.shadows = options.shadows == "off"    ? ShadowMethod::kOff
                            : options.shadows == "hard" ? ShadowMethod::kHard
                                                        : ShadowMethod::kPcf;

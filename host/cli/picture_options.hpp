@@ -19,6 +19,7 @@ struct PictureOptions {
   std::string shading = "phong";
   std::string model = "phong";
   std::string culling = "auto";
+  int tile = ShadeSettings{}.tile_size;
   std::string shadows = "hard";
   std::string aovs;
   double exposure = 0;
@@ -32,7 +33,7 @@ enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
   kModelOptions = 4,   ///< --model, --exposure
-  kShadeOptions = 8,   ///< --culling, --shadows, --aov
+  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --aov
   kDeviceOption = 16,  ///< --device
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);

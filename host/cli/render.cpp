@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <optional>
+
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "error.hpp"
@@ -11,9 +13,10 @@
 namespace luciole {
 namespace {
 
-/// One line that is rewritten while samples come in, on a terminal only.
-void showProgress(int done, int samples) {
-  fmt::print(stderr, "\r{} of {} samples{}", done, samples, done == samples ? "\r\x1b[K" : "");
+/// One line that is rewritten pass by pass, on a terminal only.
+void showProgress(int done, int passes) {
+  fmt::print(stderr, "\r{} % of the picture{}", std::int64_t(100) * done / passes,
+             done == passes ? "\r\x1b[K" : "");
   std::fflush(stderr);
 }
 
@@ -32,14 +35,23 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     Device device;
-    timed(stats, "open device", [&] { openDevice(options->device, device); });
-    stats.device = device.description;
+    startDevice(options->device, device);
     const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path); });
     RenderSettings settings = renderSettings(*options, scene);
-    if (!options->quiet && settings.samples > 1 && isatty(STDERR_FILENO)) settings.on_sample = showProgress;
-    const Image image = renderScene(device, scene, settings, stats);
-    timed(stats, "write",
-          [&] { writeImage(image, options->output, pictureMetadata(context.command_line, &device)); });
+    if (!options->quiet && isatty(STDERR_FILENO)) settings.on_pass = showProgress;
+    const glm::ivec2 size =
+        settings.crop ? glm::ivec2(settings.crop->width, settings.crop->height) : settings.size;
+    std::optional<ImageWriter> writer;
+    const auto write = [&](const Image& rows) {
+      timed(stats, "write", [&] {
+        if (!writer)
+          writer.emplace(options->output, size.x, size.y, rows.channels,
+                         pictureMetadata(context.command_line, &device));
+        writer->write(rows);
+      });
+    };
+    renderBands(device, scene, settings, write, stats);
+    timed(stats, "write", [&] { writer->close(); });
     reportStats(*options, stats);
   });
 }
@@ -88,8 +100,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     Device device;
-    timed(stats, "open device", [&] { openDevice(options->device, device); });
-    stats.device = device.description;
+    startDevice(options->device, device);
     const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path); });
     const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);

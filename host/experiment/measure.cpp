@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
-#include <thread>
 
 #include "experiment/truth.hpp"
 #include "reference/reference.hpp"
@@ -26,14 +24,6 @@ Devices openDevices(const std::string& selector, const std::vector<VariantGroup>
       if (const auto [place, is_new] = devices.try_emplace(variant.lanes); is_new)
         openDevice(fmt::format("{},lanes={}", name, variant.lanes), place->second);
   return devices;
-}
-
-/// "model name" of Linux's /proc/cpuinfo; "unknown" where there is none.
-std::string processorName() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(std::min(line.find(": ") + 2, line.size()));
-  return "unknown";
 }
 
 /// Milliseconds of the stages that count for the group.
@@ -90,7 +80,7 @@ BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
   // More than 0, for shares of it in a black picture.
   result.brightest = std::max(*std::max_element(truth.image.pixels.begin(), truth.image.pixels.end()),
                               std::numeric_limits<float>::min());
-  const std::size_t count = group.variants.size(), repeats = std::size_t(bench.settings.repeats);
+  const std::size_t count = group.variants.size();
   // A first run compiles and gives the picture, which no later one changes.
   for (const Variant& variant : group.variants) {
     report(bench.settings, group.name + ": errors", result.rows.size(), count);
@@ -98,17 +88,15 @@ BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
     const Image picture = runVariant(bench, group, variant, ignored);
     result.rows.push_back({.variant = variant, .error = compareImages(truth.image, picture)});
   }
-  std::vector<std::vector<double>> times(count);
-  for (std::size_t run = 0; run < repeats * count; ++run) {
-    report(bench.settings, group.name + ": times", run, repeats * count);
-    const std::size_t round = run / count, place = (run + round) % count;
-    Stats stats;
-    runVariant(bench, group, group.variants[place], stats);
-    times[place].push_back(countedTime(stats, group));
-  }
+  const auto rounds = runInRounds(count, bench.settings.repeats, group.name + ": times",
+                                  bench.settings.on_progress, [&](std::size_t row) {
+                                    Stats stats;
+                                    runVariant(bench, group, group.variants[row], stats);
+                                    return std::vector{countedTime(stats, group)};
+                                  });
   std::vector<SpeedAndError> figures;
   for (std::size_t i = 0; i < count; ++i) {
-    result.rows[i].time = summarize(times[i]);
+    result.rows[i].time = rounds[i].summary(0);
     figures.push_back({result.rows[i].time, result.rows[i].error.mean_abs});
   }
   const std::vector<bool> front = paretoFront(figures);
@@ -118,24 +106,15 @@ BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
 
 }  // namespace
 
-BenchResult runBench(const Scene& scene, const BenchSettings& settings) {
-  Device usual;
-  openDevice(settings.device, usual);
-  const std::vector<VariantGroup> groups = benchVariants(scene, usual.description.lanes);
+std::vector<BenchGroup> measureVariants(const Scene& scene, const std::vector<VariantGroup>& groups,
+                                        const BenchSettings& settings) {
   Devices devices = openDevices(settings.device, groups);
-  Stats stats;
-  const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings.picture, stats);
-  BenchResult result{
-      .machine = {processorName(), std::thread::hardware_concurrency(), usual.description, __VERSION__},
-      .scene = scene.name,
-      .triangles = stats.triangles,
-      .lights = stats.lights,
-      .width = gbuffer.width,
-      .height = gbuffer.height,
-      .repeats = settings.repeats};
+  Stats ignored;
+  const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings.picture, ignored);
   const Bench bench{scene, settings, devices, gbuffer};
-  for (const VariantGroup& group : groups) result.groups.push_back(measureGroup(bench, group));
-  return result;
+  std::vector<BenchGroup> measured;
+  for (const VariantGroup& group : groups) measured.push_back(measureGroup(bench, group));
+  return measured;
 }
 
 }  // namespace luciole

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/measure.hpp"
+#include "experiment/bench.hpp"
 
 namespace luciole {
 

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
+
+#include "experiment/text_table.hpp"
 
 namespace luciole {
 namespace {
@@ -13,15 +14,19 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSteps = 255;  ///< 8-bit steps of 1
 
-constexpr std::array kColumns{"ms",         "spread",      "max, steps", "mean, steps", "signed, steps",
-                              "max, share", "mean, share", "front"};
-using Cells = std::array<std::string, kColumns.size() + 1>;
+constexpr const char* kColumns[]{"ms",         "spread",      "max, steps", "mean, steps", "signed, steps",
+                                 "max, share", "mean, share", "front"};
+using Cells = std::vector<std::string>;
+
+std::string spreadText(const Repeated& runs) {
+  return fmt::format("± {:.0f} %", runs.median != 0 ? 100 * runs.spread / runs.median : 0);
+}
 
 Cells rowCells(const BenchRow& row, double brightest) {
   const ImageDifference& error = row.error;
   return {row.variant.is_default ? row.variant.name + " (default)" : row.variant.name,
           fmt::format("{:.1f}", row.time.median),
-          fmt::format("± {:.0f} %", 100 * row.time.spread / row.time.median),
+          spreadText(row.time),
           fmt::format("{:.1e}", error.max_abs * kSteps),
           fmt::format("{:.1e}", error.mean_abs * kSteps),
           fmt::format("{:+.1e}", error.mean_signed * kSteps),
@@ -30,47 +35,39 @@ Cells rowCells(const BenchRow& row, double brightest) {
           row.front ? "*" : ""};
 }
 
-/// Characters that a terminal shows of UTF-8 text: all bytes but those that continue one.
-std::size_t shownWidth(const std::string& text) {
-  return std::size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+std::string groupTable(const BenchGroup& group) {
+  std::vector<Cells> lines{{group.group.name}};
+  lines[0].insert(lines[0].end(), std::begin(kColumns), std::end(kColumns));
+  for (const BenchRow& row : group.rows) lines.push_back(rowCells(row, group.brightest));
+  return textTable(lines);
 }
 
-std::string groupTable(const BenchGroup& group) {
-  std::vector<Cells> lines(1);
-  lines[0][0] = group.group.name;
-  std::copy(kColumns.begin(), kColumns.end(), lines[0].begin() + 1);
-  for (const BenchRow& row : group.rows) lines.push_back(rowCells(row, group.brightest));
-  std::array<std::size_t, std::tuple_size_v<Cells>> widths{};
-  for (const Cells& line : lines)
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], shownWidth(line[i]));
-  std::string text;
-  for (std::size_t n = 0; n < lines.size(); ++n) {
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      const std::string blanks(widths[i] - shownWidth(lines[n][i]), ' ');
-      text +=
-          i == 0 ? fmt::format("| {}{} |", lines[n][i], blanks) : fmt::format(" {}{} |", blanks, lines[n][i]);
-    }
-    text += "\n";
-    if (n > 0) continue;
-    for (std::size_t i = 0; i < widths.size(); ++i)
-      text +=
-          i == 0 ? fmt::format("|{:-<{}}|", "", widths[i] + 2) : fmt::format("{:-<{}}:|", "", widths[i] + 1);
-    text += "\n";
+std::string cellText(const SpeedCell& cell, int decimals) {
+  if (const double* value = std::get_if<double>(&cell)) return fmt::format("{:.{}f}", *value, decimals);
+  if (const Repeated* runs = std::get_if<Repeated>(&cell))
+    return fmt::format("{:.{}f} {}", runs->median, decimals, spreadText(*runs));
+  return "";
+}
+
+std::string speedTable(const SpeedTable& table) {
+  std::vector<Cells> lines{{table.name}};
+  for (const SpeedColumn& column : table.columns) lines[0].push_back(column.head);
+  for (const SpeedRow& row : table.rows) {
+    lines.push_back({row.name});
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      lines.back().push_back(cellText(row.cells[i], table.columns[i].decimals));
   }
-  return text;
+  return textTable(lines);
 }
 
 Json settingsJson(const Variant& variant) {
   static constexpr const char* kCulling[] = {"none", "tiles"};
   static constexpr const char* kShadows[] = {"off", "hard", "pcf"};
   const ShadeSettings& shade = variant.shade;
-  return {{"lanes", variant.lanes},
-          {"culling", kCulling[std::size_t(shade.culling)]},
-          {"shadows", kShadows[std::size_t(shade.shadows)]},
-          {"shadow_size", shade.shadow_size},
-          {"log2_degree", shade.log2_degree},
-          {"exp2_degree", shade.exp2_degree},
-          {"samples", variant.samples}};
+  return {{"lanes", variant.lanes},           {"culling", kCulling[std::size_t(shade.culling)]},
+          {"tile", shade.tile_size},          {"shadows", kShadows[std::size_t(shade.shadows)]},
+          {"shadow_size", shade.shadow_size}, {"log2_degree", shade.log2_degree},
+          {"exp2_degree", shade.exp2_degree}, {"samples", variant.samples}};
 }
 
 /// max, mean and signed mean in units of `unit`.
@@ -89,6 +86,25 @@ Json rowJson(const BenchRow& row, double brightest) {
            {{"steps", errorJson(row.error, 1 / kSteps)}, {"relative", errorJson(row.error, brightest)}}}};
 }
 
+Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
+  Json json{{"name", row.name}};
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (const double* value = std::get_if<double>(&row.cells[i])) json[table.columns[i].key] = *value;
+    if (const Repeated* runs = std::get_if<Repeated>(&row.cells[i]))
+      json[table.columns[i].key] = {{"median", runs->median}, {"spread", runs->spread}};
+  }
+  return json;
+}
+
+constexpr const char* kErrorsExplained =
+    "\nErrors are in 8-bit steps (1/255) of linear light; shares are of the truth's brightest value.\n"
+    "front *: no other row has a lower mean error, as printed, without being slower by more than both "
+    "spreads,\n"
+    "nor the same one while being faster by more than both.\n"
+    "The truth is kept in 32-bit floats, and so are G-buffers, which have no other encoding to compare.\n"
+    "All shadow maps together fit in 512 MiB: where many lights cast shadows, larger sizes are halved "
+    "until they do.\n";
+
 }  // namespace
 
 std::string benchTable(const BenchResult& result) {
@@ -103,16 +119,12 @@ std::string benchTable(const BenchResult& result) {
       text += fmt::format(" Its own mean error is about {:.1e} steps.", group.truth_error * kSteps);
     text += "\n\n" + groupTable(group);
   }
+  if (!result.groups.empty()) text += kErrorsExplained;
+  for (const SpeedTable& table : result.speed)
+    text += fmt::format("\n{}: {}.\n\n{}", table.name, table.measured, speedTable(table));
   text += fmt::format(
-      "\nms: median of {} runs, in rounds of every variant once; spread: half the distance between the "
-      "quartiles.\n"
-      "Errors are in 8-bit steps (1/255) of linear light; shares are of the truth's brightest value.\n"
-      "front *: no other row has a lower mean error, as printed, without being slower by more than both "
-      "spreads,\n"
-      "nor the same one while being faster by more than both.\n"
-      "The truth is kept in 32-bit floats, and so are G-buffers, which have no other encoding to compare.\n"
-      "All shadow maps together fit in 512 MiB: where many lights cast shadows, larger sizes are halved "
-      "until they do.\n",
+      "\nms: median of {} runs, in rounds of every row once; spread, or ±: half the distance between the "
+      "quartiles.\n",
       result.repeats);
   return text;
 }
@@ -132,7 +144,8 @@ std::string benchJson(const BenchResult& result) {
             {"scene", {{"name", result.scene}, {"triangles", result.triangles}, {"lights", result.lights}}},
             {"image", {{"width", result.width}, {"height", result.height}}},
             {"repeats", result.repeats},
-            {"groups", Json::array()}};
+            {"groups", Json::array()},
+            {"speed", Json::array()}};
   for (const BenchGroup& group : result.groups) {
     Json rows = Json::array();
     for (const BenchRow& row : group.rows) rows.push_back(rowJson(row, group.brightest));
@@ -141,6 +154,11 @@ std::string benchJson(const BenchResult& result) {
                               {"brightest", group.brightest},
                               {"truth_error_steps", group.truth_error * kSteps},
                               {"rows", std::move(rows)}});
+  }
+  for (const SpeedTable& table : result.speed) {
+    Json rows = Json::array();
+    for (const SpeedRow& row : table.rows) rows.push_back(speedRowJson(table, row));
+    json["speed"].push_back({{"name", table.name}, {"measured", table.measured}, {"rows", std::move(rows)}});
   }
   return json.dump(2) + "\n";
 }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "experiment/measure.hpp"
+#include "experiment/bench.hpp"
 
 namespace luciole {
 

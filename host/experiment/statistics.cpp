@@ -24,9 +24,9 @@ bool beats(const SpeedAndError& a, const SpeedAndError& b) {
 
 }  // namespace
 
-Timing summarize(std::vector<double> milliseconds) {
-  std::sort(milliseconds.begin(), milliseconds.end());
-  return {quantile(milliseconds, 0.5), (quantile(milliseconds, 0.75) - quantile(milliseconds, 0.25)) / 2};
+Repeated summarize(std::vector<double> runs) {
+  std::sort(runs.begin(), runs.end());
+  return {quantile(runs, 0.5), (quantile(runs, 0.75) - quantile(runs, 0.25)) / 2};
 }
 
 double printedError(double error) { return std::stod(fmt::format("{:.1e}", error)); }

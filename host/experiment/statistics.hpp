@@ -4,18 +4,18 @@
 
 namespace luciole {
 
-/// Milliseconds of repeated runs.
-struct Timing {
+/// A figure that repeated runs gave, mostly milliseconds.
+struct Repeated {
   double median = 0;
   double spread = 0;  ///< half the distance between the quartiles: half of the runs lie about this near
 };
 
 /// Quartiles lie between the runs next to them, by linear interpolation of ranks. There is one run at least.
-Timing summarize(std::vector<double> milliseconds);
+Repeated summarize(std::vector<double> runs);
 
 /// What a row of the experiment cost and how wrong it was.
 struct SpeedAndError {
-  Timing time;
+  Repeated time;
   double error = 0;  ///< mean absolute
 };
 

@@ -14,6 +14,8 @@
 #include "error.hpp"
 #include "image/camera_header.hpp"
 #include "image/oiio.hpp"
+#include "image/picture_file.hpp"
+#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -28,6 +30,9 @@ glm::vec3 load(const Plane& group, std::size_t at, std::size_t stride) {
 void store(Plane& group, std::size_t at, std::size_t stride, glm::vec3 value) {
   for (int c = 0; c < 3; ++c) group[at + c * stride] = value[c];
 }
+
+/// What rounding a unit vector's components, and making it unit in float, leaves of its length at the most.
+constexpr double kUnitError = 1e-6;
 
 bool isFinite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -156,7 +161,12 @@ class Surface {
     if (depth_ >= 0 && !std::isfinite(file_.value(pixel, depth_))) return false;
     position = isThere(position_) ? file_.three(pixel, position_) : unproject(pixel);
     if (!isFinite(position)) return false;
-    if (in_view_space_) return true;
+    if (in_view_space_) {
+      // Ours are unit already and stay to the bit what they were; other programs may have changed them.
+      const double length = glm::length(glm::dvec3(normal));
+      if (std::abs(length - 1) > kUnitError) normal = glm::vec3(glm::dvec3(normal) / length);
+      return true;
+    }
     if (isThere(position_)) position = glm::vec3(world_to_view_ * glm::dvec4(position, 1.0));
     normal = glm::vec3(glm::normalize(glm::dmat3(world_to_view_) * glm::dvec3(normal)));
     return true;
@@ -205,6 +215,30 @@ GBuffer emptyGBuffer(const OIIO::ImageSpec& spec) {
   return gbuffer;
 }
 
+/// Adds a row of pixels, channels as channelNames() says.
+void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
+  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
+  const std::size_t stride = gbuffer.pixels();
+  const auto add = [&](glm::vec3 v) { values.insert(values.end(), {v.x, v.y, v.z}); };
+  for (int x = 0; x < gbuffer.width; ++x) {
+    const std::size_t at = gbuffer.index(x, y);
+    const glm::vec3 position = load(gbuffer.position, at, stride), normal = load(gbuffer.normal, at, stride);
+    // Background has no place in the world; its 0 is told from a surface by N = 0 and Z = +inf.
+    add(isFinite(position) ? glm::vec3(to_world * glm::dvec4(position, 1.0)) : glm::vec3(0.0f));
+    add(glm::vec3(glm::dmat3(to_world) * glm::dvec3(normal)));
+    values.push_back(-position.z);
+    add(position);
+    add(normal);
+    add(load(gbuffer.diffuse, at, stride));
+    if (!gbuffer.specular.empty()) {
+      add(load(gbuffer.specular, at, stride));
+      values.push_back(gbuffer.specular[at + 3 * stride]);
+    }
+    if (!gbuffer.ambient.empty()) add(load(gbuffer.ambient, at, stride));
+    if (!gbuffer.emission.empty()) add(load(gbuffer.emission, at, stride));
+  }
+}
+
 }  // namespace
 
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata) {
@@ -222,38 +256,25 @@ void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadat
   for (const auto& [name, value] : metadata) spec.attribute(name, value);
   writeCamera(gbuffer.camera, gbuffer.picture_size, spec);
 
-  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
-  const std::size_t stride = gbuffer.pixels();
+  PictureFile file(path, spec);
+  // Some rows at a time: all of them together would take more memory than the G-buffer.
+  constexpr int kRows = 64;
   std::vector<float> values;
-  values.reserve(std::size_t(gbuffer.width) * gbuffer.height * spec.nchannels);
-  const auto add = [&](glm::vec3 v) { values.insert(values.end(), {v.x, v.y, v.z}); };
-  for (int y = 0; y < gbuffer.height; ++y) {
-    for (int x = 0; x < gbuffer.width; ++x) {
-      const std::size_t at = gbuffer.index(x, y);
-      const glm::vec3 position = load(gbuffer.position, at, stride),
-                      normal = load(gbuffer.normal, at, stride);
-      // Background has no place in the world; its 0 is told from a surface by N = 0 and Z = +inf.
-      add(isFinite(position) ? glm::vec3(to_world * glm::dvec4(position, 1.0)) : glm::vec3(0.0f));
-      add(glm::vec3(glm::dmat3(to_world) * glm::dvec3(normal)));
-      values.push_back(-position.z);
-      add(position);
-      add(normal);
-      add(load(gbuffer.diffuse, at, stride));
-      if (!gbuffer.specular.empty()) {
-        add(load(gbuffer.specular, at, stride));
-        values.push_back(gbuffer.specular[at + 3 * stride]);
-      }
-      if (!gbuffer.ambient.empty()) add(load(gbuffer.ambient, at, stride));
-      if (!gbuffer.emission.empty()) add(load(gbuffer.emission, at, stride));
-    }
+  for (int y = 0; y < gbuffer.height; y += kRows) {
+    const int end = std::min(y + kRows, gbuffer.height);
+    values.clear();
+    for (int row = y; row < end; ++row) addRow(gbuffer, row, values);
+    file.write(values.data(), end - y);
   }
-  writePicture(path, spec, values.data());
+  file.close();
 }
 
 GBuffer readGBuffer(const std::string& path) {
   const auto input = openPicture(path, path);
   const OIIO::ImageSpec spec = input->spec();
   Pixels file{path, spec.width, std::size_t(spec.width) * spec.height, spec.channelnames, {}};
+  constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3;
+  requireMemory(double(file.count) * (spec.nchannels + kGroupChannels) * sizeof(float), path);
   file.values = std::make_unique_for_overwrite<float[]>(file.count * spec.nchannels);
   readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
 

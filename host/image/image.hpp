@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,11 +28,31 @@ Image readImage(const std::string& path);
 std::string readAttribute(const std::string& path, const std::string& name);
 
 /// Writes by the extension. Integer formats (png, tga, jpg, bmp, ppm) take the R, G, B channels (and A: png,
-/// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B. Others
-/// that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
-/// The file appears whole or not at all (written beside, then renamed). "-" writes a PNG to standard output.
+/// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B.
+/// Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
+/// The file appears whole or not at all (see OutputFile). "-" writes a PNG to standard output.
 /// Throws InputError (unknown extension, no such folder, read-only folder) or MachineError (disk full).
 void writeImage(const Image& image, const std::string& path, const Metadata& metadata);
+
+/// The same for a picture that comes in pieces: whole rows, from the top down. Of most formats what has come
+/// takes no memory any more (see PictureFile).
+class ImageWriter {
+ public:
+  /// Throws as writeImage does.
+  ImageWriter(const std::string& path, int width, int height, const std::vector<std::string>& channels,
+              const Metadata& metadata);
+  ~ImageWriter();
+
+  /// The next rows: a piece of the picture's width, with its channels. Throws MachineError.
+  void write(const Image& rows);
+
+  /// After the last row: puts the file in place. Throws as writeImage does.
+  void close();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Throws the InputError that writing to `path` would meet, before any work is done: an unknown extension, a
 /// folder that isn't there or can't be written to, a folder in the file's place.

@@ -1,26 +1,18 @@
 #include "image/oiio.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "error.hpp"
 #include "image/exr_header.hpp"
-#include "image/image.hpp"
-#include "image/write_file.hpp"
+#include "image/output_file.hpp"
 
 namespace luciole {
 namespace {
@@ -31,110 +23,6 @@ constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 31;
 // mode can do better on empty pictures. A header that promises more than this has been made up.
 constexpr std::uint64_t kMaxCompression = 65536;
 
-constexpr int kAnyChannels = 1024;
-const FileFormat kFormats[] = {
-    {"png", false, 4},
-    {"tga", false, 4},
-    {"jpg", false, 3},
-    {"jpeg", false, 3},
-    {"bmp", false, 3},
-    {"ppm", false, 3},
-    {"hdr", true, 3},
-    {"exr", true, kAnyChannels},
-    {"tif", true, kAnyChannels},
-    {"tiff", true, kAnyChannels},
-};
-
-std::string lowerCase(std::string text) {
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-/// The reason of the last system call to fail.
-std::string systemReason() { return std::generic_category().message(errno); }
-
-void writeAll(int descriptor, const std::byte* bytes, std::size_t count, const std::string& name) {
-  while (count > 0) {
-    const ssize_t written = write(descriptor, bytes, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw MachineError(fmt::format("{}: can't write: {}", name, systemReason()));
-    bytes += written;
-    count -= std::size_t(written);
-  }
-}
-
-/// Copies the file in memory to a descriptor.
-void copyTo(int descriptor, const MemoryFile& file, const std::string& name) {
-  struct stat status {};
-  if (fstat(file.descriptor(), &status) != 0) throw MachineError(fmt::format("{}: {}", name, systemReason()));
-  const std::size_t size = std::size_t(status.st_size);
-  if (size == 0) return;
-  void* map = mmap(nullptr, size, PROT_READ, MAP_SHARED, file.descriptor(), 0);
-  if (map == MAP_FAILED) throw MachineError(fmt::format("{}: {}", name, systemReason()));
-  try {
-    writeAll(descriptor, static_cast<const std::byte*>(map), size, name);
-  } catch (...) {
-    munmap(map, size);
-    throw;
-  }
-  munmap(map, size);
-}
-
-/// The limit of file sizes is the one thing that makes a write to memory fail, and some encoders then lose
-/// pixels without a word or end the program. No encoder needs twice the bytes of the pixels.
-void checkSizeLimit(const OIIO::ImageSpec& spec, const std::string& name) {
-  constexpr std::uint64_t kHeader = 65536;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_FSIZE, &limit) != 0) throw MachineError(fmt::format("{}: {}", name, systemReason()));
-  if (limit.rlim_cur != RLIM_INFINITY && 2 * std::uint64_t(spec.image_bytes()) + kHeader > limit.rlim_cur) {
-    throw MachineError(fmt::format("{}: may be larger than the {} bytes this process may write to a file",
-                                   name, std::uint64_t(limit.rlim_cur)));
-  }
-}
-
-std::string folderOf(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return folder.empty() ? "." : folder;
-}
-
-/// Writes beside the target, then renames: readers see the old file or the new one, never a part.
-void putInPlace(const MemoryFile& file, const std::string& path) {
-  static std::atomic<unsigned> serial{0};
-  const std::string beside = fmt::format("{}/.luciole-{}-{}.tmp", folderOf(path), getpid(), serial++);
-  const int descriptor = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (descriptor < 0) {
-    const int code = errno;
-    const std::string message =
-        fmt::format("{}: can't create a file in its folder: {}", path, systemReason());
-    if (code == EACCES || code == EROFS || code == ENOENT || code == ENOTDIR || code == EPERM) {
-      throw InputError(message);
-    }
-    throw MachineError(message);
-  }
-  try {
-    bool open_still = true;
-    try {
-      copyTo(descriptor, file, path);
-      // Pipes and some file systems can't sync; what they hold is as safe as it gets.
-      if (fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) {
-        throw MachineError(fmt::format("{}: can't write: {}", path, systemReason()));
-      }
-      open_still = false;
-      if (close(descriptor) != 0)
-        throw MachineError(fmt::format("{}: can't write: {}", path, systemReason()));
-    } catch (...) {
-      if (open_still) close(descriptor);
-      throw;
-    }
-    if (std::rename(beside.c_str(), path.c_str()) != 0) {
-      throw InputError(fmt::format("{}: can't put the file in place: {}", path, systemReason()));
-    }
-  } catch (...) {
-    unlink(beside.c_str());
-    throw;
-  }
-}
-
 }  // namespace
 
 MemoryFile::MemoryFile() : descriptor_(memfd_create("luciole", MFD_CLOEXEC)) {
@@ -142,7 +30,12 @@ MemoryFile::MemoryFile() : descriptor_(memfd_create("luciole", MFD_CLOEXEC)) {
 }
 
 MemoryFile::MemoryFile(std::span<const std::byte> content) : MemoryFile() {
-  writeAll(descriptor_, content.data(), content.size(), "file in memory");
+  while (!content.empty()) {
+    const ssize_t written = write(descriptor_, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw MachineError(fmt::format("can't fill a file in memory: {}", systemReason()));
+    content = content.subspan(std::size_t(written));
+  }
 }
 
 MemoryFile::~MemoryFile() { close(descriptor_); }
@@ -209,61 +102,12 @@ bool isLinear(const OIIO::ImageSpec& spec) {
          space == "scene_linear";
 }
 
-FileFormat outputFormat(const std::string& path) {
-  if (path == "-") return kFormats[0];
-  std::string extension = lowerCase(std::filesystem::path(path).extension().string());
-  if (!extension.empty()) extension.erase(0, 1);
-  for (const FileFormat& format : kFormats) {
-    if (extension == format.extension) return format;
-  }
+bool openImageIOWrites(const std::string& extension) {
   // Its outputs "term" and "null" make no file.
-  if (!extension.empty() && extension != "term" && extension != "null" && OIIO::ImageOutput::create(extension))
-    return {extension, false, 3};
-  OIIO::geterror();  // what it says of an unknown extension is about plugins
-  std::string known;
-  for (const FileFormat& format : kFormats) known += fmt::format(" .{}", format.extension);
-  throw InputError(fmt::format("{}: unknown extension '{}', expected one of{} or another that OpenImageIO writes",
-                               path, extension, known));
-}
-
-void checkWritable(const std::string& path) {
-  outputFormat(path);
-  checkPlace(path);
-}
-
-void checkPlace(const std::string& path) {
-  if (path == "-") return;
-  const std::string folder = folderOf(path);
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder, expected a file");
-  if (!std::filesystem::is_directory(folder, error)) throw InputError(path + ": no such folder");
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(fmt::format("{}: can't write to its folder: {}", path, systemReason()));
-  }
-}
-
-void deliver(const MemoryFile& file, const std::string& path) {
-  if (path == "-") {
-    std::fflush(stdout);
-    copyTo(STDOUT_FILENO, file, "standard output");
-  } else {
-    putInPlace(file, path);
-  }
-}
-
-void writePicture(const std::string& path, const OIIO::ImageSpec& spec, const void* values) {
-  checkWritable(path);
-  checkSizeLimit(spec, path);
-  const MemoryFile encoded;
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(outputFormat(path).extension);
-  if (!output->open(encoded.path(), spec) || !output->write_image(spec.format, values) || !output->close()) {
-    throw MachineError(fmt::format("{}: can't encode: {}", path, oneLine(output->geterror())));
-  }
-  struct stat status {};
-  if (fstat(encoded.descriptor(), &status) != 0 || status.st_size == 0) {
-    throw MachineError(path + ": OpenImageIO wrote nothing for this extension");
-  }
-  deliver(encoded, path);
+  if (extension.empty() || extension == "term" || extension == "null") return false;
+  if (OIIO::ImageOutput::create(extension)) return true;
+  OIIO::geterror();  // what it says is about plugins
+  return false;
 }
 
 }  // namespace luciole

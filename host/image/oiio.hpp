@@ -7,12 +7,13 @@
 #include <span>
 #include <string>
 
+#include "image/file_format.hpp"
+
 // What the sources of this folder share of OpenImageIO. Nothing outside the folder includes this.
 namespace luciole {
 
 /// A nameless file in memory that any library can open by its path. Formats OpenImageIO can't read from or
-/// write to memory work through it, and what a disk does to a write is seen here, not by codecs of which some
-/// end the program.
+/// write to memory work through it.
 class MemoryFile {
  public:
   MemoryFile();  ///< throws MachineError
@@ -40,24 +41,5 @@ void readValues(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc
 
 /// Whether colours are stored as linear light: float formats, and integer ones that say so.
 bool isLinear(const OIIO::ImageSpec& spec);
-
-/// How a file of some extension stores pictures.
-struct FileFormat {
-  std::string extension;  ///< in lower case, without the dot
-  bool is_float;
-  int max_channels;  ///< 3: R G B; 4: and A; more: any channels under any names
-};
-
-/// The format of a file to write, by its extension; PNG for "-". What only OpenImageIO knows is taken for 8-bit R G B.
-/// Throws InputError for an extension that it doesn't write.
-FileFormat outputFormat(const std::string& path);
-
-/// Puts a finished file at its path, whole or not at all, or on standard output for "-". Throws InputError
-/// (no such folder, read-only folder) or MachineError (disk full).
-void deliver(const MemoryFile& file, const std::string& path);
-
-/// Encodes the pixels and puts the file in place, whole or not at all; "-" is standard output.
-/// Throws as writeImage does.
-void writePicture(const std::string& path, const OIIO::ImageSpec& spec, const void* values);
 
 }  // namespace luciole

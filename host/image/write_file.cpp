@@ -1,13 +1,31 @@
 #include "image/write_file.hpp"
 
-#include <span>
+#include <fmt/format.h>
+#include <unistd.h>
 
-#include "image/oiio.hpp"
+#include <filesystem>
+#include <span>
+#include <system_error>
+
+#include "error.hpp"
+#include "image/output_file.hpp"
 
 namespace luciole {
 
 void writeTextFile(const std::string& path, std::string_view text) {
-  deliver(MemoryFile(std::as_bytes(std::span(text))), path);
+  OutputFile file(path);
+  file.writeAt(0, std::as_bytes(std::span(text)));
+  file.putInPlace();
+}
+
+void checkPlace(const std::string& path) {
+  if (path == "-") return;
+  const std::string folder = folderOf(path);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder, expected a file");
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(path + ": no such folder");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(fmt::format("{}: can't write to its folder: {}", path, systemReason()));
 }
 
 }  // namespace luciole

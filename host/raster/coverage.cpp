@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
+#include <optional>
 
 namespace luciole {
 namespace {
@@ -60,6 +62,30 @@ struct Target {
   }
 };
 
+/// Calls `visit` with the first pixel of every group that the triangle may cover a sample of, in a box of the
+/// bin's pixels.
+template <class Visit>
+void forEachGroup(const Target& target, const PixelBox& box, Visit visit) {
+  constexpr int kRows = 16;  // that are looked at side by side
+  const std::int32_t* step_y = target.edges.step_y;
+  std::int32_t reach[3];  // from a group's first pixel to where an edge function is largest
+  for (int i = 0; i < 3; ++i) reach[i] = std::max(0, target.edges.step_x[i] * (kLanes - 1));
+  for (int y = box.first.y / kRows * kRows; y <= box.last.y; y += kRows) {
+    for (int x = box.first.x / kLanes * kLanes; x <= box.last.x; x += kLanes) {
+      const auto [e0, e1, e2] = target.edgesAt(x, y);
+      std::uint32_t rows = 0;
+      for (int row = 0; row < kRows; ++row) {
+        const std::int32_t reached = (e0 + reach[0] + step_y[0] * row) | (e1 + reach[1] + step_y[1] * row) |
+                                     (e2 + reach[2] + step_y[2] * row);
+        rows |= std::uint32_t(reached >= 0) << row;
+      }
+      // One piece of rows, since every edge cuts some off at one end.
+      const int end = std::min(y + int(std::bit_width(rows)), box.last.y + 1);
+      for (int in = std::max(y + std::countr_zero(rows), box.first.y); in < end; ++in) visit(x, in);
+    }
+  }
+}
+
 /// Draws an opaque triangle to a box of the bin's pixels; returns whether it covers a sample.
 template <bool kWithTriangle>
 bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
@@ -69,51 +95,58 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const std::uint32_t number = target.triangle.triangle;
   const std::int32_t* step_x = target.edges.step_x;
   std::int32_t covered = 0;
-  for (int y = box.first.y; y <= box.last.y; ++y) {
-    for (int x = box.first.x / kLanes * kLanes; x <= box.last.x; x += kLanes) {
-      const auto [e0, e1, e2] = target.edgesAt(x, y);
-      const float start = target.depthAt(x, y);
-      float* depth = pixels.depth.data() + y * kBinSize + x;
-      std::uint32_t* triangle = pixels.triangle.data() + y * kBinSize + x;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const std::int32_t inside =
-            ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
-        const float z = std::min(std::max(start + step * float(lane), low), high);
-        const bool seen = inside & std::int32_t(z > depth[lane]);
-        covered |= inside;
-        depth[lane] = seen ? z : depth[lane];
-        if (kWithTriangle) triangle[lane] = seen ? number : triangle[lane];
-      }
+  forEachGroup(target, box, [&](int x, int y) {
+    const auto [e0, e1, e2] = target.edgesAt(x, y);
+    const float start = target.depthAt(x, y);
+    float* depth = pixels.depth.data() + y * kBinSize + x;
+    std::uint32_t* triangle = pixels.triangle.data() + y * kBinSize + x;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const std::int32_t inside =
+          ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
+      const float z = std::min(std::max(start + step * float(lane), low), high);
+      const bool seen = inside & std::int32_t(z > depth[lane]);
+      covered |= inside;
+      depth[lane] = seen ? z : depth[lane];
+      if (kWithTriangle) triangle[lane] = seen ? number : triangle[lane];
     }
-  }
+  });
   return covered != 0;
 }
 
-/// The same for a triangle with holes, pixel by pixel.
+/// The same for a triangle with holes, which are looked for where nothing nearer was drawn before.
 template <bool kWithTriangle>
 bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes, BinPixels& pixels) {
-  const Surface surface = makeSurface(holes.scene, holes.geometry, target.triangle.triangle, holes.plane);
   const float step = float(target.triangle.depth_dx);
-  bool covered = false;
-  for (int y = box.first.y; y <= box.last.y; ++y) {
-    for (int x = box.first.x; x <= box.last.x; ++x) {
-      const auto [e0, e1, e2] = target.edgesAt(x, y);
-      if ((e0 | e1 | e2) < 0) continue;
-      covered = true;
-      const int lane = x % kLanes;
-      const float z =
-          std::min(std::max(target.depthAt(x - lane, y) + step * float(lane), target.triangle.depth_low),
-                   target.triangle.depth_high);
-      const int i = y * kBinSize + x;
-      if (!(z > pixels.depth[i])) continue;
-      if (isHole(holes.scene, holes.varying_alpha, surface, holes.plane, target.bin_origin.x + x,
+  const float low = target.triangle.depth_low;
+  const float high = target.triangle.depth_high;
+  const std::int32_t* step_x = target.edges.step_x;
+  std::optional<Surface> surface;
+  std::int32_t covered = 0;
+  forEachGroup(target, box, [&](int x, int y) {
+    const auto [e0, e1, e2] = target.edgesAt(x, y);
+    const float start = target.depthAt(x, y);
+    const int first = y * kBinSize + x;
+    const float* depth = pixels.depth.data() + first;
+    std::array<float, kLanes> z;
+    std::uint32_t nearest = 0;  // a bit a lane
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const std::int32_t inside =
+          ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
+      z[lane] = std::min(std::max(start + step * float(lane), low), high);
+      covered |= inside;
+      nearest |= std::uint32_t(inside & std::int32_t(z[lane] > depth[lane])) << lane;
+    }
+    for (; nearest != 0; nearest &= nearest - 1) {
+      const int lane = std::countr_zero(nearest);
+      if (!surface) surface = makeSurface(holes.scene, holes.geometry, target.triangle.triangle, holes.plane);
+      if (isHole(holes.scene, holes.varying_alpha, *surface, holes.plane, target.bin_origin.x + x + lane,
                  target.bin_origin.y + y))
         continue;
-      pixels.depth[i] = z;
-      if (kWithTriangle) pixels.triangle[i] = target.triangle.triangle;
+      pixels.depth[first + lane] = z[lane];
+      if (kWithTriangle) pixels.triangle[first + lane] = target.triangle.triangle;
     }
-  }
-  return covered;
+  });
+  return covered != 0;
 }
 
 template <bool kWithTriangle>
@@ -122,8 +155,11 @@ void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, 
   pixels.depth.fill(0.0f);
   if (kWithTriangle) pixels.triangle.fill(kNoTriangle);
   const glm::ivec2 origin = bins.origin(bin);
-  for (const std::uint32_t index : bins.list(bin)) {
-    const RasterTriangle& triangle = triangles[index];
+  const std::span<const std::uint32_t> list = bins.list(bin);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    // Far enough ahead for the memory to answer.
+    if (i + 8 < list.size()) __builtin_prefetch(&triangles[list[i + 8]]);
+    const RasterTriangle& triangle = triangles[list[i]];
     const PixelBox whole = pixelBox(triangle);
     const PixelBox box{glm::max(whole.first - origin, glm::ivec2(0)),
                        glm::min(whole.last - origin, glm::ivec2(kBinSize - 1))};

@@ -4,29 +4,21 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
-#include <new>
 #include <vector>
 
+#include "array_memory.hpp"
 #include "kernels/shared.h"
 #include "scene/scene.hpp"
 
 namespace luciole {
 
-/// Allocates on cache lines, so that a row of up to 16 float lanes is one aligned load and OpenCL can use the
-/// memory in place.
-template <class T>
-struct CacheAligned {
-  using value_type = T;
-  static constexpr std::align_val_t kAlignment{128};
-  CacheAligned() = default;
-  template <class U>
-  CacheAligned(const CacheAligned<U>&) {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlignment)); }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, kAlignment); }
-  bool operator==(const CacheAligned&) const { return true; }
-};
+using Plane = std::vector<float, ArrayAllocator<float>>;
 
-using Plane = std::vector<float, CacheAligned<float>>;
+/// Bits 0 to 3 of v, moved to bits 0, 2, 4 and 6.
+constexpr std::size_t everyOtherBit(std::size_t v) {
+  v = (v | v << 2) & 0x33;
+  return (v | v << 1) & 0x55;
+}
 
 /// What the camera sees, one sample a pixel, laid out for the kernels.
 ///
@@ -34,7 +26,9 @@ using Plane = std::vector<float, CacheAligned<float>>;
 ///     ┌────────┬────────┬──────                ┌───────────────┬───────────────┬───────────────┐
 ///     │ 0      │ 1      │ 2                    │ x of tile 0,1…│ y of tile 0,1…│ z of tile 0,1…│
 ///     ├────────┼────────┼──────                └───────────────┴───────────────┴───────────────┘
-///     │ tiles_x│ …      │                      inside a tile: row by row, kTileSize floats a row
+///     │ tiles_x│ …      │                      inside a tile: in Z order (G. Morton, 1966), so that
+///     └────────┴────────┴──────                each square of 2, 4 or 8 pixels a side, and with it
+///                                              every row of lanes, lies in one piece
 ///
 /// Space is view space: the eye is the origin, x right, y up, −z ahead (metres), so precision does not depend
 /// on where in the world the camera stands. A pixel that shows nothing, or lies in a tile beyond the
@@ -61,7 +55,7 @@ struct GBuffer {
   /// The place in a plane of pixel (x, y), counted from the top left.
   std::size_t index(int x, int y) const {
     const std::size_t tile = std::size_t(y / kTileSize) * tiles_x + x / kTileSize;
-    return tile * kTilePixels + std::size_t(y % kTileSize) * kTileSize + x % kTileSize;
+    return tile * kTilePixels + 2 * everyOtherBit(y % kTileSize) + everyOtherBit(x % kTileSize);
   }
 };
 

@@ -31,12 +31,14 @@ float opacityAt(const Scene& scene, const std::vector<bool>& varying_alpha, cons
   if (surface.object->mesh->uvs.empty()) return opacity;
   const int diffuse = material.diffuse_map.texture;
   if (diffuse >= 0)
-    opacity *= varying_alpha[diffuse] ? lookUp(scene, material.diffuse_map, place).a
+    opacity *= varying_alpha[diffuse] ? lookUp(scene, material.diffuse_map, place, 3)
                                       : scene.textures[diffuse].levels[0].texels[3] / 65535.0f;
-  if (material.alpha_map.texture >= 0) {
-    const glm::vec4 map = lookUp(scene, material.alpha_map, place);
+  // Where one map says that nothing is there, the other needn't be looked at.
+  const int alpha = material.alpha_map.texture;
+  if (alpha >= 0 && opacity > 0.0f) {
     // An opacity map in grey is a picture of numbers: its codes count, not the light they would stand for.
-    opacity *= varying_alpha[material.alpha_map.texture] ? map.a : encodeSrgb(map.r);
+    opacity *= varying_alpha[alpha] ? lookUp(scene, material.alpha_map, place, 3)
+                                    : encodeSrgb(lookUp(scene, material.alpha_map, place, 0));
   }
   return opacity;
 }

@@ -59,19 +59,20 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   const std::vector<bool> varying_alpha = findVaryingAlpha(scene);
   const HoleTest holes{scene, geometry, plane, varying_alpha};
   const ResolveInput input{scene, geometry, plane, shading, vertex_colors};
-  std::vector<std::uint8_t> covering(geometry.triangle_count);
+  RasterCounts own_counts;
+  if (!counts) counts = &own_counts;
+  counts->covering.resize(geometry.triangle_count);
   tbb::parallel_for(0, bins.size(), [&](int bin) {
     if (bins.list(bin).empty()) return;
     BinPixels pixels;
-    drawBin(setup.triangles, bins, bin, holes, covering, pixels);
+    drawBin(setup.triangles, bins, bin, holes, counts->covering, pixels);
     resolveBin(input, pixels, bins.origin(bin), gbuffer);
   });
 
-  if (counts) {
-    const auto covered = std::uint64_t(std::count(covering.begin(), covering.end(), 1));
-    *counts = {geometry.triangle_count, setup.back_facing,
-               geometry.triangle_count - setup.back_facing - covered};
-  }
+  counts->submitted = geometry.triangle_count;
+  counts->back_facing = setup.back_facing;
+  counts->outside = counts->submitted - counts->back_facing -
+                    std::uint64_t(std::count(counts->covering.begin(), counts->covering.end(), 1));
   return gbuffer;
 }
 

@@ -24,11 +24,13 @@ struct PlaneSet {
   bool emission = false;
 };
 
-/// Triangles on their way: every one is counted once in `submitted`, and in one of the others at most.
+/// Triangles on their way: every one is counted once in `submitted`, and in one of the others at most. The
+/// parts and samples of one picture share their counts: a triangle is outside if it covers no sample of any.
 struct RasterCounts {
   std::uint64_t submitted = 0;
   std::uint64_t back_facing = 0;
-  std::uint64_t outside = 0;  ///< of the view volume, or covering no sample
+  std::uint64_t outside = 0;           ///< of the view volume, or covering no sample
+  std::vector<std::uint8_t> covering;  ///< one a triangle, 1: it covers a sample
 };
 
 /// Draws the given objects (indices into scene.objects) and resolves what each pixel sees: visibility first,

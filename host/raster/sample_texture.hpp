@@ -2,14 +2,27 @@
 
 #include <glm/glm.hpp>
 
+#include "raster/square.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
 
-/// Trilinear lookup: linear RGB and alpha at `uv`, filtered over the footprint of a pixel, whose sides in
-/// texture coordinates are duv_dx and duv_dy (any finite size; zero: the finest level). The level follows the
-/// longer side, as OpenGL does. Non-finite coordinates read as 0.
-glm::vec4 sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 uv, glm::vec2 duv_dx,
-                        glm::vec2 duv_dy);
+/// Trilinear lookup of one channel: linear red (0), green or blue, or alpha (3), at `uv`, filtered over the
+/// footprint of a pixel, whose sides in texture coordinates are duv_dx and duv_dy (any finite size; zero: the
+/// finest level). The level follows the longer side, as OpenGL does. Non-finite coordinates read as 0.
+float sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 uv, glm::vec2 duv_dx,
+                    glm::vec2 duv_dy, int channel);
+
+/// Where a square's pixels look a texture up, as above.
+struct SquareFootprints {
+  Lanes<float> u, v;
+  Lanes<float> du_dx, dv_dx;
+  Lanes<float> du_dy, dv_dy;
+};
+
+/// The same lookup, bit for bit, of red, green and blue at the wanted pixels of a square; others get
+/// anything.
+Lanes3<float> sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v,
+                            const SquareFootprints& footprints, const LaneMask& wanted);
 
 }  // namespace luciole

@@ -15,14 +15,6 @@ glm::dvec3 row(const glm::dvec3& v, const glm::dvec2& slope, bool perspective) {
   return perspective ? glm::dvec3(v.x, v.y, -v.z) : glm::dvec3(slope, -v.z);
 }
 
-/// Not held inside the triangle.
-Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
-  const double scale = 1.0 / glm::dot(surface.determinant, p);
-  const double b1 = glm::dot(surface.weight1, p) * scale;
-  const double b2 = glm::dot(surface.weight2, p) * scale;
-  return {1.0 - b1 - b2, b1, b2};
-}
-
 bool isInside(const Weights& weights) { return weights[0] >= 0.0 && weights[1] >= 0.0 && weights[2] >= 0.0; }
 
 /// The place on the picture nearest to p, which lies outside the triangle, on the line of the edge that it is
@@ -116,9 +108,9 @@ TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x,
   return {glm::vec2(interpolateUv(surface, weights)), finiteOrZero(right - here), finiteOrZero(below - here)};
 }
 
-glm::vec4 lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place) {
+float lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place, int channel) {
   return sampleTexture(scene.textures[map.texture], map.wrap_u, map.wrap_v, place.uv, place.duv_dx,
-                       place.duv_dy);
+                       place.duv_dy, channel);
 }
 
 glm::vec4 vertexColor(const Surface& surface, const Weights& weights) {

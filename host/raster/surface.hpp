@@ -43,6 +43,14 @@ Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t 
 /// Shares of the three corners in a value at a point.
 using Weights = glm::dvec3;
 
+/// Where the pixel that looks at `p` meets the triangle's plane, inside the triangle or not.
+inline Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
+  const double scale = 1.0 / glm::dot(surface.determinant, p);
+  const double b1 = glm::dot(surface.weight1, p) * scale;
+  const double b2 = glm::dot(surface.weight2, p) * scale;
+  return {1.0 - b1 - b2, b1, b2};
+}
+
 /// What the pixel that looks at `p` sees, on the triangle: snapping lets a triangle cover samples up to 1/256
 /// pixel beside it, which show a point of its edge instead of its plane's continuation.
 Weights weightsInside(const Surface& surface, const glm::dvec3& p);
@@ -59,8 +67,8 @@ struct TexturePlace {
 TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,
                           const Weights& weights);
 
-/// A map's value there: linear RGB and alpha.
-glm::vec4 lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place);
+/// A channel of a map there, as by sampleTexture().
+float lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place, int channel);
 
 /// The vertex colour at a point; 1 where the mesh has none.
 glm::vec4 vertexColor(const Surface& surface, const Weights& weights);

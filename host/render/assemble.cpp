@@ -48,6 +48,15 @@ WorldPlanes worldPlanes(const GBuffer& gbuffer) {
   return world;
 }
 
+/// Calls `visit(place in the G-buffer, pixel of the picture)` for each pixel.
+template <class Visit>
+void forEachPixel(const GBuffer& gbuffer, Image& image, Visit visit) {
+  tbb::parallel_for(0, image.height, [&](int y) {
+    float* pixel = image.pixels.data() + std::size_t(y) * image.width * image.channels.size();
+    for (int x = 0; x < image.width; ++x, pixel += image.channels.size()) visit(gbuffer.index(x, y), pixel);
+  });
+}
+
 /// As finite_color in the kernels: bright samples may add up to more than a float holds.
 float finiteColor(float color) {
   constexpr float kLargest = std::numeric_limits<float>::max();
@@ -60,11 +69,31 @@ bool wants(const RenderSettings& settings, Aov aov) {
   return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
 }
 
-Image assemblePicture(const GBuffer& gbuffer, const LitPlanes& first, const Plane& color_sum,
-                      const RenderSettings& settings) {
+std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes) {
+  std::size_t count = 3;
+  for (const Aov aov : settings.aovs) {
+    switch (aov) {
+      case Aov::kPosition:
+      case Aov::kNormal:
+      case Aov::kDiffuse:
+        count += 3;
+        break;
+      case Aov::kMaterial:
+        count += (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) + (planes.emission ? 3 : 0);
+        break;
+      case Aov::kDepth:
+      case Aov::kLightCount:
+      case Aov::kShadow:
+        count += 1;
+        break;
+    }
+  }
+  return count;
+}
+
+Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings) {
   const std::size_t n = gbuffer.pixels();
-  std::vector<Layer> layers{
-      {"R", color_sum.data()}, {"G", color_sum.data() + n}, {"B", color_sum.data() + 2 * n}};
+  std::vector<Layer> layers;
   const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
   const Plane all_visible(wants(settings, Aov::kShadow) ? n : 0, 1.0f);  // where no light casts shadows
   WorldPlanes world;
@@ -98,19 +127,22 @@ Image assemblePicture(const GBuffer& gbuffer, const LitPlanes& first, const Plan
         break;
     }
   }
-  Image image{gbuffer.width, gbuffer.height, {}, {}};
+  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
   for (const Layer& layer : layers) image.channels.push_back(layer.name);
-  image.pixels.resize(std::size_t(image.width) * image.height * layers.size());
-  const float scale = std::exp2(settings.exposure) / float(settings.samples);
-  tbb::parallel_for(0, image.height, [&](int y) {
-    float* out = image.pixels.data() + std::size_t(y) * image.width * layers.size();
-    for (int x = 0; x < image.width; ++x) {
-      const std::size_t place = gbuffer.index(x, y);
-      for (std::size_t c = 0; c < layers.size(); ++c)
-        *out++ = c < 3 ? finiteColor(layers[c].plane[place] * scale) : layers[c].plane[place];
-    }
+  image.pixels.resize(std::size_t(image.width) * image.height * image.channels.size());
+  if (layers.empty()) return image;
+  forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
+    for (std::size_t c = 0; c < layers.size(); ++c) pixel[3 + c] = layers[c].plane[place];
   });
   return image;
+}
+
+void setColors(const GBuffer& gbuffer, const Plane& color_sum, const RenderSettings& settings, Image& image) {
+  const std::size_t n = gbuffer.pixels();
+  const float scale = std::exp2(settings.exposure) / float(settings.samples);
+  forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
+    for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(color_sum[place + c * n] * scale);
+  });
 }
 
 }  // namespace luciole

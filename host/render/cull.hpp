@@ -5,24 +5,30 @@
 
 namespace luciole {
 
-/// Light lists on the device: tile t has entries [starts[t], starts[t + 1]) of `list`.
+/// Light lists on the device: list i (see LIST_OF_PIXEL) has entries [starts[i], starts[i + 1]) of `list`.
 struct LightLists {
-  cl::Buffer starts;  ///< tiles + 1 uints
-  cl::Buffer list;    ///< entries uints, ascending in a tile
+  cl::Buffer starts;  ///< lists + 1 uints
+  cl::Buffer list;    ///< entries uints, ascending in a list
+  std::size_t lists = 0;
   std::size_t entries = 0;
-  std::size_t bytes = 0;  ///< of both buffers and the tiles' bounds
+  std::size_t bytes = 0;  ///< of both buffers and the lists' bounds
 };
 
 struct CullArguments {
   const cl::Buffer& position;  ///< G-buffer planes x, y, z
+  const cl::Buffer& normal;    ///< likewise
   std::size_t plane_stride;    ///< floats
-  const cl::Buffer& reach;     ///< see ShadeLights::reach
-  std::size_t reach_stride;    ///< floats
+  unsigned list_shift;         ///< see LIST_OF_PIXEL
+  const cl::Buffer& lights;    ///< ShadeLight[light_count]
+  std::size_t light_count;
+  const cl::Buffer& tree;  ///< see LightTree
+  std::size_t tree_stride;
+  unsigned tests;  ///< kByRange and more
 };
 
-/// Launches kernels/cull.cl: for each tile the lights that may reach a point in it, in the order of light
-/// indices. Leaves out only lights that shading would find to contribute exactly zero. Throws MachineError,
-/// also where the lists would have more than 2³² − 2 entries.
+/// Launches kernels/cull.cl: for each list the lights that may light a point in it, in the order of light
+/// indices. With the right tests it leaves out only lights that shading would find to contribute exactly
+/// zero. Throws MachineError, also where the lists would have more than 2³² − 2 entries.
 LightLists cull(Device& device, const CullArguments& arguments);
 
 }  // namespace luciole

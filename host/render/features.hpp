@@ -74,6 +74,7 @@ enum class Culling : std::uint8_t { kNone, kTiles };
 struct ShadeSettings {
   bool blinn = false;  ///< Blinn's N·H instead of Phong's R·V
   Culling culling = Culling::kTiles;
+  int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;
   bool shadow_layer = false;  ///< also write the share of shadowed lights that reaches each pixel
   int shadow_size = 4096;     ///< texels a side of a directional light's map (see drawShadowMaps)

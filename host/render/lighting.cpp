@@ -8,7 +8,10 @@ namespace {
 
 float4 color4(const glm::vec3& color) { return {color.x, color.y, color.z, 0}; }
 
-ShadeFrame makeFrame(const Scene& scene, const Camera& camera, bool blinn) {
+/// See LIST_OF_PIXEL.
+uint listShift(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
+
+ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettings& settings) {
   ShadeFrame frame{};
   frame.ambient = color4(scene.lighting ? scene.ambient : glm::vec3(1.0f));
   frame.background = color4(scene.background);
@@ -19,25 +22,26 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, bool blinn) {
   frame.fog_scale = 1.0f / (scene.fog.end - scene.fog.start);
   frame.fog_mode = static_cast<uint>(scene.fog.mode);
   frame.fog_radial = scene.fog.radial;
-  frame.blinn = blinn;
+  frame.blinn = settings.blinn;
   frame.light_count = scene.lighting ? static_cast<uint>(scene.lights.size()) : 0;
+  frame.list_shift = listShift(settings.tile_size);
   return frame;
 }
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
               int(FogMode::kExp2) == kFogExp2);
 
-/// Pixel-light pairs: a row of lanes with any covered pixel goes through its tile's whole list.
+/// Pixel-light pairs: a row of lanes with any covered pixel goes through its whole list.
 std::uint64_t evaluatedPairs(const GBuffer& gbuffer, int lanes, const std::vector<cl_uint>& starts,
-                             std::size_t all_lights) {
+                             const ShadeFrame& frame) {
   std::uint64_t pairs = 0;
   const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
   for (std::size_t row = 0; row < gbuffer.pixels(); row += lanes) {
     bool covered = false;
     for (int lane = 0; lane < lanes; ++lane)
       covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
-    const std::size_t tile = row / kTilePixels;
+    const std::size_t list = LIST_OF_PIXEL(row, frame.list_shift);
     if (covered)
-      pairs += std::uint64_t(lanes) * (starts.empty() ? all_lights : starts[tile + 1] - starts[tile]);
+      pairs += std::uint64_t(lanes) * (starts.empty() ? frame.light_count : starts[list + 1] - starts[list]);
   }
   return pairs;
 }
@@ -51,6 +55,35 @@ GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, bool unlit)
           inputBuffer(device, gbuffer.emission)};
 }
 
+LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
+                      std::size_t pixels, unsigned tests) {
+  return cull(device, {.position = buffers.position,
+                       .normal = buffers.normal,
+                       .plane_stride = pixels,
+                       .list_shift = lighting.frame.list_shift,
+                       .lights = lighting.lights,
+                       .light_count = lighting.frame.light_count,
+                       .tree = lighting.tree,
+                       .tree_stride = lighting.host_tree.stride,
+                       .tests = tests});
+}
+
+/// How many lights have each pixel in their range.
+Plane countLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
+                  std::size_t pixels) {
+  const LightLists lists = cullLights(device, lighting, buffers, pixels, kByRange);
+  Plane result(pixels);
+  const cl::Buffer counts = outputBuffer(device, result.data(), pixels * sizeof(float));
+  countInRange(device, {.position = buffers.position,
+                        .plane_stride = pixels,
+                        .lights = lighting.lights,
+                        .list_shift = lighting.frame.list_shift,
+                        .lists = lists,
+                        .counts = counts});
+  readBuffer(device, counts, result.data(), pixels * sizeof(float));
+  return result;
+}
+
 }  // namespace
 
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
@@ -59,19 +92,21 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   lighting.features = features;
   lighting.math_defines = mathDefines(settings);
   lighting.unlit = !scene.lighting;
-  lighting.frame = makeFrame(scene, camera, settings.blinn);
+  lighting.frame = makeFrame(scene, camera, settings);
   if (features.shadows())
     lighting.host_shadows =
         timed(stats, "shadow maps", [&] { return drawShadowMaps(scene, view, settings.shadow_size); });
+  timed(stats, "wait for device", [&] { awaitDevice(device); });
   timed(stats, "prepare lights", [&] {
     if (scene.lighting) lighting.host_lights = prepareLights(scene, camera, lighting.host_shadows);
-    lighting.lights = inputBuffer(device, lighting.host_lights.lights);
-    lighting.reach = inputBuffer(device, lighting.host_lights.reach);
+    lighting.host_tree = buildLightTree(lighting.host_lights);
+    lighting.lights = inputBuffer(device, lighting.host_lights);
+    lighting.tree = inputBuffer(device, lighting.host_tree.planes);
     lighting.shadow_maps = inputBuffer(device, lighting.host_shadows.maps);
     lighting.shadow_depths = inputBuffer(device, lighting.host_shadows.depths);
   });
-  lighting.bytes = lighting.host_lights.lights.size() * sizeof(ShadeLight) +
-                   (lighting.host_lights.reach.size() + lighting.host_shadows.depths.size()) * sizeof(float);
+  lighting.bytes = lighting.host_lights.size() * sizeof(ShadeLight) +
+                   (lighting.host_tree.planes.size() + lighting.host_shadows.depths.size()) * sizeof(float);
 }
 
 LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features,
@@ -83,20 +118,16 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   LightLists lists;
   std::vector<cl_uint> starts;
   if (features.has(Feature::kLightLists)) {
-    lists = timed(stats, "cull", [&] {
-      return cull(device, {.position = buffers.position,
-                           .plane_stride = pixels,
-                           .reach = lighting.reach,
-                           .reach_stride = lighting.host_lights.reach_stride});
-    });
-    starts.resize(pixels / kTilePixels + 1);
+    const unsigned tests = kByCone | (features.has(Feature::kLightAmbient) ? 0 : kByFacing);
+    lists = timed(stats, "cull", [&] { return cullLights(device, lighting, buffers, pixels, tests); });
+    starts.resize(lists.lists + 1);
     readBuffer(device, lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
     lit.list_entries = lists.entries;
   }
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);
   lit.color.resize(pixels * (features.has(Feature::kOutputShadow) ? 4 : 3));
-  const cl::Buffer image = deviceBuffer(device, lit.color.size() * sizeof(float));
+  const cl::Buffer image = outputBuffer(device, lit.color.data(), lit.color.size() * sizeof(float));
   timed(stats, "shade", [&] {
     shade(device, defines,
           {.frame = frame,
@@ -109,19 +140,8 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   });
   timed(stats, "read back",
         [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
-  if (count_in_range) {
-    lit.light_count.resize(pixels);
-    const cl::Buffer counts = deviceBuffer(device, pixels * sizeof(float));
-    countInRange(device, defines,
-                 {.position = buffers.position,
-                  .plane_stride = pixels,
-                  .lights = lighting.lights,
-                  .light_count = frame.light_count,
-                  .lists = lists,
-                  .counts = counts});
-    readBuffer(device, counts, lit.light_count.data(), pixels * sizeof(float));
-  }
-  lit.evaluated = evaluatedPairs(gbuffer, device.description.lanes, starts, frame.light_count);
+  if (count_in_range) lit.light_count = countLights(device, lighting, buffers, pixels);
+  lit.evaluated = evaluatedPairs(gbuffer, device.description.lanes, starts, frame);
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              lit.color.size();
@@ -129,19 +149,19 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   return lit;
 }
 
-void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings, Stats& stats) {
-  timed(stats, "compile kernels", [&] {
-    GBuffer empty;  // one tile of background
-    empty.tiles_x = empty.tiles_y = 1;
-    empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
-    Lighting lighting;
-    lighting.math_defines = mathDefines(settings);
-    for (cl::Buffer* buffer :
-         {&lighting.lights, &lighting.reach, &lighting.shadow_maps, &lighting.shadow_depths})
-      *buffer = deviceBuffer(device, 0);
-    Stats ignored;
-    lightGBuffer(device, lighting, features, empty, false, ignored);
-  });
+void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings) {
+  GBuffer empty;  // one tile of background
+  empty.tiles_x = empty.tiles_y = 1;
+  empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
+  empty.normal.assign(3 * kTilePixels, 0.0f);
+  Lighting lighting;
+  lighting.math_defines = mathDefines(settings);
+  lighting.frame.list_shift = listShift(settings.tile_size);
+  for (cl::Buffer* buffer :
+       {&lighting.lights, &lighting.tree, &lighting.shadow_maps, &lighting.shadow_depths})
+    *buffer = deviceBuffer(device, 0);
+  Stats ignored;
+  lightGBuffer(device, lighting, features, empty, false, ignored);
 }
 
 }  // namespace luciole

@@ -6,6 +6,7 @@
 #include "raster/gbuffer.hpp"
 #include "raster/view.hpp"
 #include "render/features.hpp"
+#include "render/light_tree.hpp"
 #include "render/shade_lights.hpp"
 #include "render/stats.hpp"
 #include "scene/scene.hpp"
@@ -20,9 +21,10 @@ struct Lighting {
   std::string math_defines;  ///< as by mathDefines
   ShadeFrame frame{};        ///< all but plane_stride
   bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
-  ShadeLights host_lights;
+  LightArray host_lights;
+  LightTree host_tree;
   ShadowMaps host_shadows;
-  cl::Buffer lights, reach, shadow_maps, shadow_depths;
+  cl::Buffer lights, tree, shadow_maps, shadow_depths;
   std::size_t bytes = 0;
 
   Lighting() = default;
@@ -31,7 +33,7 @@ struct Lighting {
 };
 
 /// Fills `lighting` for a scene seen by a view of `camera`, drawing the shadow maps that the features ask
-/// for.
+/// for. The device may still be opening when it is called.
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
                      Stats& stats);
@@ -49,6 +51,6 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
                        const GBuffer& gbuffer, bool count_in_range, Stats& stats);
 
 /// Compiles the kernels for these features down to machine code, which OpenCL does at the first launch.
-void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings, Stats& stats);
+void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings);
 
 }  // namespace luciole

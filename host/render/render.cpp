@@ -1,14 +1,18 @@
 #include "render/render.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
+#include "machine_memory.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
 #include "render/fog_cull.hpp"
 #include "render/lighting.hpp"
+#include "render/memory.hpp"
 
 namespace luciole {
 namespace {
@@ -77,6 +81,82 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
   addCount(stats, "pixel_lights_in_range", static_cast<std::uint64_t>(in_range));
 }
 
+void countTriangles(const RasterCounts& counts, Stats& stats) {
+  addCount(stats, "triangles_submitted", counts.submitted);
+  addCount(stats, "triangles_back_facing", counts.back_facing);
+  addCount(stats, "triangles_outside", counts.outside);
+}
+
+/// Compiles the kernels of these passes in a thread of its own, once the device is open. The future's value:
+/// the milliseconds that it took.
+std::future<double> startCompiling(Device& device, const std::vector<FeatureSet>& passes,
+                                   const ShadeSettings& settings) {
+  return std::async(std::launch::async, [&device, passes, settings] {
+    awaitDevice(device);
+    const auto start = std::chrono::steady_clock::now();
+    for (const FeatureSet& features : passes) compileKernels(device, features, settings);
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  });
+}
+
+void awaitKernels(std::future<double>& compiling, const Device& device, Stats& stats) {
+  const double milliseconds = timed(stats, "wait for kernels", [&] { return compiling.get(); });
+  addStage(stats, "compile kernels", milliseconds);
+  addStage(stats, "open device", device.milliseconds_to_open);
+  stats.device = device.description;
+}
+
+/// What the bands of a picture share.
+struct Prepared {
+  FeatureSet features;  ///< of the pass that shades pixels
+  std::vector<std::uint32_t> objects;
+  Lighting lighting;
+  std::vector<glm::vec3> vertex_colors;
+  PlaneSet planes;
+};
+
+/// Says after each pass how many there have been.
+struct Progress {
+  const std::function<void(int, int)>& report;
+  int passes;
+  int done = 0;
+
+  void step() {
+    ++done;
+    if (report) report(done, passes);
+  }
+};
+
+/// All samples of the pixels that `view` shows.
+Image renderBand(Device& device, const Scene& scene, const RenderSettings& settings, const Prepared& prepared,
+                 View view, RasterCounts& triangles, Progress& progress, Stats& stats) {
+  Image picture;
+  Plane sum;
+  for (int sample = 0; sample < settings.samples; ++sample) {
+    view.sample = samplePoint(sample, settings.samples);
+    GBuffer gbuffer = timed(stats, "rasterize", [&] {
+      return rasterize(scene, prepared.objects, view, settings.shading, prepared.planes,
+                       prepared.vertex_colors, &triangles);
+    });
+    gbuffer.camera = settings.camera;
+    const bool count = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount));
+    LitPlanes lit = lightGBuffer(device, prepared.lighting, prepared.features, gbuffer, count, stats);
+    countPass(gbuffer, lit, stats);
+    timed(stats, "resolve", [&] {
+      if (sample == 0) {
+        picture = startPicture(gbuffer, lit, settings);
+        sum = std::move(lit.color);
+      } else {
+        tbb::parallel_for(std::size_t(0), 3 * gbuffer.pixels(),
+                          [&](std::size_t i) { sum[i] += lit.color[i]; });
+      }
+      if (sample + 1 == settings.samples) setColors(gbuffer, sum, settings, picture);
+    });
+    progress.step();
+  }
+  return picture;
+}
+
 }  // namespace
 
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats) {
@@ -88,62 +168,64 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
     if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);
 }
 
-Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
-  View view = cameraView(settings.camera, settings.size, settings.crop);
+void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const TakeRows& take,
+                 Stats& stats) {
+  const View view = cameraView(settings.camera, settings.size, settings.crop);
   const ShadeSettings shade = shadeSettings(settings);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), shade);
   const bool gouraud = settings.shading == Shading::kGouraud;
-  const FeatureSet pixel_features = gouraud ? fogOnly(features) : features;
-  compileKernels(device, pixel_features, shade, stats);
-  if (gouraud) compileKernels(device, vertexFeatures(features), shade, stats);
-  const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
-  Lighting lighting;
-  prepareLighting(device, scene, settings.camera, view, features, shade, lighting, stats);
-  std::vector<glm::vec3> vertex_colors;
-  if (gouraud) vertex_colors = lightVertices(device, scene, objects, view, lighting, stats);
+  Prepared prepared;
+  prepared.features = gouraud ? fogOnly(features) : features;
+  std::vector<FeatureSet> passes{prepared.features};
+  if (gouraud) passes.push_back(vertexFeatures(features));
+  std::future<double> compiling = startCompiling(device, passes, shade);
+  prepared.objects = objectsInSight(scene, view, settings.exposure);
+  prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats);
+  awaitKernels(compiling, device, stats);
+  if (gouraud)
+    prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
+  prepared.planes = neededPlanes(prepared.features);
+  if (!scene.lighting) prepared.planes.ambient = false;  // diffuse takes its place
+  if (wants(settings, Aov::kMaterial)) prepared.planes = {true, true, true};
 
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
   stats.samples = settings.samples;
-  PlaneSet planes = neededPlanes(pixel_features);
-  if (!scene.lighting) planes.ambient = false;  // diffuse takes its place
-  if (wants(settings, Aov::kMaterial)) planes = {true, true, true};
-
-  GBuffer first_gbuffer;
-  LitPlanes first;
-  Plane sum;
-  for (int sample = 0; sample < settings.samples; ++sample) {
-    view.sample = samplePoint(sample, settings.samples);
-    RasterCounts raster_counts;
-    GBuffer gbuffer = timed(stats, "rasterize", [&] {
-      return rasterize(scene, objects, view, settings.shading, planes, vertex_colors, &raster_counts);
-    });
-    gbuffer.camera = settings.camera;
-    const bool count = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount));
-    LitPlanes lit = lightGBuffer(device, lighting, pixel_features, gbuffer, count, stats);
-    countPass(gbuffer, lit, stats);
-    addCount(stats, "triangles_submitted", raster_counts.submitted);
-    addCount(stats, "triangles_back_facing", raster_counts.back_facing);
-    addCount(stats, "triangles_outside", raster_counts.outside);
-    timed(stats, "resolve", [&] {
-      if (sample == 0) {
-        sum = lit.color;
-        first_gbuffer = std::move(gbuffer);
-        first = std::move(lit);
-      } else {
-        tbb::parallel_for(std::size_t(0), 3 * first_gbuffer.pixels(),
-                          [&](std::size_t i) { sum[i] += lit.color[i]; });
-      }
-    });
-    if (settings.on_sample) settings.on_sample(sample + 1, settings.samples);
+  const int height =
+      settings.band_height > 0
+          ? settings.band_height
+          : bandHeight(view.crop_size, bytesPerPixel(settings, prepared.planes, prepared.features, scene));
+  Progress progress{settings.on_pass, (view.crop_size.y + height - 1) / height * settings.samples};
+  RasterCounts triangles;
+  View band = view;
+  for (int y = 0; y < view.crop_size.y; y += height) {
+    band.crop_origin.y = view.crop_origin.y + y;
+    band.crop_size.y = std::min(height, view.crop_size.y - y);
+    take(renderBand(device, scene, settings, prepared, band, triangles, progress, stats));
   }
-  addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
-  return timed(stats, "resolve", [&] { return assemblePicture(first_gbuffer, first, sum, settings); });
+  countTriangles(triangles, stats);
+  addCount(stats, "objects_hidden_by_fog", scene.objects.size() - prepared.objects.size());
+}
+
+Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+  Image picture;
+  renderBands(
+      device, scene, settings,
+      [&](const Image& rows) {
+        picture.width = rows.width;
+        picture.height += rows.height;
+        picture.channels = rows.channels;
+        picture.pixels.insert(picture.pixels.end(), rows.pixels.begin(), rows.pixels.end());
+      },
+      stats);
+  return picture;
 }
 
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
   const View view = cameraView(settings.camera, settings.size, settings.crop);
+  requireMemory(double(kGBufferBytesPerPixel) * view.crop_size.x * view.crop_size.y,
+                fmt::format("a G-buffer of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
   describeScene(scene, features, stats);
@@ -155,15 +237,13 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
     prepareLighting(*device, scene, settings.camera, view, features, settings.shade, lighting, stats);
     vertex_colors = lightVertices(*device, scene, objects, view, lighting, stats);
   }
-  RasterCounts counts;
+  RasterCounts triangles;
   GBuffer gbuffer = timed(stats, "rasterize", [&] {
-    return rasterize(scene, objects, view, settings.shading, {true, true, true}, vertex_colors, &counts);
+    return rasterize(scene, objects, view, settings.shading, {true, true, true}, vertex_colors, &triangles);
   });
   gbuffer.camera = settings.camera;
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
-  addCount(stats, "triangles_submitted", counts.submitted);
-  addCount(stats, "triangles_back_facing", counts.back_facing);
-  addCount(stats, "triangles_outside", counts.outside);
+  countTriangles(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
   return gbuffer;
 }
@@ -173,10 +253,11 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   const ShadeSettings shade = shadeSettings(settings);
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);
-  compileKernels(device, features, shade, stats);
+  std::future<double> compiling = startCompiling(device, {features}, shade);
   Lighting lighting;
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   prepareLighting(device, scene, gbuffer.camera, view, features, shade, lighting, stats);
+  awaitKernels(compiling, device, stats);
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;
@@ -185,7 +266,11 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   countPass(gbuffer, lit, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
-  return timed(stats, "resolve", [&] { return assemblePicture(gbuffer, lit, lit.color, one_sample); });
+  return timed(stats, "resolve", [&] {
+    Image picture = startPicture(gbuffer, lit, one_sample);
+    setColors(gbuffer, lit.color, one_sample, picture);
+    return picture;
+  });
 }
 
 }  // namespace luciole

@@ -28,15 +28,24 @@ struct RenderSettings {
   std::vector<Aov> aovs;      ///< of the first sample
   float exposure = 0;         ///< stops: colours are multiplied by 2^exposure
   bool count_lights = false;  ///< also count the lights in range of every pixel, for the statistics
-  std::function<void(int done, int samples)> on_sample;  ///< called after each sample, if set
+  /// Rows that are rendered at a time; 0: as bandHeight() says. The picture is the same.
+  int band_height = 0;
+  std::function<void(int done, int passes)> on_pass;  ///< called after each sample of each band, if set
 };
 
 /// Fills in what the statistics say of the scene.
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
+/// Takes the next rows of a picture, from the top down.
+using TakeRows = std::function<void(const Image& rows)>;
+
 /// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G
-/// B, then the layers). Fills in the statistics. Throws InputError for a crop outside the picture,
-/// MachineError.
+/// B, then the layers), band by band. Fills in the statistics. Throws InputError for a crop outside the
+/// picture, MachineError, and what `take` throws.
+void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const TakeRows& take,
+                 Stats& stats);
+
+/// The same as one picture.
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
 /// The first half of it: the G-buffer with every group. For Shading::kGouraud, whose vertices are lit,

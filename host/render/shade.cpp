@@ -26,14 +26,15 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
   kernel.setArg(11, arguments.shadow_depths);
   kernel.setArg(12, arguments.image);
   launch(device, kernel, arguments.frame.plane_stride / device.description.lanes, rowsPerTile(device));
+  finish(device);
 }
 
-void countInRange(Device& device, const std::string& defines, const CountInRangeArguments& arguments) {
-  cl::Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", defines);
+void countInRange(Device& device, const CountInRangeArguments& arguments) {
+  cl::Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", "");
   kernel.setArg(0, arguments.position);
   kernel.setArg(1, static_cast<cl_uint>(arguments.plane_stride));
   kernel.setArg(2, arguments.lights);
-  kernel.setArg(3, static_cast<cl_uint>(arguments.light_count));
+  kernel.setArg(3, cl_uint(arguments.list_shift));
   kernel.setArg(4, arguments.lists.starts);
   kernel.setArg(5, arguments.lists.list);
   kernel.setArg(6, arguments.counts);

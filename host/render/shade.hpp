@@ -31,12 +31,12 @@ struct CountInRangeArguments {
   const cl::Buffer& position;
   std::size_t plane_stride;
   const cl::Buffer& lights;
-  std::size_t light_count;
+  unsigned list_shift;  ///< see LIST_OF_PIXEL
   const LightLists& lists;
   const cl::Buffer& counts;  ///< out: one float a pixel
 };
 
 /// Launches kernels/count_in_range.cl: how many lights reach each pixel.
-void countInRange(Device& device, const std::string& defines, const CountInRangeArguments& arguments);
+void countInRange(Device& device, const CountInRangeArguments& arguments);
 
 }  // namespace luciole

@@ -1,14 +1,16 @@
 #include "render/shade_lights.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "raster/view.hpp"
+#include "render/light_tree.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr std::size_t kMostLanes = 16;
 /// Metres. Squares of a few times this are finite floats.
 constexpr double kFarthestLight = 1e18;
 /// Cosine of the narrowest cutoff: floats round a cosine near 1 by up to 12 · 2⁻²⁴, and the axis must stay
@@ -19,17 +21,14 @@ float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y
 
 }  // namespace
 
-ShadeLights prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps) {
+LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps) {
   const glm::dmat4 world_to_view = worldToView(camera);
   const glm::dmat3 rotation(world_to_view);
-  ShadeLights result;
-  const std::size_t count = scene.lights.size();
-  result.lights.resize(count);
-  result.reach_stride = (count + kMostLanes - 1) / kMostLanes * kMostLanes;
-  result.reach.assign(4 * result.reach_stride, 0.0f);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Light& light = scene.lights[i];
-    ShadeLight& out = result.lights[i];
+  const std::vector<std::uint32_t> order = spatialOrder(scene.lights);
+  LightArray result(order.size());
+  tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
+    const Light& light = scene.lights[order[i]];
+    ShadeLight& out = result[i];
     const glm::dvec3 shines = rotation * light.direction;
     const double range = light.range;
     const double inverse_range2 = light.kind == LightKind::kDirectional ? 0.0 : 1.0 / (range * range);
@@ -56,17 +55,8 @@ ShadeLights prepareLights(const Scene& scene, const Camera& camera, const Shadow
     out.attenuation = pack(glm::dvec3(light.attenuation) * glm::dvec3(1, nearer, nearer * nearer), 0);
     out.khr_window = light.window == RangeWindow::kKhr;
     out.cone = light.falloff == SpotFalloff::kCone;
-    out.shadow = shadow_maps.map_of_light.empty() ? kNoShadow : shadow_maps.map_of_light[i];
-    // The very floats that shading uses, so that both see the same distances.
-    result.reach[i] = out.position.x;
-    result.reach[i + result.reach_stride] = out.position.y;
-    result.reach[i + 2 * result.reach_stride] = out.position.z;
-    result.reach[i + 3 * result.reach_stride] = out.position.w;
-  }
-  for (std::size_t i = count; i < result.reach_stride; ++i) {
-    result.reach[i] = 1e18f;  // squared still finite, and out of any range
-    result.reach[i + 3 * result.reach_stride] = 1.0f;
-  }
+    out.shadow = shadow_maps.map_of_light.empty() ? kNoShadow : shadow_maps.map_of_light[order[i]];
+  });
   return result;
 }
 

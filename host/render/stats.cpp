@@ -1,10 +1,24 @@
 #include "render/stats.hpp"
 
-#include <sys/resource.h>
-
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "cl/kernel_cache.hpp"
+
 namespace luciole {
+namespace {
+
+/// The most memory that the process had resident. Not by getrusage, whose figure starts at what the process
+/// that started this one had.
+std::uint64_t peakBytes() {
+  std::ifstream status("/proc/self/status");
+  std::uint64_t kibibytes = 0;
+  for (std::string field; status >> field;)
+    if (field == "VmHWM:") status >> kibibytes;
+  return kibibytes * 1024;
+}
+
+}  // namespace
 
 void addStage(Stats& stats, const std::string& name, double milliseconds) {
   for (auto& [stage, sum] : stats.stages) {
@@ -35,11 +49,11 @@ std::string statsJson(const Stats& stats) {
   json["counts"] = nlohmann::ordered_json::object();
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
   for (const auto& [name, error] : stats.errors) json["errors"][name] = error;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  json["memory"] = {{"peak_bytes", std::uint64_t(usage.ru_maxrss) * 1024},
-                    {"device_bytes", stats.device_bytes}};
+  json["memory"] = {{"peak_bytes", peakBytes()}, {"device_bytes", stats.device_bytes}};
   json["cold_start_milliseconds"] = cold_start;
+  const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
+  json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;
+  json["wall_milliseconds"] = millisecondsSinceStart();
   return json.dump(2) + "\n";
 }
 

@@ -22,7 +22,8 @@ struct Stats {
       stages;  ///< milliseconds, summed over the samples, in order of first use
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< measured ones, where a command measures any
-  std::size_t device_bytes = 0;  ///< OpenCL buffers of one sample, those shared with the host included
+  /// OpenCL buffers of one sample of the largest band, those shared with the host included
+  std::size_t device_bytes = 0;
 };
 
 /// Adds `milliseconds` to the stage of that name.
@@ -43,7 +44,13 @@ auto timed(Stats& stats, const char* name, Function&& function) {
   return function();
 }
 
-/// The JSON text that --stats writes, by the names of the interface.
+/// The JSON text that --stats writes, by the names of the interface. Of the time it says:
+/// - stages: how long each took. The device is opened and kernels are compiled by threads of their own while
+///   other stages run, so the sum is more than the whole; "wait for …" is what was left to wait for them.
+/// - wall_milliseconds: the whole, from the process's start to this text (see millisecondsSinceStart).
+/// - cold_start_milliseconds: opening the device and compiling the kernels.
+/// - kernels_compiled: whether that start was a cold one: how many kernels weren't in the cache, 0 where all
+///   were, null where the platform doesn't tell (see kernelsCompiled).
 std::string statsJson(const Stats& stats);
 
 }  // namespace luciole

@@ -85,6 +85,31 @@ TEST(OpenDevice, OtherLanesAreRefused) {
   }
 }
 
+TEST(StartDevice, IsOpenOnceAwaited) {
+  Device own, started;
+  openDevice("", own);
+  startDevice("", started);
+  awaitDevice(started);
+  EXPECT_EQ(started.description.name, own.description.name);
+  EXPECT_GT(started.milliseconds_to_open, 0);
+  std::vector<int> back(1);
+  readBuffer(started, inputBuffer(started, std::vector<int>{7}), back.data(), sizeof(int));
+  EXPECT_EQ(back, std::vector<int>{7});
+  awaitDevice(own);  // nothing to wait for
+}
+
+TEST(StartDevice, ErrorsReachEveryThreadThatAwaits) {
+  Device device;
+  startDevice("no such device", device);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_THAT(messageOf<InputError>([&] { awaitDevice(device); }), HasSubstr("no device has this"));
+}
+
+TEST(StartDevice, ItsThreadEndsBeforeTheDevice) {
+  Device device;
+  startDevice("", device);
+}
+
 TEST(MakeKernel, CompileErrorNamesTheRealFileAndLine) {
   Device device;
   openDevice("", device);

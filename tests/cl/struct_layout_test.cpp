@@ -61,7 +61,7 @@ TEST(StructLayout, ShadeFrame) {
        offsetof(ShadeFrame, fog_color), offsetof(ShadeFrame, fog_density), offsetof(ShadeFrame, eye),
        offsetof(ShadeFrame, fog_end), offsetof(ShadeFrame, fog_scale), offsetof(ShadeFrame, fog_mode),
        offsetof(ShadeFrame, blinn), offsetof(ShadeFrame, light_count), offsetof(ShadeFrame, plane_stride),
-       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, pad)});
+       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, list_shift)});
 }
 
 TEST(StructLayout, FrameArrivesByValue) {
@@ -70,7 +70,7 @@ TEST(StructLayout, FrameArrivesByValue) {
   frame.eye.w = -2.25f;
   frame.fog_end = 7;
   frame.fog_mode = 42;
-  frame.pad = 43;
+  frame.list_shift = 43;
   EXPECT_EQ(report("report_frame_argument", 5, frame),
             (std::vector<cl_uint>{std::bit_cast<cl_uint>(1.5f), std::bit_cast<cl_uint>(-2.25f),
                                   std::bit_cast<cl_uint>(7.0f), 42, 43}));

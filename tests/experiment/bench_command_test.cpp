@@ -29,8 +29,9 @@ const nlohmann::json& defaultRow(const nlohmann::json& group) {
 TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
   const TemporaryFolder folder;
   writeText(folder / "scene.json", kScene);
-  const Outcome outcome =
-      runLine(folder, "luciole bench scene.json --size 64x36 --repeats 1 --json out.json");
+  const Outcome outcome = runLine(folder,
+                                  "luciole bench scene.json --only shading --only shadows --only samples "
+                                  "--size 64x36 --repeats 1 --json out.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress line but on a terminal
   EXPECT_NE(outcome.out.find("samples 1 (default)"), std::string::npos) << outcome.out;
@@ -76,12 +77,33 @@ TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
   std::string scene = kScene;
   scene.replace(scene.find("\"shadow\": true"), 14, "\"shadow\": false");
   writeText(folder / "bare.json", scene);
-  const Outcome outcome =
-      runLine(folder, "luciole bench bare.json --size 64x36 --repeats 1 --json - --plot out.svg");
+  const Outcome outcome = runLine(folder,
+                                  "luciole bench bare.json --only shading --only shadows --only samples "
+                                  "--size 64x36 --repeats 1 --json - --plot out.svg");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);  // nothing else on standard output
   ASSERT_EQ(json["groups"].size(), 2u);
   EXPECT_NE(readText(folder / "out.svg").find("</svg>"), std::string::npos);
+}
+
+TEST(BenchCommand, MeasuresOneThingAlone) {
+  const TemporaryFolder folder;
+  writeText(folder / "scene.json", kScene);
+  const Outcome outcome = runLine(
+      folder, "luciole bench scene.json --only rasterizer --size 64x36 --repeats 2 --quiet --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("| G-buffer, 64 x 36 "), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("8-bit steps"), std::string::npos) << "no errors, so nothing to explain";
+  const auto json = nlohmann::json::parse(readText(folder / "out.json"));
+  EXPECT_TRUE(json["groups"].empty());
+  ASSERT_EQ(json["speed"].size(), 1u);
+  EXPECT_EQ(json["speed"][0]["name"], "rasterizer");
+  EXPECT_NE(json["speed"][0]["measured"].get<std::string>().find("scene.json"), std::string::npos);
+  for (const auto& row : json["speed"][0]["rows"]) {
+    EXPECT_GT(row["milliseconds"]["median"], 0) << row;
+    EXPECT_GE(row["milliseconds"]["spread"], 0) << row;
+    EXPECT_GT(row["times_one_thread"]["median"], 0) << row;
+  }
 }
 
 /// Expects one line on standard error that mentions `what`, this exit status, and no file.
@@ -99,6 +121,8 @@ TEST(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench --json none/out.json", 2, "none/out.json: no such folder");
   refuse("luciole bench --plot none/out.svg", 2, "none/out.svg: no such folder");
   refuse("luciole bench --plot out.png", 2, "out.png: expected a .svg file");
+  refuse("luciole bench --plot out.svg --only start", 2, "--plot out.svg: shows shading");
+  refuse("luciole bench --only everything", 2, "--only");
   refuse("luciole bench --size 64", 2, "--size");
   refuse("luciole bench --repeats 0", 2, "--repeats");
   refuse("luciole bench --device no-such-device", 2, "no-such-device");

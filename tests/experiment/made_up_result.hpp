@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiment/measure.hpp"
+#include "experiment/bench.hpp"
 
 namespace luciole::test {
 
@@ -18,7 +18,7 @@ inline BenchRow madeUpRow(const std::string& name, double milliseconds, double m
   return row;
 }
 
-/// Two groups of few rows whose figures are round in 8-bit steps.
+/// Two groups of few rows whose figures are round in 8-bit steps, and a table of speed.
 inline BenchResult madeUpResult() {
   BenchResult result;
   result.machine.processor = "A processor";
@@ -41,6 +41,10 @@ inline BenchResult madeUpResult() {
   samples.rows = {madeUpRow("samples 1", 20, 0.4 / 255, true, true),
                   madeUpRow("samples 2", 40, 0.2 / 255, true)};
   result.groups = {shading, samples};
+  result.speed = {{.name = "a stage",
+                   .measured = "what it costs",
+                   .columns = {{"milliseconds", "ms", 2}, {"entries", "entries", 0}},
+                   .rows = {{"one", {Repeated{12.345, 1.2345}, 7.0}}, {"two", {Repeated{0, 0}, {}}}}}};
   return result;
 }
 

@@ -42,15 +42,33 @@ TEST(BenchTable, ColumnsStandUnderOneAnother) {
     if (const std::size_t sign = line.find("±"); sign != std::string::npos) line.erase(sign, 1);
     widths.push_back(line.size());
   }
-  ASSERT_EQ(widths.size(), 9u);  // two heads of two lines, and rows
+  ASSERT_EQ(widths.size(), 13u);  // three heads of two lines, and rows
   for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(widths[i], widths[0]) << i;
   for (std::size_t i = 6; i < 9; ++i) EXPECT_EQ(widths[i], widths[5]) << i;
+  for (std::size_t i = 10; i < 13; ++i) EXPECT_EQ(widths[i], widths[9]) << i;
 }
 
 TEST(BenchTable, SaysWhatTheTruthOfTheSamplesIsWorth) {
   const auto lines = linesWith(benchTable(madeUpResult()), "the whole picture");
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("1.0e-02"));
+}
+
+TEST(BenchTable, ATableOfSpeedHasAFigureOrNothingInEachCell) {
+  const std::string table = benchTable(madeUpResult());
+  EXPECT_THAT(table, HasSubstr("a stage: what it costs."));
+  EXPECT_EQ(linesWith(table, "| one "), std::vector<std::string>{"| one     | 12.35 ± 10 % |       7 |"});
+  EXPECT_EQ(linesWith(table, "| two "), std::vector<std::string>{"| two     |   0.00 ± 0 % |         |"});
+}
+
+TEST(BenchJson, ATableOfSpeedHasItsFiguresByKey) {
+  const auto json = nlohmann::json::parse(benchJson(madeUpResult()))["speed"][0];
+  EXPECT_EQ(json["name"], "a stage");
+  EXPECT_EQ(json["measured"], "what it costs");
+  EXPECT_EQ(json["rows"][0], (nlohmann::json{{"name", "one"},
+                                             {"milliseconds", {{"median", 12.345}, {"spread", 1.2345}}},
+                                             {"entries", 7.0}}));
+  EXPECT_FALSE(json["rows"][1].contains("entries"));
 }
 
 TEST(BenchJson, HoldsEveryRowWithItsSettingsTimeAndErrors) {
@@ -68,6 +86,7 @@ TEST(BenchJson, HoldsEveryRowWithItsSettingsTimeAndErrors) {
   EXPECT_EQ(row["front"], true);
   EXPECT_EQ(row["settings"]["lanes"], 8);
   EXPECT_EQ(row["settings"]["culling"], "tiles");
+  EXPECT_EQ(row["settings"]["tile"], 4);
   EXPECT_EQ(row["settings"]["shadows"], "hard");
   EXPECT_EQ(row["milliseconds"]["median"], 10);
   EXPECT_EQ(row["milliseconds"]["spread"], 0.5);

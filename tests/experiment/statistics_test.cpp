@@ -9,22 +9,22 @@ namespace luciole::test {
 namespace {
 
 TEST(Summarize, OneRunIsItsMedianWithoutSpread) {
-  const Timing timing = summarize({7});
+  const Repeated timing = summarize({7});
   EXPECT_EQ(timing.median, 7);
   EXPECT_EQ(timing.spread, 0);
 }
 
 TEST(Summarize, MedianAndHalfTheQuartilesDistanceInAnyOrder) {
-  const Timing odd = summarize({50, 10, 40, 20, 30});
+  const Repeated odd = summarize({50, 10, 40, 20, 30});
   EXPECT_EQ(odd.median, 30);
   EXPECT_EQ(odd.spread, 10);  // quartiles 20 and 40
-  const Timing even = summarize({4, 1, 3, 2});
+  const Repeated even = summarize({4, 1, 3, 2});
   EXPECT_EQ(even.median, 2.5);
   EXPECT_EQ(even.spread, 0.75);  // quartiles 1.75 and 3.25
 }
 
 TEST(Summarize, OneRunThatWasDisturbedChangesNeither) {
-  const Timing calm = summarize({1, 2, 3, 4, 5}), disturbed = summarize({1, 2, 3, 4, 5000});
+  const Repeated calm = summarize({1, 2, 3, 4, 5}), disturbed = summarize({1, 2, 3, 4, 5000});
   EXPECT_EQ(calm.median, disturbed.median);
   EXPECT_EQ(calm.spread, disturbed.spread);
 }

@@ -280,8 +280,9 @@ TEST(HardLights, MillionLightsAddUpLikeOneAMillionTimesAsBright) {
 }
 
 TEST(HardLights, ListsAsLongAsAllLightsHoldThemAll) {
-  // 200,000 lights around the points of the first tile, which is far from the second: one list is longer than
-  // both tiles' pixels together, the other empty. Then 50,000 lights that reach both.
+  // 200,000 lights around the points of the first tile, a row of four lists, which are far from those of the
+  // others: each of these lists is longer than all tiles have pixels, the others are empty. Then 50,000
+  // lights that reach all.
   std::vector<SurfaceSeen> points;
   for (int i = 0; i < 64; ++i) points.push_back(glossy({0.01f * i + (i < 16 ? -50 : 50), 0, -90}));
   Random random(3);
@@ -303,7 +304,7 @@ TEST(HardLights, ListsAsLongAsAllLightsHoldThemAll) {
     std::uint64_t entries = 0;
     for (const auto& [name, count] : stats.counts)
       if (name == "list_entries") entries = count;
-    EXPECT_EQ(entries, lights.size() * (range == kInfinity ? 4 : 1));
+    EXPECT_EQ(entries, lights.size() * (range == kInfinity ? 16 : 4));
     settings.shade.culling = Culling::kNone;
     ASSERT_EQ(tiles.pixels, shadeGBuffer(deviceWithLanes(16), scene, gbuffer, settings, stats).pixels);
     const std::vector<glm::ivec2> some{{0, 0}, {15, 0}, {16, 0}, {63, 0}};

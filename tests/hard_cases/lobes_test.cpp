@@ -65,9 +65,8 @@ LobeErrors lobeErrors(const std::vector<SurfaceSeen>& points, const std::vector<
     const double relative = std::abs(got[i].x - exact) / exact;
     const double t = -std::log(exact) / n;
     const double delta = (blinn ? 19 : 13) * kUnit;
-    // Roundings of t itself: 4, and 2 ulp of the power, whose logarithm is within 2^-22; 3 of the result.
-    const double bound =
-        n * (std::sqrt(2 * t) * delta + delta * delta / 2 + t * (4 * kUnit + 0x1p-22)) + 7 * kUnit;
+    // Roundings of t itself: 5, and 3 of the power, whose exponent is within 5; 3 of the result.
+    const double bound = n * (std::sqrt(2 * t) * delta + delta * delta / 2 + 10 * t * kUnit) + 7 * kUnit;
     worst.relative = std::max(worst.relative, relative);
     worst.of_bound = std::max(worst.of_bound, relative / bound);
   }

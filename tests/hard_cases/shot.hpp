@@ -86,11 +86,12 @@ inline void expectAsTheReference(const Shot& shot) {
 /// The picture with every light sent to every pixel is the same to the last bit.
 inline void expectCullingChangesNothing(const Shot& shot) {
   RenderSettings settings = shot.settings;
-  for (const Culling culling : {Culling::kNone, Culling::kTiles}) {
-    settings.shade.culling = culling;
+  for (const int tile_size : {0, 4, 8, 16}) {
+    settings.shade.culling = tile_size == 0 ? Culling::kNone : Culling::kTiles;
+    if (tile_size > 0) settings.shade.tile_size = tile_size;
     Stats stats;
     ASSERT_EQ(renderScene(testDevice(), shot.scene, settings, stats).pixels, shot.image.pixels)
-        << "culling " << int(culling);
+        << "tiles of " << tile_size;
   }
 }
 

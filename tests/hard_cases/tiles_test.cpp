@@ -15,18 +15,19 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST(HardTiles, BackgroundAloneNeedsNoLights) {
-  // A ball in the middle of 7 × 5 tiles; two lights that reach everywhere.
+  // A ball in the middle of a picture, which in each direction is lit by both lights: they give ambient
+  // light.
   const glm::ivec2 size(105, 77);
   const Shot shot =
       shoot(R"({"camera": {"eye": [0, 0, 9], "target": [0, 0, 0]}, "background": [0.1, 0.2, 0.3],
     "objects": [{"primitive": "sphere"}],
-    "lights": [{"type": "point", "position": [3, 3, 3]}, {"type": "directional", "direction": [0, -1, -1]}]})",
+    "lights": [{"type": "point", "position": [3, 3, 3], "ambient": 0.01}, {"type": "directional", "direction": [0, -1, -1], "ambient": 0.01}]})",
             size);
-  std::vector<bool> shows(std::size_t(shot.gbuffer.tiles_x) * shot.gbuffer.tiles_y);
+  const int side = shot.settings.shade.tile_size, columns = (size.x + side - 1) / side;
+  std::vector<bool> shows(std::size_t(columns) * ((size.y + side - 1) / side));
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x)
-      if (isCovered(shot.gbuffer, x, y))
-        shows[std::size_t(y / kTileSize) * shot.gbuffer.tiles_x + x / kTileSize] = true;
+      if (isCovered(shot.gbuffer, x, y)) shows[std::size_t(y / side) * columns + x / side] = true;
   const auto with_ball = std::size_t(std::count(shows.begin(), shows.end(), true));
   EXPECT_GT(with_ball, 3u);
   EXPECT_LT(with_ball, shows.size() / 2);
@@ -140,6 +141,37 @@ void moveOnePixelAway(ShadowMethod shadows) {
 
 TEST(HardTiles, OnePixelFarAwayHarmsNoOther) { moveOnePixelAway(ShadowMethod::kOff); }
 TEST(HardTiles, OnePixelFarAwayHarmsNoOtherAmongShadows) { moveOnePixelAway(ShadowMethod::kPcf); }
+
+TEST(HardTiles, NormalsThatAFileHasInAnotherLengthAreMadeUnit) {
+  // Culling by the way that surfaces face, and Phong's mirror, count on unit normals.
+  const Shot shot = shoot(sceneFromJson(kWall), {48, 33});
+  const TemporaryFolder folder;
+  GBuffer gbuffer = shot.gbuffer;
+  const std::size_t n = gbuffer.pixels();
+  constexpr std::array<float, 6> kLengths{1, 1e-20f, 1e-3f, 0.999f, 1e3f, 1e18f};
+  for (std::size_t i = 0; i < 3 * n; ++i) gbuffer.normal[i] *= kLengths[i % n % kLengths.size()];
+  writeGBuffer(gbuffer, folder / "g.exr", {});
+  const GBuffer read = readGBuffer(folder / "g.exr");
+  for (int y = 0; y < gbuffer.height; ++y)
+    for (int x = 0; x < gbuffer.width; ++x) {
+      if (!isCovered(gbuffer, x, y)) continue;
+      const std::size_t i = gbuffer.index(x, y);
+      for (std::size_t c = i; c < 3 * n; c += n) {
+        if (i % kLengths.size() == 0) {
+          ASSERT_EQ(read.normal[c], shot.gbuffer.normal[c]) << "unit already";
+        } else {
+          // Rounded by the product, by the new length and once more.
+          ASSERT_NEAR(read.normal[c], shot.gbuffer.normal[c], 4 * kUnit);
+        }
+      }
+    }
+  RenderSettings settings = shot.settings;
+  settings.shade.culling = Culling::kNone;
+  Stats stats;
+  const Image all = shadeGBuffer(testDevice(), shot.scene, read, settings, stats);
+  settings.shade.culling = Culling::kTiles;
+  EXPECT_EQ(shadeGBuffer(testDevice(), shot.scene, read, settings, stats).pixels, all.pixels);
+}
 
 TEST(HardTiles, NearAndFarInOneTile) {
   // A ball at 2 m before a wall at 90 000 km, both lit from near and far: tiles that hold both are that deep.

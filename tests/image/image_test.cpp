@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "error.hpp"
+#include "image/file_format.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
@@ -230,6 +231,7 @@ int fillASmallDisk() {
   const Image small = rampPicture(2, 2, {"R", "G", "B"}), noise = noisePicture();
   if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return kNoSmallDisk;
   if (mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return kNoSmallDisk;
+  openImageIOWrites("exr");  // loads the module, which the disk may hide
   const std::string place = std::filesystem::temp_directory_path().string();
   if (mount("none", place.c_str(), "tmpfs", 0, "size=32k") != 0) return kNoSmallDisk;
   const TemporaryFolder folder;

@@ -74,6 +74,7 @@ void makeMistake(const char* mistake) {
   const cl::Buffer values = deviceBuffer(device, 16 * sizeof(float));
   kernel.setArg(0, values);
   launch(device, kernel, 16, 16);
+  finish(device);
 }
 
 }  // namespace

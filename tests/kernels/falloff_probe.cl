@@ -10,5 +10,5 @@ __kernel void probe_falloff(__global const float *in, __global float *out, uint 
   floatL d2 = SQUARED_LENGTH(to_light.x, to_light.y, to_light.z);
   floatL inverse_d = rsqrt_lanes(d2);
   store_lanes(out + first, distance_falloff(light, d2, inverse_d));
-  store_lanes(out + first + stride, spot_falloff(light, scale3(to_light, inverse_d)));
+  store_lanes(out + first + stride, spot_falloff(light, to_light, inverse_d));
 }

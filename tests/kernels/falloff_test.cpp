@@ -157,13 +157,13 @@ void expectSpot(const SpotCase& spot, const std::string& defines) {
     const Column strength = falloffs(lanes, spot.light, to_light, defines)[1];
     for (std::size_t i = 0; i < strength.size(); ++i) {
       const double cosine = to_light[2][i] / lengthOf(to_light, i);
-      // The cosine has 1/d's 6 roundings, a product and 1 − cosine's; the edge its own; the ramp's scale one
-      // more, which at the inner end moves the cosine by less than one. The strength is monotone in the
-      // cosine.
+      // The cosine has 3 roundings of a product along the axis, 4.5 of 1/d (see MathKernels.UnitVectors), one
+      // of their product and 1 − cosine's; the edge its own; the ramp's scale one more, which at the inner
+      // end moves the cosine by less than one. The strength is monotone in the cosine.
       constexpr double kCosineError = 12 * kUnit;
       const double least = spot.strength(cosine - kCosineError), most = spot.strength(cosine + kCosineError);
       const double exponent = spot.light.diffuse.w * std::abs(std::log2(std::max(cosine, 1e-9)));
-      const double slack = most * (8 * kUnit + exponent * 0x1p-22) + 0x1p-126;
+      const double slack = most * (8 * kUnit + exponent * 5 * kUnit) + 0x1p-125;
       ASSERT_GE(strength[i], least - slack) << "cosine " << cosine << ", " << lanes << " lanes";
       ASSERT_LE(strength[i], most + slack) << "cosine " << cosine << ", " << lanes << " lanes";
     }

@@ -62,8 +62,8 @@ Share shareOf(const ShadeFrame& frame, double density, double distance) {
     depth *= depth;
   }
   const double exact = std::exp(-depth);
-  // log2(e) and its product round; the power adds 2 ulp, 4 roundings, and is 0 below the normal numbers.
-  return {exact, exact * (depth_error + 2 * kUnit * depth + 4 * kUnit) + 0x1p-126};
+  // log2(e) and its product round; the power adds 3, and is 0 below 2^-125.5.
+  return {exact, exact * (depth_error + 2 * kUnit * depth + 3 * kUnit) + 0x1p-125};
 }
 
 void expectFog(const ShadeFrame& frame, const char* defines) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -85,42 +86,55 @@ inline MathFunction normalizeFunction() {
   return function;
 }
 
-inline MathFunction exp2Function() {
+/// 2^(a·b) for products over the whole range, near every half integer too, where the polynomial's ends are;
+/// and for factors that make such products of the largest and the smallest, as a power of a lobe does.
+inline MathFunction exp2ProductFunction() {
   Column x = sweep(1e-12f, 127.0f, 150000);
-  append(x, negated(sweep(1e-12f, 126.0f, 150000)));
+  append(x, negated(sweep(1e-12f, 125.49999f, 150000)));
   append(x, sweep(0.0625f, 0.5f, 100000));
   append(x, negated(sweep(0.0625f, 0.5f, 100000)));
-  for (int n = -126; n < 127; ++n)
+  for (int n = -125; n < 127; ++n)
     append(x, {n + 0.5f, std::nextafter(n + 0.5f, 200.0f), std::nextafter(n + 0.5f, -200.0f)});
-  return {"probe_exp2", 1, {x}, [](const double* a, std::size_t) { return std::exp2(a[0]); }};
+  MathFunction function{"probe_exp2_product", 1, std::vector<Column>(2),
+                        [](const double* a, std::size_t) { return std::exp2(a[0] * a[1]); }};
+  constexpr std::array<float, 5> kFactors{1, 3, 0.7f, 123457, 1.1e-6f};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const float factor = kFactors[i % kFactors.size()], other = x[i] / factor;
+    const double product = double(factor) * other;
+    if (product <= -125.5 || product > 127) continue;
+    function.in[0].push_back(factor);
+    function.in[1].push_back(other);
+  }
+  return function;
 }
 
-/// exp where its result is a normal number, x ≤ 0 as fog has it.
+/// exp where exp2_product gives more than 0, x ≤ 0 as fog has it.
 inline MathFunction expFunction() {
-  return {"probe_exp", 1, {negated(sweep(1e-12f, 87.3f, 400000))}, [](const double* a, std::size_t) {
+  return {"probe_exp", 1, {negated(sweep(1e-12f, 86.9f, 400000))}, [](const double* a, std::size_t) {
             return std::exp(a[0]);
           }};
 }
 
-inline MathFunction log2OneMinusFunction() {
-  Column t = sweep(kSmallestNormal, 0x1p-8f, 50000);
-  append(t, sweep(0x1p-8f, kBelowOne, 400000));
-  return {"probe_log2_one_minus", 1, {t}, [](const double* a, std::size_t) {
-            return std::log1p(-a[0]) / std::log(2.0);
+inline MathFunction log2OneMinusHalfFunction() {
+  Column s = sweep(2 * kSmallestNormal, 0x1p-7f, 50000);
+  append(s, sweep(0x1p-7f, 2 * kBelowOne, 400000));
+  return {"probe_log2_one_minus_half", 1, {s}, [](const double* a, std::size_t) {
+            return std::log1p(-a[0] / 2) / std::log(2.0);
           }};
 }
 
-/// log2 of (1 − t)^n.
-inline double exponentOf(double t, double n) { return n * std::log1p(-t) / std::log(2.0); }
+/// log2 of (1 − s/2)^n.
+inline double exponentOf(double s, double n) { return n * std::log1p(-s / 2) / std::log(2.0); }
 
-/// (1 − t)^n where it is a normal number.
-inline MathFunction powOneMinusFunction() {
-  MathFunction function{"probe_pow_one_minus", 1, std::vector<Column>(2),
+/// (1 − s/2)^n where it is above 2^-125.5, and not so near that a rounding of the exponent crosses the
+/// border.
+inline MathFunction powOneMinusHalfFunction() {
+  MathFunction function{"probe_pow_one_minus_half", 1, std::vector<Column>(2),
                         [](const double* a, std::size_t) { return std::exp2(exponentOf(a[0], a[1])); }};
   for (const float n : {1e-6f, 0.1f, 1.0f, 2.0f, 32.0f, 128.0f, 1e4f, 1e6f}) {
-    for (const float t : sweep(1e-12f, kBelowOne, 40000)) {
-      if (exponentOf(t, n) < -125.9) continue;
-      function.in[0].push_back(t);
+    for (const float s : sweep(1e-12f, 2 * kBelowOne, 40000)) {
+      if (exponentOf(s, n) < -125.499) continue;
+      function.in[0].push_back(s);
       function.in[1].push_back(n);
     }
   }

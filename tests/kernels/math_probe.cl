@@ -21,14 +21,21 @@ INLINE floatL root(floatL x) { return x * rsqrt_lanes(x); }
 
 PROBE_1(probe_rsqrt, rsqrt_lanes)
 PROBE_1(probe_sqrt, root)
-PROBE_1(probe_exp2, exp2_lanes)
 PROBE_1(probe_exp, exp_lanes)
-PROBE_1(probe_log2_one_minus, log2_one_minus)
+PROBE_1(probe_log2_one_minus_half, log2_one_minus_half)
 PROBE_1(probe_finite_color, finite_color)
 PROBE_1(probe_clamp01, clamp01)
-PROBE_2(probe_pow_one_minus, pow_one_minus)
+PROBE_2(probe_exp2_product, exp2_product)
+PROBE_2(probe_pow_one_minus_half, pow_one_minus_half)
 PROBE_2(probe_max, max_lanes)
 PROBE_2(probe_min, min_lanes)
+
+// a·b less what it rounds to: 0, unless the compiler fuses the product into the difference.
+__kernel void probe_fusing(__global const float *in, __global float *out, uint stride) {
+  uint first = get_global_id(0) * LANES;
+  floatL a = load_lanes(in + first), b = load_lanes(in + first + stride), rounded = load_lanes(in + first + 2 * stride);
+  store_lanes(out + first, a * b - rounded);
+}
 
 __kernel void probe_normalize(__global const float *in, __global float *out, uint stride) {
   uint first = get_global_id(0) * LANES;

@@ -24,11 +24,11 @@ struct Degrees {
   int log2, exp2;
   double log2_error, exp2_error;
 };
-constexpr Degrees kUsual{8, 6, 4 * kUnit, 1.6 * kUnit};
+const Degrees kUsual{8, 6, std::exp2(-21.4), 3 * kUnit};
 const Degrees kOthers[] = {
     {3, 2, std::exp2(-11.4), std::exp2(-8.7)},  {4, 3, std::exp2(-14.2), std::exp2(-11.1)},
-    {5, 4, std::exp2(-17.0), std::exp2(-18.0)}, {6, 5, std::exp2(-19.5), std::exp2(-20.8)},
-    {7, 5, std::exp2(-21.3), std::exp2(-20.8)}, {9, 7, std::exp2(-22.1), std::exp2(-23.4)}};
+    {5, 4, std::exp2(-17.0), std::exp2(-18.0)}, {6, 5, std::exp2(-19.5), std::exp2(-20.6)},
+    {7, 5, std::exp2(-21.1), std::exp2(-20.6)}, {9, 7, std::exp2(-21.6), std::exp2(-22.4)}};
 
 /// Calls `check(device, degrees, defines)` for the usual degrees at every width, products and sums fused or
 /// not, and for the others with the extremes.
@@ -101,25 +101,46 @@ TEST(MathKernels, UnitVectors) {
   }
 }
 
+/// Whether the device's compiler makes one operation of a product and the difference that it goes into.
+bool fusesProducts(Device& device, const std::string& defines) {
+  const float a = 1 + 0x1p-23f, rounded = 1 + 0x1p-22f;  // a² less 2^-46
+  return probe(device, "math_probe.cl", "probe_fusing", {{a}, {a}, {rounded}}, 1, {}, defines)[0][0] != 0;
+}
+
 TEST(MathKernels, PowerOfTwoAtEveryDegree) {
-  const MathFunction exp2 = exp2Function();
+  const MathFunction exp2 = exp2ProductFunction();
   forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
-    const MathErrors errors = measureErrors(device, exp2, defines);
-    EXPECT_LE(errors.max_relative, degrees.exp2_error);
-    if (degrees.exp2 == kUsual.exp2) {
-      EXPECT_LE(errors.max_ulp, 1.2);
+    const bool fused = fusesProducts(device, defines);
+    double worst = 0, worst_ulp = 0;  // as a share of the bound
+    forEachResult(device, exp2, defines, [&](const double* a, float result, double exact) {
+      const double error = std::abs(result - exact);
+      // The product rounds where it is a value of its own, which moves the power by ln 2 of that.
+      const double moved = fused ? 0 : 0.7 * kUnit * std::abs(a[0] * a[1]);
+      worst = std::max(worst, error / exact / (degrees.exp2_error + moved));
+      worst_ulp = std::max(worst_ulp, error / ulp(exact));
+    });
+    EXPECT_LE(worst, 1);
+    if (degrees.exp2 == kUsual.exp2 && fused) {
+      EXPECT_LE(worst_ulp, 1.9);
     }
-    const std::vector<Column> whole{{0.0f, -0.0f, kSmallest, -kSmallest, 1.0f, -1.0f, 127.0f, -126.0f}};
-    EXPECT_EQ(probe(device, "math_probe.cl", "probe_exp2", whole, 1, {}, defines)[0],
-              (Column{1, 1, 1, 1, 2, 0.5f, 0x1p127f, 0x1p-126f}));
+    const Column a{0.0f, -0.0f, kSmallest, -kSmallest, 1.0f, 0.5f, 127.0f, -25.0f, 0.0f, kLargest};
+    const Column b{1.0f, 5.0f, 1.0f, 1.0f, 1.0f, -2.0f, 1.0f, 5.0f, kLargest, 0.0f};
+    EXPECT_EQ(probe(device, "math_probe.cl", "probe_exp2_product", {a, b}, 1, {}, defines)[0],
+              (Column{1, 1, 1, 1, 2, 0.5f, 0x1p127f, 0x1p-125f, 1, 1}));
   });
 }
 
-TEST(MathKernels, PowersBelowTheNormalsAreZero) {
-  const Column x{std::nextafter(-126.0f, -200.0f), -126.5f, -127.0f, -150.0f, -1e9f, -kLargest, -kInfinity};
+TEST(MathKernels, PowersBelowTheBorderAreZero) {
+  const Column b{-125.5f, -126.5f, -127.0f, -150.0f, -1e9f, -kLargest, -kInfinity};
+  const Column one(b.size(), 1.0f);
+  Column x;  // for e^x
+  for (const float value : b) x.push_back(value * 0.694f);
   for (const int lanes : kAllLanes) {
-    EXPECT_EQ(run(lanes, "probe_exp2", {x}), Column(x.size(), 0.0f)) << lanes << " lanes";
-    EXPECT_EQ(run(lanes, "probe_exp", {x}), Column(x.size(), 0.0f)) << lanes << " lanes";
+    EXPECT_EQ(run(lanes, "probe_exp2_product", {one, b}), Column(b.size(), 0.0f)) << lanes << " lanes";
+    EXPECT_EQ(run(lanes, "probe_exp", {x}), Column(b.size(), 0.0f)) << lanes << " lanes";
+    EXPECT_EQ(run(lanes, "probe_exp2_product", {{kNaN, 1, kInfinity, kInfinity}, {1, kNaN, 0, -1}}),
+              Column(4, 0.0f))
+        << lanes << " lanes";
   }
 }
 
@@ -129,42 +150,45 @@ TEST(MathKernels, ExponentialAtEveryDegree) {
     double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
     forEachResult(device, exp, defines, [&](const double* x, float result, double exact) {
       const double error = std::abs(result - exact);
-      // The constant log2(e) is off by 0.23 roundings, its product with x rounds once.
+      // The constant log2(e) is off by 0.23 roundings, its product with x rounds at most once.
       worst = std::max(worst, error / exact / (1.23 * kUnit * -x[0] + degrees.exp2_error));
       worst_absolute = std::max(worst_absolute, error);
     });
     EXPECT_LE(worst, 1);
     if (degrees.exp2 == kUsual.exp2) {
-      EXPECT_LE(worst_absolute, 1.6 * kUnit);
+      EXPECT_LE(worst_absolute, 3 * kUnit);
     }
     EXPECT_EQ(probe(device, "math_probe.cl", "probe_exp", {{0.0f, -0.0f, -kSmallest}}, 1, {}, defines)[0],
               (Column{1, 1, 1}));
   });
 }
 
-TEST(MathKernels, LogarithmOfOneMinusAtEveryDegree) {
-  const MathFunction log2 = log2OneMinusFunction();
+TEST(MathKernels, LogarithmOfOneMinusHalfAtEveryDegree) {
+  const MathFunction log2 = log2OneMinusHalfFunction();
   forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
     const MathErrors errors = measureErrors(device, log2, defines);
     EXPECT_LE(errors.max_relative, degrees.log2_error);
     if (degrees.log2 == kUsual.log2) {
-      EXPECT_LE(errors.max_ulp, 2.1);
+      EXPECT_LE(errors.max_ulp, 3.1);
     }
   });
 }
 
-TEST(MathKernels, LogarithmOfOneMinusAtItsEnds) {
+TEST(MathKernels, LogarithmOfOneMinusHalfAtItsEnds) {
   for (const int lanes : kAllLanes) {
-    EXPECT_EQ(run(lanes, "probe_log2_one_minus", {{0.0f, 1.0f, 1.5f, kLargest, kInfinity, kNaN}}),
+    EXPECT_EQ(run(lanes, "probe_log2_one_minus_half", {{0.0f, 2.0f, 3.0f, kLargest, kInfinity, kNaN}}),
               (Column{0, -1e9f, -1e9f, -1e9f, -1e9f, -1e9f}))
         << lanes << " lanes";
-    // A denormal gives a denormal or 0.
-    EXPECT_LE(std::abs(run(lanes, "probe_log2_one_minus", {{kSmallest}})[0]), 2 * kSmallest);
+    for (const float s : {kSmallest, kSmallestNormal, 1.9f * kSmallestNormal}) {
+      const float log2 = run(lanes, "probe_log2_one_minus_half", {{s}})[0];
+      EXPECT_TRUE(log2 <= 0 && log2 >= -s) << lanes << " lanes";
+    }
+    EXPECT_NEAR(run(lanes, "probe_log2_one_minus_half", {{2 - 0x1p-23f}})[0], -24, 24 * kUsual.log2_error);
   }
 }
 
-TEST(MathKernels, PowerOfOneMinusAtEveryDegree) {
-  const MathFunction pow = powOneMinusFunction();
+TEST(MathKernels, PowerOfOneMinusHalfAtEveryDegree) {
+  const MathFunction pow = powOneMinusHalfFunction();
   forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
     double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
     forEachResult(device, pow, defines, [&](const double* a, float result, double exact) {
@@ -176,38 +200,40 @@ TEST(MathKernels, PowerOfOneMinusAtEveryDegree) {
     });
     EXPECT_LE(worst, 1);
     if (degrees.log2 == kUsual.log2) {
-      EXPECT_LE(worst_absolute, 2.6 * kUnit);
+      EXPECT_LE(worst_absolute, 4 * kUnit);
     }
   });
 }
 
-TEST(MathKernels, PowerOfOneMinusAtItsEnds) {
-  const Column t{0, 0, 0, 0, 1, 1, 1, 1, 1, 0.5f, kSmallest, kBelowOne, 0.5f, 1.5f, kInfinity, kNaN};
+TEST(MathKernels, PowerOfOneMinusHalfAtItsEnds) {
+  const Column s{0, 0, 0, 0, 2, 2, 2, 2, 2, 1, kSmallest, 2 * kBelowOne, 1, 3, kInfinity, kNaN};
   const Column n{0, 1, 1e6f, kLargest, 0, 1, 1e-6f, 1e6f, kLargest, 0, 1e6f, 1e6f, kInfinity, 1, 1, 1};
   for (const int lanes : kAllLanes)
-    EXPECT_EQ(run(lanes, "probe_pow_one_minus", {t, n}),
+    EXPECT_EQ(run(lanes, "probe_pow_one_minus_half", {s, n}),
               (Column{1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0}))
         << lanes << " lanes";
 }
 
-TEST(MathKernels, PowersBelowTheNormalsNeverReturn) {
-  Column t, n;
+TEST(MathKernels, PowersBelowTheBorderNeverReturn) {
+  Column s, n;
   for (const float exponent : {2.0f, 32.0f, 1e4f, 1e6f}) {
-    for (const float value : sweep(1e-6f, 1.0f, 40000)) {
-      if (exponentOf(value, exponent) > -125) continue;
-      t.push_back(value);
+    for (const float value : sweep(1e-6f, 2.0f, 40000)) {
+      if (exponentOf(value, exponent) > -125.5) continue;
+      s.push_back(value);
       n.push_back(exponent);
     }
   }
+  // 2^-125.5, as pow_one_minus_half may have it wrong.
+  constexpr double kBorder = 1.4142136 * 0x1p-126 * (1 + 126 * 4.8 * kUnit + 3 * kUnit);
   for (const int lanes : kAllLanes)
-    for (const float y : run(lanes, "probe_pow_one_minus", {t, n}))
-      ASSERT_TRUE(y >= 0 && y < 2.1f * kSmallestNormal) << lanes << " lanes";
+    for (const float y : run(lanes, "probe_pow_one_minus_half", {s, n}))
+      ASSERT_TRUE(y == 0 || (y >= kSmallestNormal && y <= kBorder)) << y << ", " << lanes << " lanes";
 }
 
 TEST(MathKernels, DegreesThatAreNotThereAreRefused) {
   for (const auto& [log2, exp2] : {std::pair{8, 1}, {8, 8}, {2, 6}, {10, 6}})
     EXPECT_THROW(
-        probe(deviceWithLanes(1), "math_probe.cl", "probe_exp2", {{0}}, 1, {}, degreeDefines(log2, exp2)),
+        probe(deviceWithLanes(1), "math_probe.cl", "probe_exp", {{0}}, 1, {}, degreeDefines(log2, exp2)),
         MachineError);
 }
 

@@ -11,13 +11,15 @@ namespace {
 
 constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 
-/// Cases for one exponent: unit float vectors, the eye near enough to the mirror direction to see the lobe.
+/// Cases for one exponent: float vectors, unit but for the one to the light, the eye near enough to the
+/// mirror direction to see the lobe.
 struct Lobes {
   std::vector<Column> in{10};
   std::vector<glm::dvec3> normal, to_light, to_eye;  // the same vectors, exactly unit
 
-  void add(const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v, float exponent) {
-    const glm::vec3 rounded[3] = {glm::vec3(n), glm::vec3(l), glm::vec3(v)};
+  void add(const glm::dvec3& n, const glm::dvec3& l, const glm::dvec3& v, float exponent,
+           double distance = 1) {
+    const glm::vec3 rounded[3] = {glm::vec3(n), glm::vec3(distance * l), glm::vec3(v)};
     for (int i = 0; i < 9; ++i) in[i].push_back(rounded[i / 3][i % 3]);
     in[9].push_back(exponent);
     normal.push_back(glm::normalize(glm::dvec3(rounded[0])));
@@ -41,7 +43,7 @@ Lobes lobesAround(float exponent, bool blinn, std::mt19937& random) {
     const double angle = widest * share(random);
     const glm::dvec3 v = std::cos(angle) * mirrored + std::sin(angle) * aside;
     if (glm::length(l + v) < 0.5) continue;
-    lobes.add(n, l, v, exponent);
+    lobes.add(n, l, v, exponent, std::exp2(20 * share(random) - 10));
   }
   return lobes;
 }
@@ -52,13 +54,17 @@ struct Worst {
 };
 
 // The kernel's argument is t = |a − b|²/2 for the cosine 1 − t. An error δ of the vector a − b changes t by
-// √(2t)·δ + δ²/2 at most; the lengths of a and b, off by ε, only by ε·t + ε². In units of 2^-24:
-//   Phong: R = 2(N·L)N − L. N·L has 3 roundings and N's length (2), R two products and a difference (≤ 2
-//   each, three components: √3) and N's length again: (2·5 + 2 + √3·3 + 2) < 20. Blinn: the sum L + V rounds
-//   (√3), unequal lengths of L and V (2 each) tilt it by 4/|L + V| ≤ 8, its scaling rounds √3, N has 2: < 14.
-// The power's own error is n·|log2(1 − t)|·2^-22 + 2 ulp.
+// √(2t)·δ + δ²/2 at most; its components' own roundings (2 in a square), the squares' and the sums' (3) are
+// relative to t. In units of 2^-24, unit float vectors are off by 1 in length, and L by 5.2 in all once it is
+// scaled (see MathKernels.UnitVectors):
+//   Phong: a = L, b = V′ = 2(V·N)N − V. V·N has 3 roundings, which count twice, and N's length, which counts
+//   twice in it and again in its product with N; two products and a difference round (2 + 1); V's length:
+//   5.2 + 6 + 4 + 3 + 1 < 20.
+//   Blinn: a = N, b = (L + V)/|L + V|. L's and V's errors tilt the sum by 6.2/|L + V| ≤ 12.4, it rounds (1)
+//   and is scaled (5.2), N has 1: < 20.
+// The power's own error is n·|log2(1 − t)|·4.8 + 3.
 Worst worstError(const Lobes& lobes, const Column& result, bool blinn) {
-  const double delta = (blinn ? 14 : 20) * kUnit;
+  constexpr double kDelta = 20 * kUnit;
   Worst worst;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const glm::dvec3 n = lobes.normal[i], l = lobes.to_light[i], v = lobes.to_eye[i];
@@ -67,10 +73,10 @@ Worst worstError(const Lobes& lobes, const Column& result, bool blinn) {
     const double exponent = lobes.in[9][i];
     const auto power = [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); };
     const double exact = power(cosine), t = std::max(1 - cosine, 0.0);
-    const double moved = std::sqrt(2 * t) * delta + delta * delta + 4 * kUnit * t;
+    const double moved = std::sqrt(2 * t) * kDelta + kDelta * kDelta + 5 * kUnit * t;
     const double log2 = cosine > 0 ? -std::log2(std::min(cosine, 1.0)) : 0.0;
     const double bound = std::max(power(cosine + moved) - exact, exact - power(cosine - moved)) +
-                         exact * (exponent * log2 * 0x1p-22 + 4 * kUnit) + 0x1p-126;
+                         exact * (exponent * log2 * 5 * kUnit + 3 * kUnit) + 0x1p-125;
     const double error = std::abs(result[i] - exact);
     worst.of_bound = std::max(worst.of_bound, error / bound);
     worst.of_peak = std::max(worst.of_peak, error);

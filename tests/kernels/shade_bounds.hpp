@@ -69,12 +69,12 @@ inline Interval attenuationInterval(const Light& light, const WayToLight& way) {
       .widened(20 * kUnit);
 }
 
-/// cosⁿ; the cosine's logarithm is within 2^-22, the power within 2 ulp, and 0 below the normal numbers.
+/// cosⁿ, by pow_one_minus_half within (|log2 cosⁿ|·4.8 + 3) units, and 0 below 2^-125.5.
 inline Interval powerInterval(double cosine, double error, double exponent) {
   const Interval power =
       growing(cosine, error, [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); });
   const double log2 = -std::log2(std::clamp(cosine - error, 1e-300, 1.0));
-  const Interval result = power.widened(std::min(exponent * log2 * 0x1p-22 + 4 * kUnit, 1.0));
+  const Interval result = power.widened(std::min((exponent * log2 * 5 + 4) * kUnit, 1.0));
   return {std::max(result.low - 0x1p-125, 0.0), result.high};
 }
 
@@ -111,7 +111,7 @@ inline Interval lobeInterval(const glm::dvec3& normal, const WayToLight& way, co
   }
   delta = std::min(delta, 2.0);
   const double t = std::max(1 - cosine, 0.0);
-  return powerInterval(cosine, std::sqrt(2 * t) * delta + delta * delta + 4 * kUnit * t, shininess);
+  return powerInterval(cosine, std::sqrt(2 * t) * delta + delta * delta + 5 * kUnit * t, shininess);
 }
 
 inline Interval fogInterval(const Fog& fog, double density, double distance) {
@@ -167,8 +167,8 @@ inline Interval shadeInterval(const Scene& scene, const GBuffer& gbuffer, std::s
       seen = seen + strength * (reflected + Interval{light_ambient, light_ambient});
     }
   }
-  // Sums of positive terms: one rounding a light, but no more than kernels/long_sum.clh states, and a dozen for
-  // the products with the light and the material.
+  // Sums of positive terms: one rounding a light, but no more than kernels/long_sum.clh states, and a dozen
+  // for the products with the light and the material.
   seen = seen.widened((std::min(double(scene.lights.size()), double(kSumBlock) + 4) + 12) * kUnit);
   const double distance = scene.fog.radial ? glm::length(position) : -position.z;
   const Interval share = fogInterval(scene.fog, scene.fog.density[c], distance);

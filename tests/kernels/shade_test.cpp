@@ -98,6 +98,64 @@ TEST_P(ShadeKernel, MatchesTheReference) {
       << "of " << tightness.values << ": the bounds judge little";
 }
 
+/// A spot whose cone's side passes by a point of the G-buffer, almost.
+Light spotPast(const glm::dvec3& point, Random& random) {
+  Light light;
+  light.kind = LightKind::kSpot;
+  const glm::dvec3 way = random.direction(), aside = glm::normalize(glm::cross(way, random.direction()));
+  light.position = point + random.between(0.1, 10) * way;
+  light.cutoff = random.between(0.001, 1.57);
+  const double angle = light.cutoff + 2e-3 * random.between(-1, 1);
+  light.direction = -std::cos(angle) * way + std::sin(angle) * aside;
+  light.diffuse = random.color(4);
+  return light;
+}
+
+/// A point light that a point of the G-buffer almost faces, or almost doesn't; its range ends there, almost.
+Light grazing(const glm::dvec3& point, const glm::dvec3& normal, Random& random) {
+  Light light;
+  const glm::dvec3 way = glm::normalize(glm::cross(normal, random.direction()));
+  const double distance = random.between(0.1, 10);
+  light.position = point + distance * (way + 1e-6 * random.between(-1, 1) * normal);
+  light.diffuse = random.color(1e6);
+  if (random.chance(0.5)) light.range = float(distance * (1 + 1e-6 * random.between(-1, 1)));
+  return light;
+}
+
+// Few pixels are covered, so that many lists show one: what bounds a list then leaves nothing to spare.
+TEST_P(ShadeKernel, CullingChangesNoBitOfScatteredPixelsAtTheEdgesOfLights) {
+  Device& device = deviceWithLanes(GetParam());
+  Random random(11);
+  const Camera camera = randomCamera(random);
+  const GBuffer gbuffer = randomGBuffer(camera, 61, 47, 0.93, random);
+  const std::size_t n = gbuffer.pixels();
+  Scene scene = randomScene(camera, 0, random);
+  while (scene.lights.size() < 1000) {
+    const std::size_t i = gbuffer.index(random.below(gbuffer.width), random.below(gbuffer.height));
+    if (std::isinf(gbuffer.position[i + 2 * n])) continue;
+    const auto inWorld = [&](const Plane& plane, double w) {
+      return glm::dvec3(camera.camera_to_world * glm::dvec4(plane[i], plane[i + n], plane[i + 2 * n], w));
+    };
+    const glm::dvec3 point = inWorld(gbuffer.position, 1);
+    scene.lights.push_back(random.chance(0.5) ? spotPast(point, random)
+                                              : grazing(point, inWorld(gbuffer.normal, 0), random));
+  }
+  ShadeSettings settings{.culling = Culling::kNone};
+  const auto shaded = [&] {
+    const FeatureSet features = neededFeatures(scene, camera, {.specular = true, .emission = true}, settings);
+    Lighting lighting;
+    Stats stats;
+    prepareLighting(device, scene, camera, View{}, features, settings, lighting, stats);
+    return lightGBuffer(device, lighting, features, gbuffer, false, stats).color;
+  };
+  const Plane all = shaded();
+  settings.culling = Culling::kTiles;
+  for (const int tile_size : {4, 8, 16}) {
+    settings.tile_size = tile_size;
+    EXPECT_EQ(shaded(), all) << "tiles of " << tile_size;
+  }
+}
+
 TEST_P(ShadeKernel, PicturesOfOnlyBackground) {
   Device& device = deviceWithLanes(GetParam());
   Random random(1);

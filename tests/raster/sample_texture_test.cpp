@@ -1,9 +1,11 @@
 #include "raster/sample_texture.hpp"
+#include "raster/gbuffer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace luciole::test {
 namespace {
@@ -30,7 +32,7 @@ Texture chain(int width, int height, Red red) {
 }
 
 float redAt(const Texture& texture, Wrap wrap, glm::vec2 uv, glm::vec2 dx = {}, glm::vec2 dy = {}) {
-  return sampleTexture(texture, wrap, wrap, uv, dx, dy).r;
+  return sampleTexture(texture, wrap, wrap, uv, dx, dy, 0);
 }
 
 constexpr Wrap kWraps[] = {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge};
@@ -39,12 +41,14 @@ TEST(SampleTexture, OneTexelIsTheSameEverywhere) {
   const Texture texture{"", {{1, 1, {65535, 257 * 188, 0, 32768}}}};
   for (const Wrap wrap : kWraps)
     for (const float u : {-7.3f, 0.0f, 0.5f, 1.0f, 1e30f, -1e30f, std::numeric_limits<float>::max()}) {
-      const glm::vec4 value = sampleTexture(texture, wrap, wrap, {u, -u}, {3.0f, 0.0f}, {});
-      EXPECT_EQ(value.r, 1.0f);
+      const auto value = [&](int channel) {
+        return sampleTexture(texture, wrap, wrap, {u, -u}, {3.0f, 0.0f}, {}, channel);
+      };
+      EXPECT_EQ(value(0), 1.0f);
       // sRGB 188/255 decodes to 0.5028865 (IEC 61966-2-1); alpha is linear.
-      EXPECT_NEAR(value.g, 0.5028865f, 2e-7f);
-      EXPECT_EQ(value.b, 0.0f);
-      EXPECT_NEAR(value.a, 32768.0f / 65535.0f, 0x1p-24f);
+      EXPECT_NEAR(value(1), 0.5028865f, 2e-7f);
+      EXPECT_EQ(value(2), 0.0f);
+      EXPECT_NEAR(value(3), 32768.0f / 65535.0f, 0x1p-24f);
     }
 }
 
@@ -90,8 +94,8 @@ TEST(SampleTexture, WrapModes) {
 
 TEST(SampleTexture, EachAxisHasItsOwnMode) {
   const Texture texture = chain(2, 2, [](int, int x, int y) { return x == 0 && y == 1; });
-  EXPECT_EQ(sampleTexture(texture, Wrap::kRepeat, Wrap::kClampToEdge, {1.25f, 1.25f}, {}, {}).r, 1.0f);
-  EXPECT_EQ(sampleTexture(texture, Wrap::kClampToEdge, Wrap::kRepeat, {1.25f, 1.25f}, {}, {}).r, 0.0f);
+  EXPECT_EQ(sampleTexture(texture, Wrap::kRepeat, Wrap::kClampToEdge, {1.25f, 1.25f}, {}, {}, 0), 1.0f);
+  EXPECT_EQ(sampleTexture(texture, Wrap::kClampToEdge, Wrap::kRepeat, {1.25f, 1.25f}, {}, {}, 0), 0.0f);
 }
 
 TEST(SampleTexture, TheLevelFollowsTheLongerSide) {
@@ -116,6 +120,58 @@ TEST(SampleTexture, HugeFootprintsReadTheCoarsestLevel) {
   const Texture texture = chain(64, 16, [](int level, int, int) { return level == 6; });
   for (const float side : {1.0f, 100.0f, 1e20f, std::numeric_limits<float>::max()})
     EXPECT_EQ(redAt(texture, Wrap::kRepeat, {0.4f, 0.3f}, {side, side}, {}), 1.0f);
+}
+
+// Bit for bit, whatever the wraps and levels, and however far out the coordinates are.
+TEST(SampleTexture, SquaresOfPixelsSeeWhatEachPixelSees) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-3.0f, 3.0f), exponent(-12.0f, 3.0f);
+  std::uniform_int_distribution<int> coin(0, 1), code(0, 65535);
+  Texture texture;
+  for (glm::ivec2 size(64, 16); texture.levels.empty() || texture.levels.back().width > 1;
+       size = glm::max(size / 2, glm::ivec2(1))) {
+    MipLevel level{size.x, size.y, {}};
+    for (int i = 0; i < size.x * size.y * 4; ++i) level.texels.push_back(std::uint16_t(code(random)));
+    texture.levels.push_back(level);
+  }
+  const auto step = [&] { return (coin(random) ? 1.0f : -1.0f) * std::exp2(exponent(random)); };
+  for (const Wrap wrap_u : kWraps) {
+    for (const Wrap wrap_v : kWraps) {
+      for (int repeat = 0; repeat < 20; ++repeat) {
+        SquareFootprints at;
+        LaneMask wanted;
+        for (int i = 0; i < kSquarePixels; ++i) {
+          at.u[i] = coin(random) ? place(random) : 1e30f * place(random);
+          at.v[i] = i == 5 ? std::numeric_limits<float>::quiet_NaN() : place(random);
+          at.du_dx[i] = step(), at.dv_dx[i] = step(), at.du_dy[i] = step(), at.dv_dy[i] = step();
+          wanted[i] = coin(random);
+        }
+        const Lanes3<float> seen = sampleTexture(texture, wrap_u, wrap_v, at, wanted);
+        for (int i = 0; i < kSquarePixels; ++i) {
+          if (!wanted[i]) continue;
+          for (int c = 0; c < 3; ++c)
+            EXPECT_EQ(seen[c][i], sampleTexture(texture, wrap_u, wrap_v, {at.u[i], at.v[i]},
+                                                {at.du_dx[i], at.dv_dx[i]}, {at.du_dy[i], at.dv_dy[i]}, c));
+        }
+      }
+    }
+  }
+}
+
+TEST(Square, PixelsLieInTheOrderOfAGBuffer) {
+  GBuffer gbuffer;
+  gbuffer.tiles_x = gbuffer.tiles_y = 2;
+  for (int i = 0; i < kSquarePixels; ++i)
+    EXPECT_EQ(gbuffer.index(20 + kSquareLayout.x[i], 8 + kSquareLayout.y[i]), gbuffer.index(20, 8) + i);
+}
+
+TEST(Square, NeighboursAreOnePixelRightAndOneBelow) {
+  const SquareLayout& layout = kSquareLayout;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const int right = layout.right[i], below = layout.below[i];
+    EXPECT_EQ(glm::ivec2(layout.x[right], layout.y[right]), glm::ivec2(layout.x[i] + 1, layout.y[i]));
+    EXPECT_EQ(glm::ivec2(layout.x[below], layout.y[below]), glm::ivec2(layout.x[i], layout.y[i] + 1));
+  }
 }
 
 }  // namespace

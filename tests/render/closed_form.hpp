@@ -82,14 +82,14 @@ inline Known lambert(double brightness, const Lit& lit, double falloff_error = 0
           brightness * (lit.way_error + 6 * kUnit + lit.n_dot_l * (6 * kUnit + falloff_error)) + 0x1p-126};
 }
 
-/// cosⁿ of a cosine that is off by `error`: the power's own error is n·log2(cos)·2^-22 and 2 ulp, and results
-/// below the normal numbers are 0 (kernels/math.clh).
+/// cosⁿ of a cosine that is off by `error`: the power's own error is n·log2(cos)·5 and 4 roundings, and
+/// results below the normal numbers are 0 (kernels/math.clh).
 inline Known power(double cosine, double error, double n) {
   const auto exact = [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), n); };
   const double value = exact(cosine);
   const double moved = std::max(exact(cosine + error) - value, value - exact(cosine - error));
   const double log2 = value > 0 ? -std::log2(std::min(cosine, 1.0)) : 0;
-  return {value, moved + value * (n * log2 * 0x1p-22 + 4 * kUnit) + 0x1p-126};
+  return {value, moved + value * (n * log2 * 5 * kUnit + 4 * kUnit) + 0x1p-125};
 }
 
 }  // namespace luciole::test

@@ -1,0 +1,83 @@
+#include "experiment/bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <thread>
+
+#include "error.hpp"
+#include "experiment/culled_shading.hpp"
+#include "experiment/many_lights.hpp"
+#include "experiment/memory_use.hpp"
+#include "experiment/raster_speed.hpp"
+#include "experiment/shading_rate.hpp"
+#include "experiment/start_time.hpp"
+
+namespace luciole {
+namespace {
+
+struct SpeedMeasurement {
+  const char* name;
+  SpeedTable (*measure)(const SpeedInput&);
+};
+constexpr SpeedMeasurement kSpeed[] = {
+    {"shading rate", measureShadingRate},
+    {"culling and shading", measureCulledShading},
+    {"many lights", measureManyLights},
+    {"rasterizer", measureRasterizer},
+    {"start", measureStart},
+    {"memory", measureMemory},
+};
+
+/// "model name" of Linux's /proc/cpuinfo; "unknown" where there is none.
+std::string processorName() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(std::min(line.find(": ") + 2, line.size()));
+  return "unknown";
+}
+
+}  // namespace
+
+std::vector<std::string> benchNames() {
+  std::vector<std::string> names{"shading", "shadows", "samples"};
+  for (const SpeedMeasurement& one : kSpeed) names.push_back(one.name);
+  return names;
+}
+
+BenchResult runBench(const Scene& scene, const BenchSettings& settings, const BenchChoice& choice) {
+  const auto chosen = [&](const std::string& name) {
+    return choice.only.empty() ||
+           std::find(choice.only.begin(), choice.only.end(), name) != choice.only.end();
+  };
+  Device device;
+  openDevice(settings.device, device);
+  Stats stats;
+  describeScene(scene, {}, stats);
+  BenchResult result{
+      .machine = {processorName(), std::thread::hardware_concurrency(), device.description, __VERSION__},
+      .scene = scene.name,
+      .triangles = stats.triangles,
+      .lights = stats.lights,
+      .width = settings.picture.size.x,
+      .height = settings.picture.size.y,
+      .repeats = settings.repeats};
+  std::vector<VariantGroup> groups = benchVariants(scene, device.description.lanes);
+  std::erase_if(groups, [&](const VariantGroup& group) { return !chosen(group.name); });
+  if (!groups.empty()) result.groups = measureVariants(scene, groups, settings);
+  const SpeedInput input{.device = device,
+                         .device_selector = settings.device,
+                         .scene = choice.named_scene ? &scene : nullptr,
+                         .size = choice.size,
+                         .repeats = settings.repeats,
+                         .program = choice.program,
+                         .on_progress = settings.on_progress};
+  for (const SpeedMeasurement& one : kSpeed)
+    if (chosen(one.name)) result.speed.push_back(one.measure(input));
+  if (result.groups.empty() && result.speed.empty())
+    throw InputError(fmt::format("--only {}: {} has no shadows", choice.only.front(), scene.name));
+  return result;
+}
+
+}  // namespace luciole

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cl/device.hpp"
+#include "experiment/measure.hpp"
+#include "experiment/speed_table.hpp"
+
+namespace luciole {
+
+struct Machine {
+  std::string processor;
+  unsigned threads = 0;
+  DeviceDescription device;
+  std::string compiler;
+};
+
+struct BenchResult {
+  Machine machine;
+  std::string scene;
+  std::uint64_t triangles = 0, lights = 0;
+  int width = 0, height = 0, repeats = 0;
+  std::vector<BenchGroup> groups{};  ///< speed against error
+  std::vector<SpeedTable> speed{};
+};
+
+/// What to measure.
+struct BenchChoice {
+  std::vector<std::string> only{};   ///< of benchNames(); empty: everything
+  bool named_scene = false;          ///< the scene is the user's rather than makeBenchScene()
+  std::optional<glm::ivec2> size{};  ///< of every picture, instead of each measurement's own
+  std::string program{};             ///< the path of luciole itself
+};
+
+/// The names of all that can be measured, groups of variants first, in the order in which they are.
+std::vector<std::string> benchNames();
+
+/// Measures what was chosen. Throws InputError, also where nothing of it can be measured, and MachineError.
+BenchResult runBench(const Scene& scene, const BenchSettings& settings, const BenchChoice& choice);
+
+}  // namespace luciole

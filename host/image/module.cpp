@@ -1,0 +1,65 @@
+#include "image/module.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "error.hpp"
+
+namespace luciole {
+namespace {
+
+/// Beside the program, or for those of tests one folder up. Not left to the loader's search path, which it
+/// loses under the address sanitizer.
+std::string modulePath() {
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const std::filesystem::path beside = folder / LUCIOLE_IMAGE_MODULE;
+  const std::filesystem::path above = folder.parent_path() / LUCIOLE_IMAGE_MODULE;
+  return !std::filesystem::exists(beside) && std::filesystem::exists(above) ? above : beside;
+}
+
+const ImageFunctions& load() {
+  void* module = dlopen(modulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* functions = module ? dlsym(module, "luciole_image_functions") : nullptr;
+  if (!functions)
+    throw MachineError(fmt::format("can't load the part that reads and writes pictures: {}", dlerror()));
+  return *static_cast<const ImageFunctions*>(functions);
+}
+
+const ImageFunctions& functions() {
+  static const ImageFunctions& loaded = load();
+  return loaded;
+}
+
+}  // namespace
+
+Image readImage(const std::string& path) { return functions().read_image(path); }
+
+std::string readAttribute(const std::string& path, const std::string& name) {
+  return functions().read_attribute(path, name);
+}
+
+std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
+                                         const std::vector<std::string>& channels, const FileFormat& format,
+                                         const Metadata& metadata) {
+  return functions().open_picture_file(path, width, height, channels, format, metadata);
+}
+
+void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata) {
+  functions().write_gbuffer(gbuffer, path, metadata);
+}
+
+GBuffer readGBuffer(const std::string& path) { return functions().read_gbuffer(path); }
+
+Texture readTexture(const std::string& path) { return functions().read_texture(path); }
+
+Texture readTexture(std::span<const std::byte> file, const std::string& name) {
+  return functions().read_texture_in_memory(file, name);
+}
+
+Image errorMap(const ImageDifference& difference) { return functions().error_map(difference); }
+
+bool openImageIOWrites(const std::string& extension) { return functions().open_image_io_writes(extension); }
+
+}  // namespace luciole

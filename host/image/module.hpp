@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "image/error_map.hpp"
+#include "image/file_format.hpp"
+#include "image/gbuffer_file.hpp"
+#include "image/image.hpp"
+#include "image/read_texture.hpp"
+#include "image/row_file.hpp"
+
+// OpenImageIO brings some 260 libraries along, which take the dynamic loader 0.2 s. So what includes it is a
+// module of its own, which the program loads when it first reads or writes a picture:
+//
+//   program:  readImage() of module.cpp ──► ImageFunctions::read_image ──► module:  readImage() of image.cpp
+namespace luciole {
+
+/// The functions of this folder that the module has, as their headers describe them.
+struct ImageFunctions {
+  decltype(&readImage) read_image;
+  decltype(&readAttribute) read_attribute;
+  decltype(&openPictureFile) open_picture_file;
+  decltype(&writeGBuffer) write_gbuffer;
+  decltype(&readGBuffer) read_gbuffer;
+  Texture (*read_texture)(const std::string& path);
+  Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);
+  decltype(&errorMap) error_map;
+  decltype(&openImageIOWrites) open_image_io_writes;
+};
+
+/// The module's only symbol.
+extern "C" __attribute__((visibility("default"))) const ImageFunctions luciole_image_functions;
+
+}  // namespace luciole

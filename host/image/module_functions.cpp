@@ -1,0 +1,17 @@
+#include "image/module.hpp"
+
+namespace luciole {
+
+const ImageFunctions luciole_image_functions{
+    .read_image = readImage,
+    .read_attribute = readAttribute,
+    .open_picture_file = openPictureFile,
+    .write_gbuffer = writeGBuffer,
+    .read_gbuffer = readGBuffer,
+    .read_texture = readTexture,
+    .read_texture_in_memory = readTexture,
+    .error_map = errorMap,
+    .open_image_io_writes = openImageIOWrites,
+};
+
+}  // namespace luciole

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string>
+
+#include "image/row_file.hpp"
+
+namespace luciole {
+
+/// A file that OpenImageIO writes. Where it can write a format through a stream of ours, rows go to the disk
+/// as they come; the others are encoded in memory first.
+class PictureFile : public RowFile {
+ public:
+  /// The format is that of the path's extension. Throws as writeImage does.
+  PictureFile(const std::string& path, const OIIO::ImageSpec& spec);
+  ~PictureFile() override;
+  PictureFile(PictureFile&&) noexcept;
+
+  /// The next `rows` rows, values of the spec's format. Throws MachineError.
+  void write(const void* values, int rows) override;
+
+  /// After the last row: puts the file in place. Throws as writeImage does.
+  void close() override;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace luciole

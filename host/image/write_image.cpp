@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "error.hpp"
+#include "image/file_format.hpp"
+#include "image/image.hpp"
+#include "image/row_file.hpp"
+#include "image/srgb.hpp"
+
+namespace luciole {
+namespace {
+
+int channelIndex(const std::vector<std::string>& channels, const std::string& name) {
+  const auto found = std::find(channels.begin(), channels.end(), name);
+  return found == channels.end() ? -1 : int(found - channels.begin());
+}
+
+/// The channels a format of few channels takes: R G B, and A where it fits; Y alone is spread over R G B.
+std::vector<int> colorChannels(const std::vector<std::string>& channels, const FileFormat& format,
+                               const std::string& path) {
+  std::vector<int> colors;
+  for (const char* name : {"R", "G", "B"}) colors.push_back(channelIndex(channels, name));
+  if (channels.size() <= 2 && channelIndex(channels, "Y") >= 0) colors.assign(3, channelIndex(channels, "Y"));
+  if (std::count(colors.begin(), colors.end(), -1) > 0) {
+    throw InputError(fmt::format("{}: .{} holds R G B and the picture has no such channels, expected .exr",
+                                 path, format.extension));
+  }
+  const int alpha = channelIndex(channels, "A");
+  if (format.max_channels >= 4 && alpha >= 0) colors.push_back(alpha);
+  return colors;
+}
+
+std::uint8_t toByte(float value, bool is_alpha) {
+  const float unit = is_alpha ? (value > 0.0f ? std::min(value, 1.0f) : 0.0f) : encodeSrgb(value);
+  return std::uint8_t(unit * 255.0f + 0.5f);
+}
+
+/// The values of a picture's rows that its file takes, converted by `convert(value, channel)`.
+template <class T, class Convert>
+std::vector<T> convertRows(const Image& rows, const std::vector<int>& sources, Convert convert) {
+  std::vector<T> values(std::size_t(rows.width) * rows.height * sources.size());
+  const std::size_t channels = rows.channels.size();
+  tbb::parallel_for(0, rows.height, [&](int y) {
+    const float* in = rows.pixels.data() + std::size_t(y) * rows.width * channels;
+    T* out = values.data() + std::size_t(y) * rows.width * sources.size();
+    for (int x = 0; x < rows.width; ++x, in += channels)
+      for (std::size_t c = 0; c < sources.size(); ++c) *out++ = convert(in[sources[c]], c);
+  });
+  return values;
+}
+
+}  // namespace
+
+struct ImageWriter::State {
+  FileFormat format;
+  std::vector<int> sources;  ///< which channels the file takes; all where it takes any
+  std::unique_ptr<RowFile> file;
+};
+
+ImageWriter::ImageWriter(const std::string& path, int width, int height,
+                         const std::vector<std::string>& channels, const Metadata& metadata)
+    : state_(new State{outputFormat(path), {}, nullptr}) {
+  const FileFormat& format = state_->format;
+  std::vector<std::string> names = channels;
+  if (format.max_channels <= 4) {
+    state_->sources = colorChannels(channels, format, path);
+    names = {"R", "G", "B", "A"};
+    names.resize(state_->sources.size());
+  }
+  state_->file = format.extension == "png" ? openPngFile(path, width, height, int(names.size()), metadata)
+                                           : openPictureFile(path, width, height, names, format, metadata);
+}
+
+ImageWriter::~ImageWriter() = default;
+
+void ImageWriter::write(const Image& rows) {
+  if (state_->sources.empty()) {
+    state_->file->write(rows.pixels.data(), rows.height);
+  } else if (state_->format.is_float) {
+    state_->file->write(
+        convertRows<float>(rows, state_->sources, [](float v, std::size_t) { return v; }).data(),
+        rows.height);
+  } else {
+    state_->file->write(convertRows<std::uint8_t>(rows, state_->sources,
+                                                  [](float v, std::size_t c) { return toByte(v, c == 3); })
+                            .data(),
+                        rows.height);
+  }
+}
+
+void ImageWriter::close() { state_->file->close(); }
+
+void writeImage(const Image& image, const std::string& path, const Metadata& metadata) {
+  ImageWriter writer(path, image.width, image.height, image.channels, metadata);
+  writer.write(image);
+  writer.close();
+}
+
+}  // namespace luciole

@@ -1,0 +1,49 @@
+#include "render/memory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "machine_memory.hpp"
+#include "raster/bins.hpp"
+#include "render/assemble.hpp"
+
+namespace luciole {
+namespace {
+
+std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step - 1) / step * step; }
+
+}  // namespace
+
+std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
+                          const Scene& scene) {
+  const std::size_t gbuffer =
+      9 + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) + (planes.emission ? 3 : 0);
+  const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
+  const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
+  const std::size_t channels = channelCount(settings, planes);
+  const bool world =
+      wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
+  // Colours and counts are on the device and then on the host, too. From the second sample on there are the
+  // sum and the picture with its layers.
+  const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels : 0);
+  const std::size_t assembling =
+      gbuffer + lit + counted + channels + (world ? 7 : 0) + (wants(settings, Aov::kShadow) ? 1 : 0);
+  const std::size_t everywhere =
+      std::count_if(scene.lights.begin(), scene.lights.end(),
+                    [](const Light& light) { return !std::isfinite(light.range); });
+  const std::size_t square = std::size_t(settings.shade.tile_size) * settings.shade.tile_size;
+  const std::size_t lists =
+      features.has(Feature::kLightLists) ? kListBytesPerPixel + sizeof(cl_uint) * everywhere / square : 0;
+  // Lights in range are counted with lists of their own.
+  return sizeof(float) * std::max(lighting, assembling) + lists * (1 + counted);
+}
+
+int bandHeight(glm::ivec2 size, std::size_t bytes_per_pixel) {
+  const double budget = std::min(double(kBandBytes), machineMemory() / 4);
+  const std::size_t row = roundUp(std::size_t(size.x), kTileSize) * bytes_per_pixel;
+  const std::size_t rows = std::max<std::size_t>(std::size_t(budget) / row / kBinSize, 1) * kBinSize;
+  const std::size_t bands = (std::size_t(size.y) + rows - 1) / rows;
+  return int(roundUp((std::size_t(size.y) + bands - 1) / bands, kBinSize));
+}
+
+}  // namespace luciole

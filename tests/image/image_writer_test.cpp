@@ -1,0 +1,74 @@
+// Pictures that come row by row.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "image/image.hpp"
+#include "shared_files.hpp"
+
+namespace luciole {
+namespace {
+
+using test::TemporaryFolder;
+
+const std::vector<std::string> kExtensions{"exr", "tif", "hdr", "png", "jpg", "ppm", "bmp", "tga", "sgi"};
+
+Image somePicture(int width, int height) {
+  Image image{width, height, {"R", "G", "B"}, {}};
+  for (int i = 0; i < 3 * width * height; ++i) image.pixels.push_back(float(i * 7 % 101) / 100);
+  return image;
+}
+
+Image cutRows(const Image& image, int first, int count) {
+  const std::size_t row = image.width * image.channels.size();
+  return {image.width,
+          count,
+          image.channels,
+          {image.pixels.begin() + first * row, image.pixels.begin() + (first + count) * row}};
+}
+
+std::string bytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::ptrdiff_t filesIn(const TemporaryFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+}
+
+TEST(ImageWriter, PiecesOfAnyHeightMakeTheWholePicture) {
+  const TemporaryFolder folder;
+  const Image image = somePicture(53, 70);
+  for (const std::string& extension : kExtensions) {
+    const std::string path = folder / ("a." + extension);
+    writeImage(image, path, {});
+    const Image whole = readImage(path);
+    ASSERT_EQ(whole.height, image.height);
+    for (const int height : {1, 16, 33}) {
+      ImageWriter writer(path, image.width, image.height, image.channels, {});
+      for (int y = 0; y < image.height; y += height)
+        writer.write(cutRows(image, y, std::min(height, image.height - y)));
+      writer.close();
+      EXPECT_TRUE(readImage(path).pixels == whole.pixels) << extension << ", " << height << " rows at a time";
+    }
+  }
+}
+
+TEST(ImageWriter, WhatIsNotFinishedLeavesTheOldFileAndNothingElse) {
+  const TemporaryFolder folder;
+  const Image image = somePicture(53, 70);
+  for (const std::string& extension : kExtensions) {
+    const std::string path = folder / ("a." + extension);
+    std::ofstream(path) << "old";
+    for (const int rows : {0, 1, 35, 70}) {
+      ImageWriter writer(path, image.width, image.height, image.channels, {});
+      if (rows > 0) writer.write(cutRows(image, 0, rows));
+    }
+    EXPECT_EQ(bytesOf(path), "old") << extension;
+  }
+  EXPECT_EQ(filesIn(folder), std::ptrdiff_t(kExtensions.size()));
+}
+
+}  // namespace
+}  // namespace luciole

@@ -1,0 +1,115 @@
+// What pixels and lights take is what render/memory.hpp says.
+#include "render/memory.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <fstream>
+
+#include "render/assemble.hpp"
+#include "render_json.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// A value of /proc/self/status, bytes.
+double statusBytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind(key + ":", 0) == 0) return 1024 * std::stod(line.substr(key.size() + 1));
+  return 0;
+}
+
+/// By how much this process grows at the most while `work` runs; 0 where the system doesn't tell.
+template <class Work>
+double growth(Work work) {
+  malloc_trim(0);                                 // or what was freed before is used again, unseen
+  std::ofstream("/proc/self/clear_refs") << "5";  // the peak is what there is now
+  const double before = statusBytes("VmRSS"), peak = statusBytes("VmHWM");
+  work();
+  return peak > before * 1.1 ? 0 : statusBytes("VmHWM") - before;
+}
+
+/// A floor that fills the picture, lit and shining.
+std::string floorScene(const std::string& lights) {
+  return fmt::format(
+      R"({{"camera": {{"eye": [0, 5, 0.1], "target": [0, 0, 0]}}, "ambient": 0.1,
+    "materials": {{"m": {{"specular": 0.5, "shininess": 8, "emission": 0.1}}}},
+    "objects": [{{"primitive": "plane", "scale": 100, "material": "m"}}], {}}})",
+      lights);
+}
+
+constexpr const char* kSun =
+    R"("lights": [{"type": "directional", "direction": [0, -1, 0], "shadow": true}])";
+
+/// Bytes that `settings` say a pixel takes, and those that it does.
+void expectBytesPerPixel(const Scene& scene, RenderSettings settings) {
+  settings.camera = scene.cameras.front();
+  settings.shade.shadow_size = 64;
+  settings.shade.shadow_layer = wants(settings, Aov::kShadow);
+  const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
+  PlaneSet planes = neededPlanes(features);
+  if (wants(settings, Aov::kMaterial)) planes = {true, true, true};
+  const double stated = double(bytesPerPixel(settings, planes, features, scene));
+  const glm::ivec2 small(256), large(1024, 2048);
+  const auto bytes = [&](glm::ivec2 size) {
+    settings.size = size;
+    settings.band_height = 1 << 20;
+    return growth([&] {
+      Stats stats;
+      renderBands(
+          testDevice(), scene, settings,
+          [&](const Image& rows) { EXPECT_EQ(rows.channels.size(), channelCount(settings, planes)); }, stats);
+    });
+  };
+  bytes(small);  // compiles the kernels
+  const double of_small = bytes(small), of_large = bytes(large);
+  if (of_large <= 0) GTEST_SKIP() << "this system does not tell a process's peak of memory";
+  const double measured = (of_large - of_small) / (double(large.x) * large.y - double(small.x) * small.y);
+  testing::Test::RecordProperty("stated", fmt::format("{}", stated));
+  testing::Test::RecordProperty("measured", fmt::format("{:.1f}", measured));
+  // Beside the pixels' own there are the rasterizer's tables and what the allocators keep of the small
+  // picture or give the large one: 16 MiB either way is more than either.
+  const double slack = double(1 << 24) / (double(large.x) * large.y);
+  EXPECT_LE(measured, stated + slack);
+  EXPECT_GE(measured, 0.8 * stated - slack);
+}
+
+TEST(Memory, BytesPerPixelAreAsStated) { expectBytesPerPixel(sceneFromJson(floorScene(kSun)), {}); }
+
+TEST(Memory, BytesPerPixelOfSeveralSamplesWithStatisticsAreAsStated) {
+  RenderSettings settings;
+  settings.samples = 2;
+  settings.count_lights = true;
+  expectBytesPerPixel(sceneFromJson(floorScene(kSun)), settings);
+}
+
+TEST(Memory, BytesPerPixelOfAllLayersAreAsStated) {
+  RenderSettings settings;
+  settings.aovs = {Aov::kPosition, Aov::kNormal,     Aov::kDepth, Aov::kDiffuse,
+                   Aov::kMaterial, Aov::kLightCount, Aov::kShadow};
+  expectBytesPerPixel(sceneFromJson(floorScene(kSun)), settings);
+}
+
+TEST(Memory, BytesPerLightAreAsStated) {
+  // Lights that reach nothing, so that no list grows.
+  const auto device_bytes = [](int lights) {
+    const Scene scene = sceneFromJson(floorScene(fmt::format(
+        R"("light_fields": [{{"count": {}, "min": [-9, 900, -9], "max": [9, 901, 9], "range": 0.1}}])",
+        lights)));
+    RenderSettings settings;
+    settings.size = {16, 16};
+    settings.camera = scene.cameras.front();
+    Stats stats;
+    renderScene(testDevice(), scene, settings, stats);
+    return double(stats.device_bytes);
+  };
+  const double measured = (device_bytes(60000) - device_bytes(20000)) / 40000;
+  const double stated = double(kBytesPerLight - sizeof(Light));
+  EXPECT_LE(measured, stated);
+  EXPECT_GE(measured, 0.98 * stated);
+}
+
+}  // namespace
+}  // namespace luciole::test
