@@ -25,8 +25,7 @@ enum {
   kHigh = 3,        // the other
   kNormalLow = 6,   // likewise of the normals
   kNormalHigh = 9,
-  kPlane = 12,      // the least of normal · (point − middle of the box)
-  kBoundPlanes = 13
+  kPlane = 12       // the least of normal · (point − middle of the box); kBoundPlanes in all
 };
 
 INLINE float least_lane(floatL v) {
@@ -49,6 +48,17 @@ INLINE float least_lane(floatL v) {
 }
 INLINE float most_lane(floatL v) { return -least_lane(-v); }
 
+// Makes the boxes from low to high, one a lane, hold the points in the mask.
+INLINE void grow_boxes(vec3L *low, vec3L *high, vec3L p, intL mask) {
+  floatL inf = INFINITY;
+  low->x = min_lanes(low->x, mask ? p.x : inf);
+  low->y = min_lanes(low->y, mask ? p.y : inf);
+  low->z = min_lanes(low->z, mask ? p.z : inf);
+  high->x = max_lanes(high->x, mask ? p.x : -inf);
+  high->y = max_lanes(high->y, mask ? p.y : -inf);
+  high->z = max_lanes(high->z, mask ? p.z : -inf);
+}
+
 // Writes the bounds of a tile's list. position, normal: the tile's.
 INLINE void bound_list(__global const float *position, __global const float *normal, uint plane_stride, uint list,
                        uint list_shift, __global float *bounds) {
@@ -59,18 +69,8 @@ INLINE void bound_list(__global const float *position, __global const float *nor
   for (uint pixel = first; pixel < end; pixel += LANES) {
     vec3L p = load_vec3(position + pixel, plane_stride), n = load_vec3(normal + pixel, plane_stride);
     intL covered = p.z > -INFINITY;
-    low.x = min_lanes(low.x, covered ? p.x : inf);
-    low.y = min_lanes(low.y, covered ? p.y : inf);
-    low.z = min_lanes(low.z, covered ? p.z : inf);
-    high.x = max_lanes(high.x, covered ? p.x : -inf);
-    high.y = max_lanes(high.y, covered ? p.y : -inf);
-    high.z = max_lanes(high.z, covered ? p.z : -inf);
-    normal_low.x = min_lanes(normal_low.x, covered ? n.x : inf);
-    normal_low.y = min_lanes(normal_low.y, covered ? n.y : inf);
-    normal_low.z = min_lanes(normal_low.z, covered ? n.z : inf);
-    normal_high.x = max_lanes(normal_high.x, covered ? n.x : -inf);
-    normal_high.y = max_lanes(normal_high.y, covered ? n.y : -inf);
-    normal_high.z = max_lanes(normal_high.z, covered ? n.z : -inf);
+    grow_boxes(&low, &high, p, covered);
+    grow_boxes(&normal_low, &normal_high, n, covered);
   }
   __global float *out = bounds + list;
   float4 l = {least_lane(low.x), least_lane(low.y), least_lane(low.z), 0.0f};

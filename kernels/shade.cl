@@ -1,9 +1,9 @@
-// Lights a G-buffer. One work-item shades a row of LANES pixels; a tile's rows share its light list.
+// Lights a G-buffer. One work-item shades a row of LANES pixels, which share a light list.
 //
 //   I = ambient·Ka + Σ lights falloff·spot·( Ia·Ka + visibility·( Id·Kd·max(N·L,0) + Is·Ks·(R·V)ⁿ ) ) + emission
 //
-// then fog. The sums over the lights leave the material out, which is multiplied once at the end. A light out of range adds
-// exactly zero, so it does not matter whether a list holds it.
+// then fog. The sums over the lights leave the material out, which is multiplied once at the end. A light that culling
+// may leave out adds exactly zero, so it does not matter whether a list holds it.
 #include "falloff.clh"
 #include "features.clh"
 #include "fog.clh"

@@ -28,6 +28,9 @@ enum { kListsPerTile = 16 };
 // every point faces away from it, which is right where no light gives ambient light.
 enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
 
+// Floats that culling keeps of what a list's pixels show, see cull.cl.
+enum { kBoundPlanes = 13 };
+
 // The tree over the lights has so many children a node.
 enum { kTreeArity = 16 };
 

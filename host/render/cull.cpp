@@ -6,7 +6,6 @@ namespace luciole {
 namespace {
 
 constexpr const char* kFile = "cull.cl";
-constexpr std::size_t kBoundPlanes = 13;  // as in kernels/cull.cl
 
 cl_uint asUint(std::size_t value) { return static_cast<cl_uint>(value); }
 

@@ -32,7 +32,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"FOG_PER_CHANNEL", "fog per channel", "a density for each colour channel"},
     {"FOG_RADIAL", "radial fog", "fog by distance instead of depth"},
     {"PARALLEL_VIEW", "parallel view", "an orthographic camera's constant view vector"},
-    {"LIGHT_LISTS", "light lists", "a list of lights per tile instead of all lights"},
+    {"LIGHT_LISTS", "light lists", "lists of the lights that matter to a few pixels, instead of all lights"},
     {"LONG_SUMS", "long sums", "more lights than float adds up one by one"},
     {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
 }};
