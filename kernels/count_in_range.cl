@@ -6,15 +6,15 @@
 
 // list_starts, list: see cull.cl; lists by range alone. counts: one float a pixel.
 __kernel void count_in_range(__global const float *position, uint plane_stride, __global const ShadeLight *lights,
-                             uint list_shift, __global const uint *list_starts,
-                             __global const uint *list, __global float *counts) {
+                             __global const uint *list_starts, __global const ListEntry *list, __global float *counts) {
   uint first = get_global_id(0) * LANES;
   vec3L p = load_vec3(position + first, plane_stride);
   intL covered = p.z > -INFINITY;
-  uint at = LIST_OF_PIXEL(first, list_shift);
+  uint tile = first / kTilePixels;
   floatL sum = 0.0f;
-  for (uint entry = list_starts[at]; entry < list_starts[at + 1]; ++entry) {
-    __global const ShadeLight *light = lights + list[entry];
+  for (uint entry = list_starts[tile]; entry < list_starts[tile + 1]; ++entry) {
+    if (!(list[entry].squares >> SQUARE_OF_PIXEL(first) & 1)) continue;
+    __global const ShadeLight *light = lights + list[entry].light;
     floatL ratio2 = 0.0f;
     if (light->kind != kDirectionalLight) {
       floatL dx = light->position.x - p.x, dy = light->position.y - p.y, dz = light->position.z - p.z;

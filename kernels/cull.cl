@@ -1,10 +1,10 @@
-// Light lists: for every square of pixels that shares a list (see LIST_OF_PIXEL) the lights that may light a point it shows, in
-// the order of light indices, as long as they come. Two passes: count, scan, fill.
+// Light lists: for every tile the lights that may light a point it shows, in the order of light indices, as long as they come,
+// and beside each light which of the tile's squares it may light. Two passes: count, scan, fill.
 //
 //   count_lights → scan_lists → fill_lists
 //
-//   list_starts  0 3 3 7 …          a list's entries in `list` are [list_starts[i], list_starts[i + 1])
-//   list         4 9 12 | | 0 …     an entry indexes the lights
+//   list_starts  0 3 3 7 …          a tile's entries in `list` are [list_starts[i], list_starts[i + 1])
+//   list         4 9 12 | | 0 …     light, squares
 //
 // Lights are found through a tree. They lie sorted in space, so that kTreeArity in a row are near each other and make a node,
 // and as many nodes in a row a node of the level above, up to a level of kTreeArity nodes or fewer:
@@ -18,15 +18,15 @@
 #include "math.clh"
 #include "shared.h"
 
-// What the pixels of a list show, in view space, kListsPerTile floats each for the lists of a tile. Background does not count; a list
-// that shows nothing has low > high.
-enum {
-  kLow = 0,         // corner of the box around the points
-  kHigh = 3,        // the other
-  kNormalLow = 6,   // likewise of the normals
-  kNormalHigh = 9,
-  kPlane = 12       // the least of normal · (point − middle of the box); kBoundPlanes in all
-};
+// What the squares of a tile show, in view space, a lane a square. Squares may be bounded together, 1 << shift pixels of them:
+// the bounds then stand in the first places, and the others, like those of squares that show nothing, have low > high.
+// Background does not count.
+typedef struct {
+  vec3L low, high;                // corners of the box around the points
+  vec3L normal_low, normal_high;  // likewise of the normals
+  floatL plane;                   // the least of normal · (point − middle of the box)
+} Bounds;
+#define BOUNDS (kSquaresPerTile / LANES)
 
 INLINE float least_lane(floatL v) {
 #if LANES == 1
@@ -59,42 +59,40 @@ INLINE void grow_boxes(vec3L *low, vec3L *high, vec3L p, intL mask) {
   high->z = max_lanes(high->z, mask ? p.z : -inf);
 }
 
-// Writes the bounds of a tile's list. position, normal: the tile's.
-INLINE void bound_list(__global const float *position, __global const float *normal, uint plane_stride, uint list,
-                       uint list_shift, __global float *bounds) {
+// Puts the bounds of 1 << shift pixels of a tile in place i. position, normal: of the first.
+INLINE void bound_pixels(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+                         Bounds *bounds, uint i) {
   floatL inf = INFINITY;
   vec3L low = {inf, inf, inf}, high = {-inf, -inf, -inf}, normal_low = low, normal_high = high;
-  uint first = list << list_shift;
-  uint end = first < kTilePixels ? first + (1u << list_shift) : first;  // larger lists leave no pixels for the last ones
-  for (uint pixel = first; pixel < end; pixel += LANES) {
+  for (uint pixel = 0; pixel < 1u << shift; pixel += LANES) {
     vec3L p = load_vec3(position + pixel, plane_stride), n = load_vec3(normal + pixel, plane_stride);
     intL covered = p.z > -INFINITY;
     grow_boxes(&low, &high, p, covered);
     grow_boxes(&normal_low, &normal_high, n, covered);
   }
-  __global float *out = bounds + list;
   float4 l = {least_lane(low.x), least_lane(low.y), least_lane(low.z), 0.0f};
   float4 h = {most_lane(high.x), most_lane(high.y), most_lane(high.z), 0.0f};
   float4 middle = 0.5f * l + 0.5f * h;
   floatL plane = inf;
-  for (uint pixel = first; pixel < end; pixel += LANES) {
+  for (uint pixel = 0; pixel < 1u << shift; pixel += LANES) {
     vec3L p = load_vec3(position + pixel, plane_stride), n = load_vec3(normal + pixel, plane_stride);
     floatL along = n.x * (p.x - middle.x) + n.y * (p.y - middle.y) + n.z * (p.z - middle.z);
     plane = min_lanes(plane, p.z > -INFINITY ? along : inf);
   }
-  out[(kLow + 0) * kListsPerTile] = l.x;
-  out[(kLow + 1) * kListsPerTile] = l.y;
-  out[(kLow + 2) * kListsPerTile] = l.z;
-  out[(kHigh + 0) * kListsPerTile] = h.x;
-  out[(kHigh + 1) * kListsPerTile] = h.y;
-  out[(kHigh + 2) * kListsPerTile] = h.z;
-  out[(kNormalLow + 0) * kListsPerTile] = least_lane(normal_low.x);
-  out[(kNormalLow + 1) * kListsPerTile] = least_lane(normal_low.y);
-  out[(kNormalLow + 2) * kListsPerTile] = least_lane(normal_low.z);
-  out[(kNormalHigh + 0) * kListsPerTile] = most_lane(normal_high.x);
-  out[(kNormalHigh + 1) * kListsPerTile] = most_lane(normal_high.y);
-  out[(kNormalHigh + 2) * kListsPerTile] = most_lane(normal_high.z);
-  out[kPlane * kListsPerTile] = least_lane(plane);
+  float *out = (float *)(bounds + i / LANES) + i % LANES;
+  out[0 * LANES] = l.x;
+  out[1 * LANES] = l.y;
+  out[2 * LANES] = l.z;
+  out[3 * LANES] = h.x;
+  out[4 * LANES] = h.y;
+  out[5 * LANES] = h.z;
+  out[6 * LANES] = least_lane(normal_low.x);
+  out[7 * LANES] = least_lane(normal_low.y);
+  out[8 * LANES] = least_lane(normal_low.z);
+  out[9 * LANES] = most_lane(normal_high.x);
+  out[10 * LANES] = most_lane(normal_high.y);
+  out[11 * LANES] = most_lane(normal_high.z);
+  out[12 * LANES] = least_lane(plane);
 }
 
 // Bit i: lane i of the mask.
@@ -232,10 +230,9 @@ INLINE intL may_touch_cone(vec3L to_light, vec3L extent, __global const ShadeLig
   return !(away > radius + 1e-3f * v2 * rsqrt_lanes(v2));
 }
 
-// Which of LANES lists of a tile, from `first` on, a light may light: a mask.
-INLINE intL lists_lit(__global const float *bounds, uint first, __global const ShadeLight *light, uint tests) {
-  __global const float *at = bounds + first;
-  vec3L low = load_vec3(at + kLow * kListsPerTile, kListsPerTile), high = load_vec3(at + kHigh * kListsPerTile, kListsPerTile);
+// Which of LANES squares a light may light: a mask.
+INLINE intL squares_lit(const Bounds *bounds, __global const ShadeLight *light, uint tests) {
+  vec3L low = bounds->low, high = bounds->high;
   intL lit = low.x <= high.x;
   vec3L to_light = {(floatL)(light->position.x), (floatL)(light->position.y), (floatL)(light->position.z)};
   vec3L extent = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
@@ -252,25 +249,22 @@ INLINE intL lists_lit(__global const float *bounds, uint first, __global const S
   }
   if ((tests & kByCone) && light->kind == kSpotLight) lit &= may_touch_cone(to_light, extent, light);
   if (tests & kByFacing) {
-    floatL plane = light->kind == kDirectionalLight ? (floatL)(0.0f) : load_lanes(at + kPlane * kListsPerTile);
-    lit &= may_face(to_light, extent, load_vec3(at + kNormalLow * kListsPerTile, kListsPerTile),
-                    load_vec3(at + kNormalHigh * kListsPerTile, kListsPerTile), plane);
+    floatL plane = light->kind == kDirectionalLight ? (floatL)(0.0f) : bounds->plane;
+    lit &= may_face(to_light, extent, bounds->normal_low, bounds->normal_high, plane);
   }
   return lit;
 }
 
-// Starts a walk to the lights that reach what a tile's lists show.
-INLINE void start_tile(Walk *walk, __global const float *bounds, __global const float *tree, uint tree_stride,
-                       uint light_count) {
-  vec3L low = load_vec3(bounds, kListsPerTile), high = load_vec3(bounds + kHigh * kListsPerTile, kListsPerTile);
-  for (uint list = LANES; list < kListsPerTile; list += LANES) {
-    vec3L l = load_vec3(bounds + list, kListsPerTile), h = load_vec3(bounds + list + kHigh * kListsPerTile, kListsPerTile);
-    low.x = min_lanes(low.x, l.x);
-    low.y = min_lanes(low.y, l.y);
-    low.z = min_lanes(low.z, l.z);
-    high.x = max_lanes(high.x, h.x);
-    high.y = max_lanes(high.y, h.y);
-    high.z = max_lanes(high.z, h.z);
+// Starts a walk to the lights that reach what a tile shows.
+INLINE void start_tile(Walk *walk, const Bounds *bounds, __global const float *tree, uint tree_stride, uint light_count) {
+  vec3L low = bounds->low, high = bounds->high;
+  for (uint i = 1; i < BOUNDS; ++i) {
+    low.x = min_lanes(low.x, bounds[i].low.x);
+    low.y = min_lanes(low.y, bounds[i].low.y);
+    low.z = min_lanes(low.z, bounds[i].low.z);
+    high.x = max_lanes(high.x, bounds[i].high.x);
+    high.y = max_lanes(high.y, bounds[i].high.y);
+    high.z = max_lanes(high.z, bounds[i].high.z);
   }
   walk->tree = tree;
   walk->stride = tree_stride;
@@ -279,74 +273,80 @@ INLINE void start_tile(Walk *walk, __global const float *bounds, __global const 
   start_walk(walk, light_count);
 }
 
-// How many lights each list of a tile will hold, and its bounds, kBoundPlanes · kListsPerTile floats. tests: kByRange …
-__kernel void count_lights(__global const float *position, __global const float *normal, uint plane_stride, uint list_shift,
-                           __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
-                           uint tests, __global float *all_bounds, __global uint *counts) {
-  uint tile = get_global_id(0), place = tile * kTilePixels;
-  __global float *bounds = all_bounds + tile * (kBoundPlanes * kListsPerTile);
-  for (uint list = 0; list < kListsPerTile; ++list)
-    bound_list(position + place, normal + place, plane_stride, list, list_shift, bounds);
+// Squares in 1 << shift pixels.
+#define SQUARES_IN(shift) ((1u << (shift)) * kSquaresPerTile / kTilePixels)
+
+// How many lights a tile's list holds; the first `room` of them are written to `list`. shift: 4, 6 or 8, what is bounded together,
+// in pixels. tests: kByRange …
+INLINE uint find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+                        __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
+                        uint tests, uint tile, __global ListEntry *list, uint room) {
+  floatL inf = INFINITY;
+  Bounds nothing = {{inf, inf, inf}, {-inf, -inf, -inf}, {inf, inf, inf}, {-inf, -inf, -inf}, inf};
+  Bounds bounds[BOUNDS];
+  for (uint i = 0; i < BOUNDS; ++i) bounds[i] = nothing;
+  for (uint i = 0; i < kTilePixels >> shift; ++i) {
+    uint first = tile * kTilePixels + (i << shift);
+    bound_pixels(position + first, normal + first, plane_stride, shift, bounds, i);
+  }
+  // The squares that the first of the bounds hold.
+  uint group = 0xffffu >> (kSquaresPerTile - SQUARES_IN(shift));
   Walk walk;
   start_tile(&walk, bounds, tree, tree_stride, light_count);
-  intL found[kListsPerTile / LANES];
-  for (uint row = 0; row < kListsPerTile / LANES; ++row) found[row] = 0;
-  for (uint light = next_light(&walk); light != kNoLight; light = next_light(&walk))
-    for (uint row = 0; row < kListsPerTile / LANES; ++row)
-      found[row] += lists_lit(bounds, row * LANES, lights + light, tests) ? (intL)(1) : (intL)(0);
-  const int *lanes = (const int *)found;
-  for (uint list = 0; list < kListsPerTile; ++list) counts[tile * kListsPerTile + list] = (uint)lanes[list];
+  uint count = 0;
+  for (uint light = next_light(&walk); light != kNoLight; light = next_light(&walk)) {
+    uint bits = 0;
+    for (uint i = 0; i < BOUNDS; ++i) bits |= lane_bits(squares_lit(bounds + i, lights + light, tests)) << i * LANES;
+    // Written before it is known to belong there: no branch that nothing can predict.
+    if (count < room) {
+      uint squares = bits;
+      if (shift != 4) {
+        squares = 0;
+        for (uint i = 0; i < kTilePixels >> shift; ++i) squares |= (bits >> i & 1) * group << i * SQUARES_IN(shift);
+      }
+      list[count].light = light;
+      list[count].squares = squares;
+    }
+    count += bits ? 1 : 0;
+  }
+  return count;
 }
 
-// Exclusive prefix sum of the counts in place, by one work-item; starts[lists] becomes the total.
+// How many lights the list of each tile holds, and the first kFoundPerTile of them.
+__kernel void count_lights(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+                           __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
+                           uint tests, __global ListEntry *found, __global uint *counts) {
+  uint tile = get_global_id(0);
+  counts[tile] = find_lights(position, normal, plane_stride, shift, tree, tree_stride, lights, light_count, tests, tile,
+                             found + tile * kFoundPerTile, kFoundPerTile);
+}
+
+// Exclusive prefix sum of the counts in place, by one work-item; starts[tiles] becomes the total.
 // The total saturates at 2³² − 1, which the host refuses.
-__kernel void scan_lists(uint lists, __global uint *starts) {
+__kernel void scan_lists(uint tiles, __global uint *starts) {
   ulong sum = 0;
-  for (uint list = 0; list < lists; ++list) {
-    uint count = starts[list];
-    starts[list] = (uint)min(sum, (ulong)0xffffffffu);
+  for (uint tile = 0; tile < tiles; ++tile) {
+    uint count = starts[tile];
+    starts[tile] = (uint)min(sum, (ulong)0xffffffffu);
     sum += count;
   }
-  starts[lists] = (uint)min(sum, (ulong)0xffffffffu);
+  starts[tiles] = (uint)min(sum, (ulong)0xffffffffu);
 }
 
-// Lights that fill_lists takes on at once.
-#define FILL_BATCH 128
-
-// Writes the lists. For a batch of lights it first keeps which lists each belongs to, a bit a list, and then goes through the
-// batch list by list: without a branch that nothing can predict.
-__kernel void fill_lists(__global const float *all_bounds, __global const float *tree, uint tree_stride,
-                         __global const ShadeLight *lights, uint light_count, uint tests,
-                         __global const uint *list_starts, __global uint *list) {
-  uint tile = get_global_id(0), first = tile * kListsPerTile;
-  if (list_starts[first] == list_starts[first + kListsPerTile]) return;
-  __global const float *bounds = all_bounds + tile * (kBoundPlanes * kListsPerTile);
-  Walk walk;
-  start_tile(&walk, bounds, tree, tree_stride, light_count);
-  uint next[kListsPerTile];
-  for (uint i = 0; i < kListsPerTile; ++i) next[i] = list_starts[first + i];
-  uint batch[FILL_BATCH], members[FILL_BATCH], chosen[FILL_BATCH];
-  for (uint light = 0; light != kNoLight;) {
-    uint size = 0, all = 0;
-    while (size < FILL_BATCH && (light = next_light(&walk)) != kNoLight) {
-      uint bits = 0;
-      for (uint row = 0; row < kListsPerTile; row += LANES)
-        bits |= lane_bits(lists_lit(bounds, row, lights + light, tests)) << row;
-      batch[size] = light;
-      members[size++] = bits;
-      all |= bits;
-    }
-    for (uint i = 0; i < kListsPerTile; ++i) {
-      if (!(all >> i & 1)) continue;
-      uint count = 0;
-      for (uint b = 0; b < size; ++b) {
-        chosen[count] = batch[b];
-        count += members[b] >> i & 1;
-      }
-      // Both passes find the same lights; were a compiler ever to round them apart, this keeps the lists in their places.
-      count = min(count, list_starts[first + i + 1] - next[i]);
-      for (uint c = 0; c < count; ++c) list[next[i] + c] = chosen[c];
-      next[i] += count;
-    }
+// Writes the lists: what was found before if that is all of it.
+__kernel void fill_lists(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+                         __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
+                         uint tests, __global const ListEntry *found, __global const uint *list_starts,
+                         __global ListEntry *all_lists) {
+  uint tile = get_global_id(0);
+  __global ListEntry *list = all_lists + list_starts[tile];
+  uint count = list_starts[tile + 1] - list_starts[tile];
+  if (count <= kFoundPerTile) {
+    for (uint i = 0; i < count; ++i) list[i] = found[tile * kFoundPerTile + i];
+    return;
   }
+  uint again =
+      find_lights(position, normal, plane_stride, shift, tree, tree_stride, lights, light_count, tests, tile, list, count);
+  // Both passes find the same lights; were a compiler ever to round them apart, this keeps entries valid.
+  for (ListEntry none = {0, 0}; again < count; ++again) list[again] = none;
 }

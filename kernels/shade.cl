@@ -16,6 +16,7 @@
 
 // A row of pixels on its way through the lights.
 typedef struct {
+  intL covered;
   vec3L position, normal;
   vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
@@ -122,10 +123,9 @@ INLINE void close_full_blocks(Pixels *pixels) {
   pixels->terms = full ? (intL)(0) : pixels->terms;
   pixels->fullest = (uint)largest_lane(pixels->terms);
 }
-#endif
 
-INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight *light) {
-#if LONG_SUMS
+// Makes room for one more term, and counts it.
+INLINE void count_term(Pixels *pixels, const Pair *pair) {
   if (pixels->fullest == kSumBlock) close_full_blocks(pixels);
   pixels->fullest += 1;
 #if LIGHT_AMBIENT
@@ -133,7 +133,10 @@ INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight
 #else
   pixels->terms += pair->strength > 0.0f ? (intL)(1) : (intL)(0);
 #endif
+}
 #endif
+
+INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight *light) {
 #if LIGHT_AMBIENT
   add_scaled(&pixels->ambient_sum, light->ambient, pair->reach);
 #endif
@@ -143,14 +146,15 @@ INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight
 #endif
 }
 
-// Adds the first `count` of ABREAST lights, which are all there.
-INLINE void add_lights(Pixels *pixels, __global const ShadeLight *const *light, uint count,
-                       __global const ShadowMap *shadow_maps, __global const float *shadow_depths, uint blinn) {
+// Adds the first `count` of ABREAST pairs, which are all there: light[k] and the row pixels[k].
+INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *light, uint count,
+                       __global const ShadowMap *shadow_maps, __global const float *shadow_depths, uint blinn,
+                       bool long_sums) {
   Pair pairs[ABREAST];
   intL lit = 0;
   EACH_ABREAST(k) {
     Pair *pair = pairs + k;
-    meet_light(pair, pixels, light[k]);
+    meet_light(pair, pixels[k], light[k]);
     pair->reach = k < count ? pair->reach : (floatL)(0.0f);
     pair->strength = pair->n_dot_l > 0.0f ? pair->reach : (floatL)(0.0f);
 #if LIGHT_AMBIENT
@@ -158,7 +162,7 @@ INLINE void add_lights(Pixels *pixels, __global const ShadeLight *const *light, 
 #endif
   }
 #if SHADOWS
-  EACH_ABREAST(k) cast_shadow(pairs + k, pixels, light[k], shadow_maps, shadow_depths);
+  EACH_ABREAST(k) cast_shadow(pairs + k, pixels[k], light[k], shadow_maps, shadow_depths);
 #endif
 #if !LIGHT_AMBIENT
   EACH_ABREAST(k) lit |= pairs[k].strength > 0.0f;
@@ -167,126 +171,205 @@ INLINE void add_lights(Pixels *pixels, __global const ShadeLight *const *light, 
 #if SPECULAR
   // pow_one_minus_half(), a step at a time.
   floatL spread[ABREAST], log2_cosine[ABREAST];
-  EACH_ABREAST(k) spread[k] = lobe_spread(pairs + k, pixels, blinn);
+  EACH_ABREAST(k) spread[k] = lobe_spread(pairs + k, pixels[k], blinn);
   EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(spread[k]);
-  EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels->shininess, log2_cosine[k]);
+  EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels[k]->shininess, log2_cosine[k]);
 #endif
-  EACH_ABREAST(k) add_pair(pixels, pairs + k, light[k]);
+#if LONG_SUMS
+  if (long_sums) {
+    EACH_ABREAST(k) {
+      count_term(pixels[k], pairs + k);
+      add_pair(pixels[k], pairs + k, light[k]);
+    }
+    return;
+  }
+#endif
+  EACH_ABREAST(k) add_pair(pixels[k], pairs + k, light[k]);
 }
 #endif
+
+// What a row of pixels starts from. Uncovered lanes compute along on a point ahead of the eye and are dropped at the end.
+INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global const float *position,
+                      __global const float *normal, __global const float *specular, bool long_sums) {
+  uint stride = frame.plane_stride;
+  pixels->position = load_vec3(position + first, stride);
+  pixels->covered = pixels->position.z > -INFINITY;
+  pixels->position.z = pixels->covered ? pixels->position.z : (floatL)(-1.0f);
+#if OUTPUT_SHADOW
+  pixels->visible = 0.0f;
+  pixels->shadow_lights = 0.0f;
+#endif
+#if LIT
+  vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
+  pixels->ambient_sum = dark;
+  pixels->diffuse_sum = dark;
+  pixels->specular_sum = dark;
+#if LONG_SUMS
+  if (long_sums) {
+    LongSum nothing = {dark, dark};
+    pixels->long_ambient = nothing;
+    pixels->long_diffuse = nothing;
+    pixels->long_specular = nothing;
+    pixels->terms = 0;
+    pixels->fullest = 0;
+  }
+#endif
+  pixels->normal = load_vec3(normal + first, stride);
+#if SPECULAR
+  pixels->shininess = load_lanes(specular + first + 3 * stride);
+#if PARALLEL_VIEW
+  pixels->to_eye.x = frame.eye.x - frame.eye.w * pixels->position.x;
+  pixels->to_eye.y = frame.eye.y - frame.eye.w * pixels->position.y;
+  pixels->to_eye.z = frame.eye.z - frame.eye.w * pixels->position.z;
+#else
+  pixels->to_eye = scale3(pixels->position, (floatL)(-1.0f));
+#endif
+  pixels->to_eye = normalize_lanes(pixels->to_eye);
+  pixels->mirrored_eye = mirror(pixels->to_eye, pixels->normal);
+#endif
+#endif
+}
+
+// The colour of a row of pixels, its lights summed.
+INLINE vec3L finish_row(Pixels *pixels, ShadeFrame frame, uint first, __global const float *diffuse,
+                        __global const float *specular, __global const float *ambient, __global const float *emission,
+                        bool long_sums) {
+  vec3L seen = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
+#if LIT
+#if LONG_SUMS
+  if (long_sums) {
+    // A block that is just full is closed even where no more lights come: lights that add nothing must not decide it.
+    close_full_blocks(pixels);
+    finish_sum(pixels->long_ambient, &pixels->ambient_sum);
+    finish_sum(pixels->long_diffuse, &pixels->diffuse_sum);
+    finish_sum(pixels->long_specular, &pixels->specular_sum);
+  }
+#endif
+  vec3L kd = load_vec3(diffuse + first, frame.plane_stride);
+  seen.x += pixels->diffuse_sum.x * kd.x;
+  seen.y += pixels->diffuse_sum.y * kd.y;
+  seen.z += pixels->diffuse_sum.z * kd.z;
+#if SPECULAR
+  vec3L ks = load_vec3(specular + first, frame.plane_stride);
+  seen.x += pixels->specular_sum.x * ks.x;
+  seen.y += pixels->specular_sum.y * ks.y;
+  seen.z += pixels->specular_sum.z * ks.z;
+#endif
+#endif
+#if AMBIENT
+  vec3L ka = load_vec3(ambient + first, frame.plane_stride);
+  vec3L light = {(floatL)(frame.ambient.x), (floatL)(frame.ambient.y), (floatL)(frame.ambient.z)};
+#if LIT && LIGHT_AMBIENT
+  light.x += pixels->ambient_sum.x;
+  light.y += pixels->ambient_sum.y;
+  light.z += pixels->ambient_sum.z;
+#endif
+  seen.x += light.x * ka.x;
+  seen.y += light.y * ka.y;
+  seen.z += light.z * ka.z;
+#endif
+#if EMISSION
+  vec3L ke = load_vec3(emission + first, frame.plane_stride);
+  seen.x += ke.x;
+  seen.y += ke.y;
+  seen.z += ke.z;
+#endif
+#if FOG
+  seen = apply_fog(frame, seen, pixels->position);
+#endif
+  return seen;
+}
+
+// Pairs that wait for their turn at most; a row that is a work-item's only one takes each as it comes.
+#define QUEUE (ROWS == 1 ? 1 : 128)
 
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
 // list_starts, list: see cull.cl; an entry of the list indexes `lights`.
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
                     __global const float *emission, __global const ShadeLight *lights, __global const uint *list_starts,
-                    __global const uint *list, __global const ShadowMap *shadow_maps, __global const float *shadow_depths,
-                    __global float *image) {
-  uint first = get_global_id(0) * LANES;
+                    __global const ListEntry *list, __global const ShadowMap *shadow_maps,
+                    __global const float *shadow_depths, __global float *image) {
+  uint first = get_global_id(0) * (ROWS * LANES);
   uint stride = frame.plane_stride;
-  Pixels pixels;
-  pixels.position = load_vec3(position + first, stride);
-  intL covered = pixels.position.z > -INFINITY;
-  vec3L color = {(floatL)(frame.background.x), (floatL)(frame.background.y), (floatL)(frame.background.z)};
-#if OUTPUT_SHADOW
-  pixels.visible = 0.0f;
-  pixels.shadow_lights = 0.0f;
+#if LIGHT_LISTS
+  uint tile = first / kTilePixels;
+  uint entry = list_starts[tile], end = list_starts[tile + 1];
+#else
+  uint entry = 0, end = frame.light_count;
 #endif
-  if (any_lane(covered)) {
-    // Uncovered lanes compute along on a point ahead of the eye and are dropped at the end.
-    pixels.position.z = covered ? pixels.position.z : (floatL)(-1.0f);
-    vec3L seen = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
+  // No block can be full before.
+  bool long_sums = end - entry > kSumBlock;
+  Pixels rows[ROWS];
+  uint square[ROWS];  // of each row, as a bit; none for background
+  EACH_ROW(row) {
+    uint pixel = first + row * LANES;
+    start_row(rows + row, frame, pixel, position, normal, specular, long_sums);
+    square[row] = any_lane(rows[row].covered) ? 1u << SQUARE_OF_PIXEL(pixel) : 0;
+  }
+  // While the lights are summed, memory brings what comes next.
+  uint next = first + ROWS * LANES;
+  if (next + ROWS * LANES <= stride) {
+    prefetch_lanes(position + next, stride, 3, ROWS);
 #if LIT
-    pixels.ambient_sum = seen;
-    pixels.diffuse_sum = seen;
-    pixels.specular_sum = seen;
-#if LONG_SUMS
-    LongSum nothing = {seen, seen};
-    pixels.long_ambient = nothing;
-    pixels.long_diffuse = nothing;
-    pixels.long_specular = nothing;
-    pixels.terms = 0;
-    pixels.fullest = 0;
-#endif
-    pixels.normal = load_vec3(normal + first, stride);
+    prefetch_lanes(normal + next, stride, 3, ROWS);
+    prefetch_lanes(diffuse + next, stride, 3, ROWS);
 #if SPECULAR
-    pixels.shininess = load_lanes(specular + first + 3 * stride);
-#if PARALLEL_VIEW
-    pixels.to_eye.x = frame.eye.x - frame.eye.w * pixels.position.x;
-    pixels.to_eye.y = frame.eye.y - frame.eye.w * pixels.position.y;
-    pixels.to_eye.z = frame.eye.z - frame.eye.w * pixels.position.z;
-#else
-    pixels.to_eye = scale3(pixels.position, (floatL)(-1.0f));
-#endif
-    pixels.to_eye = normalize_lanes(pixels.to_eye);
-    pixels.mirrored_eye = mirror(pixels.to_eye, pixels.normal);
-#endif
-#if LIGHT_LISTS
-    uint tile = LIST_OF_PIXEL(first, frame.list_shift);
-    uint entry = list_starts[tile], end = list_starts[tile + 1];
-#else
-    uint entry = 0, end = frame.light_count;
-#endif
-    for (; entry < end; entry += ABREAST) {
-      __global const ShadeLight *abreast[ABREAST];
-      EACH_ABREAST(k) {
-        uint at = min(entry + k, end - 1);
-#if LIGHT_LISTS
-        at = list[at];
-#endif
-        abreast[k] = lights + at;
-      }
-      add_lights(&pixels, abreast, end - entry, shadow_maps, shadow_depths, frame.blinn);
-    }
-#if LONG_SUMS
-    // A block that is just full is closed even where no more lights come: lights that add nothing must not decide it.
-    close_full_blocks(&pixels);
-    finish_sum(pixels.long_ambient, &pixels.ambient_sum);
-    finish_sum(pixels.long_diffuse, &pixels.diffuse_sum);
-    finish_sum(pixels.long_specular, &pixels.specular_sum);
-#endif
-    vec3L kd = load_vec3(diffuse + first, stride);
-    seen.x += pixels.diffuse_sum.x * kd.x;
-    seen.y += pixels.diffuse_sum.y * kd.y;
-    seen.z += pixels.diffuse_sum.z * kd.z;
-#if SPECULAR
-    vec3L ks = load_vec3(specular + first, stride);
-    seen.x += pixels.specular_sum.x * ks.x;
-    seen.y += pixels.specular_sum.y * ks.y;
-    seen.z += pixels.specular_sum.z * ks.z;
+    prefetch_lanes(specular + next, stride, 4, ROWS);
 #endif
 #endif
 #if AMBIENT
-    vec3L ka = load_vec3(ambient + first, stride);
-    vec3L light = {(floatL)(frame.ambient.x), (floatL)(frame.ambient.y), (floatL)(frame.ambient.z)};
-#if LIT && LIGHT_AMBIENT
-    light.x += pixels.ambient_sum.x;
-    light.y += pixels.ambient_sum.y;
-    light.z += pixels.ambient_sum.z;
-#endif
-    seen.x += light.x * ka.x;
-    seen.y += light.y * ka.y;
-    seen.z += light.z * ka.z;
+    prefetch_lanes(ambient + next, stride, 3, ROWS);
 #endif
 #if EMISSION
-    vec3L ke = load_vec3(emission + first, stride);
-    seen.x += ke.x;
-    seen.y += ke.y;
-    seen.z += ke.z;
+    prefetch_lanes(emission + next, stride, 3, ROWS);
 #endif
-#if FOG
-    seen = apply_fog(frame, seen, pixels.position);
-#endif
-    color.x = covered ? finite_color(seen.x) : color.x;
-    color.y = covered ? finite_color(seen.y) : color.y;
-    color.z = covered ? finite_color(seen.z) : color.z;
   }
-  stream_lanes(image + first, color.x);
-  stream_lanes(image + first + stride, color.y);
-  stream_lanes(image + first + 2 * stride, color.z);
-#if OUTPUT_SHADOW
-  // No shadowed light facing the surface: fully visible.
-  floatL share = pixels.visible / max_lanes(pixels.shadow_lights, (floatL)(1.0f));
-  stream_lanes(image + first + 3 * stride, pixels.shadow_lights > 0.0f ? share : (floatL)(1.0f));
+#if LIT
+  uint light_of[QUEUE], row_of[QUEUE];
+  while (entry < end) {
+    uint pairs = 0;
+    for (; entry < end && pairs + ROWS <= QUEUE; ++entry) {
+#if LIGHT_LISTS
+      uint light = list[entry].light, squares = list[entry].squares;
+#else
+      uint light = entry, squares = 0xffffffff;
 #endif
+      EACH_ROW(row) {
+        light_of[pairs] = light;
+        row_of[pairs] = row;
+        pairs += (squares & square[row]) ? 1 : 0;
+      }
+    }
+    for (uint pair = 0; pair < pairs; pair += ABREAST) {
+      Pixels *pixels[ABREAST];
+      __global const ShadeLight *light[ABREAST];
+      EACH_ABREAST(k) {
+        uint at = min(pair + k, pairs - 1);
+        pixels[k] = rows + row_of[at];
+        light[k] = lights + light_of[at];
+      }
+      add_lights(pixels, light, pairs - pair, shadow_maps, shadow_depths, frame.blinn, long_sums);
+    }
+  }
+#endif
+  EACH_ROW(row) {
+    Pixels *pixels = rows + row;
+    uint pixel = first + row * LANES;
+    vec3L color = {(floatL)(frame.background.x), (floatL)(frame.background.y), (floatL)(frame.background.z)};
+    if (square[row]) {
+      vec3L seen = finish_row(pixels, frame, pixel, diffuse, specular, ambient, emission, long_sums);
+      color.x = pixels->covered ? finite_color(seen.x) : color.x;
+      color.y = pixels->covered ? finite_color(seen.y) : color.y;
+      color.z = pixels->covered ? finite_color(seen.z) : color.z;
+    }
+    stream_lanes(image + pixel, color.x);
+    stream_lanes(image + pixel + stride, color.y);
+    stream_lanes(image + pixel + 2 * stride, color.z);
+#if OUTPUT_SHADOW
+    // No shadowed light facing the surface: fully visible.
+    floatL share = pixels->visible / max_lanes(pixels->shadow_lights, (floatL)(1.0f));
+    stream_lanes(image + pixel + 3 * stride, pixels->shadow_lights > 0.0f ? share : (floatL)(1.0f));
+#endif
+  }
 }

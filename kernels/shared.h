@@ -17,19 +17,28 @@ struct alignas(16) float4 {
 enum {
   kTileSize = 16,                        // pixels a side of the squares that a G-buffer is stored in
   kTilePixels = kTileSize * kTileSize,   // in Z order
+  kSquaresPerTile = 16,                  // of 4×4 pixels
 };
 
-// Light lists. One serves a square of 4, 8 or 16 pixels a side, 1 << shift pixels with a shift of 4, 6 or 8, which lie in one
-// piece; a G-buffer tile has room for the lists of its sixteen smallest squares. The list of a pixel, by its place in the planes:
-enum { kListsPerTile = 16 };
-#define LIST_OF_PIXEL(place, shift) ((place) / kTilePixels * kListsPerTile + ((place) % kTilePixels >> (shift)))
+// Rows of pixels that a work-item of shade.cl takes on.
+#define ROWS_PER_ITEM(lanes) ((lanes) == 1 ? 1 : 4)
+
+// The square of a pixel in its tile, by its place in the planes.
+#define SQUARE_OF_PIXEL(place) ((place) / (kTilePixels / kSquaresPerTile) % kSquaresPerTile)
+
+// An entry of a tile's light list.
+typedef struct {
+  uint light;    // its index
+  uint squares;  // bit i: the light may light square i
+} ListEntry;
+SHARED_SIZE(ListEntry, 8);
+
+// Entries that are kept for a tile while lists are counted.
+enum { kFoundPerTile = 64 };
 
 // What leaves a light out of a list: that it is out of range, and by choice (bits) that no point lies in a spot's cone, and that
 // every point faces away from it, which is right where no light gives ambient light.
 enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
-
-// Floats that culling keeps of what a list's pixels show, see cull.cl.
-enum { kBoundPlanes = 13 };
 
 // The tree over the lights has so many children a node.
 enum { kTreeArity = 16 };
@@ -95,7 +104,7 @@ typedef struct {
   uint light_count;
   uint plane_stride;   // floats from a plane to the next of its group
   uint fog_radial;     // 1: fog by distance from the eye, 0: by depth along the view axis
-  uint list_shift;     // see LIST_OF_PIXEL
+  uint pad;
 } ShadeFrame;
 SHARED_SIZE(ShadeFrame, 112);
 

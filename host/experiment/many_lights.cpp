@@ -21,8 +21,7 @@ struct Row {
 
 /// The lists' entries and where each list starts.
 double listBytes(const GBuffer& gbuffer, double entries) {
-  const std::size_t list_pixels = std::size_t(ShadeSettings{}.tile_size) * ShadeSettings{}.tile_size;
-  return (entries + double(gbuffer.pixels() / list_pixels) + 1) * sizeof(cl_uint);
+  return entries * sizeof(ListEntry) + double(gbuffer.pixels() / kTilePixels + 1) * sizeof(cl_uint);
 }
 
 Stats shadeRow(Device& device, const Row& row, bool count_lights) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -56,7 +57,7 @@ MipLevel encode(const LinearLevel& linear) {
   MipLevel level{linear.width, linear.height, std::vector<std::uint16_t>(linear.values.size())};
   const auto code = [](float unit) { return std::uint16_t(unit * 65535.0f + 0.5f); };
   for (std::size_t i = 0; i < level.texels.size(); i += 4) {
-    for (int c = 0; c < 3; ++c) level.texels[i + c] = code(encodeSrgb(linear.values[i + c]));
+    for (int c = 0; c < 3; ++c) level.texels[i + c] = code(std::sqrt(std::min(linear.values[i + c], 1.0f)));
     level.texels[i + 3] = code(std::min(linear.values[i + 3], 1.0f));
   }
   return level;
@@ -95,9 +96,16 @@ LinearLevel halve(const LinearLevel& fine) {
   return coarse;
 }
 
+bool alphaVaries(const MipLevel& level) {
+  for (std::size_t i = 3; i < level.texels.size(); i += 4)
+    if (level.texels[i] != level.texels[3]) return true;
+  return false;
+}
+
 }  // namespace
 
 void buildMips(Texture& texture) {
+  texture.alpha_varies = alphaVaries(texture.levels.front());
   LinearLevel level = decode(texture.levels.front());
   while (level.width > 1 || level.height > 1) {
     level = halve(level);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace luciole {
@@ -18,5 +19,11 @@ inline float encodeSrgb(float linear) {
 
 /// Linear values of all 65536 codes of 16 bits. An 8-bit code c is the 16-bit code 257 c.
 const std::vector<float>& linearOfSrgb16();
+
+/// The linear value of a 16-bit code of its square root: as fine as sRGB, and a product to decode.
+inline float linearOfRoot16(std::int32_t code) {
+  const float root = float(code) * (1.0f / 65535.0f);
+  return root * root;
+}
 
 }  // namespace luciole

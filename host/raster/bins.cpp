@@ -25,7 +25,7 @@ Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view) {
   Bins bins;
   bins.first = view.crop_origin / kBinSize;
   bins.count = (view.crop_origin + view.crop_size - 1) / kBinSize - bins.first + 1;
-  const std::size_t bin_count = bins.size();
+  const std::size_t list_count = 2 * std::size_t(bins.size());  // of each bin: opaque triangles, then others
 
   // Count, scan, fill, by runs of triangles: a run's entries of a bin follow those of the run before it. The
   // number of runs does not depend on the machine, and is bounded for the sake of the table of counts.
@@ -33,28 +33,31 @@ Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view) {
   const std::size_t runs = (triangles.size() + run_size - 1) / run_size;
   const auto triangles_of_run = [&](std::size_t run, auto visit) {
     const std::size_t end = std::min(triangles.size(), (run + 1) * run_size);
-    for (std::size_t i = run * run_size; i < end; ++i)
-      forEachBin(triangles[i], bins, [&](int bin) { visit(bin, std::uint32_t(i)); });
+    for (std::size_t i = run * run_size; i < end; ++i) {
+      const int kind = triangles[i].masked;
+      forEachBin(triangles[i], bins, [&](int bin) { visit(2 * bin + kind, std::uint32_t(i)); });
+    }
   };
-  std::vector<std::size_t> places(runs * bin_count);  // [run][bin]: first the count, then where to write next
+  // [run][list]: first the count, then where to write next
+  std::vector<std::size_t> places(runs * list_count);
   tbb::parallel_for(std::size_t(0), runs, [&](std::size_t run) {
-    triangles_of_run(run, [&](int bin, std::uint32_t) { ++places[run * bin_count + bin]; });
+    triangles_of_run(run, [&](int list, std::uint32_t) { ++places[run * list_count + list]; });
   });
-  bins.starts.resize(bin_count + 1);
+  bins.starts.resize(list_count / 2 + 1);
   std::size_t total = 0;
-  for (std::size_t bin = 0; bin < bin_count; ++bin) {
-    bins.starts[bin] = total;
+  for (std::size_t list = 0; list < list_count; ++list) {
+    if (list % 2 == 0) bins.starts[list / 2] = total;
     for (std::size_t run = 0; run < runs; ++run) {
-      const std::size_t entries = places[run * bin_count + bin];
-      places[run * bin_count + bin] = total;
+      const std::size_t entries = places[run * list_count + list];
+      places[run * list_count + list] = total;
       total += entries;
     }
   }
-  bins.starts[bin_count] = total;
+  bins.starts.back() = total;
   bins.triangles.resize(total);
   tbb::parallel_for(std::size_t(0), runs, [&](std::size_t run) {
-    triangles_of_run(run, [&](int bin, std::uint32_t triangle) {
-      bins.triangles[places[run * bin_count + bin]++] = triangle;
+    triangles_of_run(run, [&](int list, std::uint32_t triangle) {
+      bins.triangles[places[run * list_count + list]++] = triangle;
     });
   });
   return bins;

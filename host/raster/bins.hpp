@@ -12,8 +12,9 @@ namespace luciole {
 
 constexpr int kBinSize = 64;  ///< pixels a side
 
-/// For every square of kBinSize² pixels that the crop touches, the triangles whose bounding boxes touch it,
-/// in order. Bins are aligned to the whole picture, so that a crop only takes some of them.
+/// For every square of kBinSize² pixels that the crop touches, the triangles whose bounding boxes touch it:
+/// the opaque ones in order, then those with holes, which are looked for only where nothing nearer is. Bins
+/// are aligned to the whole picture, so that a crop only takes some of them.
 struct Bins {
   glm::ivec2 first;                      ///< bin of the whole picture: the top left one here
   glm::ivec2 count;                      ///< columns and rows

@@ -62,24 +62,34 @@ struct Target {
   }
 };
 
+constexpr int kRows = 16;     ///< that are looked at side by side
+constexpr int kFewRows = 12;  ///< to draw so many in vain costs less than to find out which are
+
+/// Of the groups one below the other from (x, y) on, which the triangle may cover a sample of: a bit a row,
+/// all in one piece, since every edge cuts some off at one end.
+std::uint32_t rowsReached(const Target& target, int x, int y) {
+  const auto [e0, e1, e2] = target.edgesAt(x, y);
+  const std::int32_t* step_x = target.edges.step_x;
+  const std::int32_t* step_y = target.edges.step_y;
+  std::int32_t reach[3];  // from a group's first pixel to where an edge function is largest
+  for (int i = 0; i < 3; ++i) reach[i] = std::max(0, step_x[i] * (kLanes - 1));
+  std::uint32_t rows = 0;
+  for (int row = 0; row < kRows; ++row) {
+    const std::int32_t reached = (e0 + reach[0] + step_y[0] * row) | (e1 + reach[1] + step_y[1] * row) |
+                                 (e2 + reach[2] + step_y[2] * row);
+    rows |= std::uint32_t(reached >= 0) << row;
+  }
+  return rows;
+}
+
 /// Calls `visit` with the first pixel of every group that the triangle may cover a sample of, in a box of the
 /// bin's pixels.
 template <class Visit>
 void forEachGroup(const Target& target, const PixelBox& box, Visit visit) {
-  constexpr int kRows = 16;  // that are looked at side by side
-  const std::int32_t* step_y = target.edges.step_y;
-  std::int32_t reach[3];  // from a group's first pixel to where an edge function is largest
-  for (int i = 0; i < 3; ++i) reach[i] = std::max(0, target.edges.step_x[i] * (kLanes - 1));
+  const bool few = box.last.y - box.first.y < kFewRows;
   for (int y = box.first.y / kRows * kRows; y <= box.last.y; y += kRows) {
     for (int x = box.first.x / kLanes * kLanes; x <= box.last.x; x += kLanes) {
-      const auto [e0, e1, e2] = target.edgesAt(x, y);
-      std::uint32_t rows = 0;
-      for (int row = 0; row < kRows; ++row) {
-        const std::int32_t reached = (e0 + reach[0] + step_y[0] * row) | (e1 + reach[1] + step_y[1] * row) |
-                                     (e2 + reach[2] + step_y[2] * row);
-        rows |= std::uint32_t(reached >= 0) << row;
-      }
-      // One piece of rows, since every edge cuts some off at one end.
+      const std::uint32_t rows = few ? (1u << kRows) - 1 : rowsReached(target, x, y);
       const int end = std::min(y + int(std::bit_width(rows)), box.last.y + 1);
       for (int in = std::max(y + std::countr_zero(rows), box.first.y); in < end; ++in) visit(x, in);
     }
@@ -113,20 +123,32 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   return covered != 0;
 }
 
+/// Where a triangle has holes among the `wanted` samples of the group at pixel (x, y) of the picture: a bit a
+/// lane.
+std::uint32_t holesIn(const HoleTest& holes, const Surface& surface, std::uint32_t wanted, int x, int y) {
+  std::uint32_t found = 0;
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const int lane = std::countr_zero(wanted);
+    found |= std::uint32_t(isHole(holes.scene, surface, holes.plane, x + lane, y)) << lane;
+  }
+  return found;
+}
+
 /// The same for a triangle with holes, which are looked for where nothing nearer was drawn before.
 template <bool kWithTriangle>
 bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
   const float low = target.triangle.depth_low;
   const float high = target.triangle.depth_high;
+  const std::uint32_t number = target.triangle.triangle;
   const std::int32_t* step_x = target.edges.step_x;
   std::optional<Surface> surface;
   std::int32_t covered = 0;
   forEachGroup(target, box, [&](int x, int y) {
     const auto [e0, e1, e2] = target.edgesAt(x, y);
     const float start = target.depthAt(x, y);
-    const int first = y * kBinSize + x;
-    const float* depth = pixels.depth.data() + first;
+    float* depth = pixels.depth.data() + y * kBinSize + x;
+    std::uint32_t* triangle = pixels.triangle.data() + y * kBinSize + x;
     std::array<float, kLanes> z;
     std::uint32_t nearest = 0;  // a bit a lane
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -134,16 +156,18 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
           ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
       z[lane] = std::min(std::max(start + step * float(lane), low), high);
       covered |= inside;
-      nearest |= std::uint32_t(inside & std::int32_t(z[lane] > depth[lane])) << lane;
+      std::int32_t nearer = z[lane] > depth[lane];
+      // Opaque triangles were drawn before their turn, and a depth of 0 is nothing.
+      if (kWithTriangle) nearer |= (z[lane] == depth[lane]) & (number < triangle[lane]) & (z[lane] > 0.0f);
+      nearest |= std::uint32_t(inside & nearer) << lane;
     }
-    for (; nearest != 0; nearest &= nearest - 1) {
-      const int lane = std::countr_zero(nearest);
-      if (!surface) surface = makeSurface(holes.scene, holes.geometry, target.triangle.triangle, holes.plane);
-      if (isHole(holes.scene, holes.varying_alpha, *surface, holes.plane, target.bin_origin.x + x + lane,
-                 target.bin_origin.y + y))
-        continue;
-      pixels.depth[first + lane] = z[lane];
-      if (kWithTriangle) pixels.triangle[first + lane] = target.triangle.triangle;
+    if (nearest == 0) return;
+    if (!surface) surface = makeSurface(holes.scene, holes.geometry, number, holes.plane);
+    nearest &= ~holesIn(holes, *surface, nearest, target.bin_origin.x + x, target.bin_origin.y + y);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const bool seen = nearest >> lane & 1;
+      depth[lane] = seen ? z[lane] : depth[lane];
+      if (kWithTriangle) triangle[lane] = seen ? number : triangle[lane];
     }
   });
   return covered != 0;

@@ -22,12 +22,11 @@ struct HoleTest {
   const Scene& scene;
   const Geometry& geometry;
   const ViewPlane& plane;
-  const std::vector<bool>& varying_alpha;
 };
 
-/// Draws a bin's triangles in order: the nearer wins, then the first. Samples beyond the crop are drawn too,
-/// at whim. `covering` has one entry a triangle, which is set to 1 where the triangle covers a sample, seen
-/// or not.
+/// Draws a bin's triangles: the nearer wins, and at equal depth the one with the lower number. Samples beyond
+/// the crop are drawn too, at whim. `covering` has one entry a triangle, which is set to 1 where the triangle
+/// covers a sample, seen or not.
 void drawBin(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
              std::span<std::uint8_t> covering, BinPixels& pixels);
 

@@ -1,22 +1,15 @@
 #pragma once
 
-#include <vector>
-
 #include "raster/surface.hpp"
 
 namespace luciole {
 
-/// For every texture, whether its alpha differs between texels. Looked at only for the maps of materials with
-/// holes: the others read as false.
-std::vector<bool> findVaryingAlpha(const Scene& scene);
-
 /// Of the surface at a point, whose maps are looked up at `place`; nothing but its object, material and
 /// corners is looked at.
-float opacityAt(const Scene& scene, const std::vector<bool>& varying_alpha, const Surface& surface,
-                const Weights& weights, const TexturePlace& place);
+float opacityAt(const Scene& scene, const Surface& surface, const Weights& weights,
+                const TexturePlace& place);
 
 /// Whether the surface has a hole where the pixel looks. Its material's alpha_cutoff is > 0.
-bool isHole(const Scene& scene, const std::vector<bool>& varying_alpha, const Surface& surface,
-            const ViewPlane& plane, int x, int y);
+bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, int x, int y);
 
 }  // namespace luciole

@@ -56,8 +56,7 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   planes.emission |= lit_vertices;
   GBuffer gbuffer = emptyGBuffer(view, planes);
   const ViewPlane plane = viewPlane(view);
-  const std::vector<bool> varying_alpha = findVaryingAlpha(scene);
-  const HoleTest holes{scene, geometry, plane, varying_alpha};
+  const HoleTest holes{scene, geometry, plane};
   const ResolveInput input{scene, geometry, plane, shading, vertex_colors};
   RasterCounts own_counts;
   if (!counts) counts = &own_counts;
@@ -85,8 +84,7 @@ DepthMap rasterizeDepth(const Scene& scene, std::span<const std::uint32_t> objec
   DepthMap map{view.crop_size.x, view.crop_size.y, {}};
   map.depth.resize(std::size_t(map.width) * map.height);
   const ViewPlane plane = viewPlane(view);
-  const std::vector<bool> varying_alpha = findVaryingAlpha(scene);
-  const HoleTest holes{scene, geometry, plane, varying_alpha};
+  const HoleTest holes{scene, geometry, plane};
   tbb::parallel_for(0, bins.size(), [&](int bin) {
     if (bins.list(bin).empty()) return;
     BinPixels pixels;

@@ -16,6 +16,8 @@ struct ResolveInput {
   const ViewPlane& plane;
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
+
+  bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };
 
 /// Fills in a bin's pixels: the attributes, once a pixel, of the triangle that each of them sees.

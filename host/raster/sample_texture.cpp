@@ -1,7 +1,9 @@
 #include "raster/sample_texture.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "image/srgb.hpp"
@@ -9,110 +11,192 @@
 namespace luciole {
 namespace {
 
+// What loops over lanes call is free of branches: both sides of every choice are cheap and safe.
+
 /// Brings a coordinate into [0, 1]. The subtractions are exact for any finite float.
-double wrapCoordinate(float coordinate, Wrap wrap) {
+inline double wrapCoordinate(float coordinate, Wrap wrap) {
   const double t = std::abs(coordinate) <= std::numeric_limits<float>::max() ? coordinate : 0.0f;
-  if (wrap == Wrap::kRepeat) return t - std::floor(t);
-  if (wrap == Wrap::kClampToEdge) return std::clamp(t, 0.0, 1.0);
+  const double repeated = t - std::floor(t);
   const double in_pair = t - 2.0 * std::floor(0.5 * t);
-  return in_pair > 1.0 ? 2.0 - in_pair : in_pair;
+  const double mirrored = in_pair > 1.0 ? 2.0 - in_pair : in_pair;
+  const double positive = t > 0.0 ? t : 0.0;
+  const double clamped = positive < 1.0 ? positive : 1.0;
+  const double in_one = wrap == Wrap::kClampToEdge ? clamped : mirrored;
+  return wrap == Wrap::kRepeat ? repeated : in_one;
 }
 
 /// The two texels on either side of a point along one axis, and the second one's share.
 struct Neighbours {
-  int first;
-  int second;
+  std::int32_t first;
+  std::int32_t second;
   float share;
 };
 
-Neighbours neighbours(double wrapped, int size, Wrap wrap) {
+inline Neighbours neighbours(double wrapped, std::int32_t size, Wrap wrap) {
   const double place = wrapped * size - 0.5;
   const double below = std::floor(place);
-  const int first = int(below);
+  const std::int32_t first = std::int32_t(below), last = size - 1;
   // At a mirror the texel beyond the edge is the edge texel again, as it is where coordinates are clamped.
-  const bool repeat = wrap == Wrap::kRepeat;
-  return {first < 0 ? (repeat ? size - 1 : 0) : std::min(first, size - 1),
-          first + 1 < size ? first + 1 : (repeat ? 0 : size - 1), float(place - below)};
+  const std::int32_t before = wrap == Wrap::kRepeat ? last : 0;
+  const std::int32_t after = last - before;
+  const std::int32_t not_beyond = first < last ? first : last;
+  return {first < 0 ? before : not_beyond, first < last ? first + 1 : after, float(place - below)};
 }
 
-float sampleLevel(const MipLevel& level, Wrap wrap_u, Wrap wrap_v, double u, double v, int channel) {
-  const Neighbours column = neighbours(u, level.width, wrap_u);
-  const Neighbours row = neighbours(v, level.height, wrap_v);
-  const float* decode = linearOfSrgb16().data();
+/// Exact where both are the same.
+inline float mix(float a, float b, float share) { return a + (b - a) * share; }
+
+float sampleLevel(const Texture& texture, int level, Wrap wrap_u, Wrap wrap_v, double u, double v,
+                  int channel) {
+  const MipLevel& mip = texture.levels[std::size_t(level)];
+  const Neighbours column = neighbours(u, mip.width, wrap_u);
+  const Neighbours row = neighbours(v, mip.height, wrap_v);
   const auto value = [&](int x, int y) {
-    const std::uint16_t code = level.texels[(std::size_t(y) * level.width + x) * 4 + channel];
-    return channel == 3 ? code * (1.0f / 65535.0f) : decode[code];
+    const std::uint16_t code = mip.texels[(std::size_t(y) * mip.width + x) * 4 + channel];
+    if (channel == 3) return code * (1.0f / 65535.0f);
+    return level == 0 ? linearOfSrgb16()[code] : linearOfRoot16(code);
   };
-  return glm::mix(glm::mix(value(column.first, row.first), value(column.second, row.first), column.share),
-                  glm::mix(value(column.first, row.second), value(column.second, row.second), column.share),
-                  row.share);
+  return mix(mix(value(column.first, row.first), value(column.second, row.first), column.share),
+             mix(value(column.first, row.second), value(column.second, row.second), column.share), row.share);
 }
 
 /// The square of the longer side of a pixel's footprint, in texels of the finest level.
-float footprintSize(const Texture& texture, const glm::vec2& duv_dx, const glm::vec2& duv_dy) {
-  const glm::dvec2 size(texture.levels[0].width, texture.levels[0].height);
-  const glm::dvec2 side_x = glm::dvec2(duv_dx) * size;
-  const glm::dvec2 side_y = glm::dvec2(duv_dy) * size;
-  return float(std::max(glm::dot(side_x, side_x), glm::dot(side_y, side_y)));
+inline float footprintSize(double width, double height, const glm::vec2& duv_dx, const glm::vec2& duv_dy) {
+  const double x0 = duv_dx.x * width, y0 = duv_dx.y * height;
+  const double x1 = duv_dy.x * width, y1 = duv_dy.y * height;
+  return float(std::max(x0 * x0 + y0 * y0, x1 * x1 + y1 * y1));
 }
 
-/// The finer of the two levels that a footprint lies between, and the share of the next.
-struct LevelPlace {
-  std::int32_t finer;
-  float share;
+/// Of a normal number or infinity: 128.
+inline float log2OfPositive(float x) {
+  // x = 2^e · m, m from √½ on, and log m = 2 artanh((m − 1) / (m + 1)), whose series is cut off at 2⁻²⁹.
+  const std::int32_t bits = std::bit_cast<std::int32_t>(x);
+  constexpr std::int32_t kRootOfHalf = 0x3f3504f3;
+  const std::int32_t exponent = (bits - kRootOfHalf) >> 23;
+  const float m = std::bit_cast<float>(bits - exponent * (1 << 23));
+  const float s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
+  constexpr float kScale = 2.8853900817779268f;  // 2 / ln 2
+  const float series = 1.0f + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))));
+  return float(exponent) + kScale * s * series;
+}
+
+/// OpenGL 4.6, equations 8.7 and 8.8: the logarithm of the footprint's longer side in texels.
+inline float levelOf(float size, float coarsest) {
+  return size > 1.0f ? std::min(0.5f * log2OfPositive(size), coarsest) : 0.0f;
+}
+
+/// What a square's pixels look up, each in a map of its own.
+struct SquareMaps {
+  Lanes<const MipLevel*> levels;  ///< the finest
+  Lanes<float> coarsest;
+  Lanes<Wrap> wrap_u, wrap_v;
 };
 
-/// OpenGL 4.6, equations 8.7 and 8.8: the level is the logarithm of the footprint's longer side in texels.
-LevelPlace levelPlace(const Texture& texture, float size) {
-  if (!(size > 1.0f)) return {0, 0.0f};
-  const float level = std::min(0.5f * std::log2(size), float(texture.levels.size() - 1));
-  return {std::int32_t(level), level - float(std::int32_t(level))};
+/// The map of pixels without one.
+const Texture& white() {
+  static const Texture texture{"", {{1, 1, {65535, 65535, 65535, 65535}}}, false};
+  return texture;
 }
 
-/// A square's colours from one level each, which may differ from pixel to pixel.
-Lanes3<float> sampleLevels(const Texture& texture, const Lanes<std::int32_t>& levels, Wrap wrap_u,
-                           Wrap wrap_v, const Lanes<double>& u, const Lanes<double>& v,
-                           const LaneMask& wanted) {
+SquareMaps squareMaps(std::span<const Texture> textures, const Lanes<const TextureUse*>& uses) {
+  SquareMaps maps;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const TextureUse use = uses[i] ? *uses[i] : TextureUse{};
+    const Texture& texture = use.texture >= 0 ? textures[std::size_t(use.texture)] : white();
+    maps.levels[i] = texture.levels.data();
+    maps.coarsest[i] = float(texture.levels.size() - 1);
+    maps.wrap_u[i] = use.wrap_u;
+    maps.wrap_v[i] = use.wrap_v;
+  }
+  return maps;
+}
+
+/// The four texels around each of a square's points in one level, and the shares of the right and lower ones.
+struct SquareTexels {
+  Lanes<const std::uint16_t*> top;  ///< of the row's first texel
+  Lanes<const std::uint16_t*> bottom;
+  Lanes<std::int32_t> left, right;  ///< values from there
+  Lanes<float> across, down;
+  LaneMask finest;  ///< the level is
+};
+
+SquareTexels findTexels(const SquareMaps& maps, const Lanes<std::int32_t>& levels, const Lanes<double>& u,
+                        const Lanes<double>& v) {
   Lanes<std::int32_t> width, height;
   Lanes<const std::uint16_t*> texels;
   for (int i = 0; i < kSquarePixels; ++i) {
-    const MipLevel& level = texture.levels[std::size_t(levels[i])];
+    const MipLevel& level = maps.levels[i][levels[i]];
     width[i] = level.width;
     height[i] = level.height;
     texels[i] = level.texels.data();
   }
-  Lanes<std::int64_t> top, bottom;
-  Lanes<std::int32_t> left, right;
-  Lanes<float> across, down;
+  SquareTexels result;
+  Lanes<std::int32_t> top, bottom;
   for (int i = 0; i < kSquarePixels; ++i) {
-    const Neighbours column = neighbours(u[i], width[i], wrap_u);
-    left[i] = column.first * 4;
-    right[i] = column.second * 4;
-    across[i] = column.share;
+    const Neighbours column = neighbours(u[i], width[i], maps.wrap_u[i]);
+    result.left[i] = column.first * 4;
+    result.right[i] = column.second * 4;
+    result.across[i] = column.share;
   }
   for (int i = 0; i < kSquarePixels; ++i) {
-    const Neighbours row = neighbours(v[i], height[i], wrap_v);
-    top[i] = std::int64_t(row.first) * width[i] * 4;
-    bottom[i] = std::int64_t(row.second) * width[i] * 4;
-    down[i] = row.share;
+    const Neighbours row = neighbours(v[i], height[i], maps.wrap_v[i]);
+    top[i] = row.first;
+    bottom[i] = row.second;
+    result.down[i] = row.share;
   }
-  Lanes3<float> top_left, top_right, bottom_left, bottom_right;
-  const float* decode = linearOfSrgb16().data();
   for (int i = 0; i < kSquarePixels; ++i) {
-    if (!wanted[i]) continue;
-    const std::uint16_t *top_row = texels[i] + top[i], *bottom_row = texels[i] + bottom[i];
-    for (int c = 0; c < 3; ++c) {
-      top_left[c][i] = decode[top_row[left[i] + c]];
-      top_right[c][i] = decode[top_row[right[i] + c]];
-      bottom_left[c][i] = decode[bottom_row[left[i] + c]];
-      bottom_right[c][i] = decode[bottom_row[right[i] + c]];
-    }
+    result.top[i] = texels[i] + std::int64_t(top[i]) * width[i] * 4;
+    result.bottom[i] = texels[i] + std::int64_t(bottom[i]) * width[i] * 4;
+    result.finest[i] = levels[i] == 0;
   }
+  for (int i = 0; i < kSquarePixels; ++i) {
+    __builtin_prefetch(result.top[i] + result.left[i]);
+    __builtin_prefetch(result.bottom[i] + result.left[i]);
+  }
+  return result;
+}
+
+/// A texel a pixel, its four codes in one piece.
+using Texels = Lanes<std::uint64_t>;
+
+inline std::uint64_t load(const std::uint16_t* texel) {
+  std::uint64_t codes;
+  std::memcpy(&codes, texel, sizeof codes);
+  return codes;
+}
+
+Lanes<float> decode(const Texels& texels, int channel, const LaneMask& finest, bool any_finest) {
+  const int place = 16 * (std::endian::native == std::endian::little ? channel : 3 - channel);
+  Lanes<std::int32_t> codes;
+  for (int i = 0; i < kSquarePixels; ++i) codes[i] = std::int32_t(texels[i] >> place & 0xffff);
+  Lanes<float> result;
+  for (int i = 0; i < kSquarePixels; ++i) result[i] = linearOfRoot16(codes[i]);
+  if (!any_finest) return result;
+  const float* linear_of_code = linearOfSrgb16().data();
+  for (int i = 0; i < kSquarePixels; ++i)
+    if (finest[i]) result[i] = linear_of_code[codes[i]];
+  return result;
+}
+
+Lanes3<float> readTexels(const SquareTexels& at) {
+  Texels top_left, top_right, bottom_left, bottom_right;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    top_left[i] = load(at.top[i] + at.left[i]);
+    top_right[i] = load(at.top[i] + at.right[i]);
+    bottom_left[i] = load(at.bottom[i] + at.left[i]);
+    bottom_right[i] = load(at.bottom[i] + at.right[i]);
+  }
+  const bool any_finest = std::any_of(at.finest.begin(), at.finest.end(), [](int finest) { return finest; });
   Lanes3<float> result;
-  for (int c = 0; c < 3; ++c)
+  for (int c = 0; c < 3; ++c) {
+    const Lanes<float> top_left_value = decode(top_left, c, at.finest, any_finest);
+    const Lanes<float> top_right_value = decode(top_right, c, at.finest, any_finest);
+    const Lanes<float> bottom_left_value = decode(bottom_left, c, at.finest, any_finest);
+    const Lanes<float> bottom_right_value = decode(bottom_right, c, at.finest, any_finest);
     for (int i = 0; i < kSquarePixels; ++i)
-      result[c][i] = glm::mix(glm::mix(top_left[c][i], top_right[c][i], across[i]),
-                              glm::mix(bottom_left[c][i], bottom_right[c][i], across[i]), down[i]);
+      result[c][i] = mix(mix(top_left_value[i], top_right_value[i], at.across[i]),
+                         mix(bottom_left_value[i], bottom_right_value[i], at.across[i]), at.down[i]);
+  }
   return result;
 }
 
@@ -122,38 +206,45 @@ float sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 
                     glm::vec2 duv_dy, int channel) {
   const double u = wrapCoordinate(uv.x, wrap_u);
   const double v = wrapCoordinate(uv.y, wrap_v);
-  const LevelPlace place = levelPlace(texture, footprintSize(texture, duv_dx, duv_dy));
-  const float fine = sampleLevel(texture.levels[place.finer], wrap_u, wrap_v, u, v, channel);
-  if (place.share == 0.0f) return fine;
-  const float coarse = sampleLevel(texture.levels[place.finer + 1], wrap_u, wrap_v, u, v, channel);
-  return glm::mix(fine, coarse, place.share);
+  const MipLevel& finest = texture.levels.front();
+  const float level =
+      levelOf(footprintSize(finest.width, finest.height, duv_dx, duv_dy), float(texture.levels.size() - 1));
+  const int finer = int(level);
+  const float share = level - float(finer);
+  const float fine = sampleLevel(texture, finer, wrap_u, wrap_v, u, v, channel);
+  if (share == 0.0f) return fine;
+  return mix(fine, sampleLevel(texture, finer + 1, wrap_u, wrap_v, u, v, channel), share);
 }
 
-Lanes3<float> sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v,
-                            const SquareFootprints& footprints, const LaneMask& wanted) {
-  Lanes<double> u, v;
-  for (int i = 0; i < kSquarePixels; ++i) u[i] = wrapCoordinate(footprints.u[i], wrap_u);
-  for (int i = 0; i < kSquarePixels; ++i) v[i] = wrapCoordinate(footprints.v[i], wrap_v);
-  Lanes<float> size;
-  for (int i = 0; i < kSquarePixels; ++i)
-    size[i] = footprintSize(texture, {footprints.du_dx[i], footprints.dv_dx[i]},
-                            {footprints.du_dy[i], footprints.dv_dy[i]});
-  Lanes<std::int32_t> level{};
-  Lanes<float> share{};
-  bool between = false;
+Lanes3<float> sampleTextures(std::span<const Texture> textures, const Lanes<const TextureUse*>& uses,
+                             const SquareFootprints& footprints) {
+  const SquareMaps maps = squareMaps(textures, uses);
+  Lanes<double> u, v, width, height;
   for (int i = 0; i < kSquarePixels; ++i) {
-    if (!wanted[i]) continue;
-    const LevelPlace place = levelPlace(texture, size[i]);
-    level[i] = place.finer;
-    share[i] = place.share;
-    between |= place.share != 0.0f;
+    width[i] = maps.levels[i]->width;
+    height[i] = maps.levels[i]->height;
   }
-  Lanes3<float> result = sampleLevels(texture, level, wrap_u, wrap_v, u, v, wanted);
+  for (int i = 0; i < kSquarePixels; ++i) u[i] = wrapCoordinate(footprints.u[i], maps.wrap_u[i]);
+  for (int i = 0; i < kSquarePixels; ++i) v[i] = wrapCoordinate(footprints.v[i], maps.wrap_v[i]);
+  Lanes<std::int32_t> levels;
+  Lanes<float> share;
+  std::int32_t between = 0;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const float size = footprintSize(width[i], height[i], {footprints.du_dx[i], footprints.dv_dx[i]},
+                                     {footprints.du_dy[i], footprints.dv_dy[i]});
+    const float level = levelOf(size, maps.coarsest[i]);
+    levels[i] = std::int32_t(level);
+    share[i] = level - float(levels[i]);
+    between |= share[i] != 0.0f;
+  }
+  const SquareTexels finer = findTexels(maps, levels, u, v);
+  Lanes3<float> result = readTexels(finer);
   if (!between) return result;
-  for (int i = 0; i < kSquarePixels; ++i) level[i] += share[i] != 0.0f;
-  const Lanes3<float> coarse = sampleLevels(texture, level, wrap_u, wrap_v, u, v, wanted);
+  for (int i = 0; i < kSquarePixels; ++i) levels[i] += share[i] != 0.0f;
+  const SquareTexels coarser = findTexels(maps, levels, u, v);
+  const Lanes3<float> coarse = readTexels(coarser);
   for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < kSquarePixels; ++i) result[c][i] = glm::mix(result[c][i], coarse[c][i], share[i]);
+    for (int i = 0; i < kSquarePixels; ++i) result[c][i] = mix(result[c][i], coarse[c][i], share[i]);
   return result;
 }
 

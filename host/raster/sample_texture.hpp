@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 
 #include "raster/square.hpp"
 #include "scene/scene.hpp"
@@ -20,9 +21,9 @@ struct SquareFootprints {
   Lanes<float> du_dy, dv_dy;
 };
 
-/// The same lookup, bit for bit, of red, green and blue at the wanted pixels of a square; others get
-/// anything.
-Lanes3<float> sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v,
-                            const SquareFootprints& footprints, const LaneMask& wanted);
+/// The same lookup, bit for bit, of red, green and blue for a square's pixels, each in its own map: 1 where
+/// it has none (null).
+Lanes3<float> sampleTextures(std::span<const Texture> textures, const Lanes<const TextureUse*>& maps,
+                             const SquareFootprints& footprints);
 
 }  // namespace luciole

@@ -136,6 +136,7 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
   const std::size_t runs = (std::size_t(geometry.triangle_count) + kRun - 1) / kRun;
   std::vector<Output> outputs(runs);
   tbb::parallel_for(std::size_t(0), runs, [&](std::size_t run) {
+    outputs[run].triangles.reserve(kRun);
     std::uint32_t number = std::uint32_t(run * kRun);
     const std::uint32_t end = std::uint32_t(std::min<std::size_t>(geometry.triangle_count, (run + 1) * kRun));
     const PlacedObject* object = &objectOfTriangle(geometry.objects, number);

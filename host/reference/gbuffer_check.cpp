@@ -31,7 +31,6 @@ struct Tracer {
   glm::dmat4 view_to_world;
   Geometry geometry;
   ViewPlane plane;
-  std::vector<bool> varying_alpha;
   RayScene rays;
 };
 
@@ -53,13 +52,9 @@ Tracer makeTracer(const Scene& scene, const View& view) {
     return true;
   };
   const glm::dmat4 view_to_world = viewCamera(view).camera_to_world;
-  return {scene,
-          view,
-          view_to_world,
-          transformObjects(scene, allObjects(scene), view),
-          viewPlane(view),
-          findVaryingAlpha(scene),
-          buildRayScene(scene, glm::dvec3(view_to_world[3]), note)};
+  return {scene,           view,
+          view_to_world,   transformObjects(scene, allObjects(scene), view),
+          viewPlane(view), buildRayScene(scene, glm::dvec3(view_to_world[3]), note)};
 }
 
 struct Ray {
@@ -102,9 +97,9 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   meeting.position = ray.from + ray.direction * (meeting.depth + ray.from.z);
   const glm::dvec4 clip = tracer.view.projection * glm::dvec4(meeting.position, 1);
   if (!(clip.z >= 0 && clip.z <= clip.w)) return std::nullopt;
-  if (material.alpha_cutoff > 0 && isHole(tracer.scene, tracer.varying_alpha,
-                                          makeSurface(tracer.scene, tracer.geometry, triangle, tracer.plane),
-                                          tracer.plane, pixel.x, pixel.y))
+  if (material.alpha_cutoff > 0 &&
+      isHole(tracer.scene, makeSurface(tracer.scene, tracer.geometry, triangle, tracer.plane), tracer.plane,
+             pixel.x, pixel.y))
     return std::nullopt;
   const glm::uvec3 corners = object.mesh->triangles[in_mesh];
   const std::vector<glm::vec3>& normals = object.mesh->normals;

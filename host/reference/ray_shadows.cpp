@@ -20,7 +20,6 @@ constexpr double kPointError = 0x1p-20;
 struct Blockers {
   const Scene& scene;
   glm::dvec3 eye;
-  std::vector<bool> varying_alpha;
   std::vector<PlacedObject> objects;  ///< in world space
 
   bool passesThrough(const RayMeeting& meeting) const {
@@ -49,7 +48,7 @@ struct Blockers {
     const Weights weights(1 - meeting.second - meeting.third, meeting.second, meeting.third);
     TexturePlace place{};
     if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
-    return opacityAt(scene, varying_alpha, surface, weights, place) < surface.material->alpha_cutoff;
+    return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
   }
 };
 
@@ -82,7 +81,7 @@ double distanceToSphere(double distance, double radius, double cosine) {
 
 RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
   auto blockers = std::make_shared<const Blockers>(
-      Blockers{scene, eye, findVaryingAlpha(scene), placeObjects(scene, allObjects(scene), glm::dmat4(1))});
+      Blockers{scene, eye, placeObjects(scene, allObjects(scene), glm::dmat4(1))});
   return buildRayScene(scene, eye,
                        [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
 }

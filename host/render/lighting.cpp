@@ -8,8 +8,8 @@ namespace {
 
 float4 color4(const glm::vec3& color) { return {color.x, color.y, color.z, 0}; }
 
-/// See LIST_OF_PIXEL.
-uint listShift(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
+/// The pixels of a square as a power of two.
+unsigned shiftOf(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
 
 ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettings& settings) {
   ShadeFrame frame{};
@@ -24,24 +24,40 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettin
   frame.fog_radial = scene.fog.radial;
   frame.blinn = settings.blinn;
   frame.light_count = scene.lighting ? static_cast<uint>(scene.lights.size()) : 0;
-  frame.list_shift = listShift(settings.tile_size);
   return frame;
 }
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
               int(FogMode::kExp2) == kFogExp2);
 
-/// Pixel-light pairs: a row of lanes with any covered pixel goes through its whole list.
-std::uint64_t evaluatedPairs(const GBuffer& gbuffer, int lanes, const std::vector<cl_uint>& starts,
-                             const ShadeFrame& frame) {
-  std::uint64_t pairs = 0;
+/// Pixel-light pairs: a row of lanes with any covered pixel goes through the lights of its square.
+std::uint64_t evaluatedPairs(Device& device, const GBuffer& gbuffer, const LightLists* lists,
+                             std::size_t light_count) {
+  std::vector<cl_uint> starts;
+  std::vector<ListEntry> entries;
+  if (lists) {
+    starts.resize(lists->tiles + 1);
+    entries.resize(lists->entries);
+    readBuffer(device, lists->starts, starts.data(), starts.size() * sizeof(cl_uint));
+    readBuffer(device, lists->list, entries.data(), entries.size() * sizeof(ListEntry));
+  }
+  const int lanes = device.description.lanes;
   const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
-  for (std::size_t row = 0; row < gbuffer.pixels(); row += lanes) {
-    bool covered = false;
-    for (int lane = 0; lane < lanes; ++lane)
-      covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
-    const std::size_t list = LIST_OF_PIXEL(row, frame.list_shift);
-    if (covered)
-      pairs += std::uint64_t(lanes) * (starts.empty() ? frame.light_count : starts[list + 1] - starts[list]);
+  std::uint64_t pairs = 0;
+  for (std::size_t tile = 0; tile < gbuffer.pixels() / kTilePixels; ++tile) {
+    std::array<std::uint64_t, kSquaresPerTile> lit_pixels{};
+    for (std::size_t row = tile * kTilePixels; row < (tile + 1) * kTilePixels; row += lanes) {
+      bool covered = false;
+      for (int lane = 0; lane < lanes; ++lane)
+        covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
+      if (covered) lit_pixels[SQUARE_OF_PIXEL(row)] += lanes;
+    }
+    if (!lists) {
+      for (const std::uint64_t pixels : lit_pixels) pairs += pixels * light_count;
+      continue;
+    }
+    for (std::size_t entry = starts[tile]; entry < starts[tile + 1]; ++entry)
+      for (int square = 0; square < kSquaresPerTile; ++square)
+        if (entries[entry].squares >> square & 1) pairs += lit_pixels[square];
   }
   return pairs;
 }
@@ -60,7 +76,7 @@ LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuf
   return cull(device, {.position = buffers.position,
                        .normal = buffers.normal,
                        .plane_stride = pixels,
-                       .list_shift = lighting.frame.list_shift,
+                       .shift = lighting.shift,
                        .lights = lighting.lights,
                        .light_count = lighting.frame.light_count,
                        .tree = lighting.tree,
@@ -77,7 +93,6 @@ Plane countLights(Device& device, const Lighting& lighting, const GBufferBuffers
   countInRange(device, {.position = buffers.position,
                         .plane_stride = pixels,
                         .lights = lighting.lights,
-                        .list_shift = lighting.frame.list_shift,
                         .lists = lists,
                         .counts = counts});
   readBuffer(device, counts, result.data(), pixels * sizeof(float));
@@ -93,6 +108,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   lighting.math_defines = mathDefines(settings);
   lighting.unlit = !scene.lighting;
   lighting.frame = makeFrame(scene, camera, settings);
+  lighting.shift = shiftOf(settings.tile_size);
   if (features.shadows())
     lighting.host_shadows =
         timed(stats, "shadow maps", [&] { return drawShadowMaps(scene, view, settings.shadow_size); });
@@ -116,12 +132,10 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, lighting.unlit);
   LitPlanes lit;
   LightLists lists;
-  std::vector<cl_uint> starts;
-  if (features.has(Feature::kLightLists)) {
+  const bool culled = features.has(Feature::kLightLists);
+  if (culled) {
     const unsigned tests = kByCone | (features.has(Feature::kLightAmbient) ? 0 : kByFacing);
     lists = timed(stats, "cull", [&] { return cullLights(device, lighting, buffers, pixels, tests); });
-    starts.resize(lists.lists + 1);
-    readBuffer(device, lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
     lit.list_entries = lists.entries;
   }
   ShadeFrame frame = lighting.frame;
@@ -141,7 +155,7 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   timed(stats, "read back",
         [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
   if (count_in_range) lit.light_count = countLights(device, lighting, buffers, pixels);
-  lit.evaluated = evaluatedPairs(gbuffer, device.description.lanes, starts, frame);
+  lit.evaluated = evaluatedPairs(device, gbuffer, culled ? &lists : nullptr, frame.light_count);
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              lit.color.size();
@@ -156,7 +170,7 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   empty.normal.assign(3 * kTilePixels, 0.0f);
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
-  lighting.frame.list_shift = listShift(settings.tile_size);
+  lighting.shift = shiftOf(settings.tile_size);
   for (cl::Buffer* buffer :
        {&lighting.lights, &lighting.tree, &lighting.shadow_maps, &lighting.shadow_depths})
     *buffer = deviceBuffer(device, 0);

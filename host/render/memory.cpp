@@ -31,9 +31,9 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(),
                     [](const Light& light) { return !std::isfinite(light.range); });
-  const std::size_t square = std::size_t(settings.shade.tile_size) * settings.shade.tile_size;
-  const std::size_t lists =
-      features.has(Feature::kLightLists) ? kListBytesPerPixel + sizeof(cl_uint) * everywhere / square : 0;
+  const std::size_t lists = features.has(Feature::kLightLists)
+                                ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
+                                : 0;
   // Lights in range are counted with lists of their own.
   return sizeof(float) * std::max(lighting, assembling) + lists * (1 + counted);
 }

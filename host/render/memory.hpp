@@ -23,12 +23,12 @@ inline constexpr std::size_t kGBufferBytesPerPixel = (3 + 3 + 3 + 4 + 3 + 3) * s
 inline constexpr std::size_t kBytesPerLight =
     sizeof(Light) + sizeof(ShadeLight) + 7 * sizeof(float) * kTreeArity / (kTreeArity - 1) + 1;
 
-/// Of a pixel, at the most: the bounds of light lists and where the lists start.
-inline constexpr std::size_t kListBytesPerPixel = 4;
+/// Of a pixel, at the most: where the light lists start, and what counting found.
+inline constexpr std::size_t kListBytesPerPixel = 1 + kFoundPerTile * sizeof(ListEntry) / kTilePixels;
 
 /// What a pixel of a band takes at the most, on the host and on a device that shares its memory: the
 /// G-buffer's groups, colours, what --stats and the layers ask for, and its share of the light lists as far
-/// as lights reach everywhere. Beside it a tile takes an entry of 4 bytes for each light that reaches it.
+/// as lights reach everywhere. Beside it a tile takes an entry of 8 bytes for each light that reaches it.
 std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
                           const Scene& scene);
 

@@ -25,7 +25,9 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
   kernel.setArg(10, arguments.shadow_maps);
   kernel.setArg(11, arguments.shadow_depths);
   kernel.setArg(12, arguments.image);
-  launch(device, kernel, arguments.frame.plane_stride / device.description.lanes, rowsPerTile(device));
+  const std::size_t rows = ROWS_PER_ITEM(device.description.lanes);
+  launch(device, kernel, arguments.frame.plane_stride / device.description.lanes / rows,
+         rowsPerTile(device) / rows);
   finish(device);
 }
 
@@ -34,10 +36,9 @@ void countInRange(Device& device, const CountInRangeArguments& arguments) {
   kernel.setArg(0, arguments.position);
   kernel.setArg(1, static_cast<cl_uint>(arguments.plane_stride));
   kernel.setArg(2, arguments.lights);
-  kernel.setArg(3, cl_uint(arguments.list_shift));
-  kernel.setArg(4, arguments.lists.starts);
-  kernel.setArg(5, arguments.lists.list);
-  kernel.setArg(6, arguments.counts);
+  kernel.setArg(3, arguments.lists.starts);
+  kernel.setArg(4, arguments.lists.list);
+  kernel.setArg(5, arguments.counts);
   launch(device, kernel, arguments.plane_stride / device.description.lanes, rowsPerTile(device));
 }
 

@@ -31,7 +31,6 @@ struct CountInRangeArguments {
   const cl::Buffer& position;
   std::size_t plane_stride;
   const cl::Buffer& lights;
-  unsigned list_shift;  ///< see LIST_OF_PIXEL
   const LightLists& lists;
   const cl::Buffer& counts;  ///< out: one float a pixel
 };

@@ -93,7 +93,9 @@ double decodeSrgb(double code) {
 /// Linear mean of a colour picture: its 1×1 level.
 glm::dvec3 meanColor(const Texture& texture) {
   const std::vector<std::uint16_t>& texel = texture.levels.back().texels;
-  return {decodeSrgb(texel[0] / 65535.0), decodeSrgb(texel[1] / 65535.0), decodeSrgb(texel[2] / 65535.0)};
+  const glm::dvec3 codes = glm::dvec3(texel[0], texel[1], texel[2]) / 65535.0;
+  if (texture.levels.size() > 1) return codes * codes;
+  return {decodeSrgb(codes.r), decodeSrgb(codes.g), decodeSrgb(codes.b)};
 }
 
 /// Mean of a picture whose codes are plain numbers in [0,1], not sRGB.

@@ -12,7 +12,7 @@
 
 namespace luciole {
 
-enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };
+enum class Wrap : std::int32_t { kRepeat, kMirroredRepeat, kClampToEdge };  // as wide as vector lanes
 
 /// How a material looks a texture up. `texture` indexes Scene::textures; -1: no texture.
 struct TextureUse {

@@ -10,8 +10,9 @@ namespace luciole {
 struct MipLevel {
   int width = 0;
   int height = 0;
-  /// 4 values a texel, RGBA, each 16-bit unsigned normalized: colour is sRGB-encoded (so that an 8-bit file's
-  /// codes are kept exactly, as code × 257), alpha is linear. 8 bytes a texel.
+  /// 4 values a texel, RGBA, each 16-bit unsigned normalized. Alpha is linear. Colour is sRGB-encoded in the
+  /// finest level (so that an 8-bit file's codes are kept exactly, as code × 257), and in the others the
+  /// square root of the linear value, which decodes fast. 8 bytes a texel.
   std::vector<std::uint16_t> texels;
 };
 
@@ -20,6 +21,7 @@ struct MipLevel {
 struct Texture {
   std::string name;  ///< for messages: the file's path, or where it lies inside its glTF
   std::vector<MipLevel> levels;
+  bool alpha_varies = false;  ///< between the texels of levels[0]
 };
 
 }  // namespace luciole

@@ -19,6 +19,13 @@ __kernel void report_shade_light(__global uint *out) {
   *out++ = OFFSET(shadow);
 }
 
+__kernel void report_list_entry(__global uint *out) {
+  ListEntry value;
+  *out++ = sizeof(ListEntry);
+  *out++ = OFFSET(light);
+  *out++ = OFFSET(squares);
+}
+
 __kernel void report_shadow_map(__global uint *out) {
   ShadowMap value;
   *out++ = sizeof(ShadowMap);
@@ -51,7 +58,7 @@ __kernel void report_shade_frame(__global uint *out) {
   *out++ = OFFSET(light_count);
   *out++ = OFFSET(plane_stride);
   *out++ = OFFSET(fog_radial);
-  *out++ = OFFSET(list_shift);
+  *out++ = OFFSET(pad);
 }
 
 // The members of a frame that came by value, as shade() gets it: a wrong layout of arguments shows here only.
@@ -60,5 +67,5 @@ __kernel void report_frame_argument(__global uint *out, ShadeFrame frame) {
   out[1] = as_uint(frame.eye.w);
   out[2] = as_uint(frame.fog_end);
   out[3] = frame.fog_mode;
-  out[4] = frame.list_shift;
+  out[4] = frame.pad;
 }

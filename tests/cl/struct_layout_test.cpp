@@ -45,6 +45,11 @@ TEST(StructLayout, ShadeLight) {
                 offsetof(ShadeLight, khr_window), offsetof(ShadeLight, cone), offsetof(ShadeLight, shadow)});
 }
 
+TEST(StructLayout, ListEntry) {
+  expectLayout("report_list_entry",
+               {sizeof(ListEntry), offsetof(ListEntry, light), offsetof(ListEntry, squares)});
+}
+
 TEST(StructLayout, ShadowMap) {
   expectLayout("report_shadow_map",
                {sizeof(ShadowMap), offsetof(ShadowMap, to_map_x), offsetof(ShadowMap, to_map_y),
@@ -61,7 +66,7 @@ TEST(StructLayout, ShadeFrame) {
        offsetof(ShadeFrame, fog_color), offsetof(ShadeFrame, fog_density), offsetof(ShadeFrame, eye),
        offsetof(ShadeFrame, fog_end), offsetof(ShadeFrame, fog_scale), offsetof(ShadeFrame, fog_mode),
        offsetof(ShadeFrame, blinn), offsetof(ShadeFrame, light_count), offsetof(ShadeFrame, plane_stride),
-       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, list_shift)});
+       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, pad)});
 }
 
 TEST(StructLayout, FrameArrivesByValue) {
@@ -70,7 +75,7 @@ TEST(StructLayout, FrameArrivesByValue) {
   frame.eye.w = -2.25f;
   frame.fog_end = 7;
   frame.fog_mode = 42;
-  frame.list_shift = 43;
+  frame.pad = 43;
   EXPECT_EQ(report("report_frame_argument", 5, frame),
             (std::vector<cl_uint>{std::bit_cast<cl_uint>(1.5f), std::bit_cast<cl_uint>(-2.25f),
                                   std::bit_cast<cl_uint>(7.0f), 42, 43}));

@@ -105,7 +105,7 @@ TEST(ManyLights, ASeriesOfPowersOfTenAfterTheSphere) {
   double lights = 1;
   for (std::size_t row = 1; row < table.rows.size(); ++row, lights *= 10) {
     EXPECT_EQ(count(table, row, "lights"), lights);
-    EXPECT_GE(count(table, row, "list_bytes"), 4 * count(table, row, "list_entries"));
+    EXPECT_GE(count(table, row, "list_bytes"), 8 * count(table, row, "list_entries"));
     for (const char* stage : {"prepare_lights_milliseconds", "cull_milliseconds", "shade_milliseconds"}) {
       EXPECT_GT(median(table, row, stage), 0) << stage;
       EXPECT_LE(median(table, row, stage), median(table, row, "milliseconds")) << stage;

@@ -23,7 +23,7 @@ TEST(HardTiles, BackgroundAloneNeedsNoLights) {
     "objects": [{"primitive": "sphere"}],
     "lights": [{"type": "point", "position": [3, 3, 3], "ambient": 0.01}, {"type": "directional", "direction": [0, -1, -1], "ambient": 0.01}]})",
             size);
-  const int side = shot.settings.shade.tile_size, columns = (size.x + side - 1) / side;
+  const int side = kTileSize, columns = (size.x + side - 1) / side;
   std::vector<bool> shows(std::size_t(columns) * ((size.y + side - 1) / side));
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x)

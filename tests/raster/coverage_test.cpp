@@ -212,5 +212,49 @@ TEST(Coverage, SliversStayInsideTheirTriangles) {
   EXPECT_GT(covered, 10u);
 }
 
+/// A picture-filling rectangle twice at the same place, in material 0 and then 1. The material `masked` has a
+/// hole in the left half, to be cut out by the alpha of its map; diffuse red is 0.25 of the first material
+/// and 0.75 of the second.
+Scene twiceTheSame(std::uint32_t masked) {
+  Scene scene = rectangleScene(10.0f, 10.0f, -1.0f);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[0].diffuse.r = 0.25f;
+  scene.materials[1].diffuse.r = 0.75f;
+  Texture texture;
+  texture.levels.push_back({2, 1, {65535, 65535, 65535, 0, 65535, 65535, 65535, 65535}});
+  texture.alpha_varies = true;
+  scene.textures.push_back(texture);
+  scene.materials[masked].alpha_map = {0, Wrap::kClampToEdge, Wrap::kClampToEdge};
+  scene.materials[masked].alpha_cutoff = 0.5f;
+  Mesh& mesh = scene.meshes[0];
+  mesh.triangles.insert(mesh.triangles.end(), {mesh.triangles[0], mesh.triangles[1]});
+  mesh.triangle_materials = {0, 0, 1, 1};
+  return scene;
+}
+
+TEST(Coverage, AtEqualDepthTheFirstTriangleWinsWithHolesOrWithout) {
+  for (const std::uint32_t masked : {0u, 1u}) {
+    const GBuffer gbuffer = draw(twiceTheSame(masked), pixelView({20, 20}));
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 20; ++x) {
+        const bool hole = masked == 0 && x < 10;
+        ASSERT_EQ(valueAt(gbuffer.diffuse, gbuffer, x, y).r, hole ? 0.75f : 0.25f) << x << ',' << y;
+      }
+  }
+}
+
+TEST(Coverage, NothingIsSeenOnTheFarPlaneWithHolesOrWithout) {
+  Camera camera = frontCamera();
+  camera.orthographic = true;
+  camera.half_height = 10.0;
+  camera.near = 1.0;
+  camera.far = 2.0;
+  Scene scene = twiceTheSame(0);
+  for (glm::vec3& position : scene.meshes[0].positions) position.z = -2.0f;
+  const GBuffer gbuffer = draw(scene, cameraView(camera, {20, 20}));
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) ASSERT_FALSE(isCovered(gbuffer, x, y)) << x << ',' << y;
+}
+
 }  // namespace
 }  // namespace luciole::test

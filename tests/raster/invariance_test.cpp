@@ -31,6 +31,7 @@ Scene busyScene() {
     mesh.uvs.push_back(4.0f * glm::vec2(unit(random), unit(random)));
   }
   Texture texture;
+  texture.alpha_varies = true;
   for (int size = 8; size >= 1; size /= 2) {
     MipLevel level{size, size, {}};
     for (int i = 0; i < 4 * size * size; ++i) level.texels.push_back(std::uint16_t(random()));

@@ -7,9 +7,12 @@ namespace {
 
 Texture texture(int width, int height, std::vector<glm::u16vec4> texels) {
   MipLevel level{width, height, {}};
-  for (const glm::u16vec4& texel : texels)
+  bool alpha_varies = false;
+  for (const glm::u16vec4& texel : texels) {
     for (int i = 0; i < 4; ++i) level.texels.push_back(texel[i]);
-  return {"", {level}};
+    alpha_varies |= texel.a != texels[0].a;
+  }
+  return {"", {level}, alpha_varies};
 }
 constexpr std::uint16_t kOne = 65535;
 

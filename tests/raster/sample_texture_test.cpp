@@ -116,45 +116,58 @@ TEST(SampleTexture, TheLevelFollowsTheLongerSide) {
   EXPECT_NEAR(red({std::exp2(2.25f) / 64, 0}, {}), 0.75f, kTolerance);
 }
 
+TEST(SampleTexture, TheFinestLevelIsSrgbAndTheOthersAreRoots) {
+  const Texture texture{"", {{2, 1, {257 * 188, 0, 0, 0, 257 * 188, 0, 0, 0}}, {1, 1, {13107, 0, 0, 0}}}};
+  EXPECT_NEAR(redAt(texture, Wrap::kRepeat, {0.25f, 0.5f}), 0.5028865f, 2e-7f);
+  // 13107 / 65535 is 1/5; its square has two roundings.
+  EXPECT_NEAR(redAt(texture, Wrap::kRepeat, {0.25f, 0.5f}, {1.0f, 0.0f}), 0.04f, 0.04f * 3 * 0x1p-24f);
+}
+
 TEST(SampleTexture, HugeFootprintsReadTheCoarsestLevel) {
   const Texture texture = chain(64, 16, [](int level, int, int) { return level == 6; });
   for (const float side : {1.0f, 100.0f, 1e20f, std::numeric_limits<float>::max()})
     EXPECT_EQ(redAt(texture, Wrap::kRepeat, {0.4f, 0.3f}, {side, side}, {}), 1.0f);
 }
 
-// Bit for bit, whatever the wraps and levels, and however far out the coordinates are.
-TEST(SampleTexture, SquaresOfPixelsSeeWhatEachPixelSees) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<float> place(-3.0f, 3.0f), exponent(-12.0f, 3.0f);
-  std::uniform_int_distribution<int> coin(0, 1), code(0, 65535);
+/// A chain of random texels from a size down to 1×1.
+Texture randomChain(glm::ivec2 size, std::mt19937& random) {
+  std::uniform_int_distribution<int> code(0, 65535);
   Texture texture;
-  for (glm::ivec2 size(64, 16); texture.levels.empty() || texture.levels.back().width > 1;
+  for (; texture.levels.empty() || texture.levels.back().width > 1;
        size = glm::max(size / 2, glm::ivec2(1))) {
     MipLevel level{size.x, size.y, {}};
     for (int i = 0; i < size.x * size.y * 4; ++i) level.texels.push_back(std::uint16_t(code(random)));
     texture.levels.push_back(level);
   }
+  return texture;
+}
+
+// Bit for bit, whatever the maps, wraps and levels, and however far out the coordinates are.
+TEST(SampleTexture, SquaresOfPixelsSeeWhatEachPixelSees) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-3.0f, 3.0f), exponent(-12.0f, 3.0f);
+  std::uniform_int_distribution<int> coin(0, 1), texture(-1, 1), wrap(0, 2);
+  const std::vector<Texture> textures{randomChain({64, 16}, random), randomChain({7, 5}, random)};
   const auto step = [&] { return (coin(random) ? 1.0f : -1.0f) * std::exp2(exponent(random)); };
-  for (const Wrap wrap_u : kWraps) {
-    for (const Wrap wrap_v : kWraps) {
-      for (int repeat = 0; repeat < 20; ++repeat) {
-        SquareFootprints at;
-        LaneMask wanted;
-        for (int i = 0; i < kSquarePixels; ++i) {
-          at.u[i] = coin(random) ? place(random) : 1e30f * place(random);
-          at.v[i] = i == 5 ? std::numeric_limits<float>::quiet_NaN() : place(random);
-          at.du_dx[i] = step(), at.dv_dx[i] = step(), at.du_dy[i] = step(), at.dv_dy[i] = step();
-          wanted[i] = coin(random);
-        }
-        const Lanes3<float> seen = sampleTexture(texture, wrap_u, wrap_v, at, wanted);
-        for (int i = 0; i < kSquarePixels; ++i) {
-          if (!wanted[i]) continue;
-          for (int c = 0; c < 3; ++c)
-            EXPECT_EQ(seen[c][i], sampleTexture(texture, wrap_u, wrap_v, {at.u[i], at.v[i]},
-                                                {at.du_dx[i], at.dv_dx[i]}, {at.du_dy[i], at.dv_dy[i]}, c));
-        }
-      }
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    SquareFootprints at;
+    Lanes<TextureUse> uses;
+    Lanes<const TextureUse*> maps;
+    for (int i = 0; i < kSquarePixels; ++i) {
+      at.u[i] = coin(random) ? place(random) : 1e30f * place(random);
+      at.v[i] = i == 5 ? std::numeric_limits<float>::quiet_NaN() : place(random);
+      at.du_dx[i] = step(), at.dv_dx[i] = step(), at.du_dy[i] = step(), at.dv_dy[i] = step();
+      uses[i] = {texture(random), kWraps[wrap(random)], kWraps[wrap(random)]};
+      maps[i] = uses[i].texture < 0 ? nullptr : &uses[i];
     }
+    const Lanes3<float> seen = sampleTextures(textures, maps, at);
+    for (int i = 0; i < kSquarePixels; ++i)
+      for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(seen[c][i], maps[i]
+                                  ? sampleTexture(textures[uses[i].texture], uses[i].wrap_u, uses[i].wrap_v,
+                                                  {at.u[i], at.v[i]}, {at.du_dx[i], at.dv_dx[i]},
+                                                  {at.du_dy[i], at.dv_dy[i]}, c)
+                                  : 1.0f);
   }
 }
 
@@ -163,15 +176,6 @@ TEST(Square, PixelsLieInTheOrderOfAGBuffer) {
   gbuffer.tiles_x = gbuffer.tiles_y = 2;
   for (int i = 0; i < kSquarePixels; ++i)
     EXPECT_EQ(gbuffer.index(20 + kSquareLayout.x[i], 8 + kSquareLayout.y[i]), gbuffer.index(20, 8) + i);
-}
-
-TEST(Square, NeighboursAreOnePixelRightAndOneBelow) {
-  const SquareLayout& layout = kSquareLayout;
-  for (int i = 0; i < kSquarePixels; ++i) {
-    const int right = layout.right[i], below = layout.below[i];
-    EXPECT_EQ(glm::ivec2(layout.x[right], layout.y[right]), glm::ivec2(layout.x[i] + 1, layout.y[i]));
-    EXPECT_EQ(glm::ivec2(layout.x[below], layout.y[below]), glm::ivec2(layout.x[i], layout.y[i] + 1));
-  }
 }
 
 }  // namespace

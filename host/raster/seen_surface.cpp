@@ -1,0 +1,43 @@
+#include "raster/seen_surface.hpp"
+
+namespace luciole {
+namespace {
+
+template <class T, class Value>
+Interpolant<T> between(const Value* values, const glm::uvec3& corners) {
+  const T first(values[corners[0]]);
+  return {first, T(values[corners[1]]) - first, T(values[corners[2]]) - first};
+}
+
+Interpolant<glm::dvec3> normals(const Surface& surface, const glm::dvec3& facing_normal, Shading shading) {
+  if (shading == Shading::kFlat) return {facing_normal, {}, {}};
+  const glm::dmat3 to_view =
+      surface.front_facing ? surface.object->normal_to_view : -surface.object->normal_to_view;
+  const auto in_object = between<glm::dvec3>(surface.object->mesh->normals.data(), surface.corners);
+  return {to_view * in_object.first, to_view * in_object.to_second, to_view * in_object.to_third};
+}
+
+}  // namespace
+
+SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
+  SeenSurface seen;
+  seen.surface = makeSurface(input.scene, input.geometry, triangle, input.plane);
+  const Surface& surface = seen.surface;
+  const Mesh& mesh = *surface.object->mesh;
+  seen.facing_normal = surface.front_facing ? surface.normal : -surface.normal;
+  seen.normal = normals(surface, seen.facing_normal, input.shading);
+  const bool mapped =
+      surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
+  if (mapped && !mesh.uvs.empty()) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
+  if (input.litVertices()) {
+    seen.colored = true;
+    seen.color =
+        between<glm::dvec3>(input.vertex_colors.data() + surface.object->first_vertex, surface.corners);
+  } else if (!mesh.colors.empty()) {
+    seen.colored = true;
+    seen.color = between<glm::dvec3>(mesh.colors.data(), surface.corners);
+  }
+  return seen;
+}
+
+}  // namespace luciole

@@ -1,0 +1,237 @@
+#include "raster/square_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace luciole {
+namespace {
+
+/// The weights of a surface's second and third corner at a square's pixels; the first one's are the rest
+/// to 1.
+struct SquareWeights {
+  Lanes<double> second;
+  Lanes<double> third;
+};
+
+/// Where the rays of a square's pixels meet a surface's plane, inside the triangle or not.
+struct PlaneMeeting {
+  SquareWeights weights;
+  Lanes<double> scale;  ///< 1 / dot(determinant row, p)
+};
+
+PlaneMeeting meetPlane(const Surface& surface, const SquarePlace& place) {
+  const glm::dvec3 weight1 = surface.weight1, weight2 = surface.weight2, determinant = surface.determinant;
+  PlaneMeeting meeting;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const double x = place.x[i], y = place.y[i];
+    const double scale = 1.0 / (determinant.x * x + determinant.y * y + determinant.z);
+    meeting.scale[i] = scale;
+    meeting.weights.second[i] = (weight1.x * x + weight1.y * y + weight1.z) * scale;
+    meeting.weights.third[i] = (weight2.x * x + weight2.y * y + weight2.z) * scale;
+  }
+  return meeting;
+}
+
+/// Those of the pixels that see the surface, held inside the triangle; the others' as they are.
+SquareWeights holdInside(const Surface& surface, const SquarePlace& place, const LaneMask& sees_it,
+                         const SquareWeights& in_plane) {
+  SquareWeights weights = in_plane;
+  LaneMask outside;
+  std::int32_t any = 0;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const double second = in_plane.second[i], third = in_plane.third[i];
+    const bool inside = (1.0 - second - third >= 0.0) & (second >= 0.0) & (third >= 0.0);
+    outside[i] = sees_it[i] & !inside;
+    any |= outside[i];
+  }
+  if (!any) return weights;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    if (!outside[i]) continue;
+    const Weights held = weightsInside(surface, {place.x[i], place.y[i], 1.0});
+    weights.second[i] = held[1];
+    weights.third[i] = held[2];
+  }
+  return weights;
+}
+
+/// One component at the weights.
+Lanes<double> interpolate(double first, double to_second, double to_third, const SquareWeights& weights) {
+  Lanes<double> result;
+  for (int i = 0; i < kSquarePixels; ++i)
+    result[i] = first + weights.second[i] * to_second + weights.third[i] * to_third;
+  return result;
+}
+template <class T>
+Lanes<double> interpolate(const Interpolant<T>& values, int component, const SquareWeights& weights) {
+  return interpolate(values.first[component], values.to_second[component], values.to_third[component],
+                     weights);
+}
+
+Lanes<float> rounded(const Lanes<double>& values) {
+  Lanes<float> result;
+  for (int i = 0; i < kSquarePixels; ++i) result[i] = float(values[i]);
+  return result;
+}
+
+void normalize(const Lanes3<double>& v, const glm::dvec3& otherwise, Lanes3<float>& out) {
+  Lanes<double> inverse;
+  std::int32_t usable = 1;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    inverse[i] = 1.0 / std::sqrt(v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i]);
+    usable &= (inverse[i] > 0.0) & (inverse[i] <= std::numeric_limits<double>::max());
+  }
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < kSquarePixels; ++i) out[c][i] = float(v[c][i] * inverse[i]);
+  if (usable) return;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    if (inverse[i] > 0.0 && inverse[i] <= std::numeric_limits<double>::max()) continue;
+    for (int c = 0; c < 3; ++c) out[c][i] = float(otherwise[c]);
+  }
+}
+
+/// A pair of steps is used only where both are finite.
+void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const bool finite = (std::abs(x[i]) <= kLargest) & (std::abs(y[i]) <= kLargest);
+    x[i] = finite ? x[i] : 0.0f;
+    y[i] = finite ? y[i] : 0.0f;
+  }
+}
+
+/// The steps of texture coordinates to the next pixel along an axis of the picture. With u = n / d from the
+/// first corner on, and n and d the values at p of two rows, which grow by n' and d' a pixel,
+///     (n + n') / (d + d') − n / d = (n' − u · d') / (d + d').
+void stepAlong(int axis, const SeenSurface& seen, double pixel, const PlaneMeeting& meeting,
+               const Lanes<double>& u, const Lanes<double>& v, Lanes<float>& du, Lanes<float>& dv) {
+  const double weight1 = pixel * seen.surface.weight1[axis], weight2 = pixel * seen.surface.weight2[axis];
+  const double determinant = pixel * seen.surface.determinant[axis];
+  const glm::dvec2 row = weight1 * seen.uv.to_second + weight2 * seen.uv.to_third;
+  const glm::dvec2 first = seen.uv.first;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const double scale = meeting.scale[i];
+    const float next = 1.0f / float(1.0 + determinant * scale);
+    du[i] = float((row.x - (u[i] - first.x) * determinant) * scale) * next;
+    dv[i] = float((row.y - (v[i] - first.y) * determinant) * scale) * next;
+  }
+  clearUnlessFinite(du, dv);
+}
+
+void setFootprints(const SeenSurface& seen, const ViewPlane& plane, const PlaneMeeting& meeting,
+                   const SquareWeights& weights, SquareFootprints& result) {
+  result.u = rounded(interpolate(seen.uv, 0, weights));
+  result.v = rounded(interpolate(seen.uv, 1, weights));
+  const Lanes<double> u = interpolate(seen.uv, 0, meeting.weights);
+  const Lanes<double> v = interpolate(seen.uv, 1, meeting.weights);
+  stepAlong(0, seen, plane.scale.x, meeting, u, v, result.du_dx, result.dv_dx);
+  stepAlong(1, seen, plane.scale.y, meeting, u, v, result.du_dy, result.dv_dy);
+}
+
+void fill(const glm::vec3& value, Lanes3<float>& out) {
+  for (int c = 0; c < 3; ++c) out[c].fill(value[c]);
+}
+
+void multiply(const Lanes3<float>& factors, Lanes3<float>& out) {
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < kSquarePixels; ++i) out[c][i] *= factors[c][i];
+}
+
+void setMaterial(const ResolveInput& input, const SeenSurface& seen, const SquareWeights& weights,
+                 SquareValues& out) {
+  const Material& material = *seen.surface.material;
+  const bool mapped = !seen.surface.object->mesh->uvs.empty();
+  const auto use = [&](const TextureUse& map) { return mapped && map.texture >= 0 ? &map : nullptr; };
+  out.reflection_map.fill(use(material.diffuse_map));
+  out.emission_map.fill(use(material.emission_map));
+  Lanes3<float> color;
+  if (seen.colored)
+    for (int c = 0; c < 3; ++c) color[c] = rounded(interpolate(seen.color, c, weights));
+  if (input.litVertices()) {
+    for (Lanes3<float>* nothing : {&out.diffuse, &out.ambient}) fill(glm::vec3(0.0f), *nothing);
+    for (Lanes<float>& nothing : out.specular) nothing.fill(0.0f);
+    out.emission = color;
+    out.emission_map = out.reflection_map;
+    out.reflection_map.fill(nullptr);
+    return;
+  }
+  fill(material.diffuse, out.diffuse);
+  fill(material.ambient, out.ambient);
+  fill(material.emission, out.emission);
+  for (int c = 0; c < 3; ++c) out.specular[c].fill(material.specular[c]);
+  out.specular[3].fill(material.shininess);
+  if (!seen.colored) return;
+  multiply(color, out.diffuse);
+  multiply(color, out.ambient);
+}
+
+template <class T>
+void put(const Lanes<T>& values, const LaneMask& mask, Lanes<T>& out) {
+  for (int i = 0; i < kSquarePixels; ++i) out[i] = mask[i] ? values[i] : out[i];
+}
+template <std::size_t kCount>
+void put(const std::array<Lanes<float>, kCount>& values, const LaneMask& mask,
+         std::array<Lanes<float>, kCount>& out) {
+  for (std::size_t c = 0; c < kCount; ++c) put(values[c], mask, out[c]);
+}
+
+bool anyMap(const Lanes<const TextureUse*>& maps) {
+  return std::any_of(maps.begin(), maps.end(), [](const TextureUse* map) { return map != nullptr; });
+}
+
+}  // namespace
+
+SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel) {
+  SquarePlace place;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    place.x[i] = plane.offset.x + plane.scale.x * double(first_pixel.x + kSquareLayout.x[i]);
+    place.y[i] = plane.offset.y + plane.scale.y * double(first_pixel.y + kSquareLayout.y[i]);
+  }
+  return place;
+}
+
+SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
+                      const LaneMask& sees_it) {
+  const Surface& surface = seen.surface;
+  SquareValues values;
+  const PlaneMeeting meeting = meetPlane(surface, place);
+  const SquareWeights weights = holdInside(surface, place, sees_it, meeting.weights);
+  // From the first corner, so that the edges' digits count, not the distance's.
+  for (int c = 0; c < 3; ++c)
+    values.position[c] = rounded(interpolate(surface.corner[c], surface.edge1[c], surface.edge2[c], weights));
+  normalize({interpolate(seen.normal, 0, weights), interpolate(seen.normal, 1, weights),
+             interpolate(seen.normal, 2, weights)},
+            seen.facing_normal, values.normal);
+  setMaterial(input, seen, weights, values);
+  setFootprints(seen, input.plane, meeting, weights, values.footprints);
+  return values;
+}
+
+void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out) {
+  put(values.position, sees_it, out.position);
+  put(values.normal, sees_it, out.normal);
+  put(values.diffuse, sees_it, out.diffuse);
+  put(values.specular, sees_it, out.specular);
+  put(values.ambient, sees_it, out.ambient);
+  put(values.emission, sees_it, out.emission);
+  put(values.reflection_map, sees_it, out.reflection_map);
+  put(values.emission_map, sees_it, out.emission_map);
+  put(values.footprints.u, sees_it, out.footprints.u);
+  put(values.footprints.v, sees_it, out.footprints.v);
+  put(values.footprints.du_dx, sees_it, out.footprints.du_dx);
+  put(values.footprints.dv_dx, sees_it, out.footprints.dv_dx);
+  put(values.footprints.du_dy, sees_it, out.footprints.du_dy);
+  put(values.footprints.dv_dy, sees_it, out.footprints.dv_dy);
+}
+
+void applyMaps(const Scene& scene, SquareValues& values) {
+  if (anyMap(values.reflection_map)) {
+    const Lanes3<float> colors = sampleTextures(scene.textures, values.reflection_map, values.footprints);
+    multiply(colors, values.diffuse);
+    multiply(colors, values.ambient);
+  }
+  if (anyMap(values.emission_map))
+    multiply(sampleTextures(scene.textures, values.emission_map, values.footprints), values.emission);
+}
+
+}  // namespace luciole
