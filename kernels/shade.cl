@@ -1,4 +1,5 @@
-// Lights a G-buffer. One work-item shades a row of LANES pixels, which share a light list.
+// Lights a G-buffer. One work-item shades ROWS rows of LANES pixels. The pixels of a row share their lights, those that the tile's
+// list has for their square; pairs of a row and a light are taken ABREAST at a time, whatever row they belong to.
 //
 //   I = ambient·Ka + Σ lights falloff·spot·( Ia·Ka + visibility·( Id·Kd·max(N·L,0) + Is·Ks·(R·V)ⁿ ) ) + emission
 //
@@ -13,6 +14,9 @@
 #include "phong.clh"
 #include "shadow.clh"
 #include "shared.h"
+
+#define ROWS ROWS_PER_ITEM(LANES, LIGHT_LISTS)
+#define EACH_ROW(row) _Pragma("unroll") for (uint row = 0; row < ROWS; ++row)
 
 // A row of pixels on its way through the lights.
 typedef struct {
@@ -280,8 +284,8 @@ INLINE vec3L finish_row(Pixels *pixels, ShadeFrame frame, uint first, __global c
   return seen;
 }
 
-// Pairs that wait for their turn at most; a row that is a work-item's only one takes each as it comes.
-#define QUEUE (ROWS == 1 ? 1 : 128)
+// Pairs that wait for their turn at most; a single lane takes each as it comes.
+#define QUEUE (LANES == 1 ? 1 : 128)
 
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
 // list_starts, list: see cull.cl; an entry of the list indexes `lights`.
@@ -346,7 +350,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
       __global const ShadeLight *light[ABREAST];
       EACH_ABREAST(k) {
         uint at = min(pair + k, pairs - 1);
-        pixels[k] = rows + row_of[at];
+        pixels[k] = rows + (ROWS == 1 ? 0 : row_of[at]);
         light[k] = lights + light_of[at];
       }
       add_lights(pixels, light, pairs - pair, shadow_maps, shadow_depths, frame.blinn, long_sums);

@@ -20,8 +20,9 @@ enum {
   kSquaresPerTile = 16,                  // of 4×4 pixels
 };
 
-// Rows of pixels that a work-item of shade.cl takes on.
-#define ROWS_PER_ITEM(lanes) ((lanes) == 1 ? 1 : 4)
+// Rows of pixels that a work-item of shade.cl takes on. Without lists a row meets all lights: it fills its places alone, and one
+// row's sums stay in registers.
+#define ROWS_PER_ITEM(lanes, lists) ((lanes) == 1 || !(lists) ? 1 : 4)
 
 // The square of a pixel in its tile, by its place in the planes.
 #define SQUARE_OF_PIXEL(place) ((place) / (kTilePixels / kSquaresPerTile) % kSquaresPerTile)

@@ -25,7 +25,7 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
   kernel.setArg(10, arguments.shadow_maps);
   kernel.setArg(11, arguments.shadow_depths);
   kernel.setArg(12, arguments.image);
-  const std::size_t rows = ROWS_PER_ITEM(device.description.lanes);
+  const std::size_t rows = ROWS_PER_ITEM(device.description.lanes, arguments.lists.tiles > 0);
   launch(device, kernel, arguments.frame.plane_stride / device.description.lanes / rows,
          rowsPerTile(device) / rows);
   finish(device);
