@@ -86,10 +86,6 @@ TextureUse textureUse(const GltfModel& model, int texture, const std::string& pl
   return use;
 }
 
-double decodeSrgb(double code) {
-  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
-}
-
 /// Linear mean of a colour picture: its 1×1 level.
 glm::dvec3 meanColor(const Texture& texture) {
   const std::vector<std::uint16_t>& texel = texture.levels.back().texels;
