@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
+#include <utility>
 
 namespace luciole {
 
@@ -22,6 +24,21 @@ struct ArrayAllocator {
   T* allocate(std::size_t n) { return static_cast<T*>(allocateArray(n * sizeof(T))); }
   void deallocate(T* p, std::size_t n) { freeArray(p, n * sizeof(T)); }
   bool operator==(const ArrayAllocator&) const { return true; }
+};
+
+/// The same for elements that are written before they are read: resizing a container leaves them as they are.
+template <class T>
+struct RawArrayAllocator : ArrayAllocator<T> {
+  template <class U>
+  struct rebind {
+    using other = RawArrayAllocator<U>;
+  };
+  template <class U>
+  void construct(U*) noexcept {}
+  template <class U, class V>
+  void construct(U* place, V&& value) {
+    new (place) U(std::forward<V>(value));
+  }
 };
 
 }  // namespace luciole

@@ -22,6 +22,9 @@
 typedef struct {
   intL covered;
   vec3L position, normal;
+#if SHADOWS
+  vec3L facet;  // the triangle's own normal
+#endif
   vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
   vec3L ambient_sum, diffuse_sum, specular_sum;
@@ -33,6 +36,7 @@ typedef struct {
 #if OUTPUT_SHADOW
   floatL visible, shadow_lights;
 #endif
+  uint place;  // of its first pixel in the tile
 } Pixels;
 
 #if LIT
@@ -85,12 +89,26 @@ INLINE void meet_light(Pair *pair, const Pixels *pixels, __global const ShadeLig
   pair->n_dot_l = dot3(pixels->normal, pair->to_light) * pair->inverse_d;
 }
 
+// The shadow maps of a picture's lights, or with EXACT what is known of each entry of the lists (see classify.cl).
+typedef struct {
+  __global const ShadowMap *maps;
+  __global const ShadowFace *faces;
+  __global const ShadowTexel *texels;
+  uint texel_count;
+  __global const uint *pair_bits;
+} Shadows;
+
 #if SHADOWS
-INLINE void cast_shadow(Pair *pair, Pixels *pixels, __global const ShadeLight *light, __global const ShadowMap *shadow_maps,
-                        __global const float *shadow_depths) {
+// entry: of the lists, that light and pixels were met by.
+INLINE void cast_shadow(Pair *pair, Pixels *pixels, __global const ShadeLight *light, const Shadows *shadows, uint entry) {
   if (light->shadow == kNoShadow || !any_lane(pair->strength > 0.0f)) return;
-  floatL visibility = light_visibility(shadow_maps + light->shadow, shadow_depths, pixels->position, pixels->normal,
-                                       pair->n_dot_l);
+#if EXACT
+  uint word = shadows->pair_bits[entry * kPairWords + pixels->place / 32] >> pixels->place % 32;
+  floatL visibility = convert_floatL(((intL)((int)word) >> LANE_NUMBERS) & 1);
+#else
+  MapPoint point = map_point(shadows->maps + light->shadow, shadows->faces, pixels->position, pixels->facet);
+  floatL visibility = map_lookup(shadows->maps + light->shadow, shadows->faces, shadows->texels, shadows->texel_count, point);
+#endif
 #if OUTPUT_SHADOW
   floatL counted = pair->strength > 0.0f ? (floatL)(1.0f) : (floatL)(0.0f);
   pixels->visible += visibility * counted;
@@ -150,10 +168,9 @@ INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight
 #endif
 }
 
-// Adds the first `count` of ABREAST pairs, which are all there: light[k] and the row pixels[k].
+// Adds the first `count` of ABREAST pairs, which are all there: light[k] and the row pixels[k], met by entry[k] of the lists.
 INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *light, uint count,
-                       __global const ShadowMap *shadow_maps, __global const float *shadow_depths, uint blinn,
-                       bool long_sums) {
+                       const uint *entry, const Shadows *shadows, uint blinn, bool long_sums) {
   Pair pairs[ABREAST];
   intL lit = 0;
   EACH_ABREAST(k) {
@@ -166,7 +183,7 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
 #endif
   }
 #if SHADOWS
-  EACH_ABREAST(k) cast_shadow(pairs + k, pixels[k], light[k], shadow_maps, shadow_depths);
+  EACH_ABREAST(k) cast_shadow(pairs + k, pixels[k], light[k], shadows, entry[k]);
 #endif
 #if !LIGHT_AMBIENT
   EACH_ABREAST(k) lit |= pairs[k].strength > 0.0f;
@@ -194,10 +211,11 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
 
 // What a row of pixels starts from. Uncovered lanes compute along on a point ahead of the eye and are dropped at the end.
 INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global const float *position,
-                      __global const float *normal, __global const float *specular, bool long_sums) {
+                      __global const float *normal, __global const float *specular, __global const uint *facet, bool long_sums) {
   uint stride = frame.plane_stride;
   pixels->position = load_vec3(position + first, stride);
   pixels->covered = pixels->position.z > -INFINITY;
+  pixels->place = first % kTilePixels;
   pixels->position.z = pixels->covered ? pixels->position.z : (floatL)(-1.0f);
 #if OUTPUT_SHADOW
   pixels->visible = 0.0f;
@@ -219,6 +237,9 @@ INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global con
   }
 #endif
   pixels->normal = load_vec3(normal + first, stride);
+#if SHADOWS
+  pixels->facet = unpack_normal(*(__global const intL *)(facet + first));
+#endif
 #if SPECULAR
   pixels->shininess = load_lanes(specular + first + 3 * stride);
 #if PARALLEL_VIEW
@@ -288,12 +309,16 @@ INLINE vec3L finish_row(Pixels *pixels, ShadeFrame frame, uint first, __global c
 #define QUEUE (LANES == 1 ? 1 : 128)
 
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
-// list_starts, list: see cull.cl; an entry of the list indexes `lights`.
+// facet: by packNormal(), read only if SHADOWS. list_starts, list: see cull.cl; an entry of the list indexes `lights`.
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
-                    __global const float *emission, __global const ShadeLight *lights, __global const uint *list_starts,
-                    __global const ListEntry *list, __global const ShadowMap *shadow_maps,
-                    __global const float *shadow_depths, __global float *image) {
+                    __global const float *emission, __global const uint *facet, __global const ShadeLight *lights,
+                    __global const uint *list_starts, __global const ListEntry *list, __global const ShadowMap *shadow_maps,
+                    __global const ShadowFace *shadow_faces, __global const ShadowTexel *shadow_texels,
+                    __global const uint *pair_bits, __global float *image) {
+#if LIT
+  Shadows shadows = {shadow_maps, shadow_faces, shadow_texels, frame.texel_count, pair_bits};
+#endif
   uint first = get_global_id(0) * (ROWS * LANES);
   uint stride = frame.plane_stride;
 #if LIGHT_LISTS
@@ -308,7 +333,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
   uint square[ROWS];  // of each row, as a bit; none for background
   EACH_ROW(row) {
     uint pixel = first + row * LANES;
-    start_row(rows + row, frame, pixel, position, normal, specular, long_sums);
+    start_row(rows + row, frame, pixel, position, normal, specular, facet, long_sums);
     square[row] = any_lane(rows[row].covered) ? 1u << SQUARE_OF_PIXEL(pixel) : 0;
   }
   // While the lights are summed, memory brings what comes next.
@@ -318,6 +343,9 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
 #if LIT
     prefetch_lanes(normal + next, stride, 3, ROWS);
     prefetch_lanes(diffuse + next, stride, 3, ROWS);
+#if SHADOWS
+    prefetch_lanes((__global const float *)facet + next, stride, 1, ROWS);
+#endif
 #if SPECULAR
     prefetch_lanes(specular + next, stride, 4, ROWS);
 #endif
@@ -330,7 +358,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
 #endif
   }
 #if LIT
-  uint light_of[QUEUE], row_of[QUEUE];
+  uint light_of[QUEUE], row_of[QUEUE], entry_of[QUEUE];
   while (entry < end) {
     uint pairs = 0;
     for (; entry < end && pairs + ROWS <= QUEUE; ++entry) {
@@ -342,18 +370,23 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
       EACH_ROW(row) {
         light_of[pairs] = light;
         row_of[pairs] = row;
+#if EXACT
+        entry_of[pairs] = LIGHT_LISTS ? entry : first / kTilePixels * frame.light_count + entry;
+#endif
         pairs += (squares & square[row]) ? 1 : 0;
       }
     }
     for (uint pair = 0; pair < pairs; pair += ABREAST) {
       Pixels *pixels[ABREAST];
       __global const ShadeLight *light[ABREAST];
+      uint met_by[ABREAST];
       EACH_ABREAST(k) {
         uint at = min(pair + k, pairs - 1);
         pixels[k] = rows + (ROWS == 1 ? 0 : row_of[at]);
         light[k] = lights + light_of[at];
+        met_by[k] = EXACT ? entry_of[at] : 0;
       }
-      add_lights(pixels, light, pairs - pair, shadow_maps, shadow_depths, frame.blinn, long_sums);
+      add_lights(pixels, light, pairs - pair, met_by, &shadows, frame.blinn, long_sums);
     }
   }
 #endif

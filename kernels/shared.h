@@ -66,28 +66,76 @@ typedef struct {
 } ShadeLight;
 SHARED_SIZE(ShadeLight, 112);
 
-// Shadow depths are reversed: depth = depth_scale / w + depth_offset grows towards the light, 0 where nothing was drawn.
-// w is the homogeneous coordinate of the lookup: 1 for a parallel map, metres in front of the light otherwise.
-// A planar map takes a view-space position p to texels by (to_map_x · (p,1), to_map_y · (p,1)) / (to_map_w · (p,1)); its
-// parallel kind has its depth in to_map_z · (p,1) instead. A cube's rows x, y, z give the vector from the light to p in
-// world axes; the six faces lie one after another in the order +x −x +y −y +z −z.
+// Where a light's shadow map is looked up. (u, v) are tangents from the light, right and up of the face's axis, or for a
+// parallel map metres; depths are reversed and grow towards the light, 0 where nothing was drawn.
+// - Cube: rows x, y, z give the vector from the light to the view-space position p, in world axes; the faces are those of
+//   +x −x +y −y +z −z.
+// - Perspective: rows x, y, z give the same right, up and ahead of the light; one face.
+// - Parallel: rows x, y give metres right and up, row z the depth; the faces are cascades, the finest first.
 typedef struct {
   float4 to_map_x;
   float4 to_map_y;
   float4 to_map_z;
-  float4 to_map_w;
-  float depth_scale;   // metres
-  float depth_offset;
-  float texel;         // a texel's side in metres at w = 1
-  float face_scale;    // cube: texels per unit of tangent, from the middle of a face
-  uint offset;         // of the first depth in the shadow buffer, in floats
-  uint size;           // texels a side; rows lie one after another
+  float depth_scale;   // depth = depth_scale / w + depth_offset, w metres ahead of the light
+  float depth_offset;  // parallel: depth a metre, and depth_scale its square
   uint kind;           // kParallelMap …
+  uint first_face;     // index of its first ShadowFace
+  uint face_count;
+  float spread;        // the light's size: a blocker that is nearer by a depth of d blurs its shadow by spread·d of u and v
+  float reach;         // texels around a lookup that it may read
   uint pad;
 } ShadowMap;
-SHARED_SIZE(ShadowMap, 96);
+SHARED_SIZE(ShadowMap, 80);
 
 enum { kParallelMap = 0, kPerspectiveMap = 1, kCubeMap = 2 };
+
+// One square picture from a light. (u, v) lies at texel (middle_x + scale·u, middle_y − scale·v), counted from its top left
+// corner; a texel's centre is at .5. Memory holds a rectangle of it, whose texels lie row by row, and of that were drawn those bins
+// of kShadowBin × kShadowBin texels that somebody looks at.
+typedef struct {
+  float scale;     // texels per unit of u and v
+  float middle_x;
+  float middle_y;
+  float low, high; // texels: lookups from low to high, in x and y, find all the texels they need
+  uint first;      // where in the shadow buffer texel (0, 0) would be, modulo 2³²
+  uint width;      // texels in a row of the rectangle; 0: nothing was drawn
+  uint first_bin;  // of its bins among those of all faces
+  uint bins;       // a side
+  uint pad0, pad1, pad2;
+} ShadowFace;
+SHARED_SIZE(ShadowFace, 48);
+
+enum { kShadowBin = 64 };  // texels a side
+
+// What a texel's centre sees.
+typedef struct {
+  float depth;
+  uint slopes;  // the surface's steps of depth a texel: right and down, each the upper 16 bits of a float
+} ShadowTexel;
+SHARED_SIZE(ShadowTexel, 8);
+
+// What a texel, its whole square and kBoundGrowth more on each side, sees for certain. Reversed depths, larger towards the light.
+// - The plane is that of a solid triangle which covers the square: what lies behind it is dark. Of several it is the one whose
+//   lowest depth in the square is highest. It errs by kPlaneError at most (host/raster/bound_depth.hpp).
+// - No other triangle in the square reaches higher than `others`, except for what lies certainly behind the plane: what is nearer
+//   than both is lit.
+typedef struct {
+  float depth;           // of the plane at the texel's centre; −∞: no triangle covers the square
+  float step_x, step_y;  // of the plane a texel right and down
+  float others;          // 0: none; +∞: anything may be there
+} BoundTexel;
+SHARED_SIZE(BoundTexel, 16);
+
+// What exact shadows know of a pixel and a light: see classify.cl.
+enum { kPairWords = 2 * kTilePixels / 32 };
+
+// Share of its distance from the eye by which a point may lie off its surface. A float position is rounded in view space, and
+// again relative to the eye, by 2⁻²⁴ each; thirty-two times that leaves room for G-buffers of other programs, which have rounded
+// in world space, and for what classify.cl loses on the way to the light's axes.
+#define POINT_ERROR 0x1p-18f
+
+// In place of the depth of the farthest point that looks at a bin, as a float's bits: nothing looks at it.
+#define kNotNeeded 0xffffffffu
 
 enum { kNoFog = 0, kFogLinear = 1, kFogExp = 2, kFogExp2 = 3 };
 
@@ -105,7 +153,7 @@ typedef struct {
   uint light_count;
   uint plane_stride;   // floats from a plane to the next of its group
   uint fog_radial;     // 1: fog by distance from the eye, 0: by depth along the view axis
-  uint pad;
+  uint texel_count;    // of the shadow maps, at least 1
 } ShadeFrame;
 SHARED_SIZE(ShadeFrame, 112);
 

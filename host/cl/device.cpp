@@ -233,6 +233,15 @@ cl::Buffer outputBuffer(Device& device, void* data, std::size_t bytes) {
   }
 }
 
+cl::Buffer updateBuffer(Device& device, void* data, std::size_t bytes) {
+  try {
+    const cl_mem_flags how = device.shares_host_memory ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    return cl::Buffer(device.context, CL_MEM_READ_WRITE | how, bytes, data);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
 void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
   if (bytes == 0) return;
   try {

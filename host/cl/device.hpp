@@ -79,6 +79,9 @@ cl::Buffer deviceBuffer(Device& device, std::size_t bytes);
 /// share memory, so `data` must outlive it.
 cl::Buffer outputBuffer(Device& device, void* data, std::size_t bytes);
 
+/// The same, but it starts as what `data` holds; bytes > 0.
+cl::Buffer updateBuffer(Device& device, void* data, std::size_t bytes);
+
 /// Copies `bytes` bytes of the buffer, from the byte `offset` on, to the host once everything queued is done.
 void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes,
                 std::size_t offset = 0);

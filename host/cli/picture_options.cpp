@@ -112,8 +112,18 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->capture_default_str();
     command
         .add_option("--shadows", options.shadows,
-                    "how shadow maps are looked up: the nearest depth, or a soft blend of 16")
-        ->check(CLI::IsMember({"off", "hard", "pcf"}))
+                    "how shadow maps are looked up: hard (the texel that the point falls into), pcf (the "
+                    "nearest texels, weighted), soft (edges as wide as the light's size makes them) or exact "
+                    "(as rays to the light's middle)")
+        ->check(CLI::IsMember({"off", "hard", "pcf", "soft", "exact"}))
+        ->capture_default_str();
+    command.add_option("--pcf-width", options.pcf_width, "texels a side that pcf weighs: 2 is the sharpest")
+        ->check(CLI::Range(2, 6))
+        ->capture_default_str();
+    command
+        .add_option("--shadow-memory", options.shadow_memory,
+                    "MiB that all shadow maps may take: where they would take more, they get coarser")
+        ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
     command.add_option("--aov", options.aovs,
                        "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,shadow");
@@ -148,7 +158,11 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.tile_size = options.tile;
   settings.shade.shadows = options.shadows == "off"    ? ShadowMethod::kOff
                            : options.shadows == "hard" ? ShadowMethod::kHard
-                                                       : ShadowMethod::kPcf;
+                           : options.shadows == "pcf"  ? ShadowMethod::kPcf
+                           : options.shadows == "soft" ? ShadowMethod::kSoft
+                                                       : ShadowMethod::kExact;
+  settings.shade.pcf_width = options.pcf_width;
+  settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.aovs = parseAovs(options.aovs);
   if (!(std::abs(options.exposure) <= 100))
     throw InputError("--exposure: expected stops between -100 and 100");

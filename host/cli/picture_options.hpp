@@ -21,6 +21,8 @@ struct PictureOptions {
   std::string culling = "auto";
   int tile = ShadeSettings{}.tile_size;
   std::string shadows = "hard";
+  int pcf_width = ShadeSettings{}.pcf_width;
+  int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   std::string aovs;
   double exposure = 0;
   std::string device;
@@ -33,7 +35,7 @@ enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
   kModelOptions = 4,   ///< --model, --exposure
-  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --aov
+  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --aov
   kDeviceOption = 16,  ///< --device
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);

@@ -12,6 +12,7 @@
 #include "experiment/memory_use.hpp"
 #include "experiment/raster_speed.hpp"
 #include "experiment/shading_rate.hpp"
+#include "experiment/shadow_errors.hpp"
 #include "experiment/start_time.hpp"
 
 namespace luciole {
@@ -25,6 +26,7 @@ constexpr SpeedMeasurement kSpeed[] = {
     {"shading rate", measureShadingRate},
     {"culling and shading", measureCulledShading},
     {"many lights", measureManyLights},
+    {"shadow errors", measureShadowErrors},
     {"rasterizer", measureRasterizer},
     {"start", measureStart},
     {"memory", measureMemory},

@@ -25,8 +25,11 @@ double gbufferMilliseconds(const Scene& scene, glm::ivec2 size) {
 
 double depthMilliseconds(const Scene& scene, glm::ivec2 size) {
   const View view = cameraView(scene.cameras.front(), size);
+  const TriangleRuns runs = findRuns(scene);
+  const std::vector<std::uint32_t> all = allRuns(runs);
+  std::vector<ShadowTexel> texels(std::size_t(size.x) * size.y);
   Stats stats;
-  timed(stats, "depth", [&] { rasterizeDepth(scene, allObjects(scene), view); });
+  timed(stats, "depth", [&] { rasterizeDepth(scene, runs, all, view, {}, texels); });
   return stageTime(stats, "depth");
 }
 

@@ -64,10 +64,14 @@ Json settingsJson(const Variant& variant) {
   static constexpr const char* kCulling[] = {"none", "tiles"};
   static constexpr const char* kShadows[] = {"off", "hard", "pcf"};
   const ShadeSettings& shade = variant.shade;
-  return {{"lanes", variant.lanes},           {"culling", kCulling[std::size_t(shade.culling)]},
-          {"tile", shade.tile_size},          {"shadows", kShadows[std::size_t(shade.shadows)]},
-          {"shadow_size", shade.shadow_size}, {"log2_degree", shade.log2_degree},
-          {"exp2_degree", shade.exp2_degree}, {"samples", variant.samples}};
+  return {{"lanes", variant.lanes},
+          {"culling", kCulling[std::size_t(shade.culling)]},
+          {"tile", shade.tile_size},
+          {"shadows", kShadows[std::size_t(shade.shadows)]},
+          {"shadow_size", shade.shadow_limits.size},
+          {"log2_degree", shade.log2_degree},
+          {"exp2_degree", shade.exp2_degree},
+          {"samples", variant.samples}};
 }
 
 /// max, mean and signed mean in units of `unit`.

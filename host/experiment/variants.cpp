@@ -48,14 +48,14 @@ VariantGroup shadowVariants(int lanes) {
                      .measured =
                          "shadow maps, culling and shading, against shadows by rays from the same "
                          "G-buffer in double precision",
-                     .stages = {"shadow maps", "cull", "shade"},
+                     .stages = {"find shadow texels", "shadow maps", "cull", "shade"},
                      .shadows = true};
   for (const auto& [method, name] : kFilters) {
     for (const int size : kShadowSizes) {
       Variant variant{.name = fmt::format("{} {}", name, size), .lanes = lanes};
       variant.shade.shadows = method;
-      variant.shade.shadow_size = size;
-      variant.is_default = method == usual.shadows && size == usual.shadow_size;
+      variant.shade.shadow_limits.size = size;
+      variant.is_default = method == usual.shadows && size == usual.shadow_limits.size;
       group.variants.push_back(variant);
     }
   }

@@ -16,6 +16,7 @@
 #include "image/oiio.hpp"
 #include "image/picture_file.hpp"
 #include "machine_memory.hpp"
+#include "raster/packed_normal.hpp"
 
 namespace luciole {
 namespace {
@@ -54,6 +55,7 @@ std::vector<std::string> channelNames(const GBuffer& gbuffer) {
   }
   if (!gbuffer.ambient.empty()) addChannels(names, "ambient", "RGB");
   if (!gbuffer.emission.empty()) addChannels(names, "emission", "RGB");
+  if (!gbuffer.facet.empty()) addChannels(names, "Ng", "XYZ");
   return names;
 }
 
@@ -128,6 +130,7 @@ class Surface {
   Surface(const Pixels& file, const OIIO::ImageSpec& spec, GBuffer& gbuffer) : file_(file) {
     normal_ = file.findThree("N", "XYZ");
     position_ = file.findThree("P", "XYZ");
+    facet_ = file.findThree("Ng", "XYZ");
     depth_ = file.find("Z");
     if (!isThere(normal_)) throw InputError(file.path + ": channel N.X: missing, expected N.X N.Y N.Z");
     const auto header = readCamera(spec, file.path, visiblePoints(file, position_, normal_));
@@ -172,6 +175,16 @@ class Surface {
     return true;
   }
 
+  bool hasFacets() const { return isThere(facet_); }
+
+  /// The facet of a pixel whose view-space normal is given. What addRow() wrote comes back to the bit, though
+  /// world space and float lie between, see packNormal().
+  std::uint32_t facetAt(std::size_t pixel, glm::vec3 normal) const {
+    const glm::vec3 facet = file_.three(pixel, facet_);
+    if (!isFinite(facet) || facet == glm::vec3(0.0f)) return packNormal(normal);
+    return packNormal(glm::dmat3(world_to_view_) * glm::dvec3(facet));
+  }
+
  private:
   /// The view-space point that lies at depth |Z| behind the centre of a pixel; not finite for Z = 0.
   glm::vec3 unproject(std::size_t pixel) const {
@@ -187,6 +200,7 @@ class Surface {
   const Pixels& file_;
   std::array<int, 3> position_{};
   std::array<int, 3> normal_{};
+  std::array<int, 3> facet_{};
   int depth_ = -1;
   bool in_view_space_ = false;
   glm::dmat4 world_to_view_{1.0};
@@ -196,7 +210,7 @@ class Surface {
   glm::ivec2 first_pixel_{0};
 };
 
-/// All groups, showing nothing.
+/// All groups but facets, showing nothing.
 GBuffer emptyGBuffer(const OIIO::ImageSpec& spec) {
   GBuffer gbuffer;
   gbuffer.width = spec.width;
@@ -236,6 +250,10 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
     }
     if (!gbuffer.ambient.empty()) add(load(gbuffer.ambient, at, stride));
     if (!gbuffer.emission.empty()) add(load(gbuffer.emission, at, stride));
+    if (!gbuffer.facet.empty()) {
+      const bool shows = normal != glm::vec3(0.0f);
+      add(shows ? glm::vec3(glm::dmat3(to_world) * unpackNormal(gbuffer.facet[at])) : glm::vec3(0.0f));
+    }
   }
 }
 
@@ -273,7 +291,7 @@ GBuffer readGBuffer(const std::string& path) {
   const auto input = openPicture(path, path);
   const OIIO::ImageSpec spec = input->spec();
   Pixels file{path, spec.width, std::size_t(spec.width) * spec.height, spec.channelnames, {}};
-  constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3;
+  constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1;
   requireMemory(double(file.count) * (spec.nchannels + kGroupChannels) * sizeof(float), path);
   file.values = std::make_unique_for_overwrite<float[]>(file.count * spec.nchannels);
   readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
@@ -284,6 +302,7 @@ GBuffer readGBuffer(const std::string& path) {
   const auto ambient = file.findThree("ambient", "RGB"), emission = file.findThree("emission", "RGB");
   const int shininess = file.find("shininess");
   const std::size_t stride = gbuffer.pixels();
+  if (surface.hasFacets()) gbuffer.facet.resize(stride);
   for (std::size_t p = 0; p < file.count; ++p) {
     glm::vec3 position, normal;
     if (!surface.at(p, position, normal)) continue;
@@ -296,6 +315,7 @@ GBuffer readGBuffer(const std::string& path) {
     if (shininess >= 0) gbuffer.specular[at + 3 * stride] = file.coefficient(p, shininess);
     store(gbuffer.ambient, at, stride, file.color(p, ambient, reflectance));
     store(gbuffer.emission, at, stride, file.color(p, emission, glm::vec3(0.0f)));
+    if (surface.hasFacets()) gbuffer.facet[at] = surface.facetAt(p, normal);
   }
   return gbuffer;
 }

@@ -21,7 +21,8 @@ void forEachBin(const RasterTriangle& triangle, const Bins& bins, Visit visit) {
 
 }  // namespace
 
-Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view) {
+Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view,
+                  std::span<const float> farthest) {
   Bins bins;
   bins.first = view.crop_origin / kBinSize;
   bins.count = (view.crop_origin + view.crop_size - 1) / kBinSize - bins.first + 1;
@@ -35,7 +36,10 @@ Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view) {
     const std::size_t end = std::min(triangles.size(), (run + 1) * run_size);
     for (std::size_t i = run * run_size; i < end; ++i) {
       const int kind = triangles[i].masked;
-      forEachBin(triangles[i], bins, [&](int bin) { visit(2 * bin + kind, std::uint32_t(i)); });
+      forEachBin(triangles[i], bins, [&](int bin) {
+        if (farthest.empty() || triangles[i].depth_high >= farthest[bin])
+          visit(2 * bin + kind, std::uint32_t(i));
+      });
     }
   };
   // [run][list]: first the count, then where to write next

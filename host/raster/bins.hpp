@@ -28,6 +28,9 @@ struct Bins {
   }
 };
 
-Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view);
+/// `farthest`: one a bin, the smallest reversed depth that matters there: triangles that stay below it are
+/// left out. Empty: all matter.
+Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view,
+                  std::span<const float> farthest = {});
 
 }  // namespace luciole

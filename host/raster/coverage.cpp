@@ -8,6 +8,15 @@
 namespace luciole {
 namespace {
 
+/// What a sample remembers of the triangle that it sees.
+enum class Label : std::uint8_t { kTriangle, kSlopes };
+
+template <Label kLabel>
+std::uint32_t labelOf(const RasterTriangle& triangle) {
+  return kLabel == Label::kTriangle ? triangle.triangle
+                                    : packSlopes(float(triangle.depth_dx), float(triangle.depth_dy));
+}
+
 constexpr int kLanes = 16;  ///< pixels that are drawn side by side; a row of one holds several such groups
 
 /// Three functions, each ≥ 0 at the samples on the inner side of an edge, those on the edge itself only where
@@ -97,19 +106,19 @@ void forEachGroup(const Target& target, const PixelBox& box, Visit visit) {
 }
 
 /// Draws an opaque triangle to a box of the bin's pixels; returns whether it covers a sample.
-template <bool kWithTriangle>
+template <Label kLabel>
 bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
   const float low = target.triangle.depth_low;
   const float high = target.triangle.depth_high;
-  const std::uint32_t number = target.triangle.triangle;
+  const std::uint32_t own_label = labelOf<kLabel>(target.triangle);
   const std::int32_t* step_x = target.edges.step_x;
   std::int32_t covered = 0;
   forEachGroup(target, box, [&](int x, int y) {
     const auto [e0, e1, e2] = target.edgesAt(x, y);
     const float start = target.depthAt(x, y);
     float* depth = pixels.depth.data() + y * kBinSize + x;
-    std::uint32_t* triangle = pixels.triangle.data() + y * kBinSize + x;
+    std::uint32_t* label = pixels.label.data() + y * kBinSize + x;
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::int32_t inside =
           ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
@@ -117,7 +126,7 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
       const bool seen = inside & std::int32_t(z > depth[lane]);
       covered |= inside;
       depth[lane] = seen ? z : depth[lane];
-      if (kWithTriangle) triangle[lane] = seen ? number : triangle[lane];
+      label[lane] = seen ? own_label : label[lane];
     }
   });
   return covered != 0;
@@ -135,12 +144,13 @@ std::uint32_t holesIn(const HoleTest& holes, const Surface& surface, std::uint32
 }
 
 /// The same for a triangle with holes, which are looked for where nothing nearer was drawn before.
-template <bool kWithTriangle>
+template <Label kLabel>
 bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
   const float low = target.triangle.depth_low;
   const float high = target.triangle.depth_high;
   const std::uint32_t number = target.triangle.triangle;
+  const std::uint32_t own_label = labelOf<kLabel>(target.triangle);
   const std::int32_t* step_x = target.edges.step_x;
   std::optional<Surface> surface;
   std::int32_t covered = 0;
@@ -148,7 +158,7 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
     const auto [e0, e1, e2] = target.edgesAt(x, y);
     const float start = target.depthAt(x, y);
     float* depth = pixels.depth.data() + y * kBinSize + x;
-    std::uint32_t* triangle = pixels.triangle.data() + y * kBinSize + x;
+    std::uint32_t* label = pixels.label.data() + y * kBinSize + x;
     std::array<float, kLanes> z;
     std::uint32_t nearest = 0;  // a bit a lane
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -158,26 +168,27 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
       covered |= inside;
       std::int32_t nearer = z[lane] > depth[lane];
       // Opaque triangles were drawn before their turn, and a depth of 0 is nothing.
-      if (kWithTriangle) nearer |= (z[lane] == depth[lane]) & (number < triangle[lane]) & (z[lane] > 0.0f);
+      if (kLabel == Label::kTriangle)
+        nearer |= (z[lane] == depth[lane]) & (number < label[lane]) & (z[lane] > 0.0f);
       nearest |= std::uint32_t(inside & nearer) << lane;
     }
     if (nearest == 0) return;
-    if (!surface) surface = makeSurface(holes.scene, holes.geometry, number, holes.plane);
+    if (!surface) surface = makeSurface(holes.scene, holes.objects, number, holes.plane);
     nearest &= ~holesIn(holes, *surface, nearest, target.bin_origin.x + x, target.bin_origin.y + y);
     for (int lane = 0; lane < kLanes; ++lane) {
       const bool seen = nearest >> lane & 1;
       depth[lane] = seen ? z[lane] : depth[lane];
-      if (kWithTriangle) triangle[lane] = seen ? number : triangle[lane];
+      label[lane] = seen ? own_label : label[lane];
     }
   });
   return covered != 0;
 }
 
-template <bool kWithTriangle>
+template <Label kLabel>
 void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
           std::span<std::uint8_t> covering, BinPixels& pixels) {
   pixels.depth.fill(0.0f);
-  if (kWithTriangle) pixels.triangle.fill(kNoTriangle);
+  pixels.label.fill(kLabel == Label::kTriangle ? kNoTriangle : 0);
   const glm::ivec2 origin = bins.origin(bin);
   const std::span<const std::uint32_t> list = bins.list(bin);
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -188,24 +199,31 @@ void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, 
     const PixelBox box{glm::max(whole.first - origin, glm::ivec2(0)),
                        glm::min(whole.last - origin, glm::ivec2(kBinSize - 1))};
     const Target target{triangle, edgeFunctions(triangle, origin), origin};
-    const bool covered = triangle.masked ? drawMasked<kWithTriangle>(target, box, holes, pixels)
-                                         : drawOpaque<kWithTriangle>(target, box, pixels);
+    const bool covered = triangle.masked ? drawMasked<kLabel>(target, box, holes, pixels)
+                                         : drawOpaque<kLabel>(target, box, pixels);
     // Several bins may say so at once.
-    if (kWithTriangle && covered)
+    if (kLabel == Label::kTriangle && covered)
       std::atomic_ref(covering[triangle.triangle]).store(1, std::memory_order_relaxed);
   }
 }
 
 }  // namespace
 
+std::uint32_t packSlopes(float dx, float dy) {
+  // Half of what is cut off is added first. Steps are below 10³⁰, so nothing overflows.
+  const std::uint32_t high = std::bit_cast<std::uint32_t>(dx) + 0x8000u;
+  const std::uint32_t low = std::bit_cast<std::uint32_t>(dy) + 0x8000u;
+  return (high & 0xffff0000u) | low >> 16;
+}
+
 void drawBin(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
              std::span<std::uint8_t> covering, BinPixels& pixels) {
-  draw<true>(triangles, bins, bin, holes, covering, pixels);
+  draw<Label::kTriangle>(triangles, bins, bin, holes, covering, pixels);
 }
 
 void drawBinDepth(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
                   BinPixels& pixels) {
-  draw<false>(triangles, bins, bin, holes, {}, pixels);
+  draw<Label::kSlopes>(triangles, bins, bin, holes, {}, pixels);
 }
 
 }  // namespace luciole

@@ -13,25 +13,29 @@ namespace luciole {
 
 /// What the samples of a bin see, row by row.
 struct BinPixels {
-  alignas(64) std::array<float, kBinSize * kBinSize> depth;             ///< reversed; 0: nothing
-  alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> triangle;  ///< or kNoTriangle
+  alignas(64) std::array<float, kBinSize * kBinSize> depth;          ///< reversed; 0: nothing
+  alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> label;  ///< the triangle, or its slopes
 };
 
 /// What it takes to look for holes in triangles.
 struct HoleTest {
   const Scene& scene;
-  const Geometry& geometry;
+  const std::vector<PlacedObject>& objects;
   const ViewPlane& plane;
 };
 
-/// Draws a bin's triangles: the nearer wins, and at equal depth the one with the lower number. Samples beyond
-/// the crop are drawn too, at whim. `covering` has one entry a triangle, which is set to 1 where the triangle
-/// covers a sample, seen or not.
+/// Draws a bin's triangles: the nearer wins, and at equal depth the one with the lower number. Labels are the
+/// triangles' numbers, or kNoTriangle. Samples beyond the crop are drawn too, at whim. `covering` has one
+/// entry a triangle, which is set to 1 where the triangle covers a sample, seen or not.
 void drawBin(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
              std::span<std::uint8_t> covering, BinPixels& pixels);
 
-/// The same for depth alone.
+/// The same for a depth map, whose labels are slopes (packSlopes) of what was drawn, or 0.
 void drawBinDepth(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
                   BinPixels& pixels);
+
+/// A triangle's steps of reversed depth a pixel, right (high half) and down, each rounded to a float's upper
+/// 16 bits: within 2⁻⁸ of its value.
+std::uint32_t packSlopes(float dx, float dy);
 
 }  // namespace luciole

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "raster/geometry.hpp"
+#include "raster/packed_normal.hpp"
 #include "raster/planes.hpp"
 #include "raster/rasterize.hpp"
 
@@ -40,6 +41,8 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
   storePixel(material.diffuse * color, place, stride, gbuffer.diffuse);
   if (!gbuffer.ambient.empty()) storePixel(material.ambient * color, place, stride, gbuffer.ambient);
   if (!gbuffer.emission.empty()) storePixel(material.emission, place, stride, gbuffer.emission);
+  // A vertex has no triangle of its own.
+  if (!gbuffer.facet.empty()) gbuffer.facet[place] = packNormal(normal);
   if (!gbuffer.specular.empty()) {
     storePixel(material.specular, place, stride, gbuffer.specular);
     gbuffer.specular[3 * stride + place] = material.shininess;

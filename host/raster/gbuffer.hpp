@@ -13,6 +13,8 @@
 namespace luciole {
 
 using Plane = std::vector<float, ArrayAllocator<float>>;
+/// A plane of packNormal()'s.
+using PackedNormals = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
 
 /// Bits 0 to 3 of v, moved to bits 0, 2, 4 and 6.
 constexpr std::size_t everyOtherBit(std::size_t v) {
@@ -45,6 +47,7 @@ struct GBuffer {
   Plane specular;              ///< r g b and shininess; optional
   Plane ambient;               ///< r g b; optional
   Plane emission;              ///< r g b; optional
+  PackedNormals facet;         ///< the triangle's own, on the side that `normal` was turned to; optional
   Camera camera;               ///< whose view space this is
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies

@@ -20,8 +20,16 @@ glm::dmat3 normalMatrix(const glm::dmat3& m, double determinant) {
   return determinant < 0.0 ? -cofactors : cofactors;
 }
 
-void transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume, std::size_t i,
-                     Geometry& geometry) {
+}  // namespace
+
+ScreenVertex toScreen(const glm::dvec4& clip, const View& view) {
+  const double inverse_w = 1.0 / clip.w;
+  return {(0.5 + 0.5 * (clip.x * inverse_w)) * view.size.x - view.sample.x,
+          (0.5 - 0.5 * (clip.y * inverse_w)) * view.size.y - view.sample.y, clip.z * inverse_w};
+}
+
+std::uint16_t transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume,
+                              ScreenVertex& screen) {
   const glm::dvec4 clip = view.projection * glm::dvec4(position, 1.0);
   unsigned place = 0;
   if (clip.z > clip.w) place |= kBehindNear;
@@ -35,17 +43,8 @@ void transformVertex(const glm::dvec3& position, const View& view, const ClipVol
   const double largest = std::abs(position.x) + std::abs(position.y) + std::abs(position.z);
   if (!(largest <= std::numeric_limits<float>::max()) || !std::isfinite(clip.x + clip.y + clip.z + clip.w))
     place |= kUnusable;
-  geometry.positions[i] = position;
-  geometry.screen[i] = toScreen(clip, view);
-  geometry.places[i] = std::uint16_t(place);
-}
-
-}  // namespace
-
-ScreenVertex toScreen(const glm::dvec4& clip, const View& view) {
-  const double inverse_w = 1.0 / clip.w;
-  return {(0.5 + 0.5 * (clip.x * inverse_w)) * view.size.x - view.sample.x,
-          (0.5 - 0.5 * (clip.y * inverse_w)) * view.size.y - view.sample.y, clip.z * inverse_w};
+  screen = toScreen(clip, view);
+  return std::uint16_t(place);
 }
 
 std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
@@ -99,9 +98,9 @@ Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> obj
       const std::vector<glm::vec3>& positions = object->mesh->positions;
       const std::size_t end = std::min(range.end(), object->first_vertex + positions.size());
       for (; i < end; ++i) {
-        const glm::dvec3 position(object->object_to_view *
-                                  glm::dvec4(positions[i - object->first_vertex], 1.0));
-        transformVertex(position, view, volume, i, geometry);
+        geometry.positions[i] =
+            glm::dvec3(object->object_to_view * glm::dvec4(positions[i - object->first_vertex], 1.0));
+        geometry.places[i] = transformVertex(geometry.positions[i], view, volume, geometry.screen[i]);
       }
     }
   });

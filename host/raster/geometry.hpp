@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "raster/clip.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 
@@ -60,6 +61,10 @@ struct Geometry {
 
 /// Perspective division and viewport; w > 0.
 ScreenVertex toScreen(const glm::dvec4& clip, const View& view);
+
+/// Where a vertex, given in view space, appears (`screen`) and lies (VertexPlace bits, returned).
+std::uint16_t transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume,
+                              ScreenVertex& screen);
 
 Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view);
 

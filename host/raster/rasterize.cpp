@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "error.hpp"
@@ -56,8 +57,8 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   planes.emission |= lit_vertices;
   GBuffer gbuffer = emptyGBuffer(view, planes);
   const ViewPlane plane = viewPlane(view);
-  const HoleTest holes{scene, geometry, plane};
-  const ResolveInput input{scene, geometry, plane, shading, vertex_colors};
+  const HoleTest holes{scene, geometry.objects, plane};
+  const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors};
   RasterCounts own_counts;
   if (!counts) counts = &own_counts;
   counts->covering.resize(geometry.triangle_count);
@@ -75,31 +76,32 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   return gbuffer;
 }
 
-DepthMap rasterizeDepth(const Scene& scene, std::span<const std::uint32_t> objects, const View& view) {
+void rasterizeDepth(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+                    const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels) {
   checkView(view);
-  const Geometry geometry = transformObjects(scene, objects, view);
-  const RasterSetup setup = setupTriangles(scene, geometry, view, FaceCulling::kNone);
-  const Bins bins = binTriangles(setup.triangles, view);
+  std::vector<std::uint32_t> used;
+  for (const std::uint32_t run : chosen)
+    if (used.empty() || used.back() != runs.runs[run].object) used.push_back(runs.runs[run].object);
+  const std::vector<PlacedObject> objects = placeObjects(scene, used, view.world_to_view);
+  const RasterSetup setup = setupRuns(scene, runs, chosen, objects, view);
+  const Bins bins = binTriangles(setup.triangles, view, farthest);
 
-  DepthMap map{view.crop_size.x, view.crop_size.y, {}};
-  map.depth.resize(std::size_t(map.width) * map.height);
   const ViewPlane plane = viewPlane(view);
-  const HoleTest holes{scene, geometry, plane};
+  const HoleTest holes{scene, objects, plane};
   tbb::parallel_for(0, bins.size(), [&](int bin) {
-    if (bins.list(bin).empty()) return;
+    if (!farthest.empty() && !std::isfinite(farthest[bin])) return;
     BinPixels pixels;
     drawBinDepth(setup.triangles, bins, bin, holes, pixels);
     const glm::ivec2 origin = bins.origin(bin);
     const glm::ivec2 first = glm::max(origin, view.crop_origin);
     const glm::ivec2 end = glm::min(origin + kBinSize, view.crop_origin + view.crop_size);
     for (int y = first.y; y < end.y; ++y) {
-      const float* row = pixels.depth.data() + (y - origin.y) * kBinSize;
-      std::copy(row + (first.x - origin.x), row + (end.x - origin.x),
-                map.depth.begin() + std::ptrdiff_t(y - view.crop_origin.y) * map.width +
-                    (first.x - view.crop_origin.x));
+      const int in_bin = (y - origin.y) * kBinSize + first.x - origin.x;
+      ShadowTexel* row = texels.data() + std::size_t(y - view.crop_origin.y) * view.crop_size.x +
+                         (first.x - view.crop_origin.x);
+      for (int i = 0; i < end.x - first.x; ++i) row[i] = {pixels.depth[in_bin + i], pixels.label[in_bin + i]};
     }
   });
-  return map;
 }
 
 }  // namespace luciole

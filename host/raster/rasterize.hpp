@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "kernels/shared.h"
 #include "raster/gbuffer.hpp"
+#include "raster/triangle_runs.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 
@@ -22,6 +24,7 @@ struct PlaneSet {
   bool specular = false;
   bool ambient = false;
   bool emission = false;
+  bool facet = false;
 };
 
 /// Triangles on their way: every one is counted once in `submitted`, and in one of the others at most. The
@@ -45,13 +48,14 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
                   RasterCounts* counts = nullptr);
 
-/// A depth map: row-major, reversed depth (0: nothing there), alpha-masked holes left open, no face culled.
-struct DepthMap {
-  int width = 0;
-  int height = 0;
-  std::vector<float> depth;
-};
-DepthMap rasterizeDepth(const Scene& scene, std::span<const std::uint32_t> objects, const View& view);
+/// Draws a depth map of the given runs (ascending indices into runs.runs): the view's crop row by row into
+/// `texels`. Alpha-masked holes are left open and no face is culled. A texel's content does not depend on the
+/// crop, nor on runs that don't reach it.
+/// `farthest`: one for each bin of kBinSize² texels of the whole picture that the crop touches, row by row:
+/// what has a smaller reversed depth may be missing there, and a bin of infinity isn't drawn at all. Empty:
+/// all is drawn.
+void rasterizeDepth(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+                    const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels);
 
 /// The vertices of the given objects as a G-buffer of their own, for Gouraud shading by the same kernels that
 /// shade pixels: vertex i of all (objects in order, each mesh's vertices in order) lies at index i of every

@@ -28,7 +28,7 @@ Lanes<std::uint32_t> trianglesSeen(const BinPixels& pixels, const glm::ivec2& bi
   for (int i = 0; i < kSquarePixels; ++i) {
     const glm::ivec2 step(kSquareLayout.x[i], kSquareLayout.y[i]);
     triangles[i] = whole || part.contains(square + step)
-                       ? pixels.triangle[(in_bin.y + step.y) * kBinSize + in_bin.x + step.x]
+                       ? pixels.label[(in_bin.y + step.y) * kBinSize + in_bin.x + step.x]
                        : kNoTriangle;
   }
   return triangles;
@@ -71,20 +71,24 @@ SquareValues resolveSquare(const ResolveInput& input, const glm::ivec2& first_pi
   return values;
 }
 
+/// Into a plane, from `out` on: the pixels that see something.
+template <class T>
+void store(const Lanes<T>& values, const LaneMask& mask, bool whole, T* out) {
+  if (whole) {
+    std::memcpy(out, values.data(), sizeof values);
+  } else {
+    for (int i = 0; i < kSquarePixels; ++i)
+      if (mask[i]) out[i] = values[i];
+  }
+}
+
 /// Into a group of planes, unless the G-buffer does without it: the pixels that see something.
 void store(std::span<const Lanes<float>> values, std::size_t place, const LaneMask& mask, bool whole,
            Plane& group) {
   if (group.empty()) return;
   const std::size_t stride = group.size() / values.size();
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    float* out = group.data() + c * stride + place;
-    if (whole) {
-      std::memcpy(out, values[c].data(), sizeof values[c]);
-    } else {
-      for (int i = 0; i < kSquarePixels; ++i)
-        if (mask[i]) out[i] = values[c][i];
-    }
-  }
+  for (std::size_t c = 0; c < values.size(); ++c)
+    store(values[c], mask, whole, group.data() + c * stride + place);
 }
 
 void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, std::size_t place,
@@ -101,6 +105,7 @@ void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, st
   store(values.specular, place, drawn, whole, gbuffer.specular);
   store(values.ambient, place, drawn, whole, gbuffer.ambient);
   store(values.emission, place, drawn, whole, gbuffer.emission);
+  if (!gbuffer.facet.empty()) store(values.facet, drawn, whole, gbuffer.facet.data() + place);
 }
 
 }  // namespace

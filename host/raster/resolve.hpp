@@ -12,7 +12,7 @@ namespace luciole {
 /// What a picture's pixels are made of.
 struct ResolveInput {
   const Scene& scene;
-  const Geometry& geometry;
+  const std::vector<PlacedObject>& objects;
   const ViewPlane& plane;
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only

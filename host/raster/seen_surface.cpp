@@ -1,5 +1,7 @@
 #include "raster/seen_surface.hpp"
 
+#include "raster/packed_normal.hpp"
+
 namespace luciole {
 namespace {
 
@@ -21,10 +23,11 @@ Interpolant<glm::dvec3> normals(const Surface& surface, const glm::dvec3& facing
 
 SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   SeenSurface seen;
-  seen.surface = makeSurface(input.scene, input.geometry, triangle, input.plane);
+  seen.surface = makeSurface(input.scene, input.objects, triangle, input.plane);
   const Surface& surface = seen.surface;
   const Mesh& mesh = *surface.object->mesh;
   seen.facing_normal = surface.front_facing ? surface.normal : -surface.normal;
+  seen.facet = packNormal(seen.facing_normal);
   seen.normal = normals(surface, seen.facing_normal, input.shading);
   const bool mapped =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;

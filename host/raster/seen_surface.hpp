@@ -21,6 +21,7 @@ struct Interpolant {
 struct SeenSurface {
   Surface surface;
   glm::dvec3 facing_normal{0.0};   ///< its own, on the viewer's side
+  std::uint32_t facet = 0;         ///< that, by packNormal()
   Interpolant<glm::dvec3> normal;  ///< on the viewer's side, of any length
   Interpolant<glm::dvec2> uv;      ///< zero where no map needs them
   bool colored = false;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "raster/clip.hpp"
 
@@ -55,22 +57,9 @@ void setDepthPlane(const ScreenVertex& a, const ScreenVertex& b, const ScreenVer
   out.depth = a.depth - out.depth_dx * a.x - out.depth_dy * a.y;
 }
 
-void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame, Winding winding,
-                  std::uint32_t number, bool masked, Output& output) {
-  RasterTriangle triangle;
-  for (int i = 0; i < 3; ++i) {
-    const double x = corners[i].x * kSubpixels;
-    const double y = corners[i].y * kSubpixels;
-    if (!(std::isfinite(x) && std::isfinite(y))) return;
-    triangle.x[i] = std::int32_t(std::lrint(std::clamp(x, frame.snap_low.x, frame.snap_high.x)));
-    triangle.y[i] = std::int32_t(std::lrint(std::clamp(y, frame.snap_low.y, frame.snap_high.y)));
-  }
-  const PixelBox box = pixelBox(triangle);
-  const glm::ivec2 crop_last = frame.view.crop_origin + frame.view.crop_size - 1;
-  const glm::ivec2 first = glm::max(box.first, frame.view.crop_origin);
-  const glm::ivec2 last = glm::min(box.last, crop_last);
-  if (first.x > last.x || first.y > last.y) return;
-
+/// Adds a triangle whose x and y are set, and whose box reaches a sample of the crop.
+void emitSnapped(RasterTriangle& triangle, const std::array<ScreenVertex, 3>& corners, Winding winding,
+                 std::uint32_t number, bool masked, Output& output) {
   const std::int64_t area = std::int64_t(triangle.x[1] - triangle.x[0]) * (triangle.y[2] - triangle.y[0]) -
                             std::int64_t(triangle.y[1] - triangle.y[0]) * (triangle.x[2] - triangle.x[0]);
   // A triangle that snapping turned over is dropped: its neighbours overlap where it lies.
@@ -87,21 +76,44 @@ void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame
   output.triangles.push_back(triangle);
 }
 
-void setupTriangle(const Scene& scene, const Geometry& geometry, const PlacedObject& object,
-                   std::uint32_t in_mesh, const Frame& frame, FaceCulling culling, Output& output) {
-  const glm::uvec3 corners = object.mesh->triangles[in_mesh];
-  const std::array<std::size_t, 3> vertices{
-      object.first_vertex + corners[0], object.first_vertex + corners[1], object.first_vertex + corners[2]};
-  const auto place = [&](int i) { return geometry.places[vertices[i]]; };
+void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame, Winding winding,
+                  std::uint32_t number, bool masked, Output& output) {
+  RasterTriangle triangle;
+  for (int i = 0; i < 3; ++i) {
+    const double x = corners[i].x * kSubpixels;
+    const double y = corners[i].y * kSubpixels;
+    if (!(std::isfinite(x) && std::isfinite(y))) return;
+    triangle.x[i] = std::int32_t(std::lrint(std::clamp(x, frame.snap_low.x, frame.snap_high.x)));
+    triangle.y[i] = std::int32_t(std::lrint(std::clamp(y, frame.snap_low.y, frame.snap_high.y)));
+  }
+  const PixelBox box = pixelBox(triangle);
+  const glm::ivec2 crop_last = frame.view.crop_origin + frame.view.crop_size - 1;
+  const glm::ivec2 first = glm::max(box.first, frame.view.crop_origin);
+  const glm::ivec2 last = glm::min(box.last, crop_last);
+  if (first.x > last.x || first.y > last.y) return;
+  emitSnapped(triangle, corners, winding, number, masked, output);
+}
+
+/// Transformed vertices, by whatever index.
+struct Vertices {
+  const glm::dvec3* positions;  ///< view space
+  const ScreenVertex* screen;
+  const std::uint16_t* places;  ///< VertexPlace bits
+};
+
+void setupTriangle(const Scene& scene, const PlacedObject& object, std::uint32_t in_mesh,
+                   const Vertices& vertices, const glm::uvec3& corners, const Frame& frame,
+                   FaceCulling culling, Output& output) {
+  const auto place = [&](int i) { return vertices.places[corners[i]]; };
   const unsigned any = place(0) | place(1) | place(2);
   if ((any & kUnusable) || (place(0) & place(1) & place(2) & kOutsideVolume)) return;
 
   const Material& material = materialOf(scene, object, in_mesh);
   Winding winding = Winding::kAny;
   if (culling == FaceCulling::kBackFaces) {
-    const glm::dvec3& a = geometry.positions[vertices[0]];
+    const glm::dvec3& a = vertices.positions[corners[0]];
     const glm::dvec3 normal =
-        glm::cross(geometry.positions[vertices[1]] - a, geometry.positions[vertices[2]] - a);
+        glm::cross(vertices.positions[corners[1]] - a, vertices.positions[corners[2]] - a);
     const bool counter_clockwise = eyeInFront(normal, a, isPerspective(frame.view));
     if (counter_clockwise == object.mirrored && !material.double_sided) {
       ++output.back_facing;
@@ -113,18 +125,195 @@ void setupTriangle(const Scene& scene, const Geometry& geometry, const PlacedObj
   const std::uint32_t number = object.first_triangle + in_mesh;
   const bool masked = material.alpha_cutoff > 0.0f;
   if (!(any & (kBehindNear | kBeyondFar | kOutsideGuard))) {
-    emitTriangle({geometry.screen[vertices[0]], geometry.screen[vertices[1]], geometry.screen[vertices[2]]},
+    emitTriangle({vertices.screen[corners[0]], vertices.screen[corners[1]], vertices.screen[corners[2]]},
                  frame, winding, number, masked, output);
     return;
   }
   const auto clip = [&](int i) {
-    return frame.view.projection * glm::dvec4(geometry.positions[vertices[i]], 1.0);
+    return frame.view.projection * glm::dvec4(vertices.positions[corners[i]], 1.0);
   };
   const ClipPolygon polygon = clipTriangle({clip(0), clip(1), clip(2)}, frame.volume);
   for (int i = 2; i < polygon.count; ++i)
     emitTriangle({toScreen(polygon.corners[0], frame.view), toScreen(polygon.corners[i - 1], frame.view),
                   toScreen(polygon.corners[i], frame.view)},
                  frame, winding, number, masked, output);
+}
+
+/// The outputs one after another.
+RasterSetup join(std::vector<Output> outputs) {
+  RasterSetup setup;
+  if (outputs.size() == 1) {
+    setup.triangles = std::move(outputs[0].triangles);
+    setup.back_facing = outputs[0].back_facing;
+    return setup;
+  }
+  std::vector<std::size_t> starts(outputs.size());
+  std::size_t total = 0;
+  for (std::size_t run = 0; run < outputs.size(); ++run) {
+    starts[run] = total;
+    total += outputs[run].triangles.size();
+    setup.back_facing += outputs[run].back_facing;
+  }
+  setup.triangles.resize(total);
+  tbb::parallel_for(std::size_t(0), outputs.size(), [&](std::size_t run) {
+    std::copy(outputs[run].triangles.begin(), outputs[run].triangles.end(),
+              setup.triangles.begin() + starts[run]);
+  });
+  return setup;
+}
+
+constexpr std::size_t kRunVertices = 3 * kRunTriangles;  ///< at most
+
+/// A run's vertices, component by component, so that loops over them become vector instructions: the same
+/// values, bit for bit, as those of transformVertex() and emitTriangle().
+struct RunVertices {
+  template <class T>
+  using Of = std::array<T, kRunVertices>;
+  alignas(64) Of<double> view_x, view_y, view_z;  ///< view space
+  alignas(64) Of<double> x, y, depth;             ///< as in ScreenVertex
+  alignas(64) Of<std::int32_t> snapped_x, snapped_y;
+  /// Column (low half) and row of the first sample to the right of the vertex and below it, or at it, from
+  /// the crop's corner, and brought into the crop or one behind its end. So a triangle's box reaches samples
+  /// of the crop where not all of its corners have the same column, nor the same row.
+  alignas(64) Of<std::uint32_t> samples;
+  /// VertexPlace bits; those without a place on the picture are said to lie outside the guard.
+  alignas(64) Of<std::uint32_t> places;
+
+  ScreenVertex screen(std::size_t i) const { return {x[i], y[i], depth[i]}; }
+};
+
+/// One row of a matrix times (x, y, z, 1), as GLM multiplies.
+struct MatrixRow {
+  double x, y, z, w;
+  MatrixRow(const glm::dmat4& m, int row) : x(m[0][row]), y(m[1][row]), z(m[2][row]), w(m[3][row]) {}
+  double times(double a, double b, double c) const { return (x * a + y * b) + (z * c + w); }
+};
+
+/// Returns the places of all together.
+std::uint32_t transformRun(const TriangleRuns& runs, const TriangleRun& run, const PlacedObject& object,
+                           const Frame& frame, RunVertices& out) {
+  const std::size_t count = run.vertex_count;
+  alignas(64) std::array<float, kRunVertices> position_x, position_y, position_z;
+  const std::uint32_t* indices = runs.vertices.data() + run.first_vertex;
+  const glm::vec3* positions = object.mesh->positions.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3& position = positions[indices[i]];
+    position_x[i] = position.x;
+    position_y[i] = position.y;
+    position_z[i] = position.z;
+  }
+  const MatrixRow to_view_x(object.object_to_view, 0), to_view_y(object.object_to_view, 1),
+      to_view_z(object.object_to_view, 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = position_x[i], y = position_y[i], z = position_z[i];
+    out.view_x[i] = to_view_x.times(x, y, z);
+    out.view_y[i] = to_view_y.times(x, y, z);
+    out.view_z[i] = to_view_z.times(x, y, z);
+  }
+  const View& view = frame.view;
+  const MatrixRow to_x(view.projection, 0), to_y(view.projection, 1), to_z(view.projection, 2),
+      to_w(view.projection, 3);
+  const double width = view.size.x, height = view.size.y;
+  const glm::dvec2 sample = view.sample, guard = frame.volume.guard;
+  const glm::dvec2 low = frame.snap_low, high = frame.snap_high;
+  const glm::ivec2 crop_origin = view.crop_origin, crop_size = view.crop_size;
+  // To add and take away this rounds a double below 2⁵¹ to an integer, as std::lrint does.
+  constexpr double kRound = 0x1.8p52;
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  std::uint32_t all = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double vx = out.view_x[i], vy = out.view_y[i], vz = out.view_z[i];
+    const double x = to_x.times(vx, vy, vz), y = to_y.times(vx, vy, vz), z = to_z.times(vx, vy, vz),
+                 w = to_w.times(vx, vy, vz);
+    const double inverse_w = 1.0 / w;
+    const double screen_x = (0.5 + 0.5 * (x * inverse_w)) * width - sample.x;
+    const double screen_y = (0.5 - 0.5 * (y * inverse_w)) * height - sample.y;
+    out.x[i] = screen_x;
+    out.y[i] = screen_y;
+    out.depth[i] = z * inverse_w;
+    const double fine_x = screen_x * kSubpixels, fine_y = screen_y * kSubpixels;
+    const bool placed = (std::abs(fine_x) <= kLargest) & (std::abs(fine_y) <= kLargest);
+    const double sum = x + y + z + w, largest = std::abs(vx) + std::abs(vy) + std::abs(vz);
+    const bool usable = (largest <= double(std::numeric_limits<float>::max())) & (std::abs(sum) <= kLargest);
+    const bool outside_guard = (std::abs(x) > guard.x * w) | (std::abs(y) > guard.y * w) | !placed;
+    const std::uint32_t place = (z > w ? kBehindNear : 0) | (z < 0.0 ? kBeyondFar : 0) |
+                                (x < -w ? kLeftOf : 0) | (x > w ? kRightOf : 0) | (y < -w ? kBelow : 0) |
+                                (y > w ? kAbove : 0) | (outside_guard ? kOutsideGuard : 0) |
+                                (usable ? 0 : kUnusable);
+    out.places[i] = place;
+    all |= place;
+    const double clamped_x = placed ? std::min(std::max(fine_x, low.x), high.x) : 0.0;
+    const double clamped_y = placed ? std::min(std::max(fine_y, low.y), high.y) : 0.0;
+    const auto snapped_x = std::int32_t((clamped_x + kRound) - kRound);
+    const auto snapped_y = std::int32_t((clamped_y + kRound) - kRound);
+    out.snapped_x[i] = snapped_x;
+    out.snapped_y[i] = snapped_y;
+    constexpr std::int32_t kUp = kSubpixels - 1;
+    const std::int32_t column = ((snapped_x + kUp) >> kSubpixelBits) - crop_origin.x;
+    const std::int32_t row = ((snapped_y + kUp) >> kSubpixelBits) - crop_origin.y;
+    out.samples[i] = std::uint32_t(std::min(std::max(column, 0), crop_size.x)) |
+                     std::uint32_t(std::min(std::max(row, 0), crop_size.y)) << 16;
+  }
+  return all;
+}
+
+void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index, const PlacedObject& object,
+              const Frame& frame, Output& output) {
+  const TriangleRun& run = runs.runs[index];
+  RunVertices vertices;
+  constexpr std::uint32_t kUncommon = kBehindNear | kBeyondFar | kOutsideGuard | kUnusable;
+  const std::uint32_t places = transformRun(runs, run, object, frame, vertices);
+
+  // Most triangles are left out here, whole vectors of them at once.
+  const std::uint8_t* corners = runs.corners.data() + index * kRunVertices;
+  const auto corner = [&](std::uint32_t triangle, int c) { return corners[c * kRunTriangles + triangle]; };
+  alignas(64) std::array<std::uint8_t, kRunTriangles> kept{};  // 1: to be drawn, 2: perhaps clipped before
+  for (std::uint32_t i = 0; i < kRunTriangles; ++i) {
+    const std::uint32_t a = vertices.samples[corner(i, 0)], b = vertices.samples[corner(i, 1)],
+                        c = vertices.samples[corner(i, 2)];
+    const std::uint32_t differ = (a ^ b) | (b ^ c);
+    kept[i] = ((differ & 0xffff) != 0) & (differ >> 16 != 0);
+  }
+  if (places & kUncommon) {
+    for (std::uint32_t i = 0; i < kRunTriangles; ++i) {
+      const std::uint32_t a = vertices.places[corner(i, 0)], b = vertices.places[corner(i, 1)],
+                          c = vertices.places[corner(i, 2)];
+      const bool uncommon = (a | b | c) & kUncommon;
+      const bool outside = ((a | b | c) & kUnusable) | (a & b & c & kOutsideVolume);
+      kept[i] = outside ? 0 : uncommon ? 2 : kept[i];
+    }
+  }
+  std::array<std::uint8_t, kRunTriangles> list;
+  std::size_t length = 0;
+  for (std::uint32_t i = 0; i < run.count; ++i) {
+    list[length] = std::uint8_t(i);
+    length += kept[i] != 0;
+  }
+
+  for (std::size_t place = 0; place < length; ++place) {
+    const std::uint32_t i = list[place];
+    const std::array<std::size_t, 3> at{corner(i, 0), corner(i, 1), corner(i, 2)};
+    const std::array<ScreenVertex, 3> screen{vertices.screen(at[0]), vertices.screen(at[1]),
+                                             vertices.screen(at[2])};
+    if (kept[i] == 1) {
+      RasterTriangle triangle;
+      for (int c = 0; c < 3; ++c) {
+        triangle.x[c] = vertices.snapped_x[at[c]];
+        triangle.y[c] = vertices.snapped_y[at[c]];
+      }
+      const bool masked = materialOf(scene, object, run.first + i).alpha_cutoff > 0.0f;
+      emitSnapped(triangle, screen, Winding::kAny, object.first_triangle + run.first + i, masked, output);
+      continue;
+    }
+    std::array<glm::dvec3, 3> positions;
+    std::array<std::uint16_t, 3> own_places;
+    for (int c = 0; c < 3; ++c) {
+      positions[c] = {vertices.view_x[at[c]], vertices.view_y[at[c]], vertices.view_z[at[c]]};
+      own_places[c] = std::uint16_t(vertices.places[at[c]]);
+    }
+    setupTriangle(scene, object, run.first + i, {positions.data(), screen.data(), own_places.data()},
+                  {0, 1, 2}, frame, FaceCulling::kNone, output);
+  }
 }
 
 }  // namespace
@@ -142,26 +331,36 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
     const PlacedObject* object = &objectOfTriangle(geometry.objects, number);
     for (; number < end; ++object) {
       const std::size_t object_end = std::size_t(object->first_triangle) + object->mesh->triangles.size();
-      for (; number < end && number < object_end; ++number)
-        setupTriangle(scene, geometry, *object, number - object->first_triangle, frame, culling,
+      const Vertices vertices{geometry.positions.data() + object->first_vertex,
+                              geometry.screen.data() + object->first_vertex,
+                              geometry.places.data() + object->first_vertex};
+      for (; number < end && number < object_end; ++number) {
+        const std::uint32_t in_mesh = number - object->first_triangle;
+        setupTriangle(scene, *object, in_mesh, vertices, object->mesh->triangles[in_mesh], frame, culling,
                       outputs[run]);
+      }
     }
   });
+  return join(std::move(outputs));
+}
 
-  RasterSetup setup;
-  std::vector<std::size_t> starts(runs);
-  std::size_t total = 0;
-  for (std::size_t run = 0; run < runs; ++run) {
-    starts[run] = total;
-    total += outputs[run].triangles.size();
-    setup.back_facing += outputs[run].back_facing;
+RasterSetup setupRuns(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+                      std::span<const PlacedObject> objects, const View& view) {
+  const Frame frame = makeFrame(view);
+  constexpr std::size_t kTask = 512;  // runs; the faces of most lights' maps have fewer
+  std::vector<const PlacedObject*> object_of(chosen.size());
+  std::size_t object = 0;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (i > 0 && runs.runs[chosen[i]].object != runs.runs[chosen[i - 1]].object) ++object;
+    object_of[i] = &objects[object];
   }
-  setup.triangles.resize(total);
-  tbb::parallel_for(std::size_t(0), runs, [&](std::size_t run) {
-    std::copy(outputs[run].triangles.begin(), outputs[run].triangles.end(),
-              setup.triangles.begin() + starts[run]);
+  std::vector<Output> outputs((chosen.size() + kTask - 1) / kTask);
+  tbb::parallel_for(std::size_t(0), outputs.size(), [&](std::size_t task) {
+    const std::size_t end = std::min(chosen.size(), (task + 1) * kTask);
+    for (std::size_t i = task * kTask; i < end; ++i)
+      setupRun(scene, runs, chosen[i], *object_of[i], frame, outputs[task]);
   });
-  return setup;
+  return join(std::move(outputs));
 }
 
 }  // namespace luciole

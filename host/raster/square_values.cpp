@@ -202,6 +202,7 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   normalize({interpolate(seen.normal, 0, weights), interpolate(seen.normal, 1, weights),
              interpolate(seen.normal, 2, weights)},
             seen.facing_normal, values.normal);
+  values.facet.fill(seen.facet);
   setMaterial(input, seen, weights, values);
   setFootprints(seen, input.plane, meeting, weights, values.footprints);
   return values;
@@ -214,6 +215,7 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.specular, sees_it, out.specular);
   put(values.ambient, sees_it, out.ambient);
   put(values.emission, sees_it, out.emission);
+  put(values.facet, sees_it, out.facet);
   put(values.reflection_map, sees_it, out.reflection_map);
   put(values.emission_map, sees_it, out.emission_map);
   put(values.footprints.u, sees_it, out.footprints.u);

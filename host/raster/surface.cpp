@@ -57,18 +57,20 @@ ViewPlane viewPlane(const View& view) {
   return plane;
 }
 
-Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t triangle,
+Surface makeSurface(const Scene& scene, const std::vector<PlacedObject>& objects, std::uint32_t triangle,
                     const ViewPlane& plane) {
   Surface surface;
-  const PlacedObject& object = objectOfTriangle(geometry.objects, triangle);
+  const PlacedObject& object = objectOfTriangle(objects, triangle);
   const std::uint32_t in_mesh = triangle - object.first_triangle;
   surface.object = &object;
   surface.material = &materialOf(scene, object, in_mesh);
   surface.corners = object.mesh->triangles[in_mesh];
-  const glm::dvec3* positions = geometry.positions.data() + object.first_vertex;
-  const glm::dvec3 a = positions[surface.corners[0]];
-  const glm::dvec3 edge1 = positions[surface.corners[1]] - a;
-  const glm::dvec3 edge2 = positions[surface.corners[2]] - a;
+  const auto position = [&](int i) {
+    return glm::dvec3(object.object_to_view * glm::dvec4(object.mesh->positions[surface.corners[i]], 1.0));
+  };
+  const glm::dvec3 a = position(0);
+  const glm::dvec3 edge1 = position(1) - a;
+  const glm::dvec3 edge2 = position(2) - a;
   const glm::dvec3 cross = glm::cross(edge1, edge2);
   surface.corner = a;
   surface.edge1 = edge1;

@@ -37,7 +37,8 @@ struct Surface {
   glm::dvec3 normal{0.0};  ///< unit, on the front side; (0, 0, 1) where the triangle has no area
   bool front_facing = true;
 };
-Surface makeSurface(const Scene& scene, const Geometry& geometry, std::uint32_t triangle,
+/// `triangle`: its number among those of the objects.
+Surface makeSurface(const Scene& scene, const std::vector<PlacedObject>& objects, std::uint32_t triangle,
                     const ViewPlane& plane);
 
 /// Shares of the three corners in a value at a point.

@@ -98,8 +98,8 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   const glm::dvec4 clip = tracer.view.projection * glm::dvec4(meeting.position, 1);
   if (!(clip.z >= 0 && clip.z <= clip.w)) return std::nullopt;
   if (material.alpha_cutoff > 0 &&
-      isHole(tracer.scene, makeSurface(tracer.scene, tracer.geometry, triangle, tracer.plane), tracer.plane,
-             pixel.x, pixel.y))
+      isHole(tracer.scene, makeSurface(tracer.scene, tracer.geometry.objects, triangle, tracer.plane),
+             tracer.plane, pixel.x, pixel.y))
     return std::nullopt;
   const glm::uvec3 corners = object.mesh->triangles[in_mesh];
   const std::vector<glm::vec3>& normals = object.mesh->normals;

@@ -3,54 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
-
-#include "raster/opacity.hpp"
 
 namespace luciole {
 namespace {
-
-/// Share of its distance from the eye by which a point may lie off its surface. A float position is rounded
-/// in view space, and again relative to the eye, by 2^-24 each; eight times that leaves room for G-buffers of
-/// other programs, which have rounded in world space.
-constexpr double kPointError = 0x1p-20;
-
-/// What decides whether a triangle blocks a ray.
-struct Blockers {
-  const Scene& scene;
-  glm::dvec3 eye;
-  std::vector<PlacedObject> objects;  ///< in world space
-
-  bool passesThrough(const RayMeeting& meeting) const {
-    const PlacedObject& object = objectOfTriangle(objects, meeting.triangle);
-    const std::uint32_t in_mesh = meeting.triangle - object.first_triangle;
-    const glm::uvec3 corners = object.mesh->triangles[in_mesh];
-    return liesInPlane(object, corners, meeting.from) || isHoleAt(object, in_mesh, corners, meeting);
-  }
-
-  /// `from`: relative to the eye.
-  bool liesInPlane(const PlacedObject& object, const glm::uvec3& corners, const glm::dvec3& from) const {
-    const auto corner = [&](int i) {
-      return glm::dvec3(object.object_to_view * glm::dvec4(object.mesh->positions[corners[i]], 1)) - eye;
-    };
-    const glm::dvec3 a = corner(0), normal = glm::cross(corner(1) - a, corner(2) - a);
-    return std::abs(glm::dot(normal, from - a)) <= kPointError * glm::length(from) * glm::length(normal);
-  }
-
-  bool isHoleAt(const PlacedObject& object, std::uint32_t in_mesh, const glm::uvec3& corners,
-                const RayMeeting& meeting) const {
-    Surface surface;
-    surface.object = &object;
-    surface.material = &materialOf(scene, object, in_mesh);
-    surface.corners = corners;
-    if (surface.material->alpha_cutoff <= 0) return false;
-    const Weights weights(1 - meeting.second - meeting.third, meeting.second, meeting.third);
-    TexturePlace place{};
-    if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
-    return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
-  }
-};
 
 /// The cone of directions in which a light is seen: its unit axis, 1 − the cosine of its half angle, and for
 /// a light with a place the distance to its middle.
@@ -78,13 +34,6 @@ double distanceToSphere(double distance, double radius, double cosine) {
 }
 
 }  // namespace
-
-RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
-  auto blockers = std::make_shared<const Blockers>(
-      Blockers{scene, eye, placeObjects(scene, allObjects(scene), glm::dmat4(1))});
-  return buildRayScene(scene, eye,
-                       [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
-}
 
 double lightVisibility(const RayScene& rays, const Light& light, const glm::dvec3& point, int samples,
                        std::uint32_t seed) {

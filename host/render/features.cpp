@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "kernels/shared.h"
-#include "shadow/shadow_maps.hpp"
 
 namespace luciole {
 
@@ -23,9 +22,12 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"AMBIENT", "ambient", "ambient reflection"},
     {"LIGHT_AMBIENT", "light ambient", "ambient light of single lights"},
     {"EMISSION", "emission", "surfaces that glow"},
-    {"PLANAR_SHADOWS", "planar shadows", "shadow maps of directional lights and narrow spots"},
+    {"PARALLEL_SHADOWS", "parallel shadows", "shadow maps of directional lights"},
+    {"PERSPECTIVE_SHADOWS", "perspective shadows", "shadow maps of narrow spots"},
     {"CUBE_SHADOWS", "cube shadows", "shadow maps of point lights and wide spots"},
     {"PCF", "PCF", "filtered shadow lookups"},
+    {"SOFT", "soft shadows", "shadow lookups as wide as the light's size makes them"},
+    {"EXACT", "exact shadows", "shadows known for each pixel and light beforehand"},
     {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
     {"FOG_EXP", "exp fog", "exp(-density z)"},
     {"FOG_EXP2", "exp2 fog", "exp(-(density z)^2)"},
@@ -91,8 +93,12 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
     light_specular |= light.specular != glm::vec3(0.0f);
     if (light.shadow && settings.shadows != ShadowMethod::kOff) {
-      features.set(usesCubeMap(light) ? Feature::kCubeShadows : Feature::kPlanarShadows);
+      features.set(usesCubeMap(light)                      ? Feature::kCubeShadows
+                   : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
+                                                           : Feature::kPerspectiveShadows);
       features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
+      features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
+      features.set(Feature::kExact, settings.shadows == ShadowMethod::kExact);
       features.set(Feature::kOutputShadow, settings.shadow_layer);
     }
   }
@@ -110,7 +116,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
 PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.specular(),
           .ambient = features.has(Feature::kAmbient),
-          .emission = features.has(Feature::kEmission)};
+          .emission = features.has(Feature::kEmission),
+          .facet = features.shadows()};
 }
 
 std::string featureDefines(const FeatureSet& features) {
@@ -121,7 +128,8 @@ std::string featureDefines(const FeatureSet& features) {
 }
 
 std::string mathDefines(const ShadeSettings& settings) {
-  return fmt::format("-DLOG2_DEGREE={} -DEXP2_DEGREE={} ", settings.log2_degree, settings.exp2_degree);
+  return fmt::format("-DLOG2_DEGREE={} -DEXP2_DEGREE={} -DPCF_WIDTH={} ", settings.log2_degree,
+                     settings.exp2_degree, settings.pcf_width);
 }
 
 }  // namespace luciole

@@ -6,6 +6,7 @@
 
 #include "raster/rasterize.hpp"
 #include "scene/scene.hpp"
+#include "shadow/shadow_maps.hpp"
 
 namespace luciole {
 
@@ -24,9 +25,12 @@ enum class Feature : unsigned {
   kAmbient,
   kLightAmbient,
   kEmission,
-  kPlanarShadows,
+  kParallelShadows,
+  kPerspectiveShadows,
   kCubeShadows,
   kPcf,
+  kSoft,
+  kExact,
   kFogLinear,
   kFogExp,
   kFogExp2,
@@ -54,7 +58,9 @@ class FeatureSet {
   void set(Feature feature, bool on = true) { bits_[static_cast<std::size_t>(feature)] = on; }
   bool operator==(const FeatureSet&) const = default;
   bool specular() const { return has(Feature::kPhongSpecular) || has(Feature::kBlinnSpecular); }
-  bool shadows() const { return has(Feature::kPlanarShadows) || has(Feature::kCubeShadows); }
+  bool shadows() const {
+    return has(Feature::kParallelShadows) || has(Feature::kPerspectiveShadows) || has(Feature::kCubeShadows);
+  }
 
  private:
   std::bitset<kFeatureCount> bits_;
@@ -67,7 +73,6 @@ struct SurfaceTraits {
 };
 SurfaceTraits materialTraits(const Scene& scene);
 
-enum class ShadowMethod : std::uint8_t { kOff, kHard, kPcf };
 enum class Culling : std::uint8_t { kNone, kTiles };
 
 /// How to light a G-buffer, apart from the scene.
@@ -77,8 +82,9 @@ struct ShadeSettings {
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;
   bool shadow_layer = false;  ///< also write the share of shadowed lights that reaches each pixel
-  int shadow_size = 4096;     ///< texels a side of a directional light's map (see drawShadowMaps)
-  int log2_degree = 8;        ///< of the polynomials in kernels/math.clh, which lists the degrees there are
+  int pcf_width = 2;          ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6: a tent over a box
+  ShadowLimits shadow_limits{};
+  int log2_degree = 8;  ///< of the polynomials in kernels/math.clh, which lists the degrees there are
   int exp2_degree = 6;
 };
 
@@ -92,7 +98,7 @@ PlaneSet neededPlanes(const FeatureSet& features);
 /// -D options for every row of the table.
 std::string featureDefines(const FeatureSet& features);
 
-/// -D options for the degrees of the polynomials.
+/// -D options for what the settings choose beside features: degrees of polynomials, the width of PCF.
 std::string mathDefines(const ShadeSettings& settings);
 
 }  // namespace luciole

@@ -1,7 +1,13 @@
 #include "render/lighting.hpp"
 
+#include <tbb/parallel_for.h>
+
+#include "raster/packed_normal.hpp"
 #include "render/cull.hpp"
+#include "render/exact_shadows.hpp"
+#include "render/find_needed.hpp"
 #include "render/shade.hpp"
+#include "shadow/shadow_rays.hpp"
 
 namespace luciole {
 namespace {
@@ -62,13 +68,26 @@ std::uint64_t evaluatedPairs(Device& device, const GBuffer& gbuffer, const Light
   return pairs;
 }
 
-GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, bool unlit) {
+/// The shading normals, for a G-buffer that doesn't know its triangles'.
+PackedNormals packNormals(const GBuffer& gbuffer) {
+  const std::size_t pixels = gbuffer.pixels();
+  PackedNormals packed(pixels);
+  tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t i) {
+    const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + pixels], gbuffer.normal[i + 2 * pixels]);
+    if (normal != glm::dvec3(0.0)) packed[i] = packNormal(normal);
+  });
+  return packed;
+}
+
+/// `facet`: must outlive the buffers.
+GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet, bool unlit) {
   return {inputBuffer(device, gbuffer.position),
           inputBuffer(device, gbuffer.normal),
           inputBuffer(device, gbuffer.diffuse),
           inputBuffer(device, gbuffer.specular),
           inputBuffer(device, unlit ? gbuffer.diffuse : gbuffer.ambient),
-          inputBuffer(device, gbuffer.emission)};
+          inputBuffer(device, gbuffer.emission),
+          inputBuffer(device, facet)};
 }
 
 LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
@@ -110,8 +129,14 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   lighting.frame = makeFrame(scene, camera, settings);
   lighting.shift = shiftOf(settings.tile_size);
   if (features.shadows())
-    lighting.host_shadows =
-        timed(stats, "shadow maps", [&] { return drawShadowMaps(scene, view, settings.shadow_size); });
+    lighting.host_shadows = timed(stats, "shadow maps", [&] {
+      return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits);
+    });
+  if (features.has(Feature::kExact)) {
+    lighting.order = spatialOrder(scene.lights);
+    lighting.shadow_rays = timed(
+        stats, "ray tree", [&] { return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3])); });
+  }
   timed(stats, "wait for device", [&] { awaitDevice(device); });
   timed(stats, "prepare lights", [&] {
     if (scene.lighting) lighting.host_lights = prepareLights(scene, camera, lighting.host_shadows);
@@ -119,17 +144,19 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
     lighting.lights = inputBuffer(device, lighting.host_lights);
     lighting.tree = inputBuffer(device, lighting.host_tree.planes);
     lighting.shadow_maps = inputBuffer(device, lighting.host_shadows.maps);
-    lighting.shadow_depths = inputBuffer(device, lighting.host_shadows.depths);
   });
-  lighting.bytes = lighting.host_lights.size() * sizeof(ShadeLight) +
-                   (lighting.host_tree.planes.size() + lighting.host_shadows.depths.size()) * sizeof(float);
+  lighting.bytes =
+      lighting.host_lights.size() * sizeof(ShadeLight) + lighting.host_tree.planes.size() * sizeof(float);
 }
 
-LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features,
+LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
                        const GBuffer& gbuffer, bool count_in_range, Stats& stats) {
   const std::size_t pixels = gbuffer.pixels();
   const std::string defines = featureDefines(features) + lighting.math_defines;
-  const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, lighting.unlit);
+  PackedNormals packed;
+  if (features.shadows() && gbuffer.facet.empty()) packed = packNormals(gbuffer);
+  const PackedNormals& facet = packed.empty() ? gbuffer.facet : packed;
+  const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, facet, lighting.unlit);
   LitPlanes lit;
   LightLists lists;
   const bool culled = features.has(Feature::kLightLists);
@@ -138,8 +165,47 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
     lists = timed(stats, "cull", [&] { return cullLights(device, lighting, buffers, pixels, tests); });
     lit.list_entries = lists.entries;
   }
+  ShadowMaps& shadows = lighting.host_shadows;
+  if (features.shadows() && !shadows.maps.empty()) {
+    const std::vector<std::uint32_t> needed = timed(stats, "find shadow texels", [&] {
+      return findNeeded(device, defines,
+                        {.plane_stride = pixels,
+                         .position = buffers.position,
+                         .normal = buffers.normal,
+                         .lights = lighting.lights,
+                         .light_count = lighting.frame.light_count,
+                         .lists = lists,
+                         .shadow_maps = lighting.shadow_maps,
+                         .shadow_faces = inputBuffer(device, shadows.faces),
+                         .bin_count = shadows.bin_count});
+    });
+    timed(stats, "shadow maps", [&] { drawNeeded(scene, needed, shadows); });
+  }
+  const cl::Buffer shadow_faces = inputBuffer(device, shadows.faces);
+  const cl::Buffer shadow_texels = inputBuffer(device, shadows.texels);
+  if (features.has(Feature::kExact)) {
+    lit.pair_bits = timed(stats, "classify", [&] {
+      const cl::Buffer bounds = inputBuffer(device, shadows.bounds);
+      return classify(device, defines,
+                      {.plane_stride = pixels,
+                       .position = buffers.position,
+                       .normal = buffers.normal,
+                       .lights = lighting.lights,
+                       .light_count = lighting.frame.light_count,
+                       .lists = lists,
+                       .shadow_maps = lighting.shadow_maps,
+                       .shadow_faces = shadow_faces,
+                       .bounds = bounds,
+                       .texel_count = std::max<std::size_t>(shadows.bounds.size(), 1)});
+    });
+    lit.traced = timed(stats, "trace unsure", [&] {
+      return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, lit.pair_bits);
+    });
+  }
+  const cl::Buffer pair_buffer = inputBuffer(device, lit.pair_bits);
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);
+  frame.texel_count = static_cast<uint>(std::max<std::size_t>(shadows.texels.size(), 1));
   lit.color.resize(pixels * (features.has(Feature::kOutputShadow) ? 4 : 3));
   const cl::Buffer image = outputBuffer(device, lit.color.data(), lit.color.size() * sizeof(float));
   timed(stats, "shade", [&] {
@@ -149,7 +215,9 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
            .lights = lighting.lights,
            .lists = lists,
            .shadow_maps = lighting.shadow_maps,
-           .shadow_depths = lighting.shadow_depths,
+           .shadow_faces = shadow_faces,
+           .shadow_texels = shadow_texels,
+           .pair_bits = pair_buffer,
            .image = image});
   });
   timed(stats, "read back",
@@ -158,8 +226,12 @@ LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSe
   lit.evaluated = evaluatedPairs(device, gbuffer, culled ? &lists : nullptr, frame.light_count);
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             lit.color.size();
-  stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes);
+                             facet.size() + lit.color.size();
+  stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
+                                                        shadows.texels.size() * sizeof(ShadowTexel) +
+                                                        shadows.bounds.size() * sizeof(BoundTexel) +
+                                                        lit.pair_bits.size() * sizeof(cl_uint));
+  lit.lists = std::move(lists);
   return lit;
 }
 
@@ -171,11 +243,16 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
   lighting.shift = shiftOf(settings.tile_size);
-  for (cl::Buffer* buffer :
-       {&lighting.lights, &lighting.tree, &lighting.shadow_maps, &lighting.shadow_depths})
+  for (cl::Buffer* buffer : {&lighting.lights, &lighting.tree, &lighting.shadow_maps})
     *buffer = deviceBuffer(device, 0);
+  // A map of nothing, so that its kernel is compiled too.
+  if (features.shadows()) {
+    lighting.host_shadows.maps.emplace_back();
+    lighting.host_shadows.faces.emplace_back();
+    lighting.host_shadows.bin_count = 1;
+  }
   Stats ignored;
-  lightGBuffer(device, lighting, features, empty, false, ignored);
+  lightGBuffer(device, {}, lighting, features, empty, false, ignored);
 }
 
 }  // namespace luciole

@@ -5,10 +5,13 @@
 #include "cl/device.hpp"
 #include "raster/gbuffer.hpp"
 #include "raster/view.hpp"
+#include "render/cull.hpp"
+#include "render/exact_shadows.hpp"
 #include "render/features.hpp"
 #include "render/light_tree.hpp"
 #include "render/shade_lights.hpp"
 #include "render/stats.hpp"
+#include "scene/ray_cast.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
@@ -25,15 +28,17 @@ struct Lighting {
   LightArray host_lights;
   LightTree host_tree;
   ShadowMaps host_shadows;
-  cl::Buffer lights, tree, shadow_maps, shadow_depths;
-  std::size_t bytes = 0;
+  RayScene shadow_rays;              ///< with Feature::kExact only
+  std::vector<std::uint32_t> order;  ///< likewise: the scene's index of each light in host_lights
+  cl::Buffer lights, tree, shadow_maps;
+  std::size_t bytes = 0;  ///< of all that but the shadow maps'
 
   Lighting() = default;
   Lighting(const Lighting&) = delete;
   Lighting& operator=(const Lighting&) = delete;
 };
 
-/// Fills `lighting` for a scene seen by a view of `camera`, drawing the shadow maps that the features ask
+/// Fills `lighting` for a scene seen by a view of `camera`, planning the shadow maps that the features ask
 /// for. The device may still be opening when it is called.
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
@@ -44,11 +49,15 @@ struct LitPlanes {
   Plane color;        ///< r g b, then with Feature::kOutputShadow the shadow layer
   Plane light_count;  ///< lights in range of each pixel, if asked for
   std::uint64_t list_entries = 0;
+  LightLists lists;             ///< that it was lit by, with Feature::kLightLists
+  PairBits pair_bits;           ///< of their entries, with Feature::kExact
+  std::uint64_t traced = 0;     ///< pixel-light pairs whose exact shadow took a ray
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through
 };
 
-/// Culls and shades one G-buffer. `features` may leave out some of what the lighting was prepared for.
-LitPlanes lightGBuffer(Device& device, const Lighting& lighting, const FeatureSet& features,
+/// Culls and shades one G-buffer, drawing those parts of the scene's shadow maps that it looks at and that
+/// weren't drawn before. `features` may leave out some of what the lighting was prepared for.
+LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
                        const GBuffer& gbuffer, bool count_in_range, Stats& stats);
 
 /// Compiles the kernels for these features down to machine code, which OpenCL does at the first launch.

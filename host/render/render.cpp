@@ -44,11 +44,11 @@ FeatureSet fogOnly(const FeatureSet& features) {
 /// The scene's vertices, lit.
 std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
                                      const std::vector<std::uint32_t>& objects, const View& view,
-                                     const Lighting& lighting, Stats& stats) {
+                                     Lighting& lighting, Stats& stats) {
   const FeatureSet features = vertexFeatures(lighting.features);
   const GBuffer vertices = timed(
       stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
-  const LitPlanes lit = lightGBuffer(device, lighting, features, vertices, false, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, vertices, false, stats);
   std::vector<glm::vec3> colors(vertices.pixels());
   for (std::size_t i = 0; i < colors.size(); ++i)
     colors[i] = {lit.color[i], lit.color[i + colors.size()], lit.color[i + 2 * colors.size()]};
@@ -75,6 +75,7 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   addCount(stats, "pixel_lights_evaluated", lit.evaluated);
   addCount(stats, "list_entries", lit.list_entries);
+  if (lit.traced > 0) addCount(stats, "shadow_rays", lit.traced);
   if (lit.light_count.empty()) return;
   double in_range = 0;
   for (const float count : lit.light_count) in_range += count;
@@ -85,6 +86,17 @@ void countTriangles(const RasterCounts& counts, Stats& stats) {
   addCount(stats, "triangles_submitted", counts.submitted);
   addCount(stats, "triangles_back_facing", counts.back_facing);
   addCount(stats, "triangles_outside", counts.outside);
+}
+
+void countShadows(const ShadowMaps& shadows, Stats& stats) {
+  if (shadows.maps.empty()) return;
+  addCount(stats, "shadow_lights", shadows.maps.size());
+  addCount(stats, "shadow_lights_reduced", shadows.reduced_lights);
+  std::uint64_t drawn = 0;
+  for (const PlannedFace& face : shadows.planned) drawn += face.count.x > 0;
+  addCount(stats, "shadow_faces_drawn", drawn);
+  addCount(stats, "shadow_bytes",
+           shadows.texels.size() * sizeof(ShadowTexel) + shadows.bounds.size() * sizeof(BoundTexel));
 }
 
 /// Compiles the kernels of these passes in a thread of its own, once the device is open. The future's value:
@@ -128,7 +140,7 @@ struct Progress {
 };
 
 /// All samples of the pixels that `view` shows.
-Image renderBand(Device& device, const Scene& scene, const RenderSettings& settings, const Prepared& prepared,
+Image renderBand(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
                  View view, RasterCounts& triangles, Progress& progress, Stats& stats) {
   Image picture;
   Plane sum;
@@ -140,7 +152,7 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
     });
     gbuffer.camera = settings.camera;
     const bool count = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount));
-    LitPlanes lit = lightGBuffer(device, prepared.lighting, prepared.features, gbuffer, count, stats);
+    LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer, count, stats);
     countPass(gbuffer, lit, stats);
     timed(stats, "resolve", [&] {
       if (sample == 0) {
@@ -186,7 +198,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
   prepared.planes = neededPlanes(prepared.features);
   if (!scene.lighting) prepared.planes.ambient = false;  // diffuse takes its place
-  if (wants(settings, Aov::kMaterial)) prepared.planes = {true, true, true};
+  if (wants(settings, Aov::kMaterial)) prepared.planes = {true, true, true, prepared.planes.facet};
 
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
@@ -204,6 +216,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     band.crop_size.y = std::min(height, view.crop_size.y - y);
     take(renderBand(device, scene, settings, prepared, band, triangles, progress, stats));
   }
+  countShadows(prepared.lighting.host_shadows, stats);
   countTriangles(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - prepared.objects.size());
 }
@@ -239,7 +252,8 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   }
   RasterCounts triangles;
   GBuffer gbuffer = timed(stats, "rasterize", [&] {
-    return rasterize(scene, objects, view, settings.shading, {true, true, true}, vertex_colors, &triangles);
+    return rasterize(scene, objects, view, settings.shading, {true, true, true, true}, vertex_colors,
+                     &triangles);
   });
   gbuffer.camera = settings.camera;
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
@@ -262,8 +276,9 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;
   const bool count = settings.count_lights || wants(settings, Aov::kLightCount);
-  const LitPlanes lit = lightGBuffer(device, lighting, features, gbuffer, count, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, count, stats);
   countPass(gbuffer, lit, stats);
+  countShadows(lighting.host_shadows, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
   return timed(stats, "resolve", [&] {

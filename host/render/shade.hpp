@@ -10,7 +10,7 @@ namespace luciole {
 
 /// A G-buffer's groups on the device. Absent groups are small dummies.
 struct GBufferBuffers {
-  cl::Buffer position, normal, diffuse, specular, ambient, emission;
+  cl::Buffer position, normal, diffuse, specular, ambient, emission, facet;
 };
 
 struct ShadeArguments {
@@ -19,7 +19,9 @@ struct ShadeArguments {
   const cl::Buffer& lights;         ///< ShadeLight[frame.light_count]
   const LightLists& lists;          ///< with Feature::kLightLists only
   const cl::Buffer& shadow_maps;    ///< ShadowMap[]
-  const cl::Buffer& shadow_depths;  ///< see ShadowMaps::depths
+  const cl::Buffer& shadow_faces;   ///< ShadowFace[]
+  const cl::Buffer& shadow_texels;  ///< ShadowTexel[frame.texel_count]
+  const cl::Buffer& pair_bits;      ///< see classify.cl, with Feature::kExact only
   const cl::Buffer& image;          ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
 };
 

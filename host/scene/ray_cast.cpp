@@ -6,7 +6,11 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "error.hpp"
@@ -48,6 +52,40 @@ RTCRay makeRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& 
   ray.tfar = static_cast<float>(distance);
   ray.mask = ~0u;
   return ray;
+}
+
+constexpr std::size_t kPacketSize = 16;
+/// Packets that a thread takes on at once.
+constexpr std::size_t kPacketsPerTask = 64;
+
+/// Asks one packet, of 1 to 16 rays.
+void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {
+  alignas(64) std::array<int, kPacketSize> valid{};
+  RTCRay16 packet{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RTCRay ray = makeRay(scene, rays[i].from, rays[i].direction, rays[i].distance);
+    packet.org_x[i] = ray.org_x;
+    packet.org_y[i] = ray.org_y;
+    packet.org_z[i] = ray.org_z;
+    packet.dir_x[i] = ray.dir_x;
+    packet.dir_y[i] = ray.dir_y;
+    packet.dir_z[i] = ray.dir_z;
+    packet.tfar[i] = ray.tfar;
+    packet.mask[i] = ray.mask;
+    valid[i] = -1;
+  }
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid.data(), scene.scene.get(), &packet, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid.data(), scene.scene.get(), &context, &packet);
+#endif
+  for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = packet.tfar[i] < 0;
 }
 
 /// Fills three corners a triangle.
@@ -125,6 +163,16 @@ bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& 
   rtcOccluded1(scene.scene.get(), &context, &ray);
 #endif
   return ray.tfar < 0;  // Embree's word for it
+}
+
+void areBlocked(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {
+  const std::size_t packets = (rays.size() + kPacketSize - 1) / kPacketSize;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, packets, kPacketsPerTask), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::size_t first = i * kPacketSize, count = std::min(kPacketSize, rays.size() - first);
+      askPacket(scene, rays.subspan(first, count), blocked.subspan(first, count));
+    }
+  });
 }
 
 }  // namespace luciole

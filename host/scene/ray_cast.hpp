@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -45,5 +46,15 @@ std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, con
 
 /// Whether something is nearer than `distance` metres on the way. Otherwise as castRay.
 bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance);
+
+/// What isBlocked asks.
+struct ShadowRay {
+  glm::dvec3 from;       ///< world
+  glm::dvec3 direction;  ///< unit, world
+  double distance;       ///< metres, ≥ 0; may be infinite
+};
+/// isBlocked of many rays, asked 16 at once by all threads: blocked[i] becomes 1 or 0, one a ray. Fast where
+/// 16 that follow each other start close together and go much the same way; right in any order.
+void areBlocked(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked);
 
 }  // namespace luciole

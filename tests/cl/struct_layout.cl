@@ -32,15 +32,41 @@ __kernel void report_shadow_map(__global uint *out) {
   *out++ = OFFSET(to_map_x);
   *out++ = OFFSET(to_map_y);
   *out++ = OFFSET(to_map_z);
-  *out++ = OFFSET(to_map_w);
   *out++ = OFFSET(depth_scale);
   *out++ = OFFSET(depth_offset);
-  *out++ = OFFSET(texel);
-  *out++ = OFFSET(face_scale);
-  *out++ = OFFSET(offset);
-  *out++ = OFFSET(size);
   *out++ = OFFSET(kind);
-  *out++ = OFFSET(pad);
+  *out++ = OFFSET(first_face);
+  *out++ = OFFSET(face_count);
+}
+
+__kernel void report_shadow_face(__global uint *out) {
+  ShadowFace value;
+  *out++ = sizeof(ShadowFace);
+  *out++ = OFFSET(scale);
+  *out++ = OFFSET(middle_x);
+  *out++ = OFFSET(middle_y);
+  *out++ = OFFSET(low);
+  *out++ = OFFSET(high);
+  *out++ = OFFSET(first);
+  *out++ = OFFSET(width);
+  *out++ = OFFSET(first_bin);
+  *out++ = OFFSET(bins);
+}
+
+__kernel void report_shadow_texel(__global uint *out) {
+  ShadowTexel value;
+  *out++ = sizeof(ShadowTexel);
+  *out++ = OFFSET(depth);
+  *out++ = OFFSET(slopes);
+}
+
+__kernel void report_bound_texel(__global uint *out) {
+  BoundTexel value;
+  *out++ = sizeof(BoundTexel);
+  *out++ = OFFSET(depth);
+  *out++ = OFFSET(step_x);
+  *out++ = OFFSET(step_y);
+  *out++ = OFFSET(others);
 }
 
 __kernel void report_shade_frame(__global uint *out) {
@@ -58,7 +84,7 @@ __kernel void report_shade_frame(__global uint *out) {
   *out++ = OFFSET(light_count);
   *out++ = OFFSET(plane_stride);
   *out++ = OFFSET(fog_radial);
-  *out++ = OFFSET(pad);
+  *out++ = OFFSET(texel_count);
 }
 
 // The members of a frame that came by value, as shade() gets it: a wrong layout of arguments shows here only.
@@ -67,5 +93,5 @@ __kernel void report_frame_argument(__global uint *out, ShadeFrame frame) {
   out[1] = as_uint(frame.eye.w);
   out[2] = as_uint(frame.fog_end);
   out[3] = frame.fog_mode;
-  out[4] = frame.pad;
+  out[4] = frame.texel_count;
 }

@@ -51,12 +51,30 @@ TEST(StructLayout, ListEntry) {
 }
 
 TEST(StructLayout, ShadowMap) {
-  expectLayout("report_shadow_map",
-               {sizeof(ShadowMap), offsetof(ShadowMap, to_map_x), offsetof(ShadowMap, to_map_y),
-                offsetof(ShadowMap, to_map_z), offsetof(ShadowMap, to_map_w),
-                offsetof(ShadowMap, depth_scale), offsetof(ShadowMap, depth_offset),
-                offsetof(ShadowMap, texel), offsetof(ShadowMap, face_scale), offsetof(ShadowMap, offset),
-                offsetof(ShadowMap, size), offsetof(ShadowMap, kind), offsetof(ShadowMap, pad)});
+  expectLayout(
+      "report_shadow_map",
+      {sizeof(ShadowMap), offsetof(ShadowMap, to_map_x), offsetof(ShadowMap, to_map_y),
+       offsetof(ShadowMap, to_map_z), offsetof(ShadowMap, depth_scale), offsetof(ShadowMap, depth_offset),
+       offsetof(ShadowMap, kind), offsetof(ShadowMap, first_face), offsetof(ShadowMap, face_count)});
+}
+
+TEST(StructLayout, ShadowFace) {
+  expectLayout("report_shadow_face",
+               {sizeof(ShadowFace), offsetof(ShadowFace, scale), offsetof(ShadowFace, middle_x),
+                offsetof(ShadowFace, middle_y), offsetof(ShadowFace, low), offsetof(ShadowFace, high),
+                offsetof(ShadowFace, first), offsetof(ShadowFace, width), offsetof(ShadowFace, first_bin),
+                offsetof(ShadowFace, bins)});
+}
+
+TEST(StructLayout, ShadowTexel) {
+  expectLayout("report_shadow_texel",
+               {sizeof(ShadowTexel), offsetof(ShadowTexel, depth), offsetof(ShadowTexel, slopes)});
+}
+
+TEST(StructLayout, BoundTexel) {
+  expectLayout("report_bound_texel",
+               {sizeof(BoundTexel), offsetof(BoundTexel, depth), offsetof(BoundTexel, step_x),
+                offsetof(BoundTexel, step_y), offsetof(BoundTexel, others)});
 }
 
 TEST(StructLayout, ShadeFrame) {
@@ -66,7 +84,7 @@ TEST(StructLayout, ShadeFrame) {
        offsetof(ShadeFrame, fog_color), offsetof(ShadeFrame, fog_density), offsetof(ShadeFrame, eye),
        offsetof(ShadeFrame, fog_end), offsetof(ShadeFrame, fog_scale), offsetof(ShadeFrame, fog_mode),
        offsetof(ShadeFrame, blinn), offsetof(ShadeFrame, light_count), offsetof(ShadeFrame, plane_stride),
-       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, pad)});
+       offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, texel_count)});
 }
 
 TEST(StructLayout, FrameArrivesByValue) {
@@ -75,7 +93,7 @@ TEST(StructLayout, FrameArrivesByValue) {
   frame.eye.w = -2.25f;
   frame.fog_end = 7;
   frame.fog_mode = 42;
-  frame.pad = 43;
+  frame.texel_count = 43;
   EXPECT_EQ(report("report_frame_argument", 5, frame),
             (std::vector<cl_uint>{std::bit_cast<cl_uint>(1.5f), std::bit_cast<cl_uint>(-2.25f),
                                   std::bit_cast<cl_uint>(7.0f), 42, 43}));

@@ -80,6 +80,23 @@ TEST_F(CommandLine, ShadingAGBufferFileEqualsRenderingBitForBit) {
   }
 }
 
+TEST_F(CommandLine, ShadingAGBufferFileEqualsRenderingBitForBitWithShadowsOnCoarseSmoothMeshes) {
+  // Shadows go by the triangles' own normals, which differ most from the shading normals there.
+  test::writeText(folder / "coarse.json", R"({
+    "camera": {"eye": [1.1, 2.3, 4.7], "target": [0.1, 0.4, 0.2]}, "size": [97, 61], "ambient": 0.1,
+    "objects": [{"primitive": "plane", "scale": 5},
+                {"primitive": "sphere", "segments": 9, "translate": [0.2, 0.8, 0], "rotate": [13, 31, 7]}],
+    "lights": [{"type": "directional", "direction": [-1, -0.7, 0.3], "shadow": true},
+               {"type": "point", "position": [-2, 3, 1], "intensity": 4, "shadow": true},
+               {"type": "spot", "position": [3, 4, 2], "direction": [-3, -4, -2], "cutoff": 30, "shadow": true}]})");
+  for (const char* options : {"--shadows hard", "--shadows pcf"}) {
+    const std::string o = options;
+    succeed("luciole render coarse.json -o a.exr " + o);
+    succeed("luciole gbuffer coarse.json -o g.exr && luciole shade g.exr --scene coarse.json -o b.exr " + o);
+    succeed("luciole compare a.exr b.exr --max-abs 0");
+  }
+}
+
 TEST_F(CommandLine, GouraudGBufferShadesToTheGouraudPicture) {
   succeed("luciole render scene.json --shading gouraud -o a.exr");
   succeed(

@@ -34,7 +34,7 @@ TEST(HardPlacement, TinyAndHugeScenesLookTheSame) {
   const glm::ivec2 size(96, 54);
   const auto with_shadows = [](RenderSettings& settings) {
     settings.shade.shadows = ShadowMethod::kPcf;
-    settings.shade.shadow_size = 256;
+    settings.shade.shadow_limits.size = 256;
   };
   const Shot plain = shoot(sceneFromJson(scaledScene(1)), size, with_shadows);
   // A power of two changes exponents only, all the way through: not a bit of the picture, shadows and all.

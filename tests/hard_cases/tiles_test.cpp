@@ -95,7 +95,7 @@ void moveOnePixelAway(ShadowMethod shadows) {
   const glm::ivec2 size(48, 33), odd(21, 17);
   const Shot shot = shoot(sceneFromJson(kWall), size, [&](RenderSettings& settings) {
     settings.shade.shadows = shadows;
-    settings.shade.shadow_size = 128;
+    settings.shade.shadow_limits.size = 128;
   });
   for (const glm::vec3& position : {glm::vec3(0, 0, -kInfinity),
                                     {kInfinity, 0, -5},

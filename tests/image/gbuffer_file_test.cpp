@@ -14,6 +14,7 @@
 #include "error.hpp"
 #include "image/camera_header.hpp"
 #include "image/oiio.hpp"
+#include "raster/packed_normal.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
@@ -53,6 +54,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
   for (Plane* plane : {&g.position, &g.normal, &g.diffuse, &g.ambient, &g.emission})
     plane->assign(3 * stride, 0.0f);
   g.specular.assign(4 * stride, 0.0f);
+  g.facet.assign(stride, 0);
   std::fill(g.position.begin() + std::ptrdiff_t(2 * stride), g.position.end(), -kInf);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -64,6 +66,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
       const glm::dvec2 screen{((x + 0.5) / width * 2 - 1) * width / height, 1 - (y + 0.5) / height * 2};
       setThree(g.position, at, stride, glm::vec3(screen.x * half, screen.y * half, -depth));
       setThree(g.normal, at, stride, glm::normalize(glm::vec3(0.1f * float(i % 7), 0.3f, 1.0f)));
+      g.facet[at] = packNormal(glm::dvec3(i % 5 - 2, i % 3 - 0.3, 0.1 * (i % 101)));
       setThree(g.diffuse, at, stride, glm::vec3(0.1f, 0.01f * float(i % 90), 0.7f));
       setThree(g.specular, at, stride, glm::vec3(0.3f, 0.2f, 0.1f * float(i % 5)));
       g.specular[at + 3 * stride] = float(i % 64);
@@ -132,7 +135,28 @@ TEST(GBufferFile, EveryPlaneSurvivesBitForBit) {
     EXPECT_TRUE(sameBits(read.specular, written.specular));
     EXPECT_TRUE(sameBits(read.ambient, written.ambient));
     EXPECT_TRUE(sameBits(read.emission, written.emission));
+    EXPECT_EQ(read.facet, written.facet);
   }
+}
+
+TEST(GBufferFile, FacetsAreOptional) {
+  const TemporaryFolder folder;
+  GBuffer without = somePicture(3, 2, someCamera());
+  without.facet.clear();
+  writeGBuffer(without, folder / "g.exr", {});
+  EXPECT_TRUE(readGBuffer(folder / "g.exr").facet.empty());
+
+  // Of any length, and the shading normal where they are none.
+  const std::vector<std::string> channels{"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Ng.X", "Ng.Y", "Ng.Z"};
+  writeForeign(folder / "g.exr", 3, 1, channels, [](int x, int, int c) {
+    const float values[] = {0, 0, -4, 0, 0, 2, 0, 3, 0};
+    return c < 6 || x == 0 ? values[c] : x == 1 ? 0.0f : kInf;
+  });
+  const GBuffer g = readGBuffer(folder / "g.exr");
+  ASSERT_EQ(g.facet.size(), g.pixels());
+  EXPECT_EQ(unpackNormal(g.facet[g.index(0, 0)]), glm::dvec3(0, 1, 0));
+  EXPECT_EQ(unpackNormal(g.facet[g.index(1, 0)]), glm::dvec3(0, 0, 1));
+  EXPECT_EQ(unpackNormal(g.facet[g.index(2, 0)]), glm::dvec3(0, 0, 1));
 }
 
 TEST(GBufferFile, CameraAndCropSurviveExactly) {
@@ -285,6 +309,7 @@ TEST(GBufferFile, ErrorsNameFileAndChannel) {
   expectError({"N.X", "N.Y", "N.Z"}, "channel P.X: missing");
   expectError({"N.X", "N.Y", "N.Z", "Z"}, "attribute worldToNDC");
   expectError({"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "diffuse.R"}, "channel diffuse.G: missing");
+  expectError({"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Ng.X", "Ng.Z"}, "channel Ng.Y: missing");
   writeForeign(path, 2, 1, {"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "shininess"},
                [](int x, int, int c) { return c == 6 && x == 1 ? kInf : 1.0f; });
   EXPECT_THAT(errorOf(path), HasSubstr("channel shininess: pixel 1,0 is inf"));

@@ -11,6 +11,7 @@
 #include "kernels/random_scene.hpp"
 #include "raster/view.hpp"
 #include "render/lighting.hpp"
+#include "render/pair_visibility.hpp"
 #include "scene/primitives.hpp"
 
 namespace luciole::test {
@@ -34,7 +35,7 @@ void addObjects(const Camera& camera, Scene& scene) {
   }
 }
 
-/// Twelve in a row have every fog with rows of 1, 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for
+/// Fifteen in a row have every fog with rows of 1, 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for
 /// unwritten where a function is called with it), every shadow method with each of them, and either choice of
 /// all else.
 ///
@@ -52,9 +53,9 @@ void lightPicture(unsigned number) {
   scene.fog = randomFog(static_cast<FogMode>(number / 3 % 4), random);
   addObjects(camera, scene);
   ShadeSettings settings;
-  settings.shadows = static_cast<ShadowMethod>((number + number / 3) % 3);
+  settings.shadows = static_cast<ShadowMethod>((number + number / 3) % 5);
   settings.shadow_layer = true;
-  settings.shadow_size = 64;
+  settings.shadow_limits.size = 64;
   settings.blinn = number % 2 == 1;
   settings.culling = number % 4 == 1 ? Culling::kNone : Culling::kTiles;
 
@@ -64,7 +65,15 @@ void lightPicture(unsigned number) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-  lightGBuffer(device, lighting, features, gbuffer, true, stats);
+  lightGBuffer(device, scene, lighting, features, gbuffer, true, stats);
+  const ShadowMaps& shadows = lighting.host_shadows;
+  if (shadows.texels.empty()) return;
+  std::vector<MapPair> pairs;
+  for (std::uint32_t pixel = 0; pixel < 37; ++pixel)
+    pairs.push_back({pixel, pixel / 9 % std::uint32_t(shadows.maps.size())});
+  GBuffer with_facets = gbuffer;
+  with_facets.facet.resize(gbuffer.pixels());
+  pairVisibility(device, featureDefines(features) + mathDefines(settings), with_facets, shadows, pairs);
 }
 
 void makeMistake(const char* mistake) {

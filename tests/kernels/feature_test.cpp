@@ -32,9 +32,12 @@ const std::vector<Needs>& needs() {
       {kBlinnSpecular, {kDirectionalLights, kSpotLights, kPointLights}},
       {kLightAmbient, {kAmbient}},
       {kLightAmbient, {kSpotLights, kPointLights, kDirectionalLights}},
-      {kPcf, {kPlanarShadows, kCubeShadows}},
-      {kOutputShadow, {kCubeShadows, kPlanarShadows}},
-      {kPlanarShadows, {kDirectionalLights, kSpotLights}},
+      {kPcf, {kParallelShadows, kPerspectiveShadows, kCubeShadows}},
+      {kSoft, {kPerspectiveShadows, kCubeShadows, kParallelShadows}},
+      {kExact, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
+      {kOutputShadow, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
+      {kParallelShadows, {kDirectionalLights}},
+      {kPerspectiveShadows, {kSpotLights}},
       {kCubeShadows, {kPointLights, kSpotLights}},
       {kFogPerChannel, {kFogExp, kFogExp2}},
       {kFogRadial, {kFogLinear, kFogExp, kFogExp2}},
@@ -48,6 +51,11 @@ FeatureSet completed(FeatureSet features) {
     bool met = !features.has(rule.feature);
     for (const Feature other : rule.any_of) met |= features.has(other);
     if (!met) features.set(rule.any_of[0]);
+  }
+  bool chosen = false;
+  for (const Feature method : kShadowMethods) {
+    if (chosen) features.set(method, false);
+    chosen |= features.has(method);
   }
   return features;
 }
@@ -63,9 +71,15 @@ std::set<Pair> pairsIn(const FeatureSet& features) {
   return pairs;
 }
 
-/// The pairs that no set shows: a feature without the one that it cannot do without.
+bool isShadowMethod(std::size_t feature) {
+  return std::find(std::begin(kShadowMethods), std::end(kShadowMethods), static_cast<Feature>(feature)) !=
+         std::end(kShadowMethods);
+}
+
+/// The pairs that no set shows: a feature without the one that it cannot do without, two shadow methods.
 bool impossible(const Pair& pair) {
   const auto [i, i_on, j, j_on] = pair;
+  if (i_on && j_on && isShadowMethod(i) && isShadowMethod(j)) return true;
   for (const Needs& rule : needs()) {
     if (rule.any_of.size() > 1) continue;
     const auto feature = std::size_t(rule.feature), other = std::size_t(rule.any_of[0]);
@@ -141,12 +155,14 @@ Light lightWith(const FeatureSet& features, const std::vector<LightKind>& kinds,
   const bool cone = features.has(Feature::kSpotCone), exponent = features.has(Feature::kSpotExponent);
   light.falloff = cone && (!exponent || random.chance(0.5)) ? SpotFalloff::kCone : SpotFalloff::kExponent;
   light.exponent = exponent ? 12.5f : 0.0f;
-  light.cutoff = glm::radians(
-      features.has(Feature::kPlanarShadows) && !features.has(Feature::kCubeShadows) ? 50.0 : 80.0);
+  // Both sides of what one perspective map can show.
+  const bool one_map = features.has(Feature::kPerspectiveShadows) &&
+                       (!features.has(Feature::kCubeShadows) || random.chance(0.5));
+  light.cutoff = glm::radians(one_map ? 50.0 : 80.0);
   light.inner_cone = 0.5 * light.cutoff;
-  const bool planar = light.kind == LightKind::kDirectional || light.cutoff < glm::radians(60.0);
-  light.shadow = features.has(light.kind != LightKind::kPoint && planar ? Feature::kPlanarShadows
-                                                                        : Feature::kCubeShadows);
+  light.shadow = features.has(light.kind == LightKind::kDirectional ? Feature::kParallelShadows
+                              : usesCubeMap(light)                  ? Feature::kCubeShadows
+                                                                    : Feature::kPerspectiveShadows);
   return light;
 }
 
@@ -183,14 +199,17 @@ Scene sceneWith(const FeatureSet& features, const Camera& camera, Random& random
 /// method, which no scene makes; both have it alike.
 void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const FeatureSet& needed, bool blinn) {
   Device& device = deviceWithLanes(listDevices().at(selectDevice(listDevices(), "")).lanes);
-  FeatureSet all = everyFeature();
-  all.set(Feature::kPcf, needed.has(Feature::kPcf));
+  const FeatureSet all = everyFeature(needed);
+  const ShadowMethod method = needed.has(Feature::kExact)  ? ShadowMethod::kExact
+                              : needed.has(Feature::kSoft) ? ShadowMethod::kSoft
+                              : needed.has(Feature::kPcf)  ? ShadowMethod::kPcf
+                                                           : ShadowMethod::kHard;
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, gbuffer.camera, cameraView(gbuffer.camera, gbuffer.picture_size), needed,
-                  {.blinn = blinn}, lighting, stats);
-  const Plane least = lightGBuffer(device, lighting, needed, gbuffer, false, stats).color;
-  Plane most = lightGBuffer(device, lighting, all, gbuffer, false, stats).color;
+                  {.blinn = blinn, .shadows = method}, lighting, stats);
+  const Plane least = lightGBuffer(device, scene, lighting, needed, gbuffer, false, stats).color;
+  Plane most = lightGBuffer(device, scene, lighting, all, gbuffer, false, stats).color;
   ASSERT_EQ(most.size(), 4 * gbuffer.pixels());
   most.resize(least.size());
   std::size_t different = 0;

@@ -14,9 +14,14 @@
 // Random surfaces and lights that try everything shading does.
 namespace luciole::test {
 
-inline FeatureSet everyFeature() {
+/// The features that choose how shadow maps are looked up, of which a program has one at most.
+inline constexpr Feature kShadowMethods[] = {Feature::kPcf, Feature::kSoft, Feature::kExact};
+
+/// Every feature, and the shadow method of `needed`: that is a choice, which no scene makes.
+inline FeatureSet everyFeature(const FeatureSet& needed = {}) {
   FeatureSet features;
   for (std::size_t i = 0; i < kFeatureCount; ++i) features.set(static_cast<Feature>(i));
+  for (const Feature method : kShadowMethods) features.set(method, needed.has(method));
   return features;
 }
 

@@ -14,8 +14,8 @@ namespace {
 /// All of shading but shadows, which the reference leaves to rays; the frame and the lights choose.
 FeatureSet unshadowed(Culling culling) {
   FeatureSet features = everyFeature();
-  for (const Feature shadow :
-       {Feature::kPlanarShadows, Feature::kCubeShadows, Feature::kPcf, Feature::kOutputShadow})
+  for (const Feature shadow : {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows,
+                               Feature::kPcf, Feature::kSoft, Feature::kExact, Feature::kOutputShadow})
     features.set(shadow, false);
   features.set(Feature::kLightLists, culling == Culling::kTiles);
   return features;
@@ -26,7 +26,7 @@ Plane shadeOn(Device& device, const Scene& scene, const GBuffer& gbuffer, bool b
   Stats stats;
   const FeatureSet features = unshadowed(culling);
   prepareLighting(device, scene, gbuffer.camera, View{}, features, {.blinn = blinn}, lighting, stats);
-  return lightGBuffer(device, lighting, features, gbuffer, false, stats).color;
+  return lightGBuffer(device, scene, lighting, features, gbuffer, false, stats).color;
 }
 
 /// How the bounds did over some pictures.
@@ -146,7 +146,7 @@ TEST_P(ShadeKernel, CullingChangesNoBitOfScatteredPixelsAtTheEdgesOfLights) {
     Lighting lighting;
     Stats stats;
     prepareLighting(device, scene, camera, View{}, features, settings, lighting, stats);
-    return lightGBuffer(device, lighting, features, gbuffer, false, stats).color;
+    return lightGBuffer(device, scene, lighting, features, gbuffer, false, stats).color;
   };
   const Plane all = shaded();
   settings.culling = Culling::kTiles;

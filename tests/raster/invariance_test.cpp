@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <random>
 
 #include "raster/raster_scenes.hpp"
@@ -46,14 +47,14 @@ Scene busyScene() {
   return scene;
 }
 
-constexpr PlaneSet kAll{true, true, true};
+constexpr PlaneSet kAll{true, true, true, true};
 
 TEST(Invariance, ACropIsACutOutBitForBit) {
   const Scene scene = busyScene();
   View view = cameraView(frontCamera(), {211, 167});
   view.sample = {0.3, 0.8};
   const GBuffer whole = draw(scene, view, Shading::kPhong, kAll);
-  const DepthMap whole_depth = rasterizeDepth(scene, allObjects(scene), view);
+  const std::vector<ShadowTexel> whole_depth = depthOf(scene, view);
   for (const glm::ivec4& crop : {glm::ivec4(0, 0, 211, 167),
                                  {17, 23, 100, 90},
                                  {64, 64, 64, 64},
@@ -63,7 +64,7 @@ TEST(Invariance, ACropIsACutOutBitForBit) {
     view.crop_origin = {crop.x, crop.y};
     view.crop_size = {crop.z, crop.w};
     const GBuffer part = draw(scene, view, Shading::kPhong, kAll);
-    const DepthMap part_depth = rasterizeDepth(scene, allObjects(scene), view);
+    const std::vector<ShadowTexel> part_depth = depthOf(scene, view);
     ASSERT_EQ(glm::ivec2(part.width, part.height), view.crop_size);
     EXPECT_EQ(part.picture_size, view.size);
     EXPECT_EQ(part.crop_origin, view.crop_origin);
@@ -81,8 +82,10 @@ TEST(Invariance, ACropIsACutOutBitForBit) {
         expect_same(part.specular, whole.specular, 4);
         expect_same(part.ambient, whole.ambient, 3);
         expect_same(part.emission, whole.emission, 3);
-        ASSERT_EQ(part_depth.depth[std::size_t(y) * crop.z + x],
-                  whole_depth.depth[std::size_t(y + crop.y) * 211 + x + crop.x]);
+        ASSERT_EQ(part.facet[i], whole.facet[j]);
+        ASSERT_TRUE(sameTexel(part_depth[std::size_t(y) * crop.z + x],
+                              whole_depth[std::size_t(y + crop.y) * 211 + x + crop.x]))
+            << x << ',' << y;
       }
   }
 }
@@ -94,7 +97,7 @@ TEST(Invariance, TheNumberOfThreadsChangesNothing) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     RasterCounts counts;
     GBuffer gbuffer = draw(scene, view, Shading::kPhong, kAll, &counts);
-    return std::tuple(gbuffer, rasterizeDepth(scene, allObjects(scene), view).depth, counts.outside);
+    return std::tuple(gbuffer, depthOf(scene, view), counts.outside);
   };
   const auto [one, one_depth, one_outside] = with_threads(1);
   for (const std::size_t threads : {2, 5}) {
@@ -105,7 +108,8 @@ TEST(Invariance, TheNumberOfThreadsChangesNothing) {
     EXPECT_EQ(one.specular, many.specular);
     EXPECT_EQ(one.ambient, many.ambient);
     EXPECT_EQ(one.emission, many.emission);
-    EXPECT_EQ(one_depth, many_depth);
+    EXPECT_EQ(one.facet, many.facet);
+    EXPECT_TRUE(std::ranges::equal(one_depth, many_depth, sameTexel));
     EXPECT_EQ(one_outside, many_outside);
   }
 }
@@ -137,6 +141,7 @@ TEST(Invariance, PlanesNobodyAsksForAreEmpty) {
   EXPECT_TRUE(gbuffer.specular.empty());
   EXPECT_TRUE(gbuffer.ambient.empty());
   EXPECT_TRUE(gbuffer.emission.empty());
+  EXPECT_TRUE(gbuffer.facet.empty());
 }
 
 TEST(Invariance, AnEmptySceneShowsNothing) {

@@ -44,14 +44,23 @@ void picture(benchmark::State& state) {
 
 void depthOnly(benchmark::State& state) {
   const View view = cameraView(scene().cameras.front(), {1024, 1024});
-  measure(state,
-          [&](std::span<const std::uint32_t> objects) { return rasterizeDepth(scene(), objects, view); });
+  const TriangleRuns runs = findRuns(scene());
+  const std::vector<std::uint32_t> all = allRuns(runs);
+  std::vector<ShadowTexel> texels(std::size_t(view.size.x) * view.size.y);
+  measure(state, [&](std::span<const std::uint32_t>) {
+    rasterizeDepth(scene(), runs, all, view, {}, texels);
+    return texels.data();
+  });
 }
 
 /// All of the scene that the camera sees, as the sun sees it.
 void sunShadowMap(benchmark::State& state) {
   const View view = cameraView(scene().cameras.front(), {1920, 1080});
-  measure(state, [&](std::span<const std::uint32_t>) { return drawShadowMaps(scene(), view, 1024); });
+  measure(state, [&](std::span<const std::uint32_t>) {
+    ShadowMaps maps = planShadowMaps(scene(), view, ShadowMethod::kHard, {.size = 1024});
+    drawNeeded(scene(), std::vector<std::uint32_t>(maps.bin_count, 0), maps);
+    return maps;
+  });
 }
 
 BENCHMARK(picture)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -75,6 +76,27 @@ inline GBuffer draw(const Scene& scene, const View& view, Shading shading = Shad
                     PlaneSet planes = {}, RasterCounts* counts = nullptr) {
   const std::vector<std::uint32_t> objects = allObjects(scene);
   return rasterize(scene, objects, view, shading, planes, {}, counts);
+}
+
+/// The depth map of the whole scene: the view's crop, row by row.
+inline std::vector<ShadowTexel> depthOf(const Scene& scene, const View& view) {
+  const TriangleRuns runs = findRuns(scene);
+  // Not cleared, so that a texel that isn't drawn shows.
+  std::vector<ShadowTexel> texels(std::size_t(view.crop_size.x) * view.crop_size.y, {-1.0f, 0xffffffffu});
+  rasterizeDepth(scene, runs, allRuns(runs), view, {}, texels);
+  return texels;
+}
+
+/// The surface's steps of depth a texel, right and down.
+inline glm::dvec2 slopesOf(const ShadowTexel& texel) {
+  return {std::bit_cast<float>(texel.slopes & 0xffff0000u), std::bit_cast<float>(texel.slopes << 16)};
+}
+
+/// Half a unit in the last of the 8 places that a slope keeps, relative.
+constexpr double kSlopeRounding = 0x1p-8;
+
+inline bool sameTexel(const ShadowTexel& a, const ShadowTexel& b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 inline glm::vec3 valueAt(const Plane& group, const GBuffer& gbuffer, int x, int y) {

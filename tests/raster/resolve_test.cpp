@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
+#include "raster/coverage.hpp"
 #include "raster/raster_scenes.hpp"
 
 namespace luciole::test {
@@ -188,12 +192,12 @@ void expectLeftHalfOpen(const Scene& scene) {
   camera.fov_y = 2.0 * std::atan(5.0);  // the rectangle in front fills the picture
   const View view = cameraView(camera, {40, 40});
   const GBuffer gbuffer = draw(scene, view);
-  const DepthMap map = rasterizeDepth(scene, allObjects(scene), view);
+  const std::vector<ShadowTexel> map = depthOf(scene, view);
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
       if (x > 18 && x < 21) continue;  // filtered across the middle
       ASSERT_EQ(positionAt(gbuffer, x, y).z, x < 20 ? -4.0f : -2.0f) << x << ',' << y;
-      ASSERT_EQ(map.depth[y * 40 + x] > 0.75f * float(camera.near) / 2.0f, x > 20) << x << ',' << y;
+      ASSERT_EQ(map[y * 40 + x].depth > 0.75f * float(camera.near) / 2.0f, x > 20) << x << ',' << y;
     }
 }
 
@@ -278,12 +282,79 @@ TEST(DepthMap, HoldsReversedDepthAndCullsNothing) {
   camera.near = 0.5;
   camera.far = 100.0;
   camera.fov_y = M_PI / 2;
-  const DepthMap map = rasterizeDepth(scene, allObjects(scene), cameraView(camera, {40, 30}));
-  ASSERT_EQ(map.depth.size(), 1200u);
-  EXPECT_EQ(map.depth[0], 0.0f);
+  const std::vector<ShadowTexel> map = depthOf(scene, cameraView(camera, {40, 30}));
+  EXPECT_EQ(map[0].depth, 0.0f);
+  EXPECT_EQ(map[0].slopes, 0u);
   // n (f − d) / (d (f − n)) at d = 2, rounded to float.
   const double expected = 0.5 * 98.0 / (2.0 * 99.5);
-  EXPECT_NEAR(map.depth[15 * 40 + 20], expected, kFloatRounding * expected);
+  EXPECT_NEAR(map[15 * 40 + 20].depth, expected, kFloatRounding * expected);
+}
+
+TEST(DepthMap, HoldsTheSurfacesSlopes) {
+  // Planes z = −50 + a·x + b·y under a view whose depth falls by 1 / (far − near) a metre.
+  const View view = pixelView({24, 18});
+  const double depth_a_metre = view.projection[2][2];
+  for (const auto& [a, b] : {std::pair(0.0, 0.0), {1.0, 0.0}, {0.0, -2.5}, {-0.3, 0.7}, {-1.9, -0.001}}) {
+    std::vector<glm::vec3> corners;
+    for (const auto& [x, y] : {std::pair(-20, -20), {20, -20}, {20, 20}, {-20, 20}})
+      corners.push_back({x, y, -50 + a * x + b * y});
+    for (const ShadowTexel& texel : depthOf(meshScene(corners, {{0, 1, 2}, {0, 2, 3}}), view)) {
+      const glm::dvec2 slopes = slopesOf(texel), exact = depth_a_metre * glm::dvec2(a, -b);
+      // The corners' z, up to 128, rounds to float, so that over 40 m a slope is off by 128 · 2⁻²⁴ / 20.
+      const double corner = depth_a_metre * 128 * kFloatRounding / 20;
+      EXPECT_NEAR(slopes.x, exact.x, kSlopeRounding * std::abs(exact.x) + corner) << a << ' ' << b;
+      EXPECT_NEAR(slopes.y, exact.y, kSlopeRounding * std::abs(exact.y) + corner) << a << ' ' << b;
+    }
+  }
+}
+
+TEST(DepthMap, PackedSlopesAreTheNearestOfEightPlaces) {
+  std::mt19937 random(1);
+  const auto unpack = [](std::uint32_t packed) { return slopesOf({0, packed}); };
+  EXPECT_EQ(unpack(packSlopes(0.0f, 0.0f)), glm::dvec2(0));
+  EXPECT_EQ(unpack(packSlopes(-1.5f, 0x1p-60f)), glm::dvec2(-1.5, 0x1p-60));
+  EXPECT_EQ(unpack(packSlopes(1.99999f, -1.99999f)), glm::dvec2(2, -2));  // into the next power of two
+  double largest = 0;
+  for (int i = 0; i < 100000; ++i) {
+    // All steps that the rasterizer makes: up to 10³⁰, both signs.
+    const auto any = [&] {
+      return std::ldexp(1.0f + float(random() % (1u << 23)) * 0x1p-23f, int(random() % 190) - 91) *
+             (random() % 2 ? 1.0f : -1.0f);
+    };
+    const float dx = any(), dy = any();
+    const glm::dvec2 slopes = unpack(packSlopes(dx, dy));
+    ASSERT_LE(std::abs(slopes.x - dx), kSlopeRounding * std::abs(dx)) << dx;
+    ASSERT_LE(std::abs(slopes.y - dy), kSlopeRounding * std::abs(dy)) << dy;
+    largest = std::max(largest, std::abs(slopes.x - dx) / std::abs(dx));
+  }
+  EXPECT_GT(largest, 0.99 * kSlopeRounding);  // the bound is no wider than it must be
+}
+
+TEST(DepthMap, RunsThatDontReachTheViewChangeNothing) {
+  // A grid of 40·40 cells in many runs; the view sees a corner of it.
+  constexpr std::uint32_t kCells = 40;
+  std::mt19937 random(4);
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> triangles;
+  for (std::uint32_t y = 0; y <= kCells; ++y)
+    for (std::uint32_t x = 0; x <= kCells; ++x)
+      positions.push_back({float(x), float(y), -50.0f + 0.01f * float(random() % 1000)});
+  for (std::uint32_t y = 0; y < kCells; ++y)
+    for (std::uint32_t x = 0; x < kCells; ++x) {
+      const std::uint32_t a = y * (kCells + 1) + x;
+      triangles.push_back({a, a + 1, a + kCells + 2});
+      triangles.push_back({a, a + kCells + 2, a + kCells + 1});
+    }
+  const Scene scene = meshScene(positions, triangles);
+  const View view = pixelView({17, 13});  // x to 8.5 and y to 6.5
+  const TriangleRuns runs = findRuns(scene);
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t i = 0; i < runs.runs.size(); ++i)
+    if (runs.runs[i].low.x < 9 && runs.runs[i].low.y < 7) near.push_back(i);
+  ASSERT_LT(near.size(), runs.runs.size() / 2);
+  std::vector<ShadowTexel> few(17 * 13);
+  rasterizeDepth(scene, runs, near, view, {}, few);
+  EXPECT_TRUE(std::ranges::equal(few, depthOf(scene, view), sameTexel));
 }
 
 }  // namespace

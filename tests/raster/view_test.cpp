@@ -82,7 +82,8 @@ TEST(View, ImpossibleSizesAndCropsAreRefused) {
     view.crop_origin = origin;
     view.crop_size = crop;
     EXPECT_THROW(draw(scene, view), InputError);
-    EXPECT_THROW(rasterizeDepth(scene, allObjects(scene), view), InputError);
+    const TriangleRuns runs = findRuns(scene);
+    EXPECT_THROW(rasterizeDepth(scene, runs, allRuns(runs), view, {}, {}), InputError);
   };
   refused({0, 32}, {0, 0}, {0, 32});
   refused({32, 40000}, {0, 0}, {32, 32});

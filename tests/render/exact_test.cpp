@@ -18,7 +18,7 @@ RenderSettings settingsFor(const Scene& scene, glm::ivec2 size) {
   RenderSettings settings;
   settings.size = size;
   settings.camera = scene.cameras.front();
-  settings.shade.shadow_size = 256;  // to save time
+  settings.shade.shadow_limits.size = 256;  // to save time
   return settings;
 }
 

@@ -94,10 +94,13 @@ TEST(Features, TableNamesEveryFeatureOnce) {
 
 TEST(Features, GBufferGroupsFollowTheFeatures) {
   const PlaneSet none = neededPlanes(FeatureSet());
-  EXPECT_FALSE(none.specular || none.ambient || none.emission);
+  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.facet);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kPhongSpecular})).specular);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kAmbient})).ambient);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kEmission})).emission);
+  for (const Feature shadows :
+       {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows})
+    EXPECT_TRUE(neededPlanes(setOf({shadows})).facet);
 }
 
 }  // namespace

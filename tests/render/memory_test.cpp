@@ -47,11 +47,11 @@ constexpr const char* kSun =
 /// Bytes that `settings` say a pixel takes, and those that it does.
 void expectBytesPerPixel(const Scene& scene, RenderSettings settings) {
   settings.camera = scene.cameras.front();
-  settings.shade.shadow_size = 64;
+  settings.shade.shadow_limits.size = 64;
   settings.shade.shadow_layer = wants(settings, Aov::kShadow);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
   PlaneSet planes = neededPlanes(features);
-  if (wants(settings, Aov::kMaterial)) planes = {true, true, true};
+  if (wants(settings, Aov::kMaterial)) planes = {true, true, true, planes.facet};
   const double stated = double(bytesPerPixel(settings, planes, features, scene));
   const glm::ivec2 small(256), large(1024, 2048);
   const auto bytes = [&](glm::ivec2 size) {

@@ -94,10 +94,10 @@ void shadeEveryPair(benchmark::State& state) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device(), scene, gbuffer.camera, View(), features, ShadeSettings(), lighting, stats);
-  lightGBuffer(device(), lighting, features, gbuffer, false, stats);
+  lightGBuffer(device(), scene, lighting, features, gbuffer, false, stats);
   for (auto _ : state) {
     stats.stages.clear();
-    lightGBuffer(device(), lighting, features, gbuffer, false, stats);
+    lightGBuffer(device(), scene, lighting, features, gbuffer, false, stats);
     for (const auto& [stage, milliseconds] : stats.stages)
       if (stage == "shade") state.SetIterationTime(milliseconds / 1000);
   }

@@ -32,7 +32,8 @@ Case caseOf(const SceneJson& json, ShadowMethod shadows) {
   if (!made.scene.size) throw InputError("size is missing");
   made.settings.size = *made.scene.size;
   made.settings.camera = made.scene.cameras.front();
-  made.settings.shade = {.blinn = usesBlinn(*made.scene.size), .shadows = shadows, .shadow_size = 256};
+  made.settings.shade = {
+      .blinn = usesBlinn(*made.scene.size), .shadows = shadows, .shadow_limits = {.size = 256}};
   return made;
 }
 
@@ -155,8 +156,11 @@ TEST(Property, UnusedFeaturesChangeNothing) {
          Stats stats;
          prepareLighting(testDevice(), made.scene, settings.camera,
                          cameraView(settings.camera, settings.size), needed, settings.shade, lighting, stats);
-         const Plane least = lightGBuffer(testDevice(), lighting, needed, gbuffer, false, stats).color;
-         const Plane most = lightGBuffer(testDevice(), lighting, everyFeature(), gbuffer, false, stats).color;
+         const Plane least =
+             lightGBuffer(testDevice(), made.scene, lighting, needed, gbuffer, false, stats).color;
+         const Plane most =
+             lightGBuffer(testDevice(), made.scene, lighting, everyFeature(needed), gbuffer, false, stats)
+                 .color;
          for (std::size_t i = 0; i < least.size(); ++i)
            if (least[i] != most[i])
              return fmt::format("value {}: {:.9g} by the least program, {:.9g} by the full", i, least[i],

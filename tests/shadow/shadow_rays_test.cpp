@@ -9,16 +9,16 @@
 #include "render_json.hpp"
 #include "scene/ray_cast.hpp"
 #include "shadow/shadow_maps.hpp"
+#include "shadow/texel_place.hpp"
 
 namespace luciole::test {
 namespace {
 
 constexpr glm::ivec2 kSize{320, 180};
 
-/// How near to a shadow's edge a map may be wrong, in texels: a filtered lookup reads texels up to 2√2 = 2.8
-/// away, and moves the receiver off its surface by 2√2 · (1.25 + 0.125) = 3.9 at most (light_visibility() in
-/// kernels/shadow.clh).
-constexpr double kEdgeTexels = 4;
+/// How near to a shadow's edge a map may be wrong, in texels: a filtered lookup reads texels whose centres
+/// are up to one away along both of the map's axes.
+constexpr double kEdgeTexels = std::numbers::sqrt2;
 
 /// Pixels that a light would reach if nothing were in its way. The map calls those dark where it lets less
 /// than half through.
@@ -65,27 +65,14 @@ bool isLit(const RayScene& rays, const Light& light, const Surface& surface) {
   return !hit || (hasPlace(light) && hit->distance >= glm::length(way));
 }
 
-/// Side of the map's texels where they meet the surface, metres across the axis that the map looks along.
-double texelSide(const ShadowMap& map, const Light& light, const glm::dvec3& point) {
-  const glm::dvec3 from_light = glm::abs(point - light.position);
-  switch (map.kind) {
-    case kCubeMap:
-      return map.texel * std::max({from_light.x, from_light.y, from_light.z});
-    case kPerspectiveMap:
-      return map.texel * glm::dot(point - light.position, light.direction);
-    default:
-      return map.texel;
-  }
-}
-
 /// Whether one of nine points has another truth: eight around in the triangle's plane, kEdgeTexels away as
 /// the light sees it, and one as far above.
-bool isNearEdge(const RayScene& rays, const Light& light, const ShadowMap& map, const Surface& surface,
+bool isNearEdge(const RayScene& rays, const Light& light, double texel_side, const Surface& surface,
                 bool lit) {
   const glm::dvec3 to_light = glm::normalize(wayToLight(light, surface.point));
   const glm::dvec3 any = std::abs(to_light.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 right = glm::normalize(glm::cross(to_light, any)), up = glm::cross(right, to_light);
-  const double reach = kEdgeTexels * texelSide(map, light, surface.point);
+  const double reach = kEdgeTexels * texel_side;
   const auto differsAt = [&](const glm::dvec3& shift) {
     Surface nearby = surface;
     nearby.point += shift;
@@ -118,7 +105,8 @@ void judge(const Scene& scene, const RayScene& rays, ShadowMethod method, Verdic
                     place = channelIndex(image, "P.X"), direction = channelIndex(image, "N.X"),
                     depth = channelIndex(image, "Z");
   const Light& light = scene.lights.front();
-  const ShadowMap map = drawShadowMaps(scene, cameraView(settings.camera, kSize), 4096).maps.front();
+  const ShadowMaps maps =
+      planShadowMaps(scene, cameraView(settings.camera, kSize), method, settings.shade.shadow_limits);
   const glm::dvec3 eye(settings.camera.camera_to_world[3]);
 
   for (std::size_t i = 0; i < image.pixels.size(); i += channels) {
@@ -131,8 +119,11 @@ void judge(const Scene& scene, const RayScene& rays, ShadowMethod method, Verdic
         0};
     surface.eye_distance = glm::distance(surface.point, eye);
     if (!isExposed(light, surface)) continue;
+    const auto texel = placeOf(maps, maps.maps.front(), surface.point);
+    ASSERT_TRUE(texel) << fmt::format("no texel for {} {} {}", surface.point.x, surface.point.y,
+                                      surface.point.z);
     const bool lit = isLit(rays, light, surface), map_lit = pixel[shadow] >= 0.5f;
-    if (isNearEdge(rays, light, map, surface, lit)) {
+    if (isNearEdge(rays, light, texel->side, surface, lit)) {
       ++verdicts.near_edges;
       verdicts.wrong_near_edges += lit != map_lit;
       continue;

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// Five scenes that are hard for shadow maps, named for what is hard:
+/// - grazing plane: a sun 3 degrees above a plane, with a few posts
+/// - thin wall: a sheet without thickness, a light 2 cm behind it
+/// - picket fence: a hundred pickets of 3 cm under the sun, into the distance
+/// - cube seam: a light in a room of smooth and of flat shapes, the seams of its map across them
+/// - contact: a smooth sphere that touches a plane, a light at its side
+std::vector<Scene> makeShadowScenes();
+
+}  // namespace luciole

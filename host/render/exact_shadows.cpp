@@ -1,0 +1,93 @@
+#include "render/exact_shadows.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+
+#include "machine_memory.hpp"
+#include "shadow/shadow_rays.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr std::size_t kHalf = kPairWords / 2;
+
+/// The pixels of an entry that are unsure, by rays in blocks of some packets.
+void traceEntry(const RayScene& rays, const GBuffer& gbuffer, const Light& light, std::size_t tile,
+                std::span<cl_uint> words) {
+  std::array<ShadowRay, kTilePixels> block;
+  std::array<std::uint8_t, kTilePixels> blocked, pixels;
+  std::size_t count = 0;
+  const std::size_t stride = gbuffer.pixels();
+  for (std::size_t word = 0; word < kHalf; ++word) {
+    for (cl_uint left = words[kHalf + word]; left != 0; left &= left - 1) {
+      const std::size_t pixel = word * 32 + std::size_t(std::countr_zero(left));
+      const float* position = gbuffer.position.data() + tile * kTilePixels + pixel;
+      const glm::dvec4 place(position[0], position[stride], position[2 * stride], 1);
+      block[count] = shadowRay(light, glm::dvec3(gbuffer.camera.camera_to_world * place));
+      pixels[count++] = std::uint8_t(pixel);
+    }
+  }
+  areBlocked(rays, std::span(block).first(count), std::span(blocked).first(count));
+  for (std::size_t i = 0; i < count; ++i)
+    if (!blocked[i]) words[pixels[i] / 32] |= 1u << pixels[i] % 32;
+}
+
+}  // namespace
+
+PairBits classify(Device& device, const std::string& defines, const ClassifyArguments& arguments) {
+  const std::size_t tiles = arguments.plane_stride / kTilePixels;
+  const std::size_t entries =
+      arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * arguments.light_count;
+  requireMemory(double(entries * kPairWords * sizeof(cl_uint)), "the exact shadows of all pixels");
+  PairBits bits(std::max<std::size_t>(entries, 1) * kPairWords);
+  const cl::Buffer result = outputBuffer(device, bits.data(), bits.size() * sizeof(cl_uint));
+  cl::Kernel kernel = makeKernel(device, "classify.cl", "classify", defines);
+  kernel.setArg(0, static_cast<cl_uint>(arguments.plane_stride));
+  kernel.setArg(1, arguments.position);
+  kernel.setArg(2, arguments.normal);
+  kernel.setArg(3, arguments.lights);
+  kernel.setArg(4, static_cast<cl_uint>(arguments.light_count));
+  kernel.setArg(5, arguments.lists.starts);
+  kernel.setArg(6, arguments.lists.list);
+  kernel.setArg(7, arguments.shadow_maps);
+  kernel.setArg(8, arguments.shadow_faces);
+  kernel.setArg(9, arguments.bounds);
+  kernel.setArg(10, static_cast<cl_uint>(arguments.texel_count));
+  kernel.setArg(11, result);
+  launch(device, kernel, tiles, 1);
+  readBuffer(device, result, bits.data(), bits.size() * sizeof(cl_uint));
+  return bits;
+}
+
+std::uint64_t traceUnsure(Device& device, const Scene& scene, const RayScene& rays, const GBuffer& gbuffer,
+                          std::span<const std::uint32_t> order, const LightLists& lists, PairBits& bits) {
+  const std::size_t tiles = gbuffer.pixels() / kTilePixels;
+  std::vector<cl_uint> starts(tiles + 1);
+  std::vector<ListEntry> list(lists.entries);
+  if (lists.tiles > 0) {
+    readBuffer(device, lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
+    readBuffer(device, lists.list, list.data(), list.size() * sizeof(ListEntry));
+  }
+  std::vector<std::uint64_t> unsure(tiles);
+  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
+    const bool lists_all = lists.tiles == 0;
+    const std::size_t first = lists_all ? tile * order.size() : starts[tile];
+    const std::size_t end = lists_all ? first + order.size() : starts[tile + 1];
+    for (std::size_t entry = first; entry < end; ++entry) {
+      const Light& light = scene.lights[order[lists_all ? entry - first : list[entry].light]];
+      const auto words = std::span(bits).subspan(entry * kPairWords, kPairWords);
+      std::uint64_t count = 0;
+      for (std::size_t word = kHalf; word < kPairWords; ++word)
+        count += std::uint64_t(std::popcount(words[word]));
+      if (count > 0) traceEntry(rays, gbuffer, light, tile, words);
+      unsure[tile] += count;
+    }
+  });
+  return std::accumulate(unsure.begin(), unsure.end(), std::uint64_t(0));
+}
+
+}  // namespace luciole

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/ray_cast.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// The scene for rays towards lights, from points that are known to a float's rounding of their distance from
+/// `eye` (world). A triangle in whose plane such a point lies lets its ray through, and so do the holes of a
+/// material's mask, decided at the textures' finest level. It refers to the scene, which must outlive it.
+RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye);
+
+/// From a point to a light's middle; world space.
+ShadowRay shadowRay(const Light& light, const glm::dvec3& point);
+
+}  // namespace luciole

@@ -1,0 +1,20 @@
+// What shadow maps say of single points and lights: for measuring how often they are wrong.
+#include "features.clh"
+#include "lanes.clh"
+#include "math.clh"
+#include "shadow.clh"
+#include "shared.h"
+
+// position: planes of `stride` floats, x y z, view space; facet: see shade.cl. A row of LANES points shares its light, whose map is
+// map_of_row. visibility: one float a point, in [0, 1].
+__kernel void pair_visibility(uint stride, __global const float *position, __global const uint *facet,
+                              __global const uint *map_of_row, __global const ShadowMap *maps,
+                              __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,
+                              __global float *visibility) {
+#if SHADOWS
+  uint row = get_global_id(0), first = row * LANES;
+  vec3L normal = unpack_normal(*(__global const intL *)(facet + first));
+  MapPoint point = map_point(maps + map_of_row[row], faces, load_vec3(position + first, stride), normal);
+  store_lanes(visibility + first, map_lookup(maps + map_of_row[row], faces, texels, texel_count, point));
+#endif
+}

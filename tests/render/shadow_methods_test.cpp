@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "kernels/probe.hpp"
+#include "render_json.hpp"
+
+// The ways to look shadows up, in whole pictures.
+namespace luciole::test {
+namespace {
+
+constexpr const char* kScene = R"({
+  "camera": {"eye": [3, 2.5, 6], "target": [0, 0.5, 0], "near": 0.1, "far": 50}, "ambient": [0.02, 0.02, 0.03],
+  "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
+  "objects": [{"primitive": "plane", "scale": 20, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"},
+              {"primitive": "torus", "translate": [1, 0.5, 2], "rotate": [60, 0, 20], "material": "m"}],
+  "lights": [{"type": "directional", "direction": [-1, -2, -1], "intensity": 0.5, "angle": 3, "shadow": true},
+             {"type": "point", "position": [1, 2, 2], "range": 4, "radius": 0.1, "shadow": true, "color": [1, 0.5, 0.2]},
+             {"type": "point", "position": [-1, 3, 1], "range": 9, "color": [0.2, 0.5, 1]},
+             {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "cutoff": 40, "radius": 0.1, "shadow": true}]})";
+
+class ShadowMethods : public testing::TestWithParam<ShadowMethod> {};
+
+TEST_P(ShadowMethods, PictureIsTheSameForEveryCullingTileAndWidth) {
+  const Scene scene = sceneFromJson(kScene);
+  const auto render = [&](int lanes, Culling culling, int tile_size) {
+    RenderSettings settings;
+    settings.size = {93, 70};
+    settings.camera = scene.cameras.front();
+    settings.aovs = {Aov::kShadow};
+    settings.shade.shadows = GetParam();
+    settings.shade.shadow_limits.size = 256;
+    settings.shade.culling = culling;
+    settings.shade.tile_size = tile_size;
+    Stats stats;
+    return renderScene(deviceWithLanes(lanes), scene, settings, stats).pixels;
+  };
+  auto expected = render(16, Culling::kTiles, 4);
+  for (const int lanes : kAllLanes) {
+    // A single lane contracts products with the scalars of soft's disc into sums, which rows of lanes can't:
+    // places differ by a rounding.
+    if (GetParam() == ShadowMethod::kSoft && lanes == 1) expected = render(1, Culling::kTiles, 4);
+    EXPECT_EQ(render(lanes, Culling::kNone, 4), expected) << lanes << " lanes";
+    for (const int tile_size : {4, 8, 16})
+      EXPECT_EQ(render(lanes, Culling::kTiles, tile_size), expected)
+          << lanes << " lanes, tiles of " << tile_size;
+    if (lanes == 1) expected = render(16, Culling::kTiles, 4);
+  }
+}
+
+TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
+  Scene scene = sceneFromJson(kScene);
+  for (int i = 0; i < 1000; ++i) {
+    Light light;
+    light.position = {0.37 * (i % 32) - 6, 0.5 + 0.01 * (i % 7), 0.37 * (i / 32) - 6};
+    light.range = 1.5f;
+    light.diffuse = glm::vec3(0.1f);
+    light.shadow = true;
+    scene.lights.push_back(light);
+  }
+  RenderSettings settings;
+  settings.size = {160, 90};
+  settings.camera = scene.cameras.front();
+  settings.shade.shadows = GetParam();
+  settings.shade.shadow_limits.bytes = std::size_t(64) << 20;
+  Stats stats;
+  renderScene(testDevice(), scene, settings, stats);
+  const auto count = [&](const std::string& name) {
+    for (const auto& [known, value] : stats.counts)
+      if (known == name) return value;
+    return ~std::uint64_t(0);
+  };
+  EXPECT_EQ(count("shadow_lights"), 1003u);
+  EXPECT_GT(count("shadow_lights_reduced"), 0u);
+  EXPECT_GT(count("shadow_bytes"), 0u);
+  EXPECT_LE(count("shadow_bytes"), std::uint64_t(64) << 20);
+}
+
+std::string nameOf(const testing::TestParamInfo<ShadowMethod>& test) {
+  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact"};
+  return kNames[int(test.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShadowMethods,
+                         testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
+                                         ShadowMethod::kExact),
+                         nameOf);
+
+}  // namespace
+}  // namespace luciole::test
