@@ -14,7 +14,7 @@ constexpr int kExp2Degrees[] = {2, 3, 4, 5, 7};
 
 constexpr std::pair<ShadowMethod, const char*> kFilters[] = {{ShadowMethod::kHard, "hard"},
                                                              {ShadowMethod::kPcf, "pcf"}};
-constexpr int kShadowSizes[] = {1024, 2048, 4096, 8192};
+constexpr int kShadowSizes[] = {512, 1024, 2048, 4096};
 
 VariantGroup shadingVariants(int lanes) {
   Variant usual{.lanes = lanes, .is_default = true};
