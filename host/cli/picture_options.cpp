@@ -123,7 +123,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command
         .add_option("--shadow-memory", options.shadow_memory,
                     "MiB that all shadow maps may take: where they would take more, they get coarser")
-        ->check(CLI::Range(1, 1 << 20))
+        ->check(CLI::Range(1, 16000))  // fewer texels than 31 bits count
         ->capture_default_str();
     command.add_option("--aov", options.aovs,
                        "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,shadow");

@@ -103,6 +103,51 @@ LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuf
                        .tests = tests});
 }
 
+/// Draws what shading the G-buffer will look at of the scene's shadow maps and isn't there yet.
+void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, const std::string& defines,
+                    const GBufferBuffers& buffers, const LightLists& lists, std::size_t pixels,
+                    Stats& stats) {
+  ShadowMaps& shadows = lighting.host_shadows;
+  const std::vector<std::uint32_t> needed = timed(stats, "find shadow texels", [&] {
+    return findNeeded(device, defines,
+                      {.plane_stride = pixels,
+                       .position = buffers.position,
+                       .normal = buffers.normal,
+                       .lights = lighting.lights,
+                       .light_count = lighting.frame.light_count,
+                       .lists = lists,
+                       .shadow_maps = lighting.shadow_maps,
+                       .shadow_faces = inputBuffer(device, shadows.faces),
+                       .bin_count = shadows.bin_count});
+  });
+  timed(stats, "shadow maps", [&] { drawNeeded(scene, needed, shadows); });
+}
+
+/// The exact shadows of all entries of the lists; `traced`: how many pairs took a ray.
+PairBits decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
+                       const std::string& defines, const GBuffer& gbuffer, const GBufferBuffers& buffers,
+                       const LightLists& lists, const cl::Buffer& shadow_faces, std::uint64_t& traced,
+                       Stats& stats) {
+  const auto& texels = lighting.host_shadows.bounds;
+  PairBits bits = timed(stats, "classify", [&] {
+    return classify(device, defines,
+                    {.plane_stride = gbuffer.pixels(),
+                     .position = buffers.position,
+                     .normal = buffers.normal,
+                     .lights = lighting.lights,
+                     .light_count = lighting.frame.light_count,
+                     .lists = lists,
+                     .shadow_maps = lighting.shadow_maps,
+                     .shadow_faces = shadow_faces,
+                     .bounds = inputBuffer(device, texels),
+                     .texel_count = std::max<std::size_t>(texels.size(), 1)});
+  });
+  traced = timed(stats, "trace unsure", [&] {
+    return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, bits);
+  });
+  return bits;
+}
+
 /// How many lights have each pixel in their range.
 Plane countLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
                   std::size_t pixels) {
@@ -165,43 +210,14 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
     lists = timed(stats, "cull", [&] { return cullLights(device, lighting, buffers, pixels, tests); });
     lit.list_entries = lists.entries;
   }
-  ShadowMaps& shadows = lighting.host_shadows;
-  if (features.shadows() && !shadows.maps.empty()) {
-    const std::vector<std::uint32_t> needed = timed(stats, "find shadow texels", [&] {
-      return findNeeded(device, defines,
-                        {.plane_stride = pixels,
-                         .position = buffers.position,
-                         .normal = buffers.normal,
-                         .lights = lighting.lights,
-                         .light_count = lighting.frame.light_count,
-                         .lists = lists,
-                         .shadow_maps = lighting.shadow_maps,
-                         .shadow_faces = inputBuffer(device, shadows.faces),
-                         .bin_count = shadows.bin_count});
-    });
-    timed(stats, "shadow maps", [&] { drawNeeded(scene, needed, shadows); });
-  }
+  if (features.shadows() && !lighting.host_shadows.maps.empty())
+    drawShadowMaps(device, scene, lighting, defines, buffers, lists, pixels, stats);
+  const ShadowMaps& shadows = lighting.host_shadows;
   const cl::Buffer shadow_faces = inputBuffer(device, shadows.faces);
   const cl::Buffer shadow_texels = inputBuffer(device, shadows.texels);
-  if (features.has(Feature::kExact)) {
-    lit.pair_bits = timed(stats, "classify", [&] {
-      const cl::Buffer bounds = inputBuffer(device, shadows.bounds);
-      return classify(device, defines,
-                      {.plane_stride = pixels,
-                       .position = buffers.position,
-                       .normal = buffers.normal,
-                       .lights = lighting.lights,
-                       .light_count = lighting.frame.light_count,
-                       .lists = lists,
-                       .shadow_maps = lighting.shadow_maps,
-                       .shadow_faces = shadow_faces,
-                       .bounds = bounds,
-                       .texel_count = std::max<std::size_t>(shadows.bounds.size(), 1)});
-    });
-    lit.traced = timed(stats, "trace unsure", [&] {
-      return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, lit.pair_bits);
-    });
-  }
+  if (features.has(Feature::kExact))
+    lit.pair_bits = decideShadows(device, scene, lighting, defines, gbuffer, buffers, lists, shadow_faces,
+                                  lit.traced, stats);
   const cl::Buffer pair_buffer = inputBuffer(device, lit.pair_bits);
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);

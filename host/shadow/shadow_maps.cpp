@@ -279,13 +279,13 @@ PlannedMap planParallel(const Light& light, const Plan& plan, int size) {
   return planned;
 }
 
-/// Distance that a light with a place can cast shadows over: its range, or to the scene's farthest corner.
+/// Distance that a light with a place can cast shadows over: its range, or to the scene's farthest corner
+/// where that is less.
 double lightReach(const Light& light, const Bounds& scene) {
-  if (std::isfinite(light.range)) return light.range;
-  double reach = kSmallestLength;
+  double farthest = kSmallestLength;
   for (const glm::dvec3& corner : boxCorners(scene))
-    reach = std::max(reach, glm::distance(corner, light.position));
-  return reach * 1.001;
+    farthest = std::max(farthest, glm::distance(corner, light.position));
+  return std::min(double(light.range), farthest * 1.001);
 }
 
 /// Adds a face that shows tangents up to `tangent`, and the border on each side.

@@ -474,6 +474,28 @@ TEST(ShadowMaps, FloorThatIsWideBeyondMeasureIsDrawn) {
   EXPECT_EQ(drawn, area);
 }
 
+TEST(ShadowMaps, OccludersNearALightOfAHugeRangeCastShadows) {
+  // A sheet 10 cm under a lamp hides 2 m of the floor, 1 m below, to each side.
+  const Image image = renderJson(R"({"camera": {"eye": [0, 0.5, 4], "target": [0, 0, 0], "fov_y": 40},
+    "materials": {"m": {"double_sided": true}},
+    "objects": [{"primitive": "plane", "scale": 10},
+                {"primitive": "plane", "scale": 0.4, "translate": [0, 0.9, 0], "material": "m"}],
+    "lights": [{"type": "point", "position": [0, 1, 0], "range": 1e6, "shadow": true}]})",
+                                 {160, 90}, askForShadows);
+  const std::size_t channels = image.channels.size(), shadow = channelIndex(image, "shadow"),
+                    place = channelIndex(image, "P.X");
+  int dark = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += channels) {
+    const float* p = image.pixels.data() + i + place;
+    if (!std::isfinite(image.pixels[i + channelIndex(image, "Z")]) || std::abs(p[0]) > 1.9f ||
+        std::abs(p[1]) > 0.01f || std::abs(p[2]) > 1.9f)
+      continue;
+    EXPECT_EQ(image.pixels[i + shadow], 0.0f) << p[0] << " " << p[2];
+    ++dark;
+  }
+  EXPECT_GT(dark, 1000);
+}
+
 TEST(ShadowMaps, WhatIsBeyondALightsRangeCastsNothing) {
   // Lamps whose range ends below, and above, a slab that hangs between them and the floor.
   Scene scene = terrainScene();
