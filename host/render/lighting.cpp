@@ -255,7 +255,10 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   GBuffer empty;  // one tile of background
   empty.tiles_x = empty.tiles_y = 1;
   empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
-  empty.normal.assign(3 * kTilePixels, 0.0f);
+  // Every group, since rows load theirs before they know that they show nothing.
+  for (Plane* group : {&empty.normal, &empty.diffuse, &empty.ambient, &empty.emission})
+    group->assign(3 * kTilePixels, 0.0f);
+  empty.specular.assign(4 * kTilePixels, 0.0f);
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
   lighting.shift = shiftOf(settings.tile_size);
