@@ -7,6 +7,7 @@
 #include <bit>
 #include <numeric>
 
+#include "error.hpp"
 #include "machine_memory.hpp"
 #include "shadow/shadow_rays.hpp"
 
@@ -42,7 +43,10 @@ PairBits classify(Device& device, const std::string& defines, const ClassifyArgu
   const std::size_t tiles = arguments.plane_stride / kTilePixels;
   const std::size_t entries =
       arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * arguments.light_count;
-  requireMemory(double(entries * kPairWords * sizeof(cl_uint)), "the exact shadows of all pixels");
+  requireMemory(double(entries) * (kPairWords * sizeof(cl_uint)), "the exact shadows of all pixels");
+  if (entries > 0xffffffffu / kPairWords)
+    throw MachineError(
+        "exact shadows of more than 2^28 pairs of a tile and a light: use fewer lights or a smaller picture");
   PairBits bits(std::max<std::size_t>(entries, 1) * kPairWords);
   const cl::Buffer result = outputBuffer(device, bits.data(), bits.size() * sizeof(cl_uint));
   cl::Kernel kernel = makeKernel(device, "classify.cl", "classify", defines);
