@@ -3,8 +3,10 @@
 //
 //   I = ambient·Ka + Σ lights falloff·spot·( Ia·Ka + visibility·( Id·Kd·max(N·L,0) + Is·Ks·(R·V)ⁿ ) ) + emission
 //
-// then fog. The sums over the lights leave the material out, which is multiplied once at the end. A light that culling
-// may leave out adds exactly zero, so it does not matter whether a list holds it.
+// or what another model than Phong's puts in the inner brackets, see reflect(); then fog. The sums over the lights leave the
+// material out, which is multiplied once at the end. A light that culling may leave out adds exactly zero, so it does not matter
+// whether a list holds it.
+#include "cook_torrance.clh"
 #include "falloff.clh"
 #include "features.clh"
 #include "fog.clh"
@@ -14,6 +16,10 @@
 #include "phong.clh"
 #include "shadow.clh"
 #include "shared.h"
+#include "toon.clh"
+
+// Whether the picture's model is this one; a program for a single model knows.
+#define CHOSEN(compiled, number) ((compiled) && (MODELS == 1 || model == (number)))
 
 #define ROWS ROWS_PER_ITEM(LANES, LIGHT_LISTS)
 #define EACH_ROW(row) _Pragma("unroll") for (uint row = 0; row < ROWS; ++row)
@@ -28,8 +34,15 @@ typedef struct {
   vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
   vec3L ambient_sum, diffuse_sum, specular_sum;
+#if GRAZING
+  Gloss gloss;
+  vec3L grazing_sum;
+#endif
 #if LONG_SUMS
   LongSum long_ambient, long_diffuse, long_specular;  // the sums above are their open blocks,
+#if GRAZING
+  LongSum long_grazing;
+#endif
   intL terms;                                         // of so many terms
   uint fullest;                                       // and none of more than this
 #endif
@@ -51,7 +64,11 @@ typedef struct {
   floatL n_dot_l;
   floatL reach;      // falloff × spot effect
   floatL strength;   // reach × visibility where the surface faces the light, else 0
-  floatL highlight;
+  floatL diffuse;    // of the strength, the factor of the diffuse colour,
+  floatL highlight;  // and of the specular colour
+#if GRAZING
+  floatL grazing;  // and of what that becomes at a glance
+#endif
 } Pair;
 
 INLINE void meet_light(Pair *pair, const Pixels *pixels, __global const ShadeLight *light) {
@@ -118,21 +135,41 @@ INLINE void cast_shadow(Pair *pair, Pixels *pixels, __global const ShadeLight *l
 }
 #endif
 
-INLINE floatL lobe_spread(const Pair *pair, const Pixels *pixels, uint blinn) {
-  floatL spread = 0.0f;
-#if PHONG_SPECULAR
-#if BLINN_SPECULAR
-  if (!blinn)
+// What the model makes of ABREAST pairs: all that it has to say. Any finite value will do where the surface faces away, for the
+// strength is 0 there.
+INLINE void reflect(Pair *pairs, Pixels *const *pixels, uint model) {
+  if (CHOSEN(TOON, kToonModel)) {
+    EACH_ABREAST(k) pairs[k].diffuse = toon(pairs[k].n_dot_l);
+  } else {
+    EACH_ABREAST(k) pairs[k].diffuse = max_lanes(pairs[k].n_dot_l, (floatL)(0.0f));
+  }
+#if SPECULAR
+#if GRAZING
+  if (CHOSEN(COOK_TORRANCE, kCookTorranceModel)) {
+    EACH_ABREAST(k) {
+      const Pixels *at = pixels[k];
+      vec3L to_light = scale3(pairs[k].to_light, pairs[k].inverse_d);
+      Glint glint = cook_torrance(at->gloss, at->normal, to_light, at->to_eye, pairs[k].n_dot_l);
+      pairs[k].highlight = glint.facing;
+      pairs[k].grazing = glint.grazing;
+    }
+    return;
+  }
+  EACH_ABREAST(k) pairs[k].grazing = 0.0f;
 #endif
-    spread = phong_spread(pair->to_light, pair->inverse_d, pixels->mirrored_eye);
+  // pow_one_minus_half(), a step at a time.
+  floatL spread[ABREAST], log2_cosine[ABREAST];
+  if (CHOSEN(BLINN_PHONG, kBlinnPhongModel)) {
+    EACH_ABREAST(k) spread[k] = blinn_spread(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->to_eye, pixels[k]->normal);
+  } else {
+    EACH_ABREAST(k) spread[k] = phong_spread(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->mirrored_eye);
+  }
+  EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(spread[k]);
+  EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels[k]->shininess, log2_cosine[k]);
+  if (CHOSEN(TOON, kToonModel)) {
+    EACH_ABREAST(k) pairs[k].highlight = toon_highlight(pairs[k].highlight);
+  }
 #endif
-#if BLINN_SPECULAR
-#if PHONG_SPECULAR
-  if (blinn)
-#endif
-    spread = blinn_spread(pair->to_light, pair->inverse_d, pixels->to_eye, pixels->normal);
-#endif
-  return spread;
 }
 
 #if LONG_SUMS
@@ -142,6 +179,9 @@ INLINE void close_full_blocks(Pixels *pixels) {
   close_block(&pixels->long_ambient, &pixels->ambient_sum, full);
   close_block(&pixels->long_diffuse, &pixels->diffuse_sum, full);
   close_block(&pixels->long_specular, &pixels->specular_sum, full);
+#if GRAZING
+  close_block(&pixels->long_grazing, &pixels->grazing_sum, full);
+#endif
   pixels->terms = full ? (intL)(0) : pixels->terms;
   pixels->fullest = (uint)largest_lane(pixels->terms);
 }
@@ -162,15 +202,18 @@ INLINE void add_pair(Pixels *pixels, const Pair *pair, __global const ShadeLight
 #if LIGHT_AMBIENT
   add_scaled(&pixels->ambient_sum, light->ambient, pair->reach);
 #endif
-  add_scaled(&pixels->diffuse_sum, light->diffuse, pair->strength * max_lanes(pair->n_dot_l, (floatL)(0.0f)));
+  add_scaled(&pixels->diffuse_sum, light->diffuse, pair->strength * pair->diffuse);
 #if SPECULAR
   add_scaled(&pixels->specular_sum, light->specular, pair->strength * pair->highlight);
+#endif
+#if GRAZING
+  add_scaled(&pixels->grazing_sum, light->specular, pair->strength * pair->grazing);
 #endif
 }
 
 // Adds the first `count` of ABREAST pairs, which are all there: light[k] and the row pixels[k], met by entry[k] of the lists.
 INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *light, uint count,
-                       const uint *entry, const Shadows *shadows, uint blinn, bool long_sums) {
+                       const uint *entry, const Shadows *shadows, uint model, bool long_sums) {
   Pair pairs[ABREAST];
   intL lit = 0;
   EACH_ABREAST(k) {
@@ -189,13 +232,7 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
   EACH_ABREAST(k) lit |= pairs[k].strength > 0.0f;
 #endif
   if (!any_lane(lit)) return;
-#if SPECULAR
-  // pow_one_minus_half(), a step at a time.
-  floatL spread[ABREAST], log2_cosine[ABREAST];
-  EACH_ABREAST(k) spread[k] = lobe_spread(pairs + k, pixels[k], blinn);
-  EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(spread[k]);
-  EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels[k]->shininess, log2_cosine[k]);
-#endif
+  reflect(pairs, pixels, model);
 #if LONG_SUMS
   if (long_sums) {
     EACH_ABREAST(k) {
@@ -226,12 +263,18 @@ INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global con
   pixels->ambient_sum = dark;
   pixels->diffuse_sum = dark;
   pixels->specular_sum = dark;
+#if GRAZING
+  pixels->grazing_sum = dark;
+#endif
 #if LONG_SUMS
   if (long_sums) {
     LongSum nothing = {dark, dark};
     pixels->long_ambient = nothing;
     pixels->long_diffuse = nothing;
     pixels->long_specular = nothing;
+#if GRAZING
+    pixels->long_grazing = nothing;
+#endif
     pixels->terms = 0;
     pixels->fullest = 0;
   }
@@ -252,6 +295,9 @@ INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global con
   pixels->to_eye = normalize_lanes(pixels->to_eye);
   pixels->mirrored_eye = mirror(pixels->to_eye, pixels->normal);
 #endif
+#if GRAZING
+  pixels->gloss = cook_torrance_gloss(pixels->shininess, dot3(pixels->normal, pixels->to_eye));
+#endif
 #endif
 }
 
@@ -268,6 +314,9 @@ INLINE vec3L finish_row(Pixels *pixels, ShadeFrame frame, uint first, __global c
     finish_sum(pixels->long_ambient, &pixels->ambient_sum);
     finish_sum(pixels->long_diffuse, &pixels->diffuse_sum);
     finish_sum(pixels->long_specular, &pixels->specular_sum);
+#if GRAZING
+    finish_sum(pixels->long_grazing, &pixels->grazing_sum);
+#endif
   }
 #endif
   vec3L kd = load_vec3(diffuse + first, frame.plane_stride);
@@ -279,6 +328,11 @@ INLINE vec3L finish_row(Pixels *pixels, ShadeFrame frame, uint first, __global c
   seen.x += pixels->specular_sum.x * ks.x;
   seen.y += pixels->specular_sum.y * ks.y;
   seen.z += pixels->specular_sum.z * ks.z;
+#endif
+#if GRAZING
+  seen.x += pixels->grazing_sum.x * grazing_color(ks.x);
+  seen.y += pixels->grazing_sum.y * grazing_color(ks.y);
+  seen.z += pixels->grazing_sum.z * grazing_color(ks.z);
 #endif
 #endif
 #if AMBIENT
@@ -386,7 +440,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
         light[k] = lights + light_of[at];
         met_by[k] = EXACT ? entry_of[at] : 0;
       }
-      add_lights(pixels, light, pairs - pair, met_by, &shadows, frame.blinn, long_sums);
+      add_lights(pixels, light, pairs - pair, met_by, &shadows, frame.model, long_sums);
     }
   }
 #endif

@@ -137,6 +137,8 @@ enum { kPairWords = 2 * kTilePixels / 32 };
 // In place of the depth of the farthest point that looks at a bin, as a float's bits: nothing looks at it.
 #define kNotNeeded 0xffffffffu
 
+enum { kPhongModel = 0, kBlinnPhongModel = 1, kToonModel = 2, kCookTorranceModel = 3 };
+
 enum { kNoFog = 0, kFogLinear = 1, kFogExp = 2, kFogExp2 = 3 };
 
 // What holds for a whole picture.
@@ -149,7 +151,7 @@ typedef struct {
   float fog_end;       // metres
   float fog_scale;     // 1 / (end − start), 1/m
   uint fog_mode;       // kNoFog …
-  uint blinn;          // 1: N·H, 0: R·V
+  uint model;          // kPhongModel …
   uint light_count;
   uint plane_stride;   // floats from a plane to the next of its group
   uint fog_radial;     // 1: fog by distance from the eye, 0: by depth along the view axis

@@ -17,6 +17,15 @@ FOLDER = "fireflies"
 EYE = (0.2, 1.95, 8.5)
 TARGET = (0.2, 1.75, -8.0)
 FOV_Y = 43.0
+# A walk to the pond and back in 120 frames, which end where they begin. The stage is built for the first: from
+# further ahead, and a little beside it, nothing that isn't there comes into the picture.
+WALK = [
+    (1, EYE, TARGET),
+    (31, (-0.55, 2.3, 6.6), (0.8, 1.6, -8.0)),
+    (61, (0.1, 2.6, 4.7), (0.4, 1.4, -8.0)),
+    (91, (1.0, 2.3, 6.6), (-0.3, 1.6, -8.0)),
+    (121, EYE, TARGET),
+]
 BACKDROP = 45.0  # metres ahead of the eye
 FOG_DENSITY = 0.034
 FOG_COLOR = (0.0115, 0.0265, 0.0465)
@@ -505,7 +514,15 @@ def main():
         return {"diffuse": color, "double_sided": True}
 
     scene = {
-        "camera": {"eye": EYE, "target": TARGET, "fov_y": FOV_Y, "near": 0.2, "far": BACKDROP + 3},
+        "camera": {
+            "eye": EYE,
+            "target": TARGET,
+            "fov_y": FOV_Y,
+            "near": 0.2,
+            "far": BACKDROP + 3,
+            "interpolation": "smooth",
+            "keys": [{"frame": frame, "eye": eye, "target": target} for frame, eye, target in WALK],
+        },
         "size": [1280, 720],
         "background": FOG_COLOR,
         "ambient": AMBIENT,

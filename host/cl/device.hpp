@@ -33,7 +33,7 @@ struct Device {
 
   /// The thread of startDevice. Last, so that it has ended before anything it works on goes.
   std::shared_future<void> opening;
-  double milliseconds_to_open = 0;
+  double milliseconds_to_open = 0;  ///< 0 again once a picture's statistics have told it
 };
 
 /// All OpenCL devices of all platforms, in the order the runtime names them. Empty where there is none.

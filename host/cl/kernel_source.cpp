@@ -3,16 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <vector>
+
+#include "embedded_files.hpp"
 
 namespace luciole {
 namespace {
-
-std::string_view embeddedText(std::string_view name) {
-  for (const EmbeddedFile& file : embeddedKernels())
-    if (file.name == name) return file.text;
-  throw std::logic_error(fmt::format("no kernel file '{}'", name));
-}
 
 void appendText(std::string_view name, std::string_view text, std::vector<std::string_view>& seen,
                 std::string& source) {
@@ -30,7 +26,7 @@ void appendText(std::string_view name, std::string_view text, std::vector<std::s
         line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
     if (std::find(seen.begin(), seen.end(), included) == seen.end()) {
       seen.push_back(included);
-      appendText(included, embeddedText(included), seen, source);
+      appendText(included, embeddedText(embeddedKernels(), included), seen, source);
       source += fmt::format("#line {} \"kernels/{}\"\n", line_number + 1, name);
     } else {
       source += "\n";
@@ -40,7 +36,9 @@ void appendText(std::string_view name, std::string_view text, std::vector<std::s
 
 }  // namespace
 
-std::string kernelSource(std::string_view name) { return expandKernelSource(name, embeddedText(name)); }
+std::string kernelSource(std::string_view name) {
+  return expandKernelSource(name, embeddedText(embeddedKernels(), name));
+}
 
 std::string expandKernelSource(std::string_view name, std::string_view text) {
   std::vector<std::string_view> seen;

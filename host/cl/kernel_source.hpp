@@ -2,21 +2,8 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace luciole {
-
-/// A file that holds a kernel, or part of one, as it was when the program was built.
-struct EmbeddedFile {
-  std::string_view name;
-  std::string_view text;
-};
-
-/// The files of the folder kernels/.
-const std::vector<EmbeddedFile>& embeddedKernels();
-
-/// Likewise the kernels of tests/kernels that `luciole bench` holds ours against.
-const std::vector<EmbeddedFile>& yardstickKernels();
 
 /// The source of kernels/`name` with its includes put in place, each once, under #line directives so that a
 /// compiler's message names the real file and line. Throws std::logic_error for a name that isn't there.

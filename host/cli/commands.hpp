@@ -16,6 +16,10 @@ struct CommandContext {
   int status = kDone;
 };
 
+/// To be called where an exception was caught: says on standard error, after `where` unless it is empty, what
+/// is wrong, and returns the status that the exception means.
+int tellFailure(const std::string& where);
+
 // Each adds one command to the program; its work runs when the command line names it. They throw InputError
 // and MachineError.
 void addRenderCommand(CLI::App& app, CommandContext& context);
@@ -24,6 +28,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context);
 void addReferenceCommand(CLI::App& app, CommandContext& context);
 void addCompareCommand(CLI::App& app, CommandContext& context);
 void addBenchCommand(CLI::App& app, CommandContext& context);
+void addScaleCommand(CLI::App& app, CommandContext& context);
 void addGenerateCommand(CLI::App& app, CommandContext& context);
 void addDevicesCommand(CLI::App& app, CommandContext& context);
 

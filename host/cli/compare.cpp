@@ -9,7 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "error.hpp"
-#include "image/error_map.hpp"
+#include "image/heat_map.hpp"
 #include "image/write_file.hpp"
 
 namespace luciole {

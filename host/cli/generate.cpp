@@ -1,70 +1,193 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
 
 #include "cli/commands.hpp"
-#include "cli/picture_options.hpp"
 #include "error.hpp"
 #include "image/write_file.hpp"
+#include "raster/visible_points.hpp"
 #include "scene/light_field.hpp"
+#include "scene/light_list.hpp"
+#include "scene/light_range.hpp"
 #include "scene/load_scene.hpp"
+#include "scene/mesh_file.hpp"
 #include "scene/write_scene.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr glm::vec3 kLampColors[]{
-    {1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
-
+/// What was typed; empty where nothing was.
 struct LightsOptions {
-  std::string mesh, output = "-";
-  std::uint64_t count = 1000, seed = 0;
-  std::vector<double> low{-10, 0, -10}, high{10, 10, 10}, colors;
-  double range = 0, intensity = 1;
+  std::string scene, output = "-", shape, csv;
+  std::optional<std::uint64_t> count, clusters;
+  std::uint64_t seed = 0;
+  std::vector<double> low, high, center, points, colors, range;
+  std::optional<double> radius, offset, density, cutoff;
+  double intensity = 1;
+  bool shadow = false;
 };
 
-/// Lights in range of a point inside the field, on average, when no range is given.
-constexpr double kLightsPerPoint = 8;
+constexpr std::uint64_t kDefaultCount = 1000;
+constexpr double kDefaultDensity = 8;
+/// Enough for a mean that is right to some percent.
+constexpr std::size_t kSeenPoints = 1000;
+
+const Bounds kDefaultBox{{-10, 0, -10}, {10, 10, 10}};
+
+glm::dvec3 vectorAt(const std::vector<double>& numbers, std::size_t i) {
+  return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+}
+
+/// Refuses options that say nothing about this shape.
+void checkShapeOptions(const LightsOptions& options, const std::string& shape) {
+  const std::pair<const char*, bool> given[]{
+      {"--min", !options.low.empty()},          {"--max", !options.high.empty()},
+      {"--center", !options.center.empty()},    {"--radius", options.radius.has_value()},
+      {"--offset", options.offset.has_value()}, {"--clusters", options.clusters.has_value()},
+      {"--points", !options.points.empty()},    {"--color", !options.colors.empty()}};
+  static const std::map<std::string, std::string> kMeaningful{
+      {"box", "--min --max --color"},
+      {"ball", "--center --radius --color"},
+      {"sphere", "--center --radius --color"},
+      {"surface", "--offset --color"},
+      {"clusters", "--min --max --radius --clusters --color"},
+      {"curve", "--radius --points --color"},
+      {"csv", ""}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given && kMeaningful.at(shape).find(option) == std::string::npos) {
+      throw InputError(fmt::format("generate lights: {} means nothing {}", option,
+                                   shape == "csv" ? "beside --csv" : "for --shape " + shape));
+    }
+  }
+}
+
+/// The box that a field fills: as typed, else what is seen of the scene.
+Bounds fieldBox(const LightsOptions& options, const Scene& scene, const std::vector<glm::dvec3>& seen) {
+  Bounds box = kDefaultBox;
+  const bool is_typed = !options.low.empty() && !options.high.empty();
+  if (!options.scene.empty() && !is_typed) {
+    if (seen.empty())
+      throw InputError(options.scene + ": its first camera sees nothing that lights could be put around");
+    box = seenBox(seen, glm::dvec3(scene.cameras.front().camera_to_world[3]));
+  }
+  if (!options.low.empty()) box.low = vectorAt(options.low, 0);
+  if (!options.high.empty()) box.high = vectorAt(options.high, 0);
+  for (int i = 0; i < 3; ++i) {
+    if (!(box.low[i] <= box.high[i])) {
+      throw InputError(
+          fmt::format("generate lights: the box's {} is from {} to {}; --min must not exceed --max", "xyz"[i],
+                      box.low[i], box.high[i]));
+    }
+  }
+  return box;
+}
+
+LightField shapedField(const LightsOptions& options, const std::string& shape, const Scene& scene,
+                       const std::vector<glm::dvec3>& seen) {
+  LightField field;
+  if (shape == "csv") {
+    field.shape = FieldShape::kList;
+    field.list = readLightList(options.csv, options.count);
+    field.count = field.list.size();
+    return field;
+  }
+  const auto known = fieldShapeNamed(shape);
+  if (!known)
+    throw InputError(fmt::format("generate lights: --shape {}: expected {}", shape, kFieldShapeNames));
+  field = fieldInBox(*known, fieldBox(options, scene, seen));
+  field.count = options.count.value_or(kDefaultCount);
+  if (!options.center.empty()) field.center = vectorAt(options.center, 0);
+  if (options.radius) field.radius = *options.radius;
+  if (options.offset) field.offset = *options.offset;
+  if (options.clusters) field.clusters = *options.clusters;
+  if (!options.points.empty()) {
+    field.points.clear();
+    for (std::size_t i = 0; 3 * i < options.points.size(); ++i)
+      field.points.push_back(vectorAt(options.points, i));
+  }
+  return field;
+}
+
+void setColors(const LightsOptions& options, LightField& field) {
+  field.colors.assign(std::begin(kLampColors), std::end(kLampColors));
+  if (options.colors.empty()) return;
+  field.colors.clear();
+  for (std::size_t i = 0; 3 * i < options.colors.size(); ++i)
+    field.colors.emplace_back(vectorAt(options.colors, i));
+}
+
+/// Where the density is measured: what the camera sees, or, without a scene, anywhere in the field.
+std::vector<glm::dvec3> densityPoints(const LightsOptions& options, LightField field,
+                                      const std::vector<glm::dvec3>& seen) {
+  if (!options.scene.empty()) {
+    if (seen.empty())
+      throw InputError(options.scene + ": its first camera sees nothing to measure a density at");
+    return seen;
+  }
+  if (field.shape == FieldShape::kList)
+    throw InputError("generate lights: --density needs a SCENE beside --csv");
+  field.count = kSeenPoints;
+  ++field.seed;
+  Scene other;
+  expandLightField(field, other);
+  std::vector<glm::dvec3> points;
+  for (const Light& light : other.lights) points.push_back(light.position);
+  return points;
+}
 
 void generateLights(const LightsOptions& options) {
-  LightField field;
-  field.count = options.count;
+  const std::string shape = !options.csv.empty() ? "csv" : options.shape.empty() ? "box" : options.shape;
+  if (!fieldShapeNamed(shape) && shape != "csv")
+    throw InputError(fmt::format("generate lights: --shape {}: expected {}", shape, kFieldShapeNames));
+  checkShapeOptions(options, shape);
+  Scene scene;
+  std::vector<glm::dvec3> seen;
+  if (!options.scene.empty()) {
+    scene = loadScene(options.scene);
+    scene.lights.clear();
+    seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
+                         kSeenPoints, 0);
+  }
+  LightField field = shapedField(options, shape, scene, seen);
   field.seed = options.seed;
-  field.low = {options.low[0], options.low[1], options.low[2]};
-  field.high = {options.high[0], options.high[1], options.high[2]};
-  if (!options.mesh.empty()) {
-    const Bounds bounds = sceneBounds(loadScene(options.mesh));
-    field.low = bounds.low;
-    field.high = bounds.high;
-  }
-  if (options.colors.empty()) {
-    field.colors.assign(std::begin(kLampColors), std::end(kLampColors));
-  } else {
-    field.colors.clear();
-    for (std::size_t i = 0; i + 2 < options.colors.size(); i += 3)
-      field.colors.emplace_back(options.colors[i], options.colors[i + 1], options.colors[i + 2]);
-  }
-  const glm::dvec3 sides = field.high - field.low;
-  if (!(sides.x >= 0 && sides.y >= 0 && sides.z >= 0))
-    throw InputError("generate lights: --min must not exceed --max");
-  double range = options.range;
-  if (range == 0) {
-    const double volume = std::max(sides.x, 1e-3) * std::max(sides.y, 1e-3) * std::max(sides.z, 1e-3);
-    range = std::cbrt(kLightsPerPoint * volume / std::max<double>(double(options.count), 1) * 3 /
-                      (4 * 3.14159265358979));
-  }
-  field.range = glm::vec2(float(range));
+  setColors(options, field);
   field.intensity = glm::vec2(float(options.intensity));
-  std::vector<Light> lights;
-  expandLightField(field, lights);
-  std::string mesh = options.mesh;
-  if (!mesh.empty() && options.output != "-") {
-    // Paths in a scene file are relative to it.
-    const auto folder = std::filesystem::absolute(options.output).parent_path();
-    mesh = std::filesystem::absolute(mesh).lexically_proximate(folder).string();
+  if (!options.range.empty()) field.range = {float(options.range.front()), float(options.range.back())};
+  if (options.cutoff) {
+    field.cutoff = *options.cutoff;
+    field.attenuation = {0, 0, 1};
   }
-  writeTextFile(options.output, lightsScene(mesh, lights));
+  field.shadow = options.shadow;
+  expandLightField(field, scene);
+  const bool is_ranged = !options.range.empty() || options.cutoff || shape == "csv";
+  if (options.density || !is_ranged) {
+    const float range = rangeForDensity(scene.lights, densityPoints(options, field, seen),
+                                        options.density.value_or(kDefaultDensity));
+    for (Light& light : scene.lights) light.range = range;
+  }
+
+  // Paths in a scene file are relative to it.
+  const std::string folder =
+      options.output == "-" ? "." : std::filesystem::absolute(options.output).parent_path().string();
+  const bool is_mesh = options.scene.empty() || isMeshFile(options.scene);
+  const std::string mesh = options.scene.empty() ? "" : pathFrom(folder, options.scene);
+  writeTextFile(options.output, is_mesh ? lightsScene(mesh, scene.lights)
+                                        : sceneWithLights(options.scene, folder, scene.lights));
+}
+
+/// What CLI11 can't say by itself.
+void checkOptions(const LightsOptions& options) {
+  if (options.scene == "-")
+    throw InputError("SCENE: expected a file, got standard input, which can't be read twice");
+  if (options.colors.size() % 3 != 0) throw InputError("--color: expected r,g,b, or several times r,g,b");
+  if (options.points.size() % 3 != 0 || options.points.size() == 3)
+    throw InputError("--points: expected x,y,z of two points or more");
+  if (options.range.size() > 2) throw InputError("--range: expected metres, or LOW,HIGH");
+  if (options.range.size() == 2 && options.range[0] > options.range[1])
+    throw InputError("--range: the lowest is above the highest");
 }
 
 }  // namespace
@@ -75,21 +198,61 @@ void addGenerateCommand(CLI::App& app, CommandContext&) {
   CLI::App* lights =
       command->add_subcommand("lights", "point lights spread at random, the same for the same seed");
   auto options = std::make_shared<LightsOptions>();
-  lights->add_option("MESH", options->mesh, "fill this file's bounding box, and place it in the scene");
-  lights->add_option("--count", options->count, "lights")->capture_default_str();
+  const CLI::Range any(-1e18, 1e18), positive(1e-18, 1e18), not_negative(0.0, 1e18);
+  const auto vectorOption = [&](const char* name, std::vector<double>& value, const char* help) {
+    return lights->add_option(name, value, help)->delimiter(',')->check(any);
+  };
+  lights->add_option("SCENE", options->scene,
+                     "light what this file's first camera sees; its own lights are left out");
+  auto* shape = lights->add_option(
+      "--shape", options->shape,
+      "box (default), ball, sphere, surface (on the scene's triangles), clusters or curve");
+  lights->add_option("--csv", options->csv, "take the lights from lines x,y,z,r,g,b,range instead")
+      ->excludes(shape);
+  lights->add_option("--count", options->count, "lights (default: 1000, or all of --csv)");
   lights->add_option("--seed", options->seed)->capture_default_str();
-  lights->add_option("--min", options->low, "x,y,z of the box, without MESH")->delimiter(',')->expected(3);
-  lights->add_option("--max", options->high)->delimiter(',')->expected(3);
-  lights->add_option("--range", options->range, "metres (default: about 8 lights reach a point)")
-      ->check(CLI::PositiveNumber);
-  lights->add_option("--intensity", options->intensity)->check(CLI::NonNegativeNumber)->capture_default_str();
+  vectorOption("--min", options->low,
+               "x,y,z of the box (default: what the camera sees; without SCENE -10,0,-10)")
+      ->expected(3);
+  vectorOption("--max", options->high, "(without SCENE 10,10,10)")->expected(3);
+  vectorOption("--center", options->center, "x,y,z of a ball or sphere (default: the middle of the box)")
+      ->expected(3);
+  lights
+      ->add_option("--radius", options->radius,
+                   "metres: a ball's, a sphere's, a cluster's, or around a curve")
+      ->check(not_negative);
+  lights->add_option("--offset", options->offset, "metres in front of surfaces (default: 1 % of the box)")
+      ->check(any);
+  lights->add_option("--clusters", options->clusters, "how many (default: 32)")
+      ->check(CLI::Range(std::uint64_t(1), kMostLights));
+  vectorOption("--points", options->points, "x,y,z,x,y,z,... that a curve goes through")
+      ->allow_extra_args(false);
+  auto* range = lights->add_option("--range", options->range, "metres, or LOW,HIGH")
+                    ->delimiter(',')
+                    ->allow_extra_args(false)
+                    ->check(positive);
+  auto* density =
+      lights
+          ->add_option("--density", options->density,
+                       "the range with which that many lights reach a visible pixel on average (default: 8)")
+          ->check(positive)
+          ->excludes(range);
+  lights
+      ->add_option("--cutoff", options->cutoff,
+                   "fade with the square of the distance; the range is where the light has faded to this")
+      ->check(positive)
+      ->excludes(range)
+      ->excludes(density);
+  lights->add_option("--intensity", options->intensity)->check(not_negative)->capture_default_str();
   lights->add_option("--color", options->colors, "r,g,b; several: each light picks one")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
+      ->allow_extra_args(false)
+      ->check(not_negative);
+  lights->add_flag("--shadow", options->shadow, "all lights cast shadows");
   lights->add_option("-o,--output", options->output, "scene file (- : standard output)")
       ->capture_default_str();
   lights->callback([options] {
-    if (options->colors.size() % 3 != 0) throw InputError("--color: expected r,g,b, or several times r,g,b");
+    checkOptions(*options);
     generateLights(*options);
   });
 }

@@ -23,12 +23,27 @@ const CLI::App& findCommand(CLI::App& app, const std::string& name) {
   return *named.front();
 }
 
-int fail(const std::string& message, int status) {
-  fmt::print(stderr, "luciole: {}\n", message);
-  return status;
-}
-
 }  // namespace
+
+int luciole::tellFailure(const std::string& where) {
+  const auto fail = [&](const std::string& message, int status) {
+    fmt::print(stderr, "luciole: {}{}{}\n", where, where.empty() ? "" : ": ", message);
+    return status;
+  };
+  try {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    return fail(fmt::format("{} (see luciole help)", error.what()), kWrongInput);
+  } catch (const InputError& error) {
+    return fail(error.what(), kWrongInput);
+  } catch (const MachineError& error) {
+    return fail(error.what(), kMachineFailed);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", kMachineFailed);
+  } catch (const std::exception& error) {
+    return fail(fmt::format("internal error: {}", error.what()), kMachineFailed);
+  }
+}
 
 int main(int argument_count, char** arguments) {
   CommandContext context{joinedArguments(argument_count, arguments)};
@@ -45,6 +60,7 @@ int main(int argument_count, char** arguments) {
   addReferenceCommand(app, context);
   addCompareCommand(app, context);
   addBenchCommand(app, context);
+  addScaleCommand(app, context);
   addGenerateCommand(app, context);
   addDevicesCommand(app, context);
   std::string topic;
@@ -65,15 +81,7 @@ int main(int argument_count, char** arguments) {
     return context.status;
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help and --version
-  } catch (const CLI::ParseError& error) {
-    return fail(fmt::format("{} (see luciole help)", error.what()), kWrongInput);
-  } catch (const InputError& error) {
-    return fail(error.what(), kWrongInput);
-  } catch (const MachineError& error) {
-    return fail(error.what(), kMachineFailed);
-  } catch (const std::bad_alloc&) {
-    return fail("out of memory", kMachineFailed);
-  } catch (const std::exception& error) {
-    return fail(fmt::format("internal error: {}", error.what()), kMachineFailed);
+  } catch (const std::exception&) {
+    return tellFailure("");
   }
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/frames.hpp"
 #include "error.hpp"
 #include "image/write_file.hpp"
 #include "scene/json_scene.hpp"
@@ -15,21 +16,10 @@
 namespace luciole {
 namespace {
 
-const std::map<std::string, Aov> kAovs{{"position", Aov::kPosition}, {"normal", Aov::kNormal},
-                                       {"depth", Aov::kDepth},       {"diffuse", Aov::kDiffuse},
-                                       {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
-                                       {"shadow", Aov::kShadow}};
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
+const std::map<std::string, Aov> kAovs{
+    {"position", Aov::kPosition},      {"normal", Aov::kNormal},     {"depth", Aov::kDepth},
+    {"diffuse", Aov::kDiffuse},        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
+    {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow}};
 
 std::vector<Aov> parseAovs(const std::string& text) {
   std::vector<Aov> aovs;
@@ -37,8 +27,10 @@ std::vector<Aov> parseAovs(const std::string& text) {
   for (const std::string& name : split(text, ',')) {
     const auto found = kAovs.find(name);
     if (found == kAovs.end())
-      throw InputError(fmt::format(
-          "--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, shadow", name));
+      throw InputError(
+          fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
+                      "list_length, shadow",
+                      name));
     if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
   }
   return aovs;
@@ -62,6 +54,17 @@ const Camera& findCamera(const Scene& scene, const std::string& wanted) {
 
 }  // namespace
 
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
 std::vector<int> parseInts(const std::string& text, char separator, std::size_t count,
                            const std::string& option, const std::string& expected) {
   std::vector<int> numbers;
@@ -77,12 +80,14 @@ std::vector<int> parseInts(const std::string& text, char separator, std::size_t 
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
-  command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")
-      ->required();
+  const bool is_one_picture = !(groups & kManyPictures);
+  if (is_one_picture)
+    command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")
+        ->required();
   if (groups & kViewOptions) {
     command.add_option("--size", options.size, "WxH pixels (default: the scene's, or 1280x720)");
     command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
-    command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
+    if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
                     "what is interpolated over a triangle: nothing, colours, normals")
@@ -94,8 +99,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
   if (groups & kModelOptions) {
-    command.add_option("--model", options.model, "the specular lobe: (R.V)^n or (N.H)^n")
-        ->check(CLI::IsMember({"phong", "blinn-phong"}))
+    command
+        .add_option(
+            "--model", options.model,
+            "how surfaces reflect light: with highlights of (R.V)^n, of (N.H)^n, in flat steps, or as "
+            "rough ones do")
+        ->check(CLI::IsMember(std::vector<std::string>(kModelNames.begin(), kModelNames.end())))
         ->capture_default_str();
     command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
   }
@@ -125,14 +134,26 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "MiB that all shadow maps may take: where they would take more, they get coarser")
         ->check(CLI::Range(1, 16000))  // fewer texels than 31 bits count
         ->capture_default_str();
-    command.add_option("--aov", options.aovs,
-                       "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,shadow");
+    if (is_one_picture)
+      command.add_option(
+          "--aov", options.aovs,
+          "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,list_length,shadow");
   }
+  if (groups & kFrameOption)
+    command.add_option(
+        "--frames", options.frames,
+        "which frame of a scene that moves (default: 1); # in the output's name become its number");
   if (groups & kDeviceOption)
     command.add_option("--device", options.device,
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
-  command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
+  if (is_one_picture)
+    command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
+}
+
+Model modelOf(const PictureOptions& options) {
+  return *std::find_if(std::begin(kAllModels), std::end(kAllModels),
+                       [&](Model model) { return options.model == modelName(model); });
 }
 
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene) {
@@ -153,7 +174,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shading = options.shading == "flat"      ? Shading::kFlat
                      : options.shading == "gouraud" ? Shading::kGouraud
                                                     : Shading::kPhong;
-  settings.shade.blinn = options.model == "blinn-phong";
+  settings.shade.model = modelOf(options);
   settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
   settings.shade.tile_size = options.tile;
   settings.shade.shadows = options.shadows == "off"    ? ShadowMethod::kOff
@@ -177,6 +198,14 @@ void checkOutput(const PictureOptions& options) {
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+}
+
+int useFrame(PictureOptions& options, const std::string& command) {
+  const int frame = chosenFrame(options.frames, command);
+  if (options.frames.empty()) return frame;
+  options.output = frameFile(options.output, frame);
+  options.stats = frameFile(options.stats, frame);
+  return frame;
 }
 
 Metadata pictureMetadata(const std::string& command_line, const Device* device) {

@@ -27,6 +27,7 @@ struct PictureOptions {
   double exposure = 0;
   std::string device;
   std::string stats;
+  std::string frames;
   bool quiet = false;
 };
 
@@ -37,8 +38,13 @@ enum OptionGroup : unsigned {
   kModelOptions = 4,   ///< --model, --exposure
   kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --aov
   kDeviceOption = 16,  ///< --device
+  kFrameOption = 32,   ///< --frames
+  kManyPictures = 64,  ///< without what is about one file: -o, --stats, --crop, --aov
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
+
+/// What --model says.
+Model modelOf(const PictureOptions& options);
 
 /// Turns them into settings for this scene: the picture's size from --size, the scene or 1280x720; the camera
 /// by name or index. Throws InputError naming the option.
@@ -48,12 +54,19 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
 /// InputError.
 void checkOutput(const PictureOptions& options);
 
+/// The frame that --frames names for a command that makes one picture (1 without), whose number goes into the
+/// names of its files. Throws InputError.
+int useFrame(PictureOptions& options, const std::string& command);
+
 /// Text attributes for the picture: software, command and device.
 Metadata pictureMetadata(const std::string& command_line, const Device* device);
 
 /// Writes --stats, if asked for, and unless --quiet one line on standard error that says what was made and
 /// what it cost.
 void reportStats(const PictureOptions& options, const Stats& stats);
+
+/// The parts between separators, of which there may be none.
+std::vector<std::string> split(const std::string& text, char separator);
 
 /// Parses "a<separator>b…" into exactly `count` whole numbers. Throws InputError naming `option`.
 std::vector<int> parseInts(const std::string& text, char separator, std::size_t count,

@@ -25,6 +25,7 @@ struct ReferenceOptions : PictureOptions {
   std::string lights;   ///< the scene that lights them
   std::string shadows = "rays";
   int shadow_samples = 64;
+  int frame = 1;
   std::size_t pixels = 0;  ///< 0: all
   std::uint64_t seed = 0;
 };
@@ -51,7 +52,7 @@ void showProgress(std::size_t done, std::size_t pixels) {
 /// rays: of the scene, if shadows are asked for.
 ReferenceSettings referenceSettings(const ReferenceOptions& options, const std::optional<RayScene>& rays) {
   ReferenceSettings settings;
-  settings.blinn = options.model == "blinn-phong";
+  settings.model = modelOf(options);
   settings.shadow_rays = rays ? &*rays : nullptr;
   settings.shadow_samples = options.shadow_samples;
   if (!options.quiet && isatty(STDERR_FILENO)) settings.on_progress = showProgress;
@@ -91,10 +92,10 @@ Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
 
 /// What must be equal for two crops to be parts of one picture.
 std::string requestText(const ReferenceOptions& options, const RenderSettings& settings) {
-  return fmt::format("{} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
-                     options.scene, settings.size.x, settings.size.y, settings.camera.name, settings.samples,
-                     options.shading, options.model, options.shadows, options.shadow_samples,
-                     options.exposure);
+  return fmt::format("{} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
+                     options.scene, options.frame, settings.size.x, settings.size.y, settings.camera.name,
+                     settings.samples, options.shading, options.model, options.shadows,
+                     options.shadow_samples, options.exposure);
 }
 
 /// The rectangle that two make together, if they make one.
@@ -168,7 +169,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 
 /// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
 void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.scene); });
+  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.scene, options.frame); });
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
@@ -204,7 +205,7 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
 
 /// Shades a G-buffer from a file.
 void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.lights); });
+  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.lights, options.frame); });
   const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(options.gbuffer); });
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
@@ -247,7 +248,7 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
                       "a .json, .obj, .gltf or .glb file (- : JSON on standard input)");
   command->add_option("--gbuffer", options->gbuffer, "an EXR whose surfaces to light instead");
   command->add_option("--scene", options->lights, "with --gbuffer: the scene that lights it");
-  addPictureOptions(*command, *options, kViewOptions | kSampleOption | kModelOptions);
+  addPictureOptions(*command, *options, kViewOptions | kSampleOption | kModelOptions | kFrameOption);
   command->add_option("--shadows", options->shadows, "by a ray to each light, or none")
       ->check(CLI::IsMember({"off", "rays"}))
       ->capture_default_str();
@@ -260,6 +261,7 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
                       "only so many pixels, chosen at random; compare looks at those only");
   command->add_option("--seed", options->seed, "which ones")->capture_default_str();
   command->callback([&context, options] {
+    options->frame = useFrame(*options, "reference");
     checkOptions(*options);
     Stats stats;
     stats.command = context.command_line;

@@ -1,14 +1,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <filesystem>
+#include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/shard.hpp"
 #include "error.hpp"
 #include "image/gbuffer_file.hpp"
 #include "render/render.hpp"
 #include "scene/load_scene.hpp"
+#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
@@ -20,38 +28,162 @@ void showProgress(int done, int passes) {
   std::fflush(stderr);
 }
 
+struct RenderOptions : PictureOptions {
+  std::string scene;
+  std::string shard;
+  bool resume = false;
+};
+
+/// Writes the picture of the scene as it is posed.
+void renderPicture(Device& device, const Scene& scene, const PictureOptions& options,
+                   const std::function<void(int, int)>& on_pass, Stats& stats) {
+  RenderSettings settings = renderSettings(options, scene);
+  settings.on_pass = on_pass;
+  const glm::ivec2 size =
+      settings.crop ? glm::ivec2(settings.crop->width, settings.crop->height) : settings.size;
+  std::optional<ImageWriter> writer;
+  const auto write = [&](const Image& rows) {
+    timed(stats, "write", [&] {
+      if (!writer)
+        writer.emplace(options.output, size.x, size.y, rows.channels,
+                       pictureMetadata(stats.command, &device));
+      writer->write(rows);
+    });
+  };
+  renderBands(device, scene, settings, write, stats);
+  timed(stats, "write", [&] { writer->close(); });
+}
+
+/// "3, 7-9" for 3 7 8 9.
+std::string listFrames(const std::vector<int>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t end = i + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", frames[i]);
+    if (end - i > 1) text += fmt::format("-{}", frames[end - 1]);
+    i = end;
+  }
+  return text;
+}
+
+/// A file that is written whole or not at all, so one that is there is done.
+bool isDone(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(path, none) && std::filesystem::file_size(path, none) > 0;
+}
+
+/// The frames of the range that are this run's to make.
+std::vector<int> framesToMake(const RenderOptions& options, const FrameRange& range) {
+  const Shard shard = chosenShard(options.shard);
+  if (options.shard.empty() && shard.count > 1 && !options.quiet)
+    fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count);
+  std::vector<int> frames, done;
+  for (int frame = range.first; frame <= range.last; ++frame) {
+    if (!isMine(shard, static_cast<std::size_t>(frame - range.first))) continue;
+    const bool is_done = options.resume && isDone(frameFile(options.output, frame));
+    (is_done ? done : frames).push_back(frame);
+  }
+  if (!done.empty() && !options.quiet)
+    fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
+  return frames;
+}
+
+/// One line that is rewritten frame by frame, on a terminal only.
+void showFrames(std::size_t done, std::size_t count, std::chrono::steady_clock::time_point start) {
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+  std::string left;
+  if (done > 0) left = fmt::format(", {:.0f} s left", passed.count() / done * (count - done));
+  fmt::print(stderr, "frame {} of {}{}", done + 1, count, left);
+  std::fflush(stderr);
+}
+
+/// Renders frame after frame, of which one that fails is told and left out. `started`: what loading cost,
+/// which the first frame's statistics tell. Returns the first failure's status.
+int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
+                 Stats started) {
+  const bool on_terminal = !options.quiet && isatty(STDERR_FILENO);
+  const auto start = std::chrono::steady_clock::now();
+  const std::string command = started.command;
+  int status = kDone;
+  std::vector<int> failed;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (on_terminal) showFrames(i, frames.size(), start);
+    PictureOptions one = options;
+    one.output = frameFile(options.output, frames[i]);
+    one.stats = frameFile(options.stats, frames[i]);
+    Stats stats = std::exchange(started, Stats{});
+    stats.command = command;
+    try {
+      checkWritable(one.output);
+      poseScene(scene, frames[i]);
+      renderPicture(device, scene, one, {}, stats);
+      if (on_terminal) fmt::print(stderr, "\r\x1b[K");
+      reportStats(one, stats);
+    } catch (const std::exception&) {
+      if (on_terminal) fmt::print(stderr, "\r\x1b[K");
+      const int why = tellFailure(fmt::format("frame {}", frames[i]));
+      if (status == kDone) status = why;
+      failed.push_back(frames[i]);
+    }
+  }
+  if (!failed.empty())
+    fmt::print(stderr, "luciole: {} of {} frames failed: {}\n", failed.size(), frames.size(),
+               listFrames(failed));
+  return status;
+}
+
+void checkOptions(const RenderOptions& options, const FrameRange& range) {
+  checkOutput(options);
+  if (range.is_range) {
+    checkPattern(options.output, "-o");
+    if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
+  } else if (options.resume || !options.shard.empty()) {
+    throw InputError(fmt::format("{}: goes with --frames A-B", options.resume ? "--resume" : "--shard"));
+  }
+}
+
 }  // namespace
 
 void addRenderCommand(CLI::App& app, CommandContext& context) {
-  CLI::App* command = app.add_subcommand("render", "a picture of a scene");
-  auto options = std::make_shared<PictureOptions>();
-  auto scene_path = std::make_shared<std::string>();
-  command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
+  CLI::App* command = app.add_subcommand("render", "a picture of a scene, or one a frame");
+  auto options = std::make_shared<RenderOptions>();
+  command
+      ->add_option("SCENE", options->scene, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
   addPictureOptions(*command, *options,
                     kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption);
-  command->callback([&context, options, scene_path] {
-    checkOutput(*options);
+  command->add_option(
+      "--frames", options->frames,
+      "frame A or frames A-B of a scene that moves (default: 1); #### in the output's name (and "
+      "that of --stats) becomes the number; a frame that fails is told and the others are made");
+  command->add_flag("--resume", options->resume, "leave frames alone whose file is there");
+  command->add_option("--shard", options->shard,
+                      "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
+                      "tasks share them)");
+  command->callback([&context, options] {
+    const FrameRange range = chosenFrames(options->frames);
+    if (!range.is_range) useFrame(*options, "render");
+    checkOptions(*options, range);
+    std::vector<int> frames;
+    if (range.is_range) {
+      frames = framesToMake(*options, range);
+      if (frames.empty()) return;
+    }
     Stats stats;
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path); });
-    RenderSettings settings = renderSettings(*options, scene);
-    if (!options->quiet && isatty(STDERR_FILENO)) settings.on_pass = showProgress;
-    const glm::ivec2 size =
-        settings.crop ? glm::ivec2(settings.crop->width, settings.crop->height) : settings.size;
-    std::optional<ImageWriter> writer;
-    const auto write = [&](const Image& rows) {
-      timed(stats, "write", [&] {
-        if (!writer)
-          writer.emplace(options->output, size.x, size.y, rows.channels,
-                         pictureMetadata(context.command_line, &device));
-        writer->write(rows);
-      });
-    };
-    renderBands(device, scene, settings, write, stats);
-    timed(stats, "write", [&] { writer->close(); });
+    Scene scene = timed(stats, "load scene",
+                        [&] { return loadScene(options->scene, range.is_range ? 1 : range.first); });
+    if (range.is_range) {
+      renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
+      awaitDevice(device);
+      context.status = renderFrames(device, scene, *options, frames, std::move(stats));
+      return;
+    }
+    const bool shows_progress = !options->quiet && isatty(STDERR_FILENO);
+    renderPicture(device, scene, *options, shows_progress ? showProgress : nullptr, stats);
     reportStats(*options, stats);
   });
 }
@@ -63,12 +195,13 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   auto scene_path = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options, kViewOptions | kDeviceOption);
+  addPictureOptions(*command, *options, kViewOptions | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path] {
+    const int frame = useFrame(*options, "gbuffer");
     checkOutput(*options);
     Stats stats;
     stats.command = context.command_line;
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path); });
+    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path, frame); });
     const RenderSettings settings = renderSettings(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;
@@ -94,14 +227,15 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
       ->required();
   command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
       ->required();
-  addPictureOptions(*command, *options, kModelOptions | kShadeOptions | kDeviceOption);
+  addPictureOptions(*command, *options, kModelOptions | kShadeOptions | kDeviceOption | kFrameOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
+    const int frame = useFrame(*options, "shade");
     checkOutput(*options);
     Stats stats;
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path); });
+    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path, frame); });
     const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);

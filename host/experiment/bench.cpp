@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <thread>
 
 #include "error.hpp"
 #include "experiment/culled_shading.hpp"
@@ -32,18 +30,10 @@ constexpr SpeedMeasurement kSpeed[] = {
     {"memory", measureMemory},
 };
 
-/// "model name" of Linux's /proc/cpuinfo; "unknown" where there is none.
-std::string processorName() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(std::min(line.find(": ") + 2, line.size()));
-  return "unknown";
-}
-
 }  // namespace
 
 std::vector<std::string> benchNames() {
-  std::vector<std::string> names{"shading", "shadows", "samples"};
+  std::vector<std::string> names{"shading", "models", "shadows", "samples"};
   for (const SpeedMeasurement& one : kSpeed) names.push_back(one.name);
   return names;
 }
@@ -57,14 +47,13 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
   openDevice(settings.device, device);
   Stats stats;
   describeScene(scene, {}, stats);
-  BenchResult result{
-      .machine = {processorName(), std::thread::hardware_concurrency(), device.description, __VERSION__},
-      .scene = scene.name,
-      .triangles = stats.triangles,
-      .lights = stats.lights,
-      .width = settings.picture.size.x,
-      .height = settings.picture.size.y,
-      .repeats = settings.repeats};
+  BenchResult result{.machine = describeMachine(device),
+                     .scene = scene.name,
+                     .triangles = stats.triangles,
+                     .lights = stats.lights,
+                     .width = settings.picture.size.x,
+                     .height = settings.picture.size.y,
+                     .repeats = settings.repeats};
   std::vector<VariantGroup> groups = benchVariants(scene, device.description.lanes);
   std::erase_if(groups, [&](const VariantGroup& group) { return !chosen(group.name); });
   if (!groups.empty()) result.groups = measureVariants(scene, groups, settings);

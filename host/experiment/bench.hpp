@@ -4,18 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "cl/device.hpp"
+#include "experiment/machine.hpp"
 #include "experiment/measure.hpp"
 #include "experiment/speed_table.hpp"
 
 namespace luciole {
-
-struct Machine {
-  std::string processor;
-  unsigned threads = 0;
-  DeviceDescription device;
-  std::string compiler;
-};
 
 struct BenchResult {
   Machine machine;

@@ -91,7 +91,7 @@ void addLights(Scene& scene) {
   field.colors = {{1, 0.55f, 0.2f}, {0.4f, 0.6f, 1}, {0.5f, 1, 0.6f}, {1, 0.35f, 0.5f}};
   field.intensity = {0.1f, 0.4f};
   field.range = {1.2f, 2.4f};
-  expandLightField(field, scene.lights);
+  expandLightField(field, scene);
 }
 
 }  // namespace

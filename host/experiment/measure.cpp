@@ -60,8 +60,8 @@ void report(const BenchSettings& settings, const std::string& what, std::size_t 
   if (settings.on_progress) settings.on_progress(what, done, total);
 }
 
-Truth makeTruth(const Bench& bench, const VariantGroup& group) {
-  ReferenceSettings settings;
+Truth makeTruth(const Bench& bench, const VariantGroup& group, Model model) {
+  ReferenceSettings settings{.model = model};
   std::optional<RayScene> rays;
   if (group.shadows)
     settings.shadow_rays =
@@ -75,18 +75,23 @@ Truth makeTruth(const Bench& bench, const VariantGroup& group) {
 }
 
 BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
-  const Truth truth = makeTruth(bench, group);
-  BenchGroup result{.group = group, .truth_error = truth.own_error};
-  // More than 0, for shares of it in a black picture.
-  result.brightest = std::max(*std::max_element(truth.image.pixels.begin(), truth.image.pixels.end()),
-                              std::numeric_limits<float>::min());
+  std::map<Model, Truth> truths;
+  for (const Variant& variant : group.variants)
+    if (!truths.contains(variant.shade.model))
+      truths[variant.shade.model] = makeTruth(bench, group, variant.shade.model);
+  BenchGroup result{.group = group, .truth_error = truths.begin()->second.own_error};
   const std::size_t count = group.variants.size();
   // A first run compiles and gives the picture, which no later one changes.
   for (const Variant& variant : group.variants) {
     report(bench.settings, group.name + ": errors", result.rows.size(), count);
     Stats ignored;
     const Image picture = runVariant(bench, group, variant, ignored);
-    result.rows.push_back({.variant = variant, .error = compareImages(truth.image, picture)});
+    const Image& truth = truths.at(variant.shade.model).image;
+    // More than 0, for shares of it in a black picture.
+    const float brightest = std::max(*std::max_element(truth.pixels.begin(), truth.pixels.end()),
+                                     std::numeric_limits<float>::min());
+    result.rows.push_back(
+        {.variant = variant, .error = compareImages(truth, picture), .brightest = brightest});
   }
   const auto rounds = runInRounds(count, bench.settings.repeats, group.name + ": times",
                                   bench.settings.on_progress, [&](std::size_t row) {
@@ -100,7 +105,7 @@ BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
     figures.push_back({result.rows[i].time, result.rows[i].error.mean_abs});
   }
   const std::vector<bool> front = paretoFront(figures);
-  for (std::size_t i = 0; i < count; ++i) result.rows[i].front = front[i];
+  for (std::size_t i = 0; i < count; ++i) result.rows[i].front = haveOneTruth(group) && front[i];
   return result;
 }
 

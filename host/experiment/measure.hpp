@@ -22,12 +22,12 @@ struct BenchRow {
   Variant variant;
   Repeated time{};          ///< milliseconds
   ImageDifference error{};  ///< from the truth, linear units
-  bool front = false;
+  double brightest = 0;     ///< the truth's largest value: what relative errors are relative to
+  bool front = false;       ///< on the Pareto front, in a group that has one truth
 };
 
 struct BenchGroup {
   VariantGroup group;
-  double brightest = 0;  ///< the truth's largest value: what relative errors are relative to
   /// Mean absolute error that the truth itself may have; 0: only what float rounds off, 2⁻²⁴ of each value.
   double truth_error = 0;
   std::vector<BenchRow> rows{};  ///< in the order of group.variants

@@ -204,8 +204,11 @@ std::string benchPlot(const BenchResult& result) {
       "set xlabel 'milliseconds, median of {} and half the quartiles'' distance'\n"
       "set ylabel 'mean error, 8-bit steps' offset 1,0\n",
       kPicture.x, kPicture.y, result.repeats);
-  for (std::size_t i = 0; i < result.groups.size(); ++i) {
-    script += panelCommands(result.groups[i], panelArea(i, result.groups.size()));
+  std::vector<BenchGroup> groups;
+  std::copy_if(result.groups.begin(), result.groups.end(), std::back_inserter(groups),
+               [](const BenchGroup& group) { return haveOneTruth(group.group); });
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    script += panelCommands(groups[i], panelArea(i, groups.size()));
     script += i > 0 ? "unset key\n"
                     : fmt::format(
                           "set key at screen 0.5,{} center center horizontal\n"

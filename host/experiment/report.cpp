@@ -22,7 +22,7 @@ std::string spreadText(const Repeated& runs) {
   return fmt::format("± {:.0f} %", runs.median != 0 ? 100 * runs.spread / runs.median : 0);
 }
 
-Cells rowCells(const BenchRow& row, double brightest) {
+Cells rowCells(const BenchRow& row) {
   const ImageDifference& error = row.error;
   return {row.variant.is_default ? row.variant.name + " (default)" : row.variant.name,
           fmt::format("{:.1f}", row.time.median),
@@ -30,15 +30,15 @@ Cells rowCells(const BenchRow& row, double brightest) {
           fmt::format("{:.1e}", error.max_abs * kSteps),
           fmt::format("{:.1e}", error.mean_abs * kSteps),
           fmt::format("{:+.1e}", error.mean_signed * kSteps),
-          fmt::format("{:.1e}", error.max_abs / brightest),
-          fmt::format("{:.1e}", error.mean_abs / brightest),
+          fmt::format("{:.1e}", error.max_abs / row.brightest),
+          fmt::format("{:.1e}", error.mean_abs / row.brightest),
           row.front ? "*" : ""};
 }
 
 std::string groupTable(const BenchGroup& group) {
   std::vector<Cells> lines{{group.group.name}};
   lines[0].insert(lines[0].end(), std::begin(kColumns), std::end(kColumns));
-  for (const BenchRow& row : group.rows) lines.push_back(rowCells(row, group.brightest));
+  for (const BenchRow& row : group.rows) lines.push_back(rowCells(row));
   return textTable(lines);
 }
 
@@ -65,6 +65,7 @@ Json settingsJson(const Variant& variant) {
   static constexpr const char* kShadows[] = {"off", "hard", "pcf"};
   const ShadeSettings& shade = variant.shade;
   return {{"lanes", variant.lanes},
+          {"model", modelName(shade.model)},
           {"culling", kCulling[std::size_t(shade.culling)]},
           {"tile", shade.tile_size},
           {"shadows", kShadows[std::size_t(shade.shadows)]},
@@ -80,14 +81,15 @@ Json errorJson(const ImageDifference& error, double unit) {
       {"max", error.max_abs / unit}, {"mean", error.mean_abs / unit}, {"signed", error.mean_signed / unit}};
 }
 
-Json rowJson(const BenchRow& row, double brightest) {
+Json rowJson(const BenchRow& row) {
   return {{"name", row.variant.name},
           {"default", row.variant.is_default},
           {"front", row.front},
           {"settings", settingsJson(row.variant)},
           {"milliseconds", {{"median", row.time.median}, {"spread", row.time.spread}}},
+          {"brightest", row.brightest},
           {"error",
-           {{"steps", errorJson(row.error, 1 / kSteps)}, {"relative", errorJson(row.error, brightest)}}}};
+           {{"steps", errorJson(row.error, 1 / kSteps)}, {"relative", errorJson(row.error, row.brightest)}}}};
 }
 
 Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
@@ -152,10 +154,9 @@ std::string benchJson(const BenchResult& result) {
             {"speed", Json::array()}};
   for (const BenchGroup& group : result.groups) {
     Json rows = Json::array();
-    for (const BenchRow& row : group.rows) rows.push_back(rowJson(row, group.brightest));
+    for (const BenchRow& row : group.rows) rows.push_back(rowJson(row));
     json["groups"].push_back({{"name", group.group.name},
                               {"measured", group.group.measured},
-                              {"brightest", group.brightest},
                               {"truth_error_steps", group.truth_error * kSteps},
                               {"rows", std::move(rows)}});
   }

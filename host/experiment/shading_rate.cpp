@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "cl/kernel_source.hpp"
+#include "embedded_files.hpp"
 #include "experiment/stage_figures.hpp"
 #include "render/render.hpp"
 

@@ -119,7 +119,7 @@ Verdict judgeMaps(Device& device, const Judged& judged, const ShadeSettings& set
   Stats stats;
   prepareLighting(device, scene, camera, cameraView(camera, judged.gbuffer.picture_size), features, settings,
                   lighting, stats);
-  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, judged.gbuffer, false, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, judged.gbuffer, {}, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   std::vector<MapPair> map_pairs;
   for (const LightPair& pair : judged.pairs)

@@ -13,7 +13,7 @@
 namespace luciole {
 namespace {
 
-const std::vector<glm::vec3> kLampColors{
+const std::vector<glm::vec3> kSceneColors{
     {1, 0.55f, 0.2f}, {0.4f, 0.6f, 1}, {0.5f, 1, 0.6f}, {1, 0.35f, 0.5f}};
 
 /// Points that fill a box evenly, the same on every machine: M. Roberts' sequence, by the powers of the root
@@ -118,10 +118,10 @@ Scene makeHall() {
   field.seed = 1;
   field.low = {-10, 0, -42};
   field.high = {10, 9, 2};
-  field.colors = kLampColors;
+  field.colors = kSceneColors;
   field.intensity = {0.1f, 0.5f};
   field.range = {1.736f, 2.604f};
-  expandLightField(field, scene.lights);
+  expandLightField(field, scene);
   setCamera(scene, {-1, 2.2, -18.8}, {0, 2.6, -20});
   return scene;
 }
@@ -142,9 +142,9 @@ Scene makeLightSphere(std::uint64_t lights) {
   field.seed = 1;
   field.shape = FieldShape::kSphere;
   field.radius = 50;
-  field.colors = kLampColors;
+  field.colors = kSceneColors;
   field.range = glm::vec2(0.3f);
-  expandLightField(field, scene.lights);
+  expandLightField(field, scene);
   setCamera(scene, {0, 0, 0}, {0, 0.3, -1});
   return scene;
 }
@@ -172,10 +172,10 @@ Scene makeCity(std::uint64_t lights) {
   field.seed = 1;
   field.low = {-half, 0, -half};
   field.high = {half, 30, half};
-  field.colors = kLampColors;
+  field.colors = kSceneColors;
   field.intensity = {0.1f, 0.5f};
   field.range = glm::vec2(float(kMillionRange * std::cbrt(1e6 / double(lights))));
-  expandLightField(field, scene.lights);
+  expandLightField(field, scene);
   setCamera(scene, {-12.5, 120, 420}, {0, 0, 250});
   return scene;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace luciole {
 namespace {
@@ -25,8 +26,13 @@ bool beats(const SpeedAndError& a, const SpeedAndError& b) {
 }  // namespace
 
 Repeated summarize(std::vector<double> runs) {
+  const auto [low, median, high] = quartiles(std::move(runs));
+  return {median, (high - low) / 2};
+}
+
+Quartiles quartiles(std::vector<double> runs) {
   std::sort(runs.begin(), runs.end());
-  return {quantile(runs, 0.5), (quantile(runs, 0.75) - quantile(runs, 0.25)) / 2};
+  return {quantile(runs, 0.25), quantile(runs, 0.5), quantile(runs, 0.75)};
 }
 
 double printedError(double error) { return std::stod(fmt::format("{:.1e}", error)); }

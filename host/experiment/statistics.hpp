@@ -13,6 +13,12 @@ struct Repeated {
 /// Quartiles lie between the runs next to them, by linear interpolation of ranks. There is one run at least.
 Repeated summarize(std::vector<double> runs);
 
+/// The quartiles themselves.
+struct Quartiles {
+  double low = 0, median = 0, high = 0;
+};
+Quartiles quartiles(std::vector<double> runs);
+
 /// What a row of the experiment cost and how wrong it was.
 struct SpeedAndError {
   Repeated time;

@@ -42,6 +42,19 @@ VariantGroup shadingVariants(int lanes) {
   return group;
 }
 
+VariantGroup modelVariants(int lanes) {
+  VariantGroup group{.name = "models",
+                     .measured = "culling and shading, each model against itself in double precision",
+                     .stages = {"cull", "shade"}};
+  for (const Model model : kAllModels) {
+    Variant variant{.name = modelName(model), .lanes = lanes, .is_default = model == ShadeSettings{}.model};
+    variant.shade.model = model;
+    variant.shade.shadows = ShadowMethod::kOff;
+    group.variants.push_back(variant);
+  }
+  return group;
+}
+
 VariantGroup shadowVariants(int lanes) {
   const ShadeSettings usual;
   VariantGroup group{.name = "shadows",
@@ -84,8 +97,14 @@ VariantGroup sampleVariants(int lanes) {
 
 }  // namespace
 
+bool haveOneTruth(const VariantGroup& group) {
+  return std::all_of(group.variants.begin(), group.variants.end(), [&](const Variant& variant) {
+    return variant.shade.model == group.variants.front().shade.model;
+  });
+}
+
 std::vector<VariantGroup> benchVariants(const Scene& scene, int lanes) {
-  std::vector<VariantGroup> groups{shadingVariants(lanes)};
+  std::vector<VariantGroup> groups{shadingVariants(lanes), modelVariants(lanes)};
   const bool shadows = scene.lighting && std::any_of(scene.lights.begin(), scene.lights.end(),
                                                      [](const Light& l) { return l.shadow; });
   if (shadows) groups.push_back(shadowVariants(lanes));

@@ -17,7 +17,8 @@ struct Variant {
   bool is_default = false;
 };
 
-/// Variants that are measured side by side and judged by one truth: errors compare within a group only.
+/// Variants that are measured side by side, each judged by its model's truth: errors compare within a group
+/// of one model only.
 struct VariantGroup {
   std::string name;
   std::string measured{};             ///< what its times cover and what its errors are against, for people
@@ -26,6 +27,9 @@ struct VariantGroup {
   bool shadows = false;               ///< the truth has shadows
   std::vector<Variant> variants{};
 };
+
+/// All variants are of one model.
+bool haveOneTruth(const VariantGroup& group);
 
 /// Everything worth measuring of a scene, the defaults first in their group, for a device of `lanes`. A scene
 /// without shadows has no group about them.

@@ -60,6 +60,10 @@ Texture readTexture(std::span<const std::byte> file, const std::string& name) {
 
 Image errorMap(const ImageDifference& difference) { return functions().error_map(difference); }
 
+Image listMap(int width, int height, const std::vector<float>& list_lengths) {
+  return functions().list_map(width, height, list_lengths);
+}
+
 bool openImageIOWrites(const std::string& extension) { return functions().open_image_io_writes(extension); }
 
 }  // namespace luciole

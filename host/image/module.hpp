@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "image/error_map.hpp"
+#include "image/heat_map.hpp"
 #include "image/file_format.hpp"
 #include "image/gbuffer_file.hpp"
 #include "image/image.hpp"
@@ -26,6 +26,7 @@ struct ImageFunctions {
   Texture (*read_texture)(const std::string& path);
   Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);
   decltype(&errorMap) error_map;
+  decltype(&listMap) list_map;
   decltype(&openImageIOWrites) open_image_io_writes;
 };
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <mutex>
 
+#include "reference/models.hpp"
+
 namespace luciole {
 namespace {
 
@@ -53,14 +55,6 @@ Incoming incomingLight(const Light& light, const glm::dvec3& position) {
   if (light.kind == LightKind::kSpot)
     incoming.share *= spotEffect(light, glm::dot(-incoming.to_light, unitOrZero(light.direction)));
   return incoming;
-}
-
-/// The specular lobe; 0^0 = 1.
-double highlight(const glm::dvec3& normal, const glm::dvec3& to_light, const glm::dvec3& to_eye,
-                 double shininess, bool blinn) {
-  const double cosine = blinn ? glm::dot(normal, unitOrZero(to_light + to_eye))
-                              : glm::dot(2 * glm::dot(normal, to_light) * normal - to_light, to_eye);
-  return std::pow(std::clamp(cosine, 0.0, 1.0), shininess);
 }
 
 glm::dvec3 eyePosition(const Camera& camera) { return glm::dvec3(camera.camera_to_world[3]); }
@@ -119,15 +113,15 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
     visibility = [&](const Light& light) {
       return lightVisibility(*settings.shadow_rays, light, point.position, settings.shadow_samples, seed);
     };
-  const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, settings.blinn, visibility);
+  const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, settings.model, visibility);
   return settings.fog ? referenceFog(scene.fog, gbuffer.camera, point.position, radiance) : radiance;
 }
 
 }  // namespace
 
 // The lighting equation of OpenGL 1.x (The OpenGL Graphics System: A Specification, section "Lighting") with
-// a local viewer, which is Phong's (CACM 18(6), 1975) or, with the half vector, Blinn's (SIGGRAPH 1977).
-glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, bool blinn,
+// a local viewer, whose reflection is Phong's, or that of another model in its place.
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
                              const Visibility& visibility) {
   if (!scene.lighting) return point.emission + point.diffuse;
   // Unit again in double: a power of 10⁶ would make 10 % of the last bit of a float normal.
@@ -142,9 +136,10 @@ glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const Sur
     const double n_dot_l = glm::dot(normal, incoming.to_light);
     const double visible = n_dot_l <= 0 ? 0.0 : light.shadow && visibility ? visibility(light) : 1.0;
     if (visible > 0) {
-      reflected += glm::dvec3(light.diffuse) * point.diffuse * (n_dot_l * visible);
-      reflected += glm::dvec3(light.specular) * point.specular *
-                   (highlight(normal, incoming.to_light, to_eye, point.shininess, blinn) * visible);
+      const auto [diffuse, specular] =
+          reflectedLight(model, {normal, incoming.to_light, to_eye}, point.specular, point.shininess);
+      reflected += glm::dvec3(light.diffuse) * point.diffuse * (diffuse * visible);
+      reflected += glm::dvec3(light.specular) * specular * visible;
     }
     radiance += reflected * incoming.share;
   }

@@ -8,6 +8,7 @@
 #include "image/image.hpp"
 #include "raster/gbuffer.hpp"
 #include "reference/ray_shadows.hpp"
+#include "scene/model.hpp"
 #include "scene/scene.hpp"
 
 // The lighting equations in double precision, written from the textbooks and independently of kernels/: what
@@ -27,7 +28,7 @@ using Visibility = std::function<double(const Light& light)>;
 
 /// Radiance that leaves the point towards the eye, before fog: every light of the scene, no culling. Lights
 /// marked `shadow` are asked for their visibility where it matters; without one nothing casts a shadow.
-glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, bool blinn,
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
                              const Visibility& visibility = {});
 
 /// What the eye sees of `radiance` through the scene's fog.
@@ -35,7 +36,7 @@ glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& 
                         const glm::dvec3& radiance);
 
 struct ReferenceSettings {
-  bool blinn = false;                     ///< Blinn's N·H instead of Phong's R·V
+  Model model = Model::kPhong;
   bool fog = true;                        ///< false for vertices, whose colours meet the fog as pixels
   const RayScene* shadow_rays = nullptr;  ///< of this scene, by buildShadowRays; null: nothing casts a shadow
   int shadow_samples = 64;  ///< rays from a pixel to a light that has a size; one to a light without

@@ -83,6 +83,7 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
         break;
       case Aov::kDepth:
       case Aov::kLightCount:
+      case Aov::kListLength:
       case Aov::kShadow:
         count += 1;
         break;
@@ -121,6 +122,9 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
         break;
       case Aov::kLightCount:
         append({{"light_count", first.light_count.data()}});
+        break;
+      case Aov::kListLength:
+        append({{"list_length", first.list_length.data()}});
         break;
       case Aov::kShadow:
         append({{"shadow", first.color.size() == 4 * n ? first.color.data() + 3 * n : all_visible.data()}});

@@ -17,8 +17,11 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"ATTENUATION", "attenuation", "constant, linear and quadratic attenuation"},
     {"SMOOTH_WINDOW", "smooth window", "ranges that fade as (1 - (d/r)^4)^2"},
     {"KHR_WINDOW", "KHR window", "ranges that fade as 1 - (d/r)^4"},
-    {"PHONG_SPECULAR", "Phong specular", "(R.V)^n"},
-    {"BLINN_SPECULAR", "Blinn specular", "(N.H)^n"},
+    {"SPECULAR", "specular", "highlights"},
+    {"PHONG", "Phong", "the model with highlights of (R.V)^n"},
+    {"BLINN_PHONG", "Blinn-Phong", "the model with highlights of (N.H)^n"},
+    {"TOON", "toon", "the model that lights in flat steps"},
+    {"COOK_TORRANCE", "Cook-Torrance", "the model of rough surfaces, D G F / (4 N.L N.V)"},
     {"AMBIENT", "ambient", "ambient reflection"},
     {"LIGHT_AMBIENT", "light ambient", "ambient light of single lights"},
     {"EMISSION", "emission", "surfaces that glow"},
@@ -46,6 +49,20 @@ SurfaceTraits materialTraits(const Scene& scene) {
     traits.emission |= material.emission != glm::vec3(0.0f);
   }
   return traits;
+}
+
+Feature featureOf(Model model) {
+  switch (model) {
+    case Model::kPhong:
+      return Feature::kPhong;
+    case Model::kBlinnPhong:
+      return Feature::kBlinnPhong;
+    case Model::kToon:
+      return Feature::kToon;
+    case Model::kCookTorrance:
+      break;
+  }
+  return Feature::kCookTorrance;
 }
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
@@ -106,15 +123,15 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   // Beside cones, an exponent of 0 must be told apart from a cone at run time.
   if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
-  if (surfaces.specular && light_specular)
-    features.set(settings.blinn ? Feature::kBlinnSpecular : Feature::kPhongSpecular);
+  features.set(Feature::kSpecular, surfaces.specular && light_specular);
+  features.set(featureOf(settings.model), !scene.lights.empty());
   features.set(Feature::kLightLists, settings.culling == Culling::kTiles && !scene.lights.empty());
   features.set(Feature::kLongSums, scene.lights.size() > kSumBlock);
   return features;
 }
 
 PlaneSet neededPlanes(const FeatureSet& features) {
-  return {.specular = features.specular(),
+  return {.specular = features.has(Feature::kSpecular),
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
           .facet = features.shadows()};

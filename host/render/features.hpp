@@ -5,6 +5,7 @@
 #include <string>
 
 #include "raster/rasterize.hpp"
+#include "scene/model.hpp"
 #include "scene/scene.hpp"
 #include "shadow/shadow_maps.hpp"
 
@@ -20,8 +21,11 @@ enum class Feature : unsigned {
   kAttenuation,
   kSmoothWindow,
   kKhrWindow,
-  kPhongSpecular,
-  kBlinnSpecular,
+  kSpecular,
+  kPhong,
+  kBlinnPhong,
+  kToon,
+  kCookTorrance,
   kAmbient,
   kLightAmbient,
   kEmission,
@@ -57,7 +61,6 @@ class FeatureSet {
   bool has(Feature feature) const { return bits_[static_cast<std::size_t>(feature)]; }
   void set(Feature feature, bool on = true) { bits_[static_cast<std::size_t>(feature)] = on; }
   bool operator==(const FeatureSet&) const = default;
-  bool specular() const { return has(Feature::kPhongSpecular) || has(Feature::kBlinnSpecular); }
   bool shadows() const {
     return has(Feature::kParallelShadows) || has(Feature::kPerspectiveShadows) || has(Feature::kCubeShadows);
   }
@@ -75,9 +78,12 @@ SurfaceTraits materialTraits(const Scene& scene);
 
 enum class Culling : std::uint8_t { kNone, kTiles };
 
+/// What a program of this model compiles.
+Feature featureOf(Model model);
+
 /// How to light a G-buffer, apart from the scene.
 struct ShadeSettings {
-  bool blinn = false;  ///< Blinn's N·H instead of Phong's R·V
+  Model model = Model::kPhong;
   Culling culling = Culling::kTiles;
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;

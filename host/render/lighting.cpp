@@ -28,42 +28,46 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettin
   frame.fog_scale = 1.0f / (scene.fog.end - scene.fog.start);
   frame.fog_mode = static_cast<uint>(scene.fog.mode);
   frame.fog_radial = scene.fog.radial;
-  frame.blinn = settings.blinn;
+  frame.model = static_cast<uint>(settings.model);
   frame.light_count = scene.lighting ? static_cast<uint>(scene.lights.size()) : 0;
   return frame;
 }
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
               int(FogMode::kExp2) == kFogExp2);
+static_assert(int(Model::kPhong) == kPhongModel && int(Model::kBlinnPhong) == kBlinnPhongModel &&
+              int(Model::kToon) == kToonModel && int(Model::kCookTorrance) == kCookTorranceModel);
 
-/// Pixel-light pairs: a row of lanes with any covered pixel goes through the lights of its square.
-std::uint64_t evaluatedPairs(Device& device, const GBuffer& gbuffer, const LightLists* lists,
-                             std::size_t light_count) {
-  std::vector<cl_uint> starts;
-  std::vector<ListEntry> entries;
-  if (lists) {
-    starts.resize(lists->tiles + 1);
-    entries.resize(lists->entries);
-    readBuffer(device, lists->starts, starts.data(), starts.size() * sizeof(cl_uint));
-    readBuffer(device, lists->list, entries.data(), entries.size() * sizeof(ListEntry));
-  }
-  const int lanes = device.description.lanes;
-  const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
-  std::uint64_t pairs = 0;
-  for (std::size_t tile = 0; tile < gbuffer.pixels() / kTilePixels; ++tile) {
-    std::array<std::uint64_t, kSquaresPerTile> lit_pixels{};
-    for (std::size_t row = tile * kTilePixels; row < (tile + 1) * kTilePixels; row += lanes) {
-      bool covered = false;
-      for (int lane = 0; lane < lanes; ++lane)
-        covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
-      if (covered) lit_pixels[SQUARE_OF_PIXEL(row)] += lanes;
-    }
-    if (!lists) {
-      for (const std::uint64_t pixels : lit_pixels) pairs += pixels * light_count;
-      continue;
-    }
+/// The square that a place in the planes belongs to.
+std::size_t squareOf(std::size_t place) {
+  return place / kTilePixels * kSquaresPerTile + SQUARE_OF_PIXEL(place);
+}
+
+/// How many lights each square's pixels go through: its list's, or without lists all.
+std::vector<std::uint32_t> squareLengths(Device& device, const LightLists* lists, std::size_t tiles,
+                                         std::size_t light_count) {
+  if (!lists) return std::vector<std::uint32_t>(tiles * kSquaresPerTile, std::uint32_t(light_count));
+  std::vector<std::uint32_t> lengths(tiles * kSquaresPerTile);
+  std::vector<cl_uint> starts(lists->tiles + 1);
+  std::vector<ListEntry> entries(lists->entries);
+  readBuffer(device, lists->starts, starts.data(), starts.size() * sizeof(cl_uint));
+  readBuffer(device, lists->list, entries.data(), entries.size() * sizeof(ListEntry));
+  for (std::size_t tile = 0; tile < tiles; ++tile)
     for (std::size_t entry = starts[tile]; entry < starts[tile + 1]; ++entry)
       for (int square = 0; square < kSquaresPerTile; ++square)
-        if (entries[entry].squares >> square & 1) pairs += lit_pixels[square];
+        lengths[tile * kSquaresPerTile + square] += entries[entry].squares >> square & 1;
+  return lengths;
+}
+
+/// Pixel-light pairs: a row of lanes with any covered pixel goes through the lights of its square.
+std::uint64_t evaluatedPairs(const GBuffer& gbuffer, const std::vector<std::uint32_t>& square_lengths,
+                             int lanes) {
+  const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
+  std::uint64_t pairs = 0;
+  for (std::size_t row = 0; row < gbuffer.pixels(); row += lanes) {
+    bool covered = false;
+    for (int lane = 0; lane < lanes; ++lane)
+      covered |= depth[row + lane] > -std::numeric_limits<float>::infinity();
+    if (covered) pairs += std::uint64_t(lanes) * square_lengths[squareOf(row)];
   }
   return pairs;
 }
@@ -195,7 +199,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
 }
 
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
-                       const GBuffer& gbuffer, bool count_in_range, Stats& stats) {
+                       const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats) {
   const std::size_t pixels = gbuffer.pixels();
   const std::string defines = featureDefines(features) + lighting.math_defines;
   PackedNormals packed;
@@ -238,8 +242,14 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   });
   timed(stats, "read back",
         [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
-  if (count_in_range) lit.light_count = countLights(device, lighting, buffers, pixels);
-  lit.evaluated = evaluatedPairs(device, gbuffer, culled ? &lists : nullptr, frame.light_count);
+  if (counts.in_range) lit.light_count = countLights(device, lighting, buffers, pixels);
+  const std::vector<std::uint32_t> square_lengths =
+      squareLengths(device, culled ? &lists : nullptr, pixels / kTilePixels, frame.light_count);
+  lit.evaluated = evaluatedPairs(gbuffer, square_lengths, device.description.lanes);
+  if (counts.list_length) {
+    lit.list_length.resize(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
+  }
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              facet.size() + lit.color.size();
@@ -271,7 +281,7 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
     lighting.host_shadows.bin_count = 1;
   }
   Stats ignored;
-  lightGBuffer(device, {}, lighting, features, empty, false, ignored);
+  lightGBuffer(device, {}, lighting, features, empty, {}, ignored);
 }
 
 }  // namespace luciole

@@ -48,6 +48,8 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
 struct LitPlanes {
   Plane color;        ///< r g b, then with Feature::kOutputShadow the shadow layer
   Plane light_count;  ///< lights in range of each pixel, if asked for
+  Plane
+      list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists
   std::uint64_t list_entries = 0;
   LightLists lists;             ///< that it was lit by, with Feature::kLightLists
   PairBits pair_bits;           ///< of their entries, with Feature::kExact
@@ -55,10 +57,16 @@ struct LitPlanes {
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through
 };
 
+/// What lightGBuffer is to count beside.
+struct PixelCounts {
+  bool in_range = false;     ///< LitPlanes::light_count
+  bool list_length = false;  ///< LitPlanes::list_length
+};
+
 /// Culls and shades one G-buffer, drawing those parts of the scene's shadow maps that it looks at and that
 /// weren't drawn before. `features` may leave out some of what the lighting was prepared for.
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
-                       const GBuffer& gbuffer, bool count_in_range, Stats& stats);
+                       const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats);
 
 /// Compiles the kernels for these features down to machine code, which OpenCL does at the first launch.
 void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings);

@@ -26,8 +26,9 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   // Colours and counts are on the device and then on the host, too. From the second sample on there are the
   // sum and the picture with its layers.
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels : 0);
-  const std::size_t assembling =
-      gbuffer + lit + counted + channels + (world ? 7 : 0) + (wants(settings, Aov::kShadow) ? 1 : 0);
+  const std::size_t assembling = gbuffer + lit + counted + channels + (world ? 7 : 0) +
+                                 (wants(settings, Aov::kListLength) ? 1 : 0) +
+                                 (wants(settings, Aov::kShadow) ? 1 : 0);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(),
                     [](const Light& light) { return !std::isfinite(light.range); });

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <utility>
 
 #include "machine_memory.hpp"
 #include "raster/view.hpp"
@@ -48,7 +49,7 @@ std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
   const FeatureSet features = vertexFeatures(lighting.features);
   const GBuffer vertices = timed(
       stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
-  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, vertices, false, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, vertices, {}, stats);
   std::vector<glm::vec3> colors(vertices.pixels());
   for (std::size_t i = 0; i < colors.size(); ++i)
     colors[i] = {lit.color[i], lit.color[i + colors.size()], lit.color[i + 2 * colors.size()]};
@@ -111,11 +112,17 @@ std::future<double> startCompiling(Device& device, const std::vector<FeatureSet>
   });
 }
 
-void awaitKernels(std::future<double>& compiling, const Device& device, Stats& stats) {
+void awaitKernels(std::future<double>& compiling, Device& device, Stats& stats) {
   const double milliseconds = timed(stats, "wait for kernels", [&] { return compiling.get(); });
   addStage(stats, "compile kernels", milliseconds);
-  addStage(stats, "open device", device.milliseconds_to_open);
+  addStage(stats, "open device", std::exchange(device.milliseconds_to_open, 0));
   stats.device = device.description;
+}
+
+/// Layers are the first sample's, statistics all samples'.
+PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
+  return {.in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
+          .list_length = sample == 0 && wants(settings, Aov::kListLength)};
 }
 
 /// What the bands of a picture share.
@@ -151,8 +158,8 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
                        prepared.vertex_colors, &triangles);
     });
     gbuffer.camera = settings.camera;
-    const bool count = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount));
-    LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer, count, stats);
+    LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
+                                 wantedCounts(settings, sample), stats);
     countPass(gbuffer, lit, stats);
     timed(stats, "resolve", [&] {
       if (sample == 0) {
@@ -275,8 +282,8 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;
-  const bool count = settings.count_lights || wants(settings, Aov::kLightCount);
-  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, count, stats);
+  const LitPlanes lit =
+      lightGBuffer(device, scene, lighting, features, gbuffer, wantedCounts(settings, 0), stats);
   countPass(gbuffer, lit, stats);
   countShadows(lighting.host_shadows, stats);
   RenderSettings one_sample = settings;

@@ -16,7 +16,17 @@
 namespace luciole {
 
 /// Extra layers of an EXR.
-enum class Aov : std::uint8_t { kPosition, kNormal, kDepth, kDiffuse, kMaterial, kLightCount, kShadow };
+enum class Aov : std::uint8_t {
+  kPosition,
+  kNormal,
+  kDepth,
+  kDiffuse,
+  kMaterial,
+  kLightCount,  ///< lights in range of the pixel
+  kListLength,  ///< lights that its square has in its list, all of them where there are no lists; where
+                ///< squares begin depends on the band and the crop
+  kShadow
+};
 
 struct RenderSettings {
   glm::ivec2 size{1280, 720};

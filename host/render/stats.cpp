@@ -1,25 +1,11 @@
 #include "render/stats.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cl/kernel_cache.hpp"
+#include "peak_memory.hpp"
 
 namespace luciole {
-namespace {
-
-/// The most memory that the process had resident. Not by getrusage, whose figure starts at what the process
-/// that started this one had.
-std::uint64_t peakBytes() {
-  std::ifstream status("/proc/self/status");
-  std::uint64_t kibibytes = 0;
-  for (std::string field; status >> field;)
-    if (field == "VmHWM:") status >> kibibytes;
-  return kibibytes * 1024;
-}
-
-}  // namespace
-
 void addStage(Stats& stats, const std::string& name, double milliseconds) {
   for (auto& [stage, sum] : stats.stages) {
     if (stage == name) {

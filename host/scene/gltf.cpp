@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <vector>
 
+#include "scene/gltf_animation.hpp"
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
 #include "scene/gltf_model.hpp"
+#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
@@ -21,38 +21,60 @@ constexpr double kPi = 3.14159265358979323846;
 
 struct PlacedNode {
   int node;
-  glm::dmat4 to_world;
+  glm::dmat4 to_world;    ///< at rest, as the node itself says
+  int moving = -1;        ///< what it hangs on: in Animation::nodes; -1: nothing moves it
+  glm::dmat4 since{1.0};  ///< from there on
 };
 
 std::string nodePlace(int node) { return fmt::format("nodes[{}]", node); }
 
-glm::dmat4 localTransform(const GltfModel& model, int index) {
+/// What a node says of its own transform: a matrix, or the three parts.
+struct LocalTransform {
+  bool is_matrix = false;
+  glm::dmat4 matrix{1.0};
+  glm::dvec3 translate{0.0}, scale{1.0};
+  glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};
+};
+
+LocalTransform localTransform(const GltfModel& model, int index) {
   const tinygltf::Node& node = model.file.nodes[index];
   const auto has = [&](const std::vector<double>& values, std::size_t count, const char* name) {
     if (values.empty() || values.size() == count) return !values.empty();
     failGltf(model, nodePlace(index),
              fmt::format("{} has {} numbers, expected {}", name, values.size(), count));
   };
-  glm::dmat4 local(1.0);
+  LocalTransform local;
   if (has(node.matrix, 16, "matrix")) {
-    for (int i = 0; i < 16; ++i) local[i / 4][i % 4] = node.matrix[i];
-    const glm::dvec4 last_row(local[0].w, local[1].w, local[2].w, local[3].w);
+    local.is_matrix = true;
+    for (int i = 0; i < 16; ++i) local.matrix[i / 4][i % 4] = node.matrix[i];
+    const glm::dvec4 last_row(local.matrix[0].w, local.matrix[1].w, local.matrix[2].w, local.matrix[3].w);
     if (last_row != glm::dvec4(0, 0, 0, 1))
       failGltf(model, nodePlace(index), "matrix must have 0 0 0 1 as last row");
     return local;
   }
-  if (has(node.translation, 3, "translation")) {
-    local = glm::translate(local, {node.translation[0], node.translation[1], node.translation[2]});
-  }
-  if (has(node.rotation, 4, "rotation")) {
-    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(rotation) > 0)) failGltf(model, nodePlace(index), "rotation must be a unit quaternion");
-    local *= glm::mat4_cast(glm::normalize(rotation));
-  }
-  if (has(node.scale, 3, "scale")) {
-    local = glm::scale(local, {node.scale[0], node.scale[1], node.scale[2]});
-  }
+  for (int i = 0; has(node.translation, 3, "translation") && i < 3; ++i)
+    local.translate[i] = node.translation[i];
+  for (int i = 0; has(node.rotation, 4, "rotation") && i < 4; ++i) local.rotation[i] = node.rotation[i];
+  for (int i = 0; has(node.scale, 3, "scale") && i < 3; ++i) local.scale[i] = node.scale[i];
+  if (!(glm::length(local.rotation) > 0))
+    failGltf(model, nodePlace(index), "rotation must be a unit quaternion");
+  local.matrix = placementByQuaternion(local.translate, local.rotation, local.scale);
   return local;
+}
+
+/// The node of the animation that an animated node becomes; what no curve moves stays as the node says.
+MovingNode movingNode(const LocalTransform& local, const NodeCurves& curves, Animation& animation) {
+  const auto orConstant = [&](int curve, const glm::dvec4& value) {
+    if (curve >= 0) return curve;
+    animation.curves.push_back(constantCurve(value));
+    return static_cast<int>(animation.curves.size()) - 1;
+  };
+  MovingNode moving;
+  moving.quaternion = true;
+  moving.translate = orConstant(curves.translation, glm::dvec4(local.translate, 0));
+  moving.rotate = orConstant(curves.rotation, local.rotation);
+  moving.scale = orConstant(curves.scale, glm::dvec4(local.scale, 0));
+  return moving;
 }
 
 /// The nodes at the top of the scene to show: the default one, else the first, else every node without a
@@ -75,9 +97,11 @@ std::vector<int> rootNodes(const GltfModel& model) {
   return roots;
 }
 
-/// Every node of the scene with its transform, parents first. A scene whose roots have no parent and whose
-/// nodes have at most one is a forest, so that a walk down from the roots ends.
-std::vector<PlacedNode> placedNodes(const GltfModel& model) {
+/// Every node of the scene with its transform, parents first; what moves is added to the animation. A scene
+/// whose roots have no parent and whose nodes have at most one is a forest, so that a walk down from the
+/// roots ends.
+std::vector<PlacedNode> placedNodes(const GltfModel& model, Animation& animation) {
+  const std::map<int, NodeCurves> curves = readGltfAnimations(model, animation);
   const std::vector<tinygltf::Node>& nodes = model.file.nodes;
   const std::vector<int> roots = rootNodes(model);
   std::vector<int> parents(nodes.size(), 0);
@@ -96,15 +120,24 @@ std::vector<PlacedNode> placedNodes(const GltfModel& model) {
   while (!stack.empty()) {
     PlacedNode next = stack.back();
     stack.pop_back();
-    next.to_world = next.to_world * localTransform(model, next.node);
-    for (int i = 0; i < 16; ++i) {
-      if (!std::isfinite(next.to_world[i / 4][i % 4]))
-        failGltf(model, nodePlace(next.node), "transform is not finite");
+    const LocalTransform local = localTransform(model, next.node);
+    next.to_world = next.to_world * local.matrix;
+    if (!isFinite(next.to_world)) failGltf(model, nodePlace(next.node), "transform is not finite");
+    if (const auto animated = curves.find(next.node); animated != curves.end()) {
+      if (local.is_matrix) failGltf(model, nodePlace(next.node), "is animated, so it must have no matrix");
+      MovingNode moving = movingNode(local, animated->second, animation);
+      moving.parent = next.moving;
+      moving.before = next.since;
+      next.moving = static_cast<int>(animation.nodes.size());
+      next.since = glm::dmat4(1.0);
+      animation.nodes.push_back(moving);
+    } else {
+      next.since = next.since * local.matrix;
     }
     placed.push_back(next);
     const std::vector<int>& children = nodes[next.node].children;
     for (auto child = children.rbegin(); child != children.rend(); ++child)
-      stack.push_back({*child, next.to_world});
+      stack.push_back({*child, next.to_world, next.moving, next.since});
   }
   return placed;
 }
@@ -123,24 +156,16 @@ void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Sc
       meshes[index] = mesh.triangles.empty() ? -1 : static_cast<int>(scene.meshes.size());
       if (!mesh.triangles.empty()) scene.meshes.push_back(std::move(mesh));
     }
-    const bool is_flattened =
-        glm::determinant(glm::dmat3(placed.to_world)) == 0;  // by a scale of 0, to hide it
-    if (meshes[index] >= 0 && !is_flattened) {
-      scene.objects.push_back({static_cast<std::uint32_t>(meshes[index]), placed.to_world, -1});
-    }
+    if (meshes[index] < 0) continue;
+    const std::uint32_t mesh = static_cast<std::uint32_t>(meshes[index]);
+    // By a scale of 0, to hide it. What moves may be so for some time.
+    if (placed.moving < 0 && isFlat(placed.to_world)) continue;
+    scene.objects.push_back({mesh, placed.to_world, -1});
+    if (placed.moving < 0) continue;
+    hang(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
+                 static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
   }
   addGltfMaterials(model, materials, scene);
-}
-
-/// A rotation and translation that looks where a node looks: along its −z, with its y as near to up as can
-/// be.
-glm::dmat4 rigid(const GltfModel& model, const PlacedNode& placed) {
-  const glm::dvec3 back(placed.to_world[2]), up(placed.to_world[1]);
-  const glm::dvec3 right = glm::cross(up, back);
-  if (!(glm::length(right) > 0))
-    failGltf(model, nodePlace(placed.node), "its scale leaves a camera no direction");
-  const glm::dvec3 x = glm::normalize(right), z = glm::normalize(back);
-  return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), placed.to_world[3]};
 }
 
 void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
@@ -150,7 +175,8 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   const std::string place = fmt::format("cameras[{}]", node.camera);
   Camera camera;
   camera.name = source.name.empty() ? node.name : source.name;
-  camera.camera_to_world = rigid(model, placed);
+  const std::string fault = hangCamera(placed.to_world, camera);
+  if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
   camera.orthographic = source.type == "orthographic";
   if (camera.orthographic) {
     camera.half_height = std::abs(source.orthographic.ymag);
@@ -166,6 +192,9 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
     if (!(camera.fov_y > 0 && camera.fov_y < kPi)) failGltf(model, place, "yfov must be between 0 and pi");
   }
   if (!(camera.near > 0 && camera.far > camera.near)) failGltf(model, place, "expected 0 < znear < zfar");
+  if (placed.moving >= 0)
+    scene.animation.hanging_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
+                                               static_cast<std::uint32_t>(placed.moving), placed.since});
   scene.cameras.push_back(camera);
 }
 
@@ -178,13 +207,6 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
   const tinygltf::Light& source = element(model, model.file.lights, number, nodePlace(placed.node), "light");
   const std::string place = fmt::format("extensions.{}.lights[{}]", kLights, number);
   Light light;
-  light.position = glm::dvec3(placed.to_world[3]);
-  const glm::dvec3 back(placed.to_world[2]);
-  if (source.type != "point" && !(glm::length(back) > 0)) {
-    failGltf(model, nodePlace(placed.node), "its scale leaves a light no direction");
-  }
-  light.direction = source.type == "point" ? light.direction : -glm::normalize(back);
-
   glm::vec3 color(1);
   for (std::size_t i = 0; i < std::min<std::size_t>(source.color.size(), 3); ++i) {
     color[static_cast<int>(i)] = static_cast<float>(source.color[i]);
@@ -218,6 +240,11 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
   } else if (source.type != "point" && source.type != "directional") {
     failGltf(model, place, "type must be point, directional or spot");
   }
+  const std::string fault = hangLight(placed.to_world, light);
+  if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
+  if (placed.moving >= 0)
+    scene.animation.hanging_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
+                                              static_cast<std::uint32_t>(placed.moving), placed.since});
   scene.lights.push_back(light);
 }
 
@@ -225,7 +252,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
 
 void loadGltf(const std::string& path, Scene& scene) {
   const GltfModel model = readGltfModel(path);
-  const std::vector<PlacedNode> nodes = placedNodes(model);
+  const std::vector<PlacedNode> nodes = placedNodes(model, scene.animation);
   const std::size_t before = scene.objects.size() + scene.cameras.size() + scene.lights.size();
   addObjects(model, nodes, scene);
   for (const PlacedNode& placed : nodes) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <vector>
 
@@ -57,7 +58,7 @@ void refuse(const JsonNode& node, const std::string& what) {
   throw InputError(fmt::format("{}: {}{}{}", root->key, place, place.empty() ? "" : ": ", what));
 }
 
-void allowKeys(const JsonNode& object, std::initializer_list<std::string_view> known) {
+void allowKeys(const JsonNode& object, std::span<const std::string_view> known) {
   needObject(object);
   for (const auto& [key, value] : object.json->items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
@@ -151,6 +152,15 @@ bool readBool(const JsonNode& node) {
 std::string readText(const JsonNode& node) {
   if (!node.json->is_string()) expected(node, "a text in quotes");
   return node.json->get<std::string>();
+}
+
+std::string readPath(const JsonNode& node, const std::string& folder) {
+  const std::string path = (std::filesystem::path(folder) / readText(node)).lexically_normal().string();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) refuse(node, fmt::format("there is no file {}", path));
+  if (std::filesystem::is_directory(path, ignored))
+    refuse(node, fmt::format("{} is a folder; expected a file", path));
+  return path;
 }
 
 glm::dvec3 readVector(const JsonNode& node) {

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -35,7 +36,10 @@ Json parseJson(const std::string& text, const std::string& file,
                const std::function<bool(const JsonNode&)>& take);
 
 /// Refuses any key that isn't among `known`, naming the nearest one that is. The node must be an object.
-void allowKeys(const JsonNode& object, std::initializer_list<std::string_view> known);
+void allowKeys(const JsonNode& object, std::span<const std::string_view> known);
+inline void allowKeys(const JsonNode& object, std::initializer_list<std::string_view> known) {
+  allowKeys(object, std::span(known.begin(), known.size()));
+}
 /// Refuses the given keys, which mean nothing `where` ("for a point light").
 void refuseKeys(const JsonNode& object, std::initializer_list<std::string_view> keys,
                 const std::string& where);
@@ -57,6 +61,8 @@ double readPositive(const JsonNode& node);
 std::uint64_t readCount(const JsonNode& node, std::uint64_t largest);
 bool readBool(const JsonNode& node);
 std::string readText(const JsonNode& node);
+/// The name of a file that exists, relative to `folder`.
+std::string readPath(const JsonNode& node, const std::string& folder);
 glm::dvec3 readVector(const JsonNode& node);
 /// A vector's direction, unit. Refuses the zero vector.
 glm::dvec3 readDirection(const JsonNode& node);

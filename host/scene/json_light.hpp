@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <string>
 
 #include "scene/json_fields.hpp"
 #include "scene/light_field.hpp"
@@ -8,11 +8,11 @@
 
 namespace luciole {
 
-/// Reads an element of "lights"; none if it is switched off ("enabled": false), though it is checked all the
-/// same.
-std::optional<Light> readLight(const JsonNode& node);
+/// Reads an element of "lights" and how it moves into the scene; nothing if it is switched off ("enabled":
+/// false), though it is checked all the same.
+void readLight(const JsonNode& node, Scene& scene);
 
-/// Reads an element of "light_fields".
-LightField readLightField(const JsonNode& node);
+/// Reads an element of "light_fields", and the file that it may name by a path relative to `folder`.
+LightField readLightField(const JsonNode& node, const std::string& folder);
 
 }  // namespace luciole

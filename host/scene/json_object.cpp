@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
-#include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "scene/json_keys.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/mesh_file.hpp"
+#include "scene/pose.hpp"
 #include "scene/primitives.hpp"
 
 namespace luciole {
@@ -18,22 +19,20 @@ namespace {
 
 constexpr std::size_t kMostObjects = 10'000'000;
 
-/// What has been loaded so far, by what would make it the same.
-struct Loaded {
-  std::uint32_t plain_material = 0;                       ///< of primitives that name none
-  std::map<std::string, int> materials;                   ///< name -> index in Scene::materials
-  std::map<std::string, std::vector<Object>> mesh_files;  ///< path -> its objects, placed as the file says
-  std::map<Primitive, std::uint32_t> primitives;          ///< -> index in Scene::meshes
+/// What a mesh file shows, placed as the file says; its nodes and hanging objects count from 0.
+struct LoadedFile {
+  std::vector<Object> objects;
+  std::vector<MovingNode> nodes;
+  std::vector<Hanging> hanging;
 };
 
-std::string readPath(const JsonNode& node, const std::string& folder) {
-  const std::string path = (std::filesystem::path(folder) / readText(node)).lexically_normal().string();
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse(node, fmt::format("there is no file {}", path));
-  if (std::filesystem::is_directory(path, ignored))
-    refuse(node, fmt::format("{} is a folder; expected a file", path));
-  return path;
-}
+/// What has been loaded so far, by what would make it the same.
+struct Loaded {
+  std::uint32_t plain_material = 0;               ///< of primitives that name none
+  std::map<std::string, int> materials;           ///< name -> index in Scene::materials
+  std::map<std::string, LoadedFile> mesh_files;   ///< by path
+  std::map<Primitive, std::uint32_t> primitives;  ///< -> index in Scene::meshes
+};
 
 TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene) {
   TextureUse use;
@@ -103,58 +102,124 @@ Primitive readPrimitive(const JsonNode& object) {
   return primitive;
 }
 
-glm::dmat4 readPlacement(const JsonNode& node) {
-  glm::dmat4 placement{1.0};
-  if (const auto n = find(node, "translate")) placement = glm::translate(placement, readVector(*n));
-  if (const auto n = find(node, "rotate")) {
-    const glm::dvec3 angles = glm::radians(readVector(*n));
-    placement = glm::rotate(placement, angles.z, {0, 0, 1});
-    placement = glm::rotate(placement, angles.y, {0, 1, 0});
-    placement = glm::rotate(placement, angles.x, {1, 0, 0});
+glm::dvec3 readScale(const JsonNode& node) {
+  const glm::dvec3 scale = node.json->is_array() ? readVector(node) : glm::dvec3(readNumber(node));
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(scale[i]) < 1 / kLargestNumber) refuse(node, "a factor is 0; expected 1e-18 or more");
   }
-  if (const auto n = find(node, "scale")) {
-    const glm::dvec3 scale = n->json->is_array() ? readVector(*n) : glm::dvec3(readNumber(*n));
-    for (int i = 0; i < 3; ++i) {
-      if (std::abs(scale[i]) < 1 / kLargestNumber) refuse(*n, "a factor is 0; expected 1e-18 or more");
-    }
-    placement = glm::scale(placement, scale);
-  }
-  return placement;
+  return scale;
 }
 
-/// The objects of a mesh file, which on its first use is loaded into the scene without its lights and
-/// cameras.
-const std::vector<Object>& meshFileObjects(const std::string& path, Loaded& loaded, Scene& scene) {
+/// Where an object lies, and if it has keys, the node that it then hangs on.
+struct Placement {
+  glm::dmat4 still{1.0};
+  int node = -1;  ///< in Animation::nodes
+};
+
+Placement readPlacement(const JsonNode& node, Animation& animation) {
+  glm::dvec3 translate{0.0}, rotate{0.0}, scale{1.0};
+  if (const auto n = find(node, "translate")) translate = readVector(*n);
+  if (const auto n = find(node, "rotate")) rotate = readVector(*n);
+  if (const auto n = find(node, "scale")) scale = readScale(*n);
+  Placement result{placement(translate, rotate, scale)};
+  if (!hasKeys(node, {"translate", "rotate", "scale"})) return result;
+  /// A member's curve, which is constant where no key names it.
+  const auto addCurve = [&](const char* member, glm::dvec3 (*read)(const JsonNode&), const glm::dvec3& own) {
+    Curve curve = readMotion(node, member, [&](const JsonNode& n) { return glm::dvec4(read(n), 0); });
+    if (curve.keys.empty()) curve = constantCurve(glm::dvec4(own, 0));
+    animation.curves.push_back(std::move(curve));
+    return static_cast<int>(animation.curves.size()) - 1;
+  };
+  MovingNode moving;
+  moving.translate = addCurve("translate", readVector, translate);
+  moving.rotate = addCurve("rotate", readVector, rotate);
+  moving.scale = addCurve("scale", readScale, scale);
+  result.node = static_cast<int>(animation.nodes.size());
+  animation.nodes.push_back(moving);
+  return result;
+}
+
+/// Cuts off the end of a list from `first` on, and returns it.
+template <class T>
+std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
+  std::vector<T> end(std::make_move_iterator(list.begin() + static_cast<std::ptrdiff_t>(first)),
+                     std::make_move_iterator(list.end()));
+  list.resize(first);
+  return end;
+}
+
+/// A mesh file's objects, which on its first use is loaded into the scene without its lights and cameras.
+const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& scene) {
   const auto [it, is_new] = loaded.mesh_files.try_emplace(path);
-  if (is_new) {
-    const std::size_t first = scene.objects.size();
-    const std::size_t light_count = scene.lights.size();
-    const std::size_t camera_count = scene.cameras.size();
-    loadMeshFile(path, scene);
-    it->second.assign(scene.objects.begin() + static_cast<std::ptrdiff_t>(first), scene.objects.end());
-    scene.objects.resize(first);
-    scene.lights.resize(light_count);
-    scene.cameras.resize(camera_count);
+  if (!is_new) return it->second;
+  Animation& animation = scene.animation;
+  const std::size_t first_object = scene.objects.size(), first_node = animation.nodes.size();
+  const std::size_t light_count = scene.lights.size(), camera_count = scene.cameras.size();
+  const std::size_t first_hanging = animation.objects.size();
+  loadMeshFile(path, scene);
+  LoadedFile& file = it->second;
+  file.objects = cutFrom(scene.objects, first_object);
+  file.nodes = cutFrom(animation.nodes, first_node);
+  file.hanging = cutFrom(animation.objects, first_hanging);
+  for (MovingNode& node : file.nodes) node.parent -= node.parent < 0 ? 0 : static_cast<int>(first_node);
+  for (Hanging& hanging : file.hanging) {
+    hanging.index -= static_cast<std::uint32_t>(first_object);
+    hanging.node -= static_cast<std::uint32_t>(first_node);
   }
-  return it->second;
+  scene.lights.resize(light_count);
+  scene.cameras.resize(camera_count);
+  animation.hanging_lights.clear();  // a scene file has none of its own
+  animation.hanging_cameras.clear();
+  return file;
+}
+
+/// Places what a file shows; what moves in it goes on doing so where it is placed.
+void placeObjects(const LoadedFile& file, const Placement& placement, int material, Scene& scene) {
+  Animation& animation = scene.animation;
+  const std::size_t first = scene.objects.size();
+  const int first_node = static_cast<int>(animation.nodes.size());
+  for (const Object& part : file.objects) {
+    scene.objects.push_back(
+        {part.mesh, placement.still * part.object_to_world, material == -1 ? part.material : material});
+  }
+  for (MovingNode node : file.nodes) {
+    if (node.parent < 0 && placement.node < 0) node.before = placement.still * node.before;
+    node.parent = node.parent < 0 ? placement.node : first_node + node.parent;
+    animation.nodes.push_back(node);
+  }
+  std::vector<bool> hangs(file.objects.size(), false);
+  for (Hanging hanging : file.hanging) {
+    hangs[hanging.index] = true;
+    hanging.index += static_cast<std::uint32_t>(first);
+    hanging.node += static_cast<std::uint32_t>(first_node);
+    animation.objects.push_back(hanging);
+  }
+  if (placement.node < 0) return;
+  for (std::size_t i = 0; i < file.objects.size(); ++i) {
+    const Object& part = file.objects[i];
+    if (!hangs[i])
+      hang(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
+                   part.object_to_world, part.mesh});
+  }
 }
 
 void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded, Scene& scene) {
   allowKeys(node, {"mesh", "primitive", "translate", "rotate", "scale", "material", "segments",
-                   "minor_radius", "uv_scale"});
-  const glm::dmat4 placement = readPlacement(node);
+                   "minor_radius", "uv_scale", "keys", "interpolation"});
+  const Placement placement = readPlacement(node, scene.animation);
   int material = -1;
   if (const auto n = find(node, "material")) {
     const auto it = loaded.materials.find(readText(*n));
     if (it == loaded.materials.end()) refuse(*n, fmt::format("no material is called {}", n->json->dump()));
     material = it->second;
   }
-  std::vector<Object> parts;
+  LoadedFile single;
+  const LoadedFile* parts = &single;
   if (const auto n = find(node, "mesh")) {
     refuseKeys(node, {"primitive", "segments", "minor_radius", "uv_scale"}, "beside mesh");
     const std::string path = readPath(*n, folder);
     if (!isMeshFile(path)) refuse(*n, fmt::format("expected a .obj, .gltf or .glb file, got {}", path));
-    parts = meshFileObjects(path, loaded, scene);
+    parts = &loadedFile(path, loaded, scene);
   } else if (find(node, "primitive")) {
     const Primitive primitive = readPrimitive(node);
     const auto [it, is_new] =
@@ -163,17 +228,17 @@ void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded,
       // The object says which material it shows: others may share the mesh.
       scene.meshes.push_back(makePrimitive(primitive, loaded.plain_material));
     }
-    parts.push_back({it->second, glm::dmat4(1.0), -1});
+    single.objects.push_back({it->second, glm::dmat4(1.0), -1});
   } else {
     refuse(node, "\"mesh\" or \"primitive\" is missing");
   }
-  if (scene.objects.size() + parts.size() > kMostObjects) {
+  if (scene.objects.size() + parts->objects.size() > kMostObjects) {
     refuse(node, fmt::format("a scene may have {} objects at most", kMostObjects));
   }
-  for (const Object& part : parts) {
-    scene.objects.push_back(
-        {part.mesh, placement * part.object_to_world, material == -1 ? part.material : material});
+  if (scene.animation.nodes.size() + parts->nodes.size() > kMostObjects) {
+    refuse(node, fmt::format("a scene may have {} moving nodes at most", kMostObjects));
   }
+  placeObjects(*parts, placement, material, scene);
 }
 
 }  // namespace

@@ -2,17 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "error.hpp"
-#include "scene/frame.hpp"
 #include "scene/json_fields.hpp"
+#include "scene/json_keys.hpp"
 #include "scene/json_light.hpp"
 #include "scene/json_object.hpp"
+#include "scene/pose.hpp"
 #include "scene/text_file.hpp"
 
 namespace luciole {
@@ -26,28 +29,67 @@ std::string readWhole(const std::string& path) {
   return readFile(path);
 }
 
-Camera readCamera(const JsonNode& node) {
-  allowKeys(node, {"eye", "target", "up", "fov_y", "orthographic", "near", "far"});
+glm::dvec4 readVectorValue(const JsonNode& node) { return {readVector(node), 0}; }
+
+double readFovY(const JsonNode& node) {
+  const double degrees = readNumber(node);
+  if (!(degrees > 0 && degrees < 180))
+    refuse(node, fmt::format("expected degrees above 0 and below 180, got {}", degrees));
+  return degrees;
+}
+
+/// [azimuth, elevation, distance].
+glm::dvec3 readOrbit(const JsonNode& node) {
+  const glm::dvec3 orbit = readVector(node);
+  if (!(std::abs(orbit.y) <= 90)) refuse(element(node, 1), "expected an elevation from -90 to 90 degrees");
+  readPositive(element(node, 2));
+  return orbit;
+}
+
+/// How a camera with keys moves; `still` is what it has of its own.
+void readCameraMotion(const JsonNode& node, const CameraMotion& still, Camera& camera, Scene& scene) {
+  if (!hasKeys(node, {still.orbits ? "orbit" : "eye", "target", "fov_y"})) return;
+  CameraMotion motion = still;
+  motion.camera = static_cast<std::uint32_t>(scene.cameras.size());
+  Curve place = readMotion(node, still.orbits ? "orbit" : "eye", [&](const JsonNode& value) {
+    return glm::dvec4(still.orbits ? readOrbit(value) : readVector(value), 0);
+  });
+  if (!place.keys.empty()) motion.eye = std::move(place);
+  Curve target = readMotion(node, "target", readVectorValue);
+  if (!target.keys.empty()) motion.target = std::move(target);
+  motion.fov_y = readMotion(node, "fov_y", [&](const JsonNode& value) {
+    if (camera.orthographic) refuse(value, "means nothing beside orthographic");
+    return glm::dvec4(readFovY(value), 0, 0, 0);
+  });
+  checkPoses(node, [&](double frame) { return poseCamera(motion, frame, camera); });
+  scene.animation.cameras.push_back(std::move(motion));
+}
+
+/// Reads a camera and how it moves.
+void readCamera(const JsonNode& node, const std::string& name, Scene& scene) {
+  allowKeys(node, {"eye", "orbit", "target", "up", "fov_y", "orthographic", "near", "far", "keys",
+                   "interpolation"});
   Camera camera;
-  const glm::dvec3 eye = readVector(need(node, "eye"));
+  camera.name = name;
+  CameraMotion still;
+  glm::dvec3 eye;
   const glm::dvec3 target = readVector(need(node, "target"));
-  glm::dvec3 up{0, 1, 0};
-  if (const auto n = find(node, "up")) up = readDirection(*n);
-  const double distance = glm::length(target - eye);
-  if (!(distance >= 1 / kLargestNumber)) refuse(node, "eye and target are the same point");
-  // Closer to parallel, rounding would decide what is up: 10⁻⁸ leaves half of a double's digits.
-  constexpr double kLeastSine = 1e-8;
-  if (glm::length(glm::cross((target - eye) / distance, up)) < kLeastSine) {
-    refuse(node, "up is parallel to the view from eye to target");
+  if (const auto n = find(node, "orbit")) {
+    refuseKeys(node, {"eye"}, "beside orbit");
+    still.orbits = true;
+    still.eye = constantCurve(glm::dvec4(readOrbit(*n), 0));
+    eye = orbitEye(readOrbit(*n), target);
+  } else {
+    eye = readVector(need(node, "eye"));
+    still.eye = constantCurve(glm::dvec4(eye, 0));
   }
-  camera.camera_to_world = cameraToWorld(eye, target, up);
+  still.target = constantCurve(glm::dvec4(target, 0));
+  if (const auto n = find(node, "up")) still.up = readDirection(*n);
+  const std::string fault = aimCamera(eye, target, still.up, camera);
+  if (!fault.empty()) refuse(node, fault);
   if (const auto n = find(node, "fov_y")) {
     refuseKeys(node, {"orthographic"}, "beside fov_y");
-    const double degrees = readNumber(*n);
-    if (!(degrees > 0 && degrees < 180)) {
-      refuse(*n, fmt::format("expected degrees above 0 and below 180, got {}", degrees));
-    }
-    camera.fov_y = glm::radians(degrees);
+    camera.fov_y = glm::radians(readFovY(*n));
   }
   if (const auto n = find(node, "orthographic")) {
     camera.orthographic = true;
@@ -58,7 +100,8 @@ Camera readCamera(const JsonNode& node) {
   if (camera.far <= camera.near) {
     refuse(node, fmt::format("far {} isn't beyond near {}", camera.far, camera.near));
   }
-  return camera;
+  readCameraMotion(node, still, camera, scene);
+  scene.cameras.push_back(std::move(camera));
 }
 
 Fog readFog(const JsonNode& node) {
@@ -101,19 +144,19 @@ glm::ivec2 readSize(const JsonNode& node) {
   return size;
 }
 
-void readLightFields(const JsonNode& node, std::vector<Light>& lights) {
+std::vector<LightField> readLightFields(const JsonNode& node, const std::string& folder,
+                                        std::uint64_t lights) {
   needArray(node);
   std::vector<LightField> fields;
-  std::uint64_t total = lights.size();
   for (std::size_t i = 0; i < node.json->size(); ++i) {
     const JsonNode field = element(node, i);
-    fields.push_back(readLightField(field));
-    total += fields.back().count;
-    if (total > kMostLights) {
-      refuse(field, fmt::format("{} lights up to here; a scene may have {} at most", total, kMostLights));
+    fields.push_back(readLightField(field, folder));
+    lights += fields.back().count;
+    if (lights > kMostLights) {
+      refuse(field, fmt::format("{} lights up to here; a scene may have {} at most", lights, kMostLights));
     }
   }
-  for (const LightField& field : fields) expandLightField(field, lights);
+  return fields;
 }
 
 }  // namespace
@@ -134,12 +177,11 @@ Scene loadJsonScene(const std::string& path) {
   const auto take = [&scene](const JsonNode& node) {
     const bool in_array = node.index != JsonNode::kNoIndex;
     if (in_array && node.parent->key == "lights") {
-      if (const auto light = readLight(node)) scene.lights.push_back(*light);
+      readLight(node, scene);
       return true;
     }
     if (!in_array && node.parent->key == "cameras") {
-      scene.cameras.push_back(readCamera(node));
-      scene.cameras.back().name = node.key;
+      readCamera(node, std::string(node.key), scene);
       return true;
     }
     return false;
@@ -148,23 +190,27 @@ Scene loadJsonScene(const std::string& path) {
 
   const JsonNode top{&json, nullptr, file, JsonNode::kNoIndex};
   allowKeys(top, {"camera", "cameras", "size", "background", "ambient", "fog", "materials", "objects",
-                  "lights", "light_fields", "lighting"});
+                  "lights", "light_fields", "lighting", "frame_rate"});
   if (const auto n = find(top, "lights")) needArray(*n);
   if (const auto n = find(top, "cameras")) {
     refuseKeys(top, {"camera"}, "beside cameras");
     needObject(*n);
     if (scene.cameras.empty()) refuse(*n, "expected one camera or more");
   }
-  if (const auto n = find(top, "camera")) scene.cameras.push_back(readCamera(*n));
+  if (const auto n = find(top, "camera")) readCamera(*n, "", scene);
   if (const auto n = find(top, "size")) scene.size = readSize(*n);
   if (const auto n = find(top, "background")) scene.background = readColor(*n);
   if (const auto n = find(top, "ambient")) scene.ambient = readColor(*n);
   if (const auto n = find(top, "fog")) scene.fog = readFog(*n);
   if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
-  if (const auto n = find(top, "light_fields")) readLightFields(*n, scene.lights);
+  if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
   const std::string folder = path == "-" ? "" : std::filesystem::path(path).parent_path().string();
-  readObjects(top, folder, scene);
   scene.name = file;
+  std::vector<LightField> fields;
+  if (const auto n = find(top, "light_fields")) fields = readLightFields(*n, folder, scene.lights.size());
+  readObjects(top, folder, scene);
+  if (!fields.empty()) poseScene(scene, 1);  // the surfaces that lights lie on
+  for (const LightField& field : fields) expandLightField(field, scene);
   return scene;
 }
 

@@ -8,6 +8,7 @@
 #include "scene/frame.hpp"
 #include "scene/json_scene.hpp"
 #include "scene/mesh_file.hpp"
+#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
@@ -50,7 +51,7 @@ void lightObject(const glm::dmat4& camera_to_world, Scene& scene) {
 
 }  // namespace
 
-Scene loadScene(const std::string& path) {
+Scene loadScene(const std::string& path, double frame) {
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
   if (is_mesh_file) {
@@ -62,7 +63,9 @@ Scene loadScene(const std::string& path) {
     throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
                                  path, extensionOf(path)));
   }
+  poseScene(scene, 1);
   completeScene(scene, is_mesh_file);
+  if (frame != 1) poseScene(scene, frame);
   return scene;
 }
 

@@ -7,8 +7,9 @@
 namespace luciole {
 
 /// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from
-/// standard input for "-", and completes it (see completeScene). Throws InputError.
-Scene loadScene(const std::string& path);
+/// standard input for "-", completes it at frame 1 (see completeScene), so that all frames have the same, and
+/// poses it at `frame` (see poseScene). Throws InputError.
+Scene loadScene(const std::string& path, double frame = 1);
 
 /// Gives a scene what a picture needs and its file left out: a camera that frames the whole (from inside, for
 /// a closed hall), and, for a mesh file without lights, a light, some ambient and a sky colour.

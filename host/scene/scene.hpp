@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/animation.hpp"
 #include "scene/texture.hpp"
 
 namespace luciole {
@@ -133,6 +134,7 @@ struct Scene {
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
   Fog fog;
   bool lighting = true;  ///< false: every surface shows its emission + diffuse colour unlit
+  Animation animation;   ///< what moves: poseScene() sets cameras, lights and objects by it
 };
 
 /// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.

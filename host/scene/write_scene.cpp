@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "error.hpp"
+#include "scene/text_file.hpp"
 
 namespace luciole {
 namespace {
@@ -19,11 +22,8 @@ std::string quoted(const std::string& text) {
   }
 }
 
-}  // namespace
-
-std::string lightsScene(const std::string& mesh_path, const std::vector<Light>& lights) {
-  std::string text = "{\n";
-  if (!mesh_path.empty()) text += fmt::format("  \"objects\": [{{\"mesh\": {}}}],\n", quoted(mesh_path));
+/// The end of a scene's file.
+void appendLights(const std::vector<Light>& lights, std::string& text) {
   text += "  \"lights\": [";
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -39,7 +39,57 @@ std::string lightsScene(const std::string& mesh_path, const std::vector<Light>& 
     if (std::isfinite(light.range)) fmt::format_to(out, ", \"range\": {}", light.range);
     text += light.shadow ? ", \"shadow\": true}" : "}";
   }
-  return text + "\n  ]\n}\n";
+  text += "\n  ]\n}\n";
+}
+
+}  // namespace
+
+std::string lightsScene(const std::string& mesh_path, const std::vector<Light>& lights) {
+  std::string text = "{\n";
+  if (!mesh_path.empty()) text += fmt::format("  \"objects\": [{{\"mesh\": {}}}],\n", quoted(mesh_path));
+  appendLights(lights, text);
+  return text;
+}
+
+std::string sceneWithLights(const std::string& scene_path, const std::string& folder,
+                            const std::vector<Light>& lights) {
+  // Ordered, because the first of several cameras is what is seen.
+  using OrderedJson = nlohmann::ordered_json;
+  OrderedJson scene = OrderedJson::parse(readFile(scene_path), nullptr, true, true);
+  scene.erase("lights");
+  scene.erase("light_fields");
+  const std::string old_folder = std::filesystem::path(scene_path).parent_path().string();
+  const auto movePath = [&](OrderedJson& holder, const char* key) {
+    if (!holder.contains(key)) return;
+    const std::filesystem::path path = holder[key].get<std::string>();
+    if (path.is_relative()) holder[key] = pathFrom(folder, (old_folder / path).string());
+  };
+  if (scene.contains("materials")) {
+    for (auto& [name, material] : scene["materials"].items())
+      for (const char* map : {"diffuse_map", "emission_map", "alpha_map"}) movePath(material, map);
+  }
+  if (scene.contains("objects"))
+    for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
+
+  std::string text = "{\n";
+  for (const auto& [key, value] : scene.items()) {
+    text += fmt::format("  {}: ", quoted(key));
+    if (key == "objects") {
+      const char* separator = "[";
+      for (const OrderedJson& object : value)
+        text += fmt::format("{}\n    {}", std::exchange(separator, ","), object.dump());
+      text += value.empty() ? "[]" : "\n  ]";
+    } else {
+      text += value.dump();
+    }
+    text += ",\n";
+  }
+  appendLights(lights, text);
+  return text;
+}
+
+std::string pathFrom(const std::string& folder, const std::string& path) {
+  return std::filesystem::absolute(path).lexically_proximate(std::filesystem::absolute(folder)).string();
 }
 
 }  // namespace luciole

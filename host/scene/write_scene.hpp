@@ -13,4 +13,13 @@ namespace luciole {
 /// path that isn't UTF-8.
 std::string lightsScene(const std::string& mesh_path, const std::vector<Light>& lights);
 
+/// A copy of a Luciole scene's file without comments, in which these lights, as lightsScene writes them,
+/// stand for all its lights and light fields. Paths in it are turned to lie relative to `folder`, where the
+/// copy will be. The file is one that loadScene reads.
+std::string sceneWithLights(const std::string& scene_path, const std::string& folder,
+                            const std::vector<Light>& lights);
+
+/// A path, relative to the current folder, as a file in `folder` would name it.
+std::string pathFrom(const std::string& folder, const std::string& path);
+
 }  // namespace luciole

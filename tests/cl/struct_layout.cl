@@ -80,7 +80,7 @@ __kernel void report_shade_frame(__global uint *out) {
   *out++ = OFFSET(fog_end);
   *out++ = OFFSET(fog_scale);
   *out++ = OFFSET(fog_mode);
-  *out++ = OFFSET(blinn);
+  *out++ = OFFSET(model);
   *out++ = OFFSET(light_count);
   *out++ = OFFSET(plane_stride);
   *out++ = OFFSET(fog_radial);

@@ -83,7 +83,7 @@ TEST(StructLayout, ShadeFrame) {
       {sizeof(ShadeFrame), offsetof(ShadeFrame, ambient), offsetof(ShadeFrame, background),
        offsetof(ShadeFrame, fog_color), offsetof(ShadeFrame, fog_density), offsetof(ShadeFrame, eye),
        offsetof(ShadeFrame, fog_end), offsetof(ShadeFrame, fog_scale), offsetof(ShadeFrame, fog_mode),
-       offsetof(ShadeFrame, blinn), offsetof(ShadeFrame, light_count), offsetof(ShadeFrame, plane_stride),
+       offsetof(ShadeFrame, model), offsetof(ShadeFrame, light_count), offsetof(ShadeFrame, plane_stride),
        offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, texel_count)});
 }
 

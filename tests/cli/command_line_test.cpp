@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -124,9 +125,13 @@ TEST_F(CommandLine, FlatGouraudAndPhongDiffer) {
   EXPECT_EQ(runLine(folder, "luciole compare gouraud.exr phong.exr --max-abs 0.01").status, 1);
 }
 
-TEST_F(CommandLine, BlinnPhongDiffersFromPhong) {
-  succeed("luciole render scene.json -o a.exr && luciole render scene.json --model blinn-phong -o b.exr");
-  EXPECT_EQ(runLine(folder, "luciole compare a.exr b.exr --max-abs 0.01").status, 1);
+TEST_F(CommandLine, EveryModelMakesAnotherPictureThanPhongs) {
+  succeed("luciole render scene.json -o usual.exr && luciole render scene.json --model phong -o phong.exr");
+  EXPECT_EQ(runLine(folder, "luciole compare usual.exr phong.exr --max-abs 0").status, 0);
+  for (const std::string model : {"blinn-phong", "toon", "cook-torrance"}) {
+    succeed("luciole render scene.json --model " + model + " -o other.exr");
+    EXPECT_EQ(runLine(folder, "luciole compare usual.exr other.exr --max-abs 0.01").status, 1) << model;
+  }
 }
 
 TEST_F(CommandLine, ExposureIsInStops) {
@@ -137,10 +142,12 @@ TEST_F(CommandLine, ExposureIsInStops) {
 
 TEST_F(CommandLine, AovsBecomeLayers) {
   succeed(
-      "luciole render scene.json --aov position,normal,depth,diffuse,material,light_count,shadow -o out.exr");
+      "luciole render scene.json --aov position,normal,depth,diffuse,material,light_count,list_length,shadow "
+      "-o out.exr");
   const Image image = readImage(folder / "out.exr");
-  for (const char* name : {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Z", "diffuse.R",
-                           "specular.G", "shininess", "ambient.B", "emission.R", "light_count", "shadow"})
+  for (const char* name :
+       {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Z", "diffuse.R", "specular.G", "shininess",
+        "ambient.B", "emission.R", "light_count", "list_length", "shadow"})
     EXPECT_NE(std::find(image.channels.begin(), image.channels.end(), name), image.channels.end()) << name;
 }
 
@@ -262,6 +269,91 @@ TEST_F(CommandLine, GeneratedLightsAreTheSameForTheSameSeedAndRender) {
   succeed(
       "mkdir sub && luciole generate lights quad.obj --count 20 --intensity 3 -o sub/lit.json && luciole "
       "render sub/lit.json --size 32x18 -o out.png");
+}
+
+TEST_F(CommandLine, EveryShapeOfLightsIsGeneratedAndRendered) {
+  writeText(folder / "lamps.csv", "x,y,z,r,g,b,range\n0,2,0,1,1,1,3\n1,2,0,1,0,0,\n");
+  for (const char* options :
+       {"--count 9", "--shape ball --count 9 --seed 3", "--shape sphere --radius 2 --count 9 --cutoff 0.01",
+        "--shape surface --offset 0.2 --count 9 --density 2 --shadow",
+        "--shape clusters --clusters 2 --count 9",
+        "--shape curve --points -1,1,0,1,1,0,1,2,3 --radius 0.1 --count 9 --range 1,2", "--csv lamps.csv",
+        "--min -1,0,-1 --max 1,2,1 --count 9"}) {
+    succeed(std::string("mkdir -p sub && luciole generate lights scene.json -o sub/lit.json ") + options +
+            " && luciole render sub/lit.json --size 32x18 --quiet -o out.png && rm out.png");
+    const auto json = nlohmann::json::parse(readText(folder / "sub/lit.json"));
+    EXPECT_EQ(json["lights"].size(), std::string(options).find("csv") == std::string::npos ? 9u : 2u)
+        << options;
+    EXPECT_FALSE(json.contains("light_fields"));
+    EXPECT_EQ(json["fog"]["mode"], "exp2");
+  }
+}
+
+TEST_F(CommandLine, OptionsOfLightsTakeNoMoreThanTheirNumbers) {
+  const std::string lights =
+      succeed("luciole generate lights --count 30 --shape curve --points 0,0,0,1,1,1 --range 1 scene.json");
+  EXPECT_NE(lights.find("fog"), std::string::npos);
+  EXPECT_EQ(lights, succeed("luciole generate lights --count 30 --range 1 --shape curve scene.json --points "
+                            "0,0,0,1,1,1"));
+  EXPECT_NE(succeed("luciole generate lights --count 30 --color 1,0,0 --color 0,1,0 scene.json").find("fog"),
+            std::string::npos);
+}
+
+TEST_F(CommandLine, GeneratedDensityIsWhatThePictureCounts) {
+  succeed(
+      "luciole generate lights scene.json --shape clusters --count 2000 --density 5 -o lit.json && luciole "
+      "render lit.json --quiet --aov depth,light_count -o out.exr");
+  const Image image = readImage(folder / "out.exr");
+  const auto channel = [&](const char* name) {
+    return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) -
+                       image.channels.begin());
+  };
+  const std::size_t depth = channel("Z"), lights = channel("light_count"), step = image.channels.size();
+  ASSERT_LT(std::max(depth, lights), step);
+  double pixels = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += step) {
+    if (std::isinf(image.pixels[i + depth])) continue;
+    const double count = image.pixels[i + lights];
+    pixels += 1;
+    sum += count;
+    squares += count * count;
+  }
+  const double mean = sum / pixels;
+  // It was set at 1000 of these pixels: five standard errors of their mean.
+  EXPECT_NEAR(mean, 5, 5 * std::sqrt((squares / pixels - mean * mean) / 1000));
+  EXPECT_GT(pixels, 1000);
+}
+
+TEST_F(CommandLine, OptionsOfLightsThatContradictAreRefusedInOneLine) {
+  writeText(folder / "lamps.csv", "0,2,0,1,1,1,3\n");
+  writeText(folder / "empty.json", "{}");
+  const std::string command = "luciole generate lights -o out.json ";
+  refuse(command + "--shape cone", 2, "--shape cone: expected box, ball");
+  refuse(command + "--shape surface", 2, "area of 0");
+  refuse(command + "--shape ball --min 0,0,0", 2, "--min means nothing for --shape ball");
+  refuse(command + "--center 0,0,0", 2, "--center means nothing for --shape box");
+  refuse(command + "--shape curve --clusters 3", 2, "--clusters means nothing");
+  refuse(command + "--shape curve --points 1,2,3", 2, "--points");
+  refuse(command + "--shape curve --points 1,2,3,4", 2, "--points");
+  refuse(command + "--csv lamps.csv --shape box", 2, "--shape");
+  refuse(command + "--csv lamps.csv --color 1,1,1", 2, "--color means nothing beside --csv");
+  refuse(command + "--csv lamps.csv --density 3", 2, "SCENE");
+  refuse(command + "--csv lamps.csv --count 2", 2, "1 lights, expected 2");
+  refuse(command + "--csv none.csv", 2, "none.csv");
+  refuse(command + "--range 1 --density 2", 2, "--range");
+  refuse(command + "--range 1 --cutoff 2", 2, "--range");
+  refuse(command + "--density 1 --cutoff 2", 2, "--density");
+  refuse(command + "--range 2,1", 2, "--range");
+  refuse(command + "--range 1,2,3", 2, "--range");
+  refuse(command + "--color 1,2", 2, "--color");
+  refuse(command + "--min 1,2", 2, "--min");
+  refuse(command + "--range 0", 2, "--range");
+  refuse(command + "--min 3,0,0 --max 2,1,1", 2, "--min must not exceed --max");
+  refuse(command + "empty.json", 2, "empty.json: its first camera sees nothing");
+  refuse(command + "empty.json --min 0,0,0 --max 1,1,1", 2, "empty.json: its first camera sees nothing");
+  refuse(command + "-", 2, "standard input");
+  refuse(command + "none.json", 2, "none.json");
+  succeed("luciole generate lights empty.json --min 0,0,0 --max 1,1,1 --range 1");
 }
 
 TEST_F(CommandLine, DevicesMarksTheOneThatWouldBeUsed) {

@@ -1,8 +1,10 @@
 // What the READMEs tell a reader to type works as they say it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "cli/run_program.hpp"
 
@@ -40,6 +42,7 @@ void prepareCheckout(const TemporaryFolder& folder) {
 }
 
 TEST(Readme, EveryCommandSucceeds) {
+  LUCIOLE_NEEDS_PROGRAM("img2webp", "webp");
   const TemporaryFolder folder;
   prepareCheckout(folder);
   const std::vector<std::string> commands = commandsOf("README.md");
@@ -48,9 +51,52 @@ TEST(Readme, EveryCommandSucceeds) {
     // Minutes of measuring are not what a reader would find broken.
     if (command.rfind("./luciole bench", 0) == 0)
       command += " --size 160x90 --repeats 1 --only shading --only samples";
+    if (command.rfind("./luciole scale scenes/", 0) == 0)
+      command += " --size 64x36 --repeat 1 --check-pixels 16";
+    command = std::regex_replace(command, std::regex("--frames 1-120"), "--frames 1-2");
     const Outcome outcome = runLine(folder, command);
     EXPECT_EQ(outcome.status, 0) << command << "\n" << outcome.err;
   }
+}
+
+struct Listing {
+  std::vector<std::string> files;
+  std::string text;
+};
+
+/// The blocks of kernel and host code, each with the files that the text between it and the block before
+/// names.
+std::vector<Listing> listingsOf(const std::string& readme) {
+  std::istringstream lines(readText(kSource + "/" + readme));
+  const std::regex path("`((?:host|kernels|tests)/[A-Za-z0-9_./]+)`");
+  std::vector<Listing> listings;
+  std::vector<std::string> files;
+  bool in_block = false, in_code = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("```", 0) == 0) {
+      in_block = !in_block;
+      in_code = in_block && (line == "```c" || line == "```cpp");
+      if (in_code) listings.push_back({std::exchange(files, {}), ""});
+    } else if (in_code) {
+      listings.back().text += line + "\n";
+    } else if (!in_block) {
+      for (auto i = std::sregex_iterator(line.begin(), line.end(), path); i != std::sregex_iterator(); ++i)
+        if (std::filesystem::is_regular_file(kSource + "/" + (*i)[1].str())) files.push_back((*i)[1]);
+    }
+  }
+  return listings;
+}
+
+TEST(Readme, ListingsAreWhatTheFilesSay) {
+  const std::vector<Listing> listings = listingsOf("README.md");
+  EXPECT_GE(listings.size(), 6u);
+  for (const Listing& listing : listings)
+    EXPECT_TRUE(std::any_of(listing.files.begin(), listing.files.end(),
+                            [&](const std::string& file) {
+                              return readText(kSource + "/" + file).find(listing.text) != std::string::npos;
+                            }))
+        << "no file that the text names has\n"
+        << listing.text;
 }
 
 TEST(Readme, SceneFileExampleRenders) {

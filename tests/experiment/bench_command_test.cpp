@@ -71,6 +71,29 @@ TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
   EXPECT_LT(json["groups"][2]["truth_error_steps"], samples[4]["error"]["steps"]["mean"]);
 }
 
+TEST(BenchCommand, EveryModelIsHeldAgainstItself) {
+  const TemporaryFolder folder;
+  writeText(folder / "scene.json", kScene);
+  const Outcome outcome = runLine(
+      folder, "luciole bench scene.json --only models --size 64x36 --repeats 1 --quiet --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readText(folder / "out.json"));
+  ASSERT_EQ(json["groups"].size(), 1u);
+  const auto& rows = json["groups"][0]["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  std::set<double> brightest;
+  for (const auto& row : rows) {
+    EXPECT_EQ(row["settings"]["model"], row["name"]);
+    EXPECT_EQ(row["default"], row["name"] == "phong");
+    EXPECT_FALSE(row["front"]) << "no two rows have one truth";
+    brightest.insert(row["brightest"].get<double>());
+    // Against another model's truth a mean would be hundredths of the brightest. Toon multiplies what 50
+    // lights' cosines and the lobe of exponent 32 have rounded, some 10⁻⁶, by 32 in places.
+    EXPECT_LT(row["error"]["relative"]["mean"], 1e-6) << row;
+  }
+  EXPECT_GE(brightest.size(), 3u) << "each has a truth of its own";
+}
+
 TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
   LUCIOLE_NEEDS_PROGRAM("gnuplot", "gnuplot-nox");
   const TemporaryFolder folder;

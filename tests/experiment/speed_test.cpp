@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cl/kernel_source.hpp"
+#include "embedded_files.hpp"
 #include "experiment/culled_shading.hpp"
 #include "experiment/many_lights.hpp"
 #include "experiment/memory_use.hpp"

@@ -7,6 +7,7 @@
 #include "error.hpp"
 #include "image/gbuffer_file.hpp"
 #include "scene/load_scene.hpp"
+#include "scene/pose.hpp"
 #include "scene/scene_fault.hpp"
 
 namespace luciole::test {
@@ -18,8 +19,12 @@ inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {
       readGBuffer(path);
-    } else if (const std::string fault = sceneFault(loadScene(path)); !fault.empty()) {
-      throw std::logic_error(fault);
+    } else {
+      Scene scene = loadScene(path);
+      for (const double frame : {1.0, 2.5, 30.0}) {
+        poseScene(scene, frame);
+        if (const std::string fault = sceneFault(scene); !fault.empty()) throw std::logic_error(fault);
+      }
     }
   } catch (const InputError& error) {
     if (std::string(error.what()).find('\n') != std::string::npos)

@@ -311,7 +311,7 @@ TEST(HardLights, ListsAsLongAsAllLightsHoldThemAll) {
     const auto truth = referencePixels(scene, gbuffer, some, {});
     for (std::size_t i = 0; i < some.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
-        const Interval bounds = shadeInterval(scene, gbuffer, gbuffer.index(some[i].x, 0), c, false);
+        const Interval bounds = shadeInterval(scene, gbuffer, gbuffer.index(some[i].x, 0), c, Model::kPhong);
         const float seen = tiles.pixels[3 * some[i].x + c];
         EXPECT_TRUE(seen >= bounds.low && seen <= bounds.high)
             << seen << " outside " << bounds.low << " … " << bounds.high;

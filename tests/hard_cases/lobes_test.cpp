@@ -86,9 +86,10 @@ TEST_P(HardLobes, ExponentsUpToAMillionKeepAThousandthOfTheLobe) {
         light.diffuse = glm::vec3(0);
         const Scene scene = sceneWith({light});
         const auto points = highlightPoints(light.position, exponent, blinn, random);
-        const LobeErrors errors =
-            lobeErrors(points, shadedPoints(GetParam(), scene, points, {.blinn = blinn}),
-                       referencePoints(scene, points, blinn), blinn);
+        const LobeErrors errors = lobeErrors(
+            points,
+            shadedPoints(GetParam(), scene, points, {.model = blinn ? Model::kBlinnPhong : Model::kPhong}),
+            referencePoints(scene, points, blinn ? Model::kBlinnPhong : Model::kPhong), blinn);
         worst.relative = std::max(worst.relative, errors.relative);
         worst.of_bound = std::max(worst.of_bound, errors.of_bound);
       }

@@ -122,8 +122,8 @@ double allowedChange(const Shot& home, const Shot& moved, int x, int y, double s
   EXPECT_LE(glm::length(n - m), turned) << "pixel " << x << "," << y;
   double rounding = 0;
   for (int c = 0; c < 3; ++c) {
-    const Interval a = shadeInterval(home.scene, home.gbuffer, home.gbuffer.index(x, y), c, false),
-                   b = shadeInterval(moved.scene, moved.gbuffer, moved.gbuffer.index(x, y), c, false);
+    const Interval a = shadeInterval(home.scene, home.gbuffer, home.gbuffer.index(x, y), c, Model::kPhong),
+                   b = shadeInterval(moved.scene, moved.gbuffer, moved.gbuffer.index(x, y), c, Model::kPhong);
     rounding = std::max(rounding, a.high - a.low + b.high - b.low);
   }
   return rounding + colorChange(home.scene, p, apart, turned, shift);

@@ -39,10 +39,10 @@ TEST(HardNumbers, DotProductsAFewUlpOverOneGiveNoMoreThanTheLight) {
   light.cutoff = 1.5;
   light.diffuse = {1, 0, 0};
   light.specular = {0, 1, 0};
-  for (const bool blinn : {false, true}) {
+  for (const Model model : {Model::kPhong, Model::kBlinnPhong, Model::kToon}) {
     for (const SurfaceSeen& point : points) {
       light.direction = glm::normalize(glm::dvec3(point.position));
-      const glm::vec3 seen = shadedPoints(16, sceneWith({light}), {point}, {.blinn = blinn})[0];
+      const glm::vec3 seen = shadedPoints(16, sceneWith({light}), {point}, {.model = model})[0];
       // 1 − cosine of the spot is at most 12 units, the 128th power of which is 128 · 12. N·L is within 8;
       // the chord |a − b| of vectors off by 19 units each way makes a lobe of 1 − 10⁶ · (19 units)²/2.
       const double spot = 128 * 12 * kUnit;
@@ -194,7 +194,7 @@ TEST(HardNumbers, NoNaNOrInfinityLeavesAKernelWhateverGoesIn) {
     for (const int lanes : {1, 16})
       for (const Culling culling : {Culling::kNone, Culling::kTiles})
         for (const glm::vec3& color :
-             shadedPoints(lanes, scene, points, {.blinn = round % 2 == 1, .culling = culling}))
+             shadedPoints(lanes, scene, points, {.model = kAllModels[round % 4], .culling = culling}))
           for (int c = 0; c < 3; ++c)
             ASSERT_TRUE(std::isfinite(color[c])) << "round " << round << ": " << color[c];
   }

@@ -128,7 +128,7 @@ TEST(HardPlacement, MirroredObjectsAreTheMirrorImage) {
       for (int c = 0; c < 3; ++c) {
         // Positions apart by their floats' rounding, which widens each bound by about as much as it allows
         // for.
-        const Interval bounds = shadeInterval(plain.scene, plain.gbuffer, place, c, false);
+        const Interval bounds = shadeInterval(plain.scene, plain.gbuffer, place, c, Model::kPhong);
         ASSERT_NEAR(colorAt(plain.image, x, y)[c], colorAt(mirrored.image, size.x - 1 - x, y)[c],
                     2 * (bounds.high - bounds.low));
       }

@@ -55,8 +55,8 @@ inline glm::vec3 colorAt(const Image& image, int x, int y) {
 /// does the reference in double; background is what the scene says. The largest distance from the reference,
 /// and what would have been let pass, are recorded with the test.
 inline void expectAsTheReference(const Shot& shot) {
-  const bool blinn = shot.settings.shade.blinn;
-  const Image reference = referenceShade(shot.scene, shot.gbuffer, {.blinn = blinn});
+  const Model model = shot.settings.shade.model;
+  const Image reference = referenceShade(shot.scene, shot.gbuffer, {.model = model});
   double worst = 0, widest = 0;
   for (int y = 0; y < shot.image.height; ++y) {
     for (int x = 0; x < shot.image.width; ++x) {
@@ -68,7 +68,7 @@ inline void expectAsTheReference(const Shot& shot) {
       const std::size_t place = shot.gbuffer.index(x, y);
       for (int c = 0; c < 3; ++c) {
         // Two roundings more: the comparison's own, and the reference's on its way into a picture.
-        const Interval bounds = shadeInterval(shot.scene, shot.gbuffer, place, c, blinn).widened(2 * kUnit);
+        const Interval bounds = shadeInterval(shot.scene, shot.gbuffer, place, c, model).widened(2 * kUnit);
         ASSERT_TRUE(got[c] >= bounds.low && got[c] <= bounds.high)
             << "pixel " << x << "," << y << " channel " << c << ": " << got[c] << " outside " << bounds.low
             << " … " << bounds.high;

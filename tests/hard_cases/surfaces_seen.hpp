@@ -83,24 +83,25 @@ inline glm::vec3 shadedPoint(const Scene& scene, const SurfaceSeen& point) {
 }
 
 inline std::vector<glm::vec3> referencePoints(const Scene& scene, const std::vector<SurfaceSeen>& points,
-                                              bool blinn = false) {
-  return pointColors(referenceShade(scene, gbufferOf(points), {.blinn = blinn}), points.size());
+                                              Model model = Model::kPhong) {
+  return pointColors(referenceShade(scene, gbufferOf(points), {.model = model}), points.size());
 }
 
 /// The points are shaded to the same bits with light lists and without, and to what float may make of the
 /// equation (see shade_bounds.hpp); the reference lies there too.
-inline void expectRight(const Scene& scene, const std::vector<SurfaceSeen>& points, bool blinn = false) {
+inline void expectRight(const Scene& scene, const std::vector<SurfaceSeen>& points,
+                        Model model = Model::kPhong) {
   const GBuffer gbuffer = gbufferOf(points);
-  const auto truth = referencePoints(scene, points, blinn);
+  const auto truth = referencePoints(scene, points, model);
   for (const int lanes : {1, 16}) {
-    const auto all = shadedPoints(lanes, scene, points, {.blinn = blinn, .culling = Culling::kNone});
-    ASSERT_EQ(all, shadedPoints(lanes, scene, points, {.blinn = blinn})) << "culling changes the picture";
+    const auto all = shadedPoints(lanes, scene, points, {.model = model, .culling = Culling::kNone});
+    ASSERT_EQ(all, shadedPoints(lanes, scene, points, {.model = model})) << "culling changes the picture";
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t place = gbuffer.index(int(i) % kSeenPerRow, int(i) / kSeenPerRow);
       for (int c = 0; c < 3; ++c) {
         // A rounding for the exact value, which the reference stores as float, and one for the comparison;
         // what is below the normal numbers may be 0.
-        Interval bounds = shadeInterval(scene, gbuffer, place, c, blinn).widened(2 * kUnit);
+        Interval bounds = shadeInterval(scene, gbuffer, place, c, model).widened(2 * kUnit);
         bounds = {bounds.low - 0x1p-126, bounds.high + 0x1p-126};
         ASSERT_TRUE(all[i][c] >= bounds.low && all[i][c] <= bounds.high)
             << "point " << i << " channel " << c << ", " << lanes << " lanes: " << all[i][c] << " outside "

@@ -130,7 +130,7 @@ void moveOnePixelAway(ShadowMethod shadows) {
       // The squared distance is a float still: shaded as well as any.
       for (int c = 0; c < 3; ++c) {
         const Interval bounds =
-            shadeInterval(shot.scene, read, read.index(odd.x, odd.y), c, false).widened(2 * kUnit);
+            shadeInterval(shot.scene, read, read.index(odd.x, odd.y), c, Model::kPhong).widened(2 * kUnit);
         EXPECT_TRUE(color[c] >= bounds.low && color[c] <= bounds.high) << position.x << ": " << color[c];
       }
     }

@@ -56,7 +56,7 @@ void lightPicture(unsigned number) {
   settings.shadows = static_cast<ShadowMethod>((number + number / 3) % 5);
   settings.shadow_layer = true;
   settings.shadow_limits.size = 64;
-  settings.blinn = number % 2 == 1;
+  settings.model = kAllModels[(number + number / 4) % 4];
   settings.culling = number % 4 == 1 ? Culling::kNone : Culling::kTiles;
 
   const GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
@@ -65,7 +65,7 @@ void lightPicture(unsigned number) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-  lightGBuffer(device, scene, lighting, features, gbuffer, true, stats);
+  lightGBuffer(device, scene, lighting, features, gbuffer, {.in_range = true, .list_length = true}, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   if (shadows.texels.empty()) return;
   std::vector<MapPair> pairs;

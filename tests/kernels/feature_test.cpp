@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "embedded_files.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "render/lighting.hpp"
@@ -28,8 +29,10 @@ const std::vector<Needs>& needs() {
       {kAttenuation, {kPointLights, kSpotLights}},
       {kSmoothWindow, {kPointLights, kSpotLights}},
       {kKhrWindow, {kSpotLights, kPointLights}},
-      {kPhongSpecular, {kPointLights, kDirectionalLights, kSpotLights}},
-      {kBlinnSpecular, {kDirectionalLights, kSpotLights, kPointLights}},
+      {kPointLights, {kPhong, kBlinnPhong, kToon, kCookTorrance}},
+      {kDirectionalLights, {kCookTorrance, kToon, kBlinnPhong, kPhong}},
+      {kSpotLights, {kToon, kPhong, kCookTorrance, kBlinnPhong}},
+      {kSpecular, {kPointLights, kDirectionalLights, kSpotLights}},
       {kLightAmbient, {kAmbient}},
       {kLightAmbient, {kSpotLights, kPointLights, kDirectionalLights}},
       {kPcf, {kParallelShadows, kPerspectiveShadows, kCubeShadows}},
@@ -150,7 +153,7 @@ Light lightWith(const FeatureSet& features, const std::vector<LightKind>& kinds,
   const bool smooth = features.has(Feature::kSmoothWindow), khr = features.has(Feature::kKhrWindow);
   light.range = smooth || khr ? float(random.between(5, 30)) : std::numeric_limits<float>::infinity();
   light.window = khr && (!smooth || random.chance(0.5)) ? RangeWindow::kKhr : RangeWindow::kSmooth;
-  if (!features.specular()) light.specular = glm::vec3(0);
+  if (!features.has(Feature::kSpecular)) light.specular = glm::vec3(0);
   if (!features.has(Feature::kLightAmbient)) light.ambient = glm::vec3(0);
   const bool cone = features.has(Feature::kSpotCone), exponent = features.has(Feature::kSpotExponent);
   light.falloff = cone && (!exponent || random.chance(0.5)) ? SpotFalloff::kCone : SpotFalloff::kExponent;
@@ -197,7 +200,7 @@ Scene sceneWith(const FeatureSet& features, const Camera& camera, Random& random
 /// picture, bit for bit, because a feature that is not used adds 0, multiplies by 1, or is not chosen at run
 /// time, and the operations that are left are the same in both. How shadow maps are filtered is a choice of
 /// method, which no scene makes; both have it alike.
-void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const FeatureSet& needed, bool blinn) {
+void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const FeatureSet& needed, Model model) {
   Device& device = deviceWithLanes(listDevices().at(selectDevice(listDevices(), "")).lanes);
   const FeatureSet all = everyFeature(needed);
   const ShadowMethod method = needed.has(Feature::kExact)  ? ShadowMethod::kExact
@@ -207,9 +210,9 @@ void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const Feature
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, gbuffer.camera, cameraView(gbuffer.camera, gbuffer.picture_size), needed,
-                  {.blinn = blinn, .shadows = method}, lighting, stats);
-  const Plane least = lightGBuffer(device, scene, lighting, needed, gbuffer, false, stats).color;
-  Plane most = lightGBuffer(device, scene, lighting, all, gbuffer, false, stats).color;
+                  {.model = model, .shadows = method}, lighting, stats);
+  const Plane least = lightGBuffer(device, scene, lighting, needed, gbuffer, {}, stats).color;
+  Plane most = lightGBuffer(device, scene, lighting, all, gbuffer, {}, stats).color;
   ASSERT_EQ(most.size(), 4 * gbuffer.pixels());
   most.resize(least.size());
   std::size_t different = 0;
@@ -230,9 +233,10 @@ void expectSamePicture(const FeatureSet& features) {
   const Scene scene = sceneWith(features, camera, random);
   GBuffer gbuffer = randomGBuffer(camera, 39, 20, 0.1, random);
   if (!features.has(Feature::kEmission)) std::fill(gbuffer.emission.begin(), gbuffer.emission.end(), 0.0f);
-  const bool blinn =
-      features.has(Feature::kBlinnSpecular) && (!features.has(Feature::kPhongSpecular) || random.chance(0.5));
-  expectSamePicture(scene, gbuffer, features, blinn);
+  std::vector<Model> models;
+  for (const Model model : kAllModels)
+    if (features.has(featureOf(model))) models.push_back(model);
+  expectSamePicture(scene, gbuffer, features, models.empty() ? Model::kPhong : pick(models, random));
 }
 
 std::string featureTestName(const testing::TestParamInfo<std::size_t>& info) {
@@ -272,7 +276,7 @@ TEST(Features, UnlitSceneLooksAsWithAll) {
   scene.lighting = false;
   const GBuffer gbuffer = randomGBuffer(camera, 39, 20, 0.1, random);
   expectSamePicture(scene, gbuffer, neededFeatures(scene, camera, {.specular = true, .emission = true}, {}),
-                    false);
+                    Model::kPhong);
 }
 
 TEST(Features, RealScenesLookAsWithAll) {
@@ -288,10 +292,11 @@ TEST(Features, RealScenesLookAsWithAll) {
     GBuffer gbuffer = rasterize(scene, objects, view, Shading::kPhong, {true, true, true});
     gbuffer.camera = scene.cameras[0];
     for (const ShadeSettings settings :
-         {ShadeSettings{}, ShadeSettings{.blinn = true, .culling = Culling::kNone}})
+         {ShadeSettings{}, ShadeSettings{.model = Model::kBlinnPhong, .culling = Culling::kNone},
+          ShadeSettings{.model = Model::kToon}, ShadeSettings{.model = Model::kCookTorrance}})
       expectSamePicture(scene, gbuffer,
                         neededFeatures(scene, gbuffer.camera, materialTraits(scene), settings),
-                        settings.blinn);
+                        settings.model);
   }
 }
 

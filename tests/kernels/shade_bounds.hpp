@@ -6,6 +6,8 @@
 
 #include "kernels/shared.h"
 #include "raster/gbuffer.hpp"
+#include "reference/models.hpp"
+#include "scene/model.hpp"
 #include "scene/scene.hpp"
 
 // What float may make of the lighting equation: for each pixel an interval that holds both the exact value
@@ -96,22 +98,86 @@ inline Interval spotInterval(const Light& light, const glm::dmat4& to_view, cons
   return strength.widened(8 * kUnit);
 }
 
-/// See PhongKernels for the constants.
-inline Interval lobeInterval(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye,
-                             double shininess, bool blinn) {
-  double cosine, delta;
-  if (blinn) {
-    const glm::dvec3 sum = way.unit + to_eye;
-    const double length = std::max(glm::length(sum), 1e-12);
-    cosine = glm::dot(normal, sum / length);
-    delta = (way.error + 8 * kUnit) / length + 8 * kUnit;
-  } else {
-    cosine = glm::dot(2 * glm::dot(normal, way.unit) * normal - way.unit, to_eye);
-    delta = way.error + 24 * kUnit;
-  }
+/// A cosine that the kernels take from the chord between two unit vectors.
+struct ChordCosine {
+  double cosine, error;
+};
+
+/// delta: the error of the chord's vector; see PhongKernels.
+inline ChordCosine chordCosine(double cosine, double delta) {
   delta = std::min(delta, 2.0);
   const double t = std::max(1 - cosine, 0.0);
-  return powerInterval(cosine, std::sqrt(2 * t) * delta + delta * delta + 5 * kUnit * t, shininess);
+  return {cosine, std::sqrt(2 * t) * delta + delta * delta + 5 * kUnit * t};
+}
+
+/// N·H; see PhongKernels for the constants.
+inline ChordCosine halfCosine(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye) {
+  const glm::dvec3 sum = way.unit + to_eye;
+  const double length = std::max(glm::length(sum), 1e-12);
+  return chordCosine(glm::dot(normal, sum / length), (way.error + 8 * kUnit) / length + 8 * kUnit);
+}
+
+/// R·V
+inline ChordCosine mirrorCosine(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye) {
+  return chordCosine(glm::dot(2 * glm::dot(normal, way.unit) * normal - way.unit, to_eye),
+                     way.error + 24 * kUnit);
+}
+
+/// The toon model's steps of a lobe or a cosine, by ToonKernels within 3 units of 1, and of 0 none.
+inline Interval toonInterval(Interval x, double (*steps)(double)) {
+  const Interval exact{steps(x.low), steps(x.high)};
+  return {std::max(exact.low - 3 * kUnit, 0.0), exact.high > 0 ? exact.high + 3 * kUnit : 0.0};
+}
+
+/// The Cook-Torrance model, each factor monotone in one cosine. For a cosine x, q = α² + (1 − α²)·x² and
+/// likewise with N·H: α² has 4 roundings with a division's, 1 − α² one more, x² and the sum 3, of positive
+/// terms: 8. Its root is within 3 ulp: 4 + 6, and 1 for the sum with x. Together, with 16 for the square of
+/// D's, 4 for α²·N·L and its product, 3 products, a division's 5, 2 for what F splits: 60.
+inline Interval cookTorranceInterval(const glm::dvec3& normal, const WayToLight& way,
+                                     const glm::dvec3& to_eye, double shininess, double f0) {
+  const double alpha2 = 2 / (shininess + 2);
+  const auto squared = [&](double x) { return alpha2 + (1 - alpha2) * x * x; };
+  const auto smith = [&](double x) { return x + std::sqrt(squared(std::clamp(x, 0.0, 1.0))); };
+  const auto positive = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  const ChordCosine half = halfCosine(normal, way, to_eye);
+  const Interval facets = growing(half.cosine, half.error, [&](double x) {
+    const double c = positive(x), spread = alpha2 * c * c + (1 - c * c);
+    return alpha2 / (spread * spread);
+  });
+  const Interval light = growing(glm::dot(normal, way.unit), way.error + 6 * kUnit,
+                                 [&](double x) { return positive(x) / smith(positive(x)); });
+  const Interval eye =
+      shrinking(glm::dot(normal, to_eye), 12 * kUnit, [&](double x) { return 1 / smith(positive(x)); });
+  // V·H is |L + V|/2, whose vector has L's error, V's 5 units and 2 for the sum; the squares' sum, the root
+  // and the difference round 8 times more.
+  const Interval fresnel = shrinking(glm::length(way.unit + to_eye) / 2, way.error + 16 * kUnit,
+                                     [&](double x) { return std::pow(1 - positive(x), 5); });
+  const double f90 = std::min(50 * f0, 1.0);
+  const Interval color = Interval{1 - fresnel.high, 1 - fresnel.low} * f0 + fresnel * f90;
+  return (facets * light * eye * color).widened(60 * kUnit);
+}
+
+/// Intervals of reflectedLight(): channel f0 of the specular colour.
+struct ReflectedInterval {
+  Interval diffuse, specular;
+};
+inline ReflectedInterval reflectedInterval(Model model, const glm::dvec3& normal, const WayToLight& way,
+                                           const glm::dvec3& to_eye, double shininess, double f0) {
+  const Interval cosine =
+      growing(glm::dot(normal, way.unit), way.error + 6 * kUnit, [](double x) { return std::max(x, 0.0); });
+  const auto lobe = [&](ChordCosine of) { return powerInterval(of.cosine, of.error, shininess); };
+  switch (model) {
+    case Model::kPhong:
+      return {cosine, lobe(mirrorCosine(normal, way, to_eye)) * f0};
+    case Model::kBlinnPhong:
+      return {cosine, lobe(halfCosine(normal, way, to_eye)) * f0};
+    case Model::kToon:
+      return {toonInterval(cosine, toonTone),
+              toonInterval(lobe(mirrorCosine(normal, way, to_eye)), toonHighlight) * f0};
+    case Model::kCookTorrance:
+      break;
+  }
+  return {cosine, cookTorranceInterval(normal, way, to_eye, shininess, f0)};
 }
 
 inline Interval fogInterval(const Fog& fog, double density, double distance) {
@@ -133,7 +199,7 @@ inline Interval fogInterval(const Fog& fog, double density, double distance) {
 
 /// The interval of channel `c` of what the eye sees at `place`, a covered pixel, without shadows.
 inline Interval shadeInterval(const Scene& scene, const GBuffer& gbuffer, std::size_t place, int c,
-                              bool blinn) {
+                              Model model) {
   const std::size_t n = gbuffer.pixels();
   const auto triple = [&](const Plane& group) {
     return glm::dvec3(group[place], group[place + n], group[place + 2 * n]);
@@ -155,13 +221,14 @@ inline Interval shadeInterval(const Scene& scene, const GBuffer& gbuffer, std::s
         strength = windowInterval(light, way) * attenuationInterval(light, way);
       if (light.kind == LightKind::kSpot) strength = strength * spotInterval(light, to_view, way);
       if (strength.high == 0) continue;
-      const Interval cosine = growing(glm::dot(normal, way.unit), way.error + 6 * kUnit,
-                                      [](double x) { return std::max(x, 0.0); });
-      Interval reflected = cosine * (double(light.diffuse[c]) * diffuse);
-      if (cosine.high > 0) {
-        const Interval lobe = lobeInterval(normal, way, to_eye, gbuffer.specular[place + 3 * n], blinn);
-        const Interval highlight = lobe * (double(light.specular[c]) * triple(gbuffer.specular)[c]);
-        reflected = reflected + Interval{cosine.low > 0 ? highlight.low : 0, highlight.high};
+      const double cosine = glm::dot(normal, way.unit), error = way.error + 6 * kUnit;
+      Interval reflected{0, 0};
+      if (cosine + error > 0) {
+        const auto [tone, glint] = reflectedInterval(
+            model, normal, way, to_eye, gbuffer.specular[place + 3 * n], triple(gbuffer.specular)[c]);
+        const Interval highlight = glint * double(light.specular[c]);
+        reflected = tone * (double(light.diffuse[c]) * diffuse) +
+                    Interval{cosine - error > 0 ? highlight.low : 0, highlight.high};
       }
       const double light_ambient = double(light.ambient[c]) * triple(gbuffer.ambient)[c];
       seen = seen + strength * (reflected + Interval{light_ambient, light_ambient});

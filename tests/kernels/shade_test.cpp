@@ -21,12 +21,12 @@ FeatureSet unshadowed(Culling culling) {
   return features;
 }
 
-Plane shadeOn(Device& device, const Scene& scene, const GBuffer& gbuffer, bool blinn, Culling culling) {
+Plane shadeOn(Device& device, const Scene& scene, const GBuffer& gbuffer, Model model, Culling culling) {
   Lighting lighting;
   Stats stats;
   const FeatureSet features = unshadowed(culling);
-  prepareLighting(device, scene, gbuffer.camera, View{}, features, {.blinn = blinn}, lighting, stats);
-  return lightGBuffer(device, scene, lighting, features, gbuffer, false, stats).color;
+  prepareLighting(device, scene, gbuffer.camera, View{}, features, {.model = model}, lighting, stats);
+  return lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats).color;
 }
 
 /// How the bounds did over some pictures.
@@ -35,9 +35,9 @@ struct Tightness {
 };
 
 /// The kernel's picture lies within the bounds, and so does the reference's.
-void expectShaded(const Scene& scene, const GBuffer& gbuffer, bool blinn, const Plane& result,
+void expectShaded(const Scene& scene, const GBuffer& gbuffer, Model model, const Plane& result,
                   Tightness& tightness) {
-  const Image reference = referenceShade(scene, gbuffer, {.blinn = blinn});
+  const Image reference = referenceShade(scene, gbuffer, {.model = model});
   const std::size_t n = gbuffer.pixels();
   for (int y = 0; y < gbuffer.height; ++y) {
     for (int x = 0; x < gbuffer.width; ++x) {
@@ -50,7 +50,7 @@ void expectShaded(const Scene& scene, const GBuffer& gbuffer, bool blinn, const 
           ASSERT_EQ(exact, scene.background[c]);
           continue;
         }
-        const Interval bounds = shadeInterval(scene, gbuffer, place, c, blinn).widened(2 * kUnit);
+        const Interval bounds = shadeInterval(scene, gbuffer, place, c, model).widened(2 * kUnit);
         ASSERT_TRUE(got >= bounds.low && got <= bounds.high)
             << "pixel " << x << "," << y << " channel " << c << ": " << got << " outside " << bounds.low
             << " … " << bounds.high;
@@ -80,13 +80,13 @@ TEST_P(ShadeKernel, MatchesTheReference) {
         Scene scene = randomScene(camera, lights, random);
         scene.fog = randomFog(fog, random);
         scene.lighting = round % 11 != 5;
-        const bool blinn = round % 2 == 1;
+        const Model model = kAllModels[round % 4];
         const GBuffer gbuffer = randomGBuffer(camera, size.x, size.y, 0.1, random);
         SCOPED_TRACE(testing::Message() << size.x << "x" << size.y << ", " << lights << " lights, fog "
                                         << int(fog) << ", round " << round);
-        const Plane color = shadeOn(device, scene, gbuffer, blinn, Culling::kNone);
-        ASSERT_NO_FATAL_FAILURE(expectShaded(scene, gbuffer, blinn, color, tightness));
-        ASSERT_EQ(color, shadeOn(device, scene, gbuffer, blinn, Culling::kTiles))
+        const Plane color = shadeOn(device, scene, gbuffer, model, Culling::kNone);
+        ASSERT_NO_FATAL_FAILURE(expectShaded(scene, gbuffer, model, color, tightness));
+        ASSERT_EQ(color, shadeOn(device, scene, gbuffer, model, Culling::kTiles))
             << "culling changes nothing, bit for bit";
         ++round;
       }
@@ -146,7 +146,7 @@ TEST_P(ShadeKernel, CullingChangesNoBitOfScatteredPixelsAtTheEdgesOfLights) {
     Lighting lighting;
     Stats stats;
     prepareLighting(device, scene, camera, View{}, features, settings, lighting, stats);
-    return lightGBuffer(device, scene, lighting, features, gbuffer, false, stats).color;
+    return lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats).color;
   };
   const Plane all = shaded();
   settings.culling = Culling::kTiles;
@@ -164,7 +164,7 @@ TEST_P(ShadeKernel, PicturesOfOnlyBackground) {
   scene.fog = randomFog(FogMode::kExp, random);
   const GBuffer gbuffer = randomGBuffer(camera, 33, 18, 1, random);
   for (const Culling culling : {Culling::kNone, Culling::kTiles}) {
-    const Plane color = shadeOn(device, scene, gbuffer, false, culling);
+    const Plane color = shadeOn(device, scene, gbuffer, Model::kPhong, culling);
     for (std::size_t i = 0; i < color.size(); ++i)
       ASSERT_EQ(color[i], scene.background[int(i / gbuffer.pixels())]);
   }
@@ -188,7 +188,7 @@ TEST_P(ShadeKernel, OnlyFiniteColoursLeave) {
   scene.lights[0].position = {gbuffer.position[0], gbuffer.position[n], gbuffer.position[2 * n]};
   scene.lights[1].position = {1e30, 0, 0};
   for (int c = 0; c < 3; ++c) gbuffer.normal[5 + c * n] = 0;
-  for (const float value : shadeOn(device, scene, gbuffer, false, Culling::kTiles)) {
+  for (const float value : shadeOn(device, scene, gbuffer, Model::kPhong, Culling::kTiles)) {
     ASSERT_TRUE(std::isfinite(value));
     ASSERT_GE(value, 0);
   }

@@ -39,10 +39,10 @@ Light pointLight(const glm::dvec3& position) {
   return light;
 }
 
-glm::dvec3 radiance(const Light& light, const SurfacePoint& point, bool blinn = false) {
+glm::dvec3 radiance(const Light& light, const SurfacePoint& point, Model model = Model::kPhong) {
   Scene scene;
   scene.lights = {light};
-  return referenceRadiance(scene, cameraAt({3, 4, 0}, {0, 0, 0}), point, blinn);
+  return referenceRadiance(scene, cameraAt({3, 4, 0}, {0, 0, 0}), point, model);
 }
 
 TEST(Reference, PlaneUnderAPointLight) {
@@ -120,9 +120,9 @@ TEST(Reference, MirrorDirectionShowsTheWholeHighlight) {
   light.specular = {1, 2, 0.5f};
   for (const double shininess : {0.0, 1.0, 32.0, 1e4}) {
     point.shininess = shininess;
-    for (const bool blinn : {false, true})
+    for (const Model model : {Model::kPhong, Model::kBlinnPhong})
       // A cosine within 4 · 2^-53 of 1 to the power n is within 4n · 2^-53 of 1.
-      expectColor(radiance(light, point, blinn), {0.5, 0.5, 0.5}, kRounding * (1 + shininess));
+      expectColor(radiance(light, point, model), {0.5, 0.5, 0.5}, kRounding * (1 + shininess));
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Reference, LobesAwayFromTheMirrorDirection) {
   // From straight above the mirror direction is the normal: R·V = 4/5; the half angle has cos² = (1 + 4/5)/2.
   const Light light = pointLight({0, 2, 0});
   expectColor(radiance(light, point), glm::dvec3(std::pow(0.8, 8)));
-  expectColor(radiance(light, point, true), glm::dvec3(std::pow(0.9, 4)));
+  expectColor(radiance(light, point, Model::kBlinnPhong), glm::dvec3(std::pow(0.9, 4)));
 }
 
 TEST(Reference, NoHighlightOnTheFarSide) {
@@ -170,7 +170,8 @@ TEST(Reference, GlobalAmbientAndEmissionNeedNoLight) {
   point.emission = {0.25, 0.5, 4};
   Scene scene;
   scene.ambient = {0.5f, 0.5f, 2};
-  expectColor(referenceRadiance(scene, cameraAt({0, 1, 1}, {0, 0, 0}), point, false), {0.75, 0.75, 4.5});
+  expectColor(referenceRadiance(scene, cameraAt({0, 1, 1}, {0, 0, 0}), point, Model::kPhong),
+              {0.75, 0.75, 4.5});
 }
 
 TEST(Reference, WithoutLightingTheDiffuseColourShows) {
@@ -182,7 +183,8 @@ TEST(Reference, WithoutLightingTheDiffuseColourShows) {
   scene.lighting = false;
   scene.ambient = glm::vec3(1);
   scene.lights = {pointLight({0, 1, 0})};
-  expectColor(referenceRadiance(scene, cameraAt({0, 1, 1}, {0, 0, 0}), point, false), {1.5, 0.25, 0.125});
+  expectColor(referenceRadiance(scene, cameraAt({0, 1, 1}, {0, 0, 0}), point, Model::kPhong),
+              {1.5, 0.25, 0.125});
 }
 
 TEST(Reference, LightsAddUp) {
@@ -202,8 +204,10 @@ TEST(Reference, LightsAddUp) {
   point.shininess = 20;
   const Camera camera = cameraAt({1, 2, 3}, {0, 0, 0});
   // Sums of 20 terms below 2 in two orders: 2 · 20 · 40 · 2^-53.
-  expectColor(referenceRadiance(both, camera, point, false),
-              referenceRadiance(a, camera, point, false) + referenceRadiance(b, camera, point, false), 1e-12);
+  expectColor(
+      referenceRadiance(both, camera, point, Model::kPhong),
+      referenceRadiance(a, camera, point, Model::kPhong) + referenceRadiance(b, camera, point, Model::kPhong),
+      1e-12);
 }
 
 TEST(Reference, EachFogAtAKnownDistance) {

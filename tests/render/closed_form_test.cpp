@@ -229,14 +229,14 @@ TEST(ClosedForm, FogThickensChannelByChannel) {
 constexpr int kMirrorX = 20, kMirrorY = 14;
 glm::dvec3 mirrorLight() { return 2.0 * floorPoint(kMirrorX, kMirrorY) + glm::dvec3(0, kEyeHeight, 0); }
 
-Image mirrorPicture(double shininess, bool blinn, bool parallel) {
+Image mirrorPicture(double shininess, Model model, bool parallel) {
   const glm::dvec3 light = mirrorLight();
   const std::string json =
       floorScene(fmt::format(R"("materials": {{"m": {{"diffuse": 0, "specular": 0.5, "shininess": {}}}}},
       "lights": [{{"type": "point", "position": [{}, {}, {}]}}])",
                              shininess, light.x, light.y, light.z),
                  kEyeHeight, parallel);
-  return renderJson(json, {kSide, kSide}, [&](RenderSettings& settings) { settings.shade.blinn = blinn; });
+  return renderJson(json, {kSide, kSide}, [&](RenderSettings& settings) { settings.shade.model = model; });
 }
 
 /// Ks·cosⁿ of two unit vectors, each within `error` as a length: 1 − cos is half their squared distance, so
@@ -250,8 +250,8 @@ Known highlight(double cosine, double error, double n) {
 }
 
 TEST(ClosedForm, MirrorDirectionShowsTheFullHighlight) {
-  for (const bool blinn : {false, true}) {
-    const Image image = mirrorPicture(200, blinn, false);
+  for (const Model model : {Model::kPhong, Model::kBlinnPhong}) {
+    const Image image = mirrorPicture(200, model, false);
     const auto brightest = std::max_element(image.pixels.begin(), image.pixels.end());
     EXPECT_EQ((brightest - image.pixels.begin()) / 3, kMirrorY * kSide + kMirrorX);
     // There 1 − cos is below (40 · 2^-24)²/2, and times 200 still nothing; the power and two products round.
@@ -262,7 +262,7 @@ TEST(ClosedForm, MirrorDirectionShowsTheFullHighlight) {
 TEST(ClosedForm, PhongsLobeSurroundsTheMirrorDirection) {
   for (const bool parallel : {false, true}) {
     SCOPED_TRACE(parallel);
-    expectFloor(mirrorPicture(20, false, parallel), [&](const glm::dvec3& p) {
+    expectFloor(mirrorPicture(20, Model::kPhong, parallel), [&](const glm::dvec3& p) {
       const Lit lit = litBy(mirrorLight(), p);
       const glm::dvec3 mirrored(-lit.to_light.x, lit.to_light.y, -lit.to_light.z);
       const glm::dvec3 to_eye =
@@ -277,7 +277,7 @@ TEST(ClosedForm, PhongsLobeSurroundsTheMirrorDirection) {
 TEST(ClosedForm, BlinnsLobeSurroundsTheHalfVector) {
   for (const bool parallel : {false, true}) {
     SCOPED_TRACE(parallel);
-    expectFloor(mirrorPicture(20, true, parallel), [&](const glm::dvec3& p) {
+    expectFloor(mirrorPicture(20, Model::kBlinnPhong, parallel), [&](const glm::dvec3& p) {
       const Lit lit = litBy(mirrorLight(), p);
       const glm::dvec3 to_eye =
           parallel ? glm::dvec3(0, 1, 0) : glm::normalize(glm::dvec3(0, kEyeHeight, 0) - p);

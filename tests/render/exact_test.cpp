@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, ExactSharedScene,
                            return std::string(file.param, std::strchr(file.param, '_'));
                          });
 
-/// A random scene (see random_scene_file.hpp) of the kind without fog or the one with Blinn's lobe, in which
+/// A random scene (see random_scene_file.hpp) of one of the first two kinds, in which
 /// no light gives ambient light, so that culling may go by the way that surfaces face; everything is `scale`
 /// times as large.
 Scene randomScene(unsigned seed, double scale) {
@@ -176,7 +176,7 @@ TEST(Exact, CullingChangesNoBitOfRandomScenesOfAnySize) {
       SCOPED_TRACE(fmt::format("seed {}, scale {}", seed, scale));
       const Scene scene = randomScene(seed, scale);
       RenderSettings settings = settingsFor(scene, *scene.size);
-      settings.shade.blinn = usesBlinn(*scene.size);
+      settings.shade.model = kAllModels[seed % std::size(kAllModels)];
       expectCullingChangesNoBit(scene, settings);
     }
 }

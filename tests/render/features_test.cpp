@@ -28,19 +28,19 @@ TEST(Features, EmptySceneNeedsNone) {
 
 TEST(Features, PlainLightsNeedOnlyTheirKind) {
   EXPECT_EQ(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})")),
-            setOf({Feature::kPointLights, Feature::kLightLists}));
+            setOf({Feature::kPointLights, Feature::kPhong, Feature::kLightLists}));
   EXPECT_EQ(featuresOf(withLight(R"({"type": "directional", "direction": [0, -1, 0]})")),
-            setOf({Feature::kDirectionalLights, Feature::kLightLists}));
+            setOf({Feature::kDirectionalLights, Feature::kPhong, Feature::kLightLists}));
   EXPECT_EQ(featuresOf(withLight(
                 R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 30})")),
-            setOf({Feature::kSpotLights, Feature::kLightLists}));
+            setOf({Feature::kSpotLights, Feature::kPhong, Feature::kLightLists}));
 }
 
 TEST(Features, SpotOfCutoff180IsAPointLight) {
   EXPECT_EQ(
       featuresOf(withLight(
           R"({"type": "spot", "position": [0, 1, 0], "direction": [0, -1, 0], "cutoff": 180, "exponent": 9})")),
-      setOf({Feature::kPointLights, Feature::kLightLists}));
+      setOf({Feature::kPointLights, Feature::kPhong, Feature::kLightLists}));
 }
 
 TEST(Features, ConesBesideExponentsAreToldApartAtRunTime) {
@@ -54,14 +54,20 @@ TEST(Features, ConesBesideExponentsAreToldApartAtRunTime) {
 TEST(Features, SpecularNeedsBothASurfaceAndALight) {
   const std::string shiny = R"(, "materials": {"m": {"specular": 0.5}})";
   const std::string light = R"({"type": "point", "position": [0, 1, 0]})";
-  EXPECT_TRUE(featuresOf(withLight(light, shiny)).has(Feature::kPhongSpecular));
-  EXPECT_FALSE(featuresOf(withLight(light)).specular());
+  EXPECT_TRUE(featuresOf(withLight(light, shiny)).has(Feature::kSpecular));
+  EXPECT_FALSE(featuresOf(withLight(light)).has(Feature::kSpecular));
   EXPECT_FALSE(
       featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0], "specular": [0, 0, 0]})", shiny))
-          .specular());
-  ShadeSettings blinn;
-  blinn.blinn = true;
-  EXPECT_TRUE(featuresOf(withLight(light, shiny), blinn).has(Feature::kBlinnSpecular));
+          .has(Feature::kSpecular));
+}
+
+TEST(Features, OfTheModelsOnlyTheChosenOneWhereSomethingIsLit) {
+  for (const Model model : kAllModels) {
+    const FeatureSet lit =
+        featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})"), {.model = model});
+    EXPECT_EQ(lit, setOf({Feature::kPointLights, featureOf(model), Feature::kLightLists}));
+    EXPECT_EQ(featuresOf(R"({"objects": [{"primitive": "box"}]})", {.model = model}), FeatureSet());
+  }
 }
 
 TEST(Features, SwitchedOffShadowsAndCullingCostNothing) {
@@ -70,7 +76,7 @@ TEST(Features, SwitchedOffShadowsAndCullingCostNothing) {
   ShadeSettings off;
   off.shadows = ShadowMethod::kOff;
   off.culling = Culling::kNone;
-  EXPECT_EQ(featuresOf(scene, off), setOf({Feature::kPointLights}));
+  EXPECT_EQ(featuresOf(scene, off), setOf({Feature::kPointLights, Feature::kPhong}));
 }
 
 TEST(Features, FogNeedsItsModeAndChannelsOnly) {
@@ -95,7 +101,7 @@ TEST(Features, TableNamesEveryFeatureOnce) {
 TEST(Features, GBufferGroupsFollowTheFeatures) {
   const PlaneSet none = neededPlanes(FeatureSet());
   EXPECT_FALSE(none.specular || none.ambient || none.emission || none.facet);
-  EXPECT_TRUE(neededPlanes(setOf({Feature::kPhongSpecular})).specular);
+  EXPECT_TRUE(neededPlanes(setOf({Feature::kSpecular})).specular);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kAmbient})).ambient);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kEmission})).emission);
   for (const Feature shadows :

@@ -63,7 +63,7 @@ struct Prepared {
     prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
   }
   Plane light(Device& device) {
-    return lightGBuffer(device, scene, lighting, features, gbuffer, false, stats).color;
+    return lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats).color;
   }
 
   const Scene& scene;

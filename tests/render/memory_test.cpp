@@ -92,7 +92,7 @@ TEST(Memory, BytesPerPixelOfSeveralSamplesWithStatisticsAreAsStated) {
 TEST(Memory, BytesPerPixelOfAllLayersAreAsStated) {
   RenderSettings settings;
   settings.aovs = {Aov::kPosition, Aov::kNormal,     Aov::kDepth, Aov::kDiffuse,
-                   Aov::kMaterial, Aov::kLightCount, Aov::kShadow};
+                   Aov::kMaterial, Aov::kLightCount, Aov::kListLength, Aov::kShadow};
   expectBytesPerPixel(sceneFromJson(floorScene(kSun)), settings);
 }
 

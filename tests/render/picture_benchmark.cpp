@@ -89,15 +89,16 @@ void shadeEveryPair(benchmark::State& state) {
     gbuffer.specular[i + 3 * kPixels] = 1 + 100 * random();
   }
   FeatureSet features;
-  for (const Feature used : {Feature::kPointLights, Feature::kSmoothWindow, Feature::kPhongSpecular})
+  for (const Feature used :
+       {Feature::kPointLights, Feature::kSmoothWindow, Feature::kPhong, Feature::kSpecular})
     features.set(used);
   Lighting lighting;
   Stats stats;
   prepareLighting(device(), scene, gbuffer.camera, View(), features, ShadeSettings(), lighting, stats);
-  lightGBuffer(device(), scene, lighting, features, gbuffer, false, stats);
+  lightGBuffer(device(), scene, lighting, features, gbuffer, {}, stats);
   for (auto _ : state) {
     stats.stages.clear();
-    lightGBuffer(device(), scene, lighting, features, gbuffer, false, stats);
+    lightGBuffer(device(), scene, lighting, features, gbuffer, {}, stats);
     for (const auto& [stage, milliseconds] : stats.stages)
       if (stage == "shade") state.SetIterationTime(milliseconds / 1000);
   }

@@ -15,16 +15,18 @@ using SceneJson = nlohmann::ordered_json;
 
 /// What decides a kernel program, apart from the lights.
 struct SceneKind {
-  bool orthographic, blinn;
+  bool orthographic;
+  Model model;
   const char* fog;  ///< "" for none
   bool fog_per_channel, fog_radial;
 };
 
 /// Each kind is a kernel program of its own to compile, which takes a second; so the seeds that every run of
 /// the tests uses keep to a few, and each of their scenes has a light of every type.
-inline constexpr SceneKind kSceneKinds[] = {{false, false, "", false, false},
-                                            {true, true, "linear", false, true},
-                                            {false, false, "exp2", true, false}};
+inline constexpr SceneKind kSceneKinds[] = {{false, Model::kPhong, "", false, false},
+                                            {true, Model::kBlinnPhong, "linear", false, true},
+                                            {false, Model::kToon, "exp2", true, false},
+                                            {false, Model::kCookTorrance, "", false, false}};
 inline constexpr unsigned kFirstFreeSeed = 1'000'000;  ///< from here on anything goes
 
 namespace random_scene_file {
@@ -140,8 +142,8 @@ inline void addLightOfEveryType(SceneJson& lights, Random& random) {
 
 }  // namespace random_scene_file
 
-/// Which model is for a scene's pictures: no key says so, and the tests need both.
-inline bool usesBlinn(glm::ivec2 size) { return size.x % 2 == 0; }
+/// Which model is for a scene's pictures: no key says so, and the tests need all.
+inline Model modelFor(glm::ivec2 size) { return kAllModels[size.x % int(std::size(kAllModels))]; }
 
 /// A scene file's content, for pictures of some thousand pixels.
 inline SceneJson randomSceneFile(unsigned seed) {
@@ -150,11 +152,11 @@ inline SceneJson randomSceneFile(unsigned seed) {
   SceneKind kind = kSceneKinds[seed % std::size(kSceneKinds)];
   const bool free = seed >= kFirstFreeSeed;
   if (free)
-    kind = {random.chance(0.3), random.chance(0.5), std::array{"", "linear", "exp", "exp2"}[random.below(4)],
-            random.chance(0.5), random.chance(0.5)};
+    kind = {random.chance(0.3), kAllModels[random.below(4)],
+            std::array{"", "linear", "exp", "exp2"}[random.below(4)], random.chance(0.5), random.chance(0.5)};
   SceneJson scene;
   scene["camera"] = camera(kind.orthographic, random);
-  scene["size"] = {17 + 2 * random.below(40) + kind.blinn, 17 + random.below(38)};
+  scene["size"] = {16 + 4 * random.below(20) + int(kind.model), 17 + random.below(38)};
   scene["background"] = array(random.color());
   if (!free || random.chance(0.7)) scene["ambient"] = array(random.color(0.1) + 0.001);
   if (*kind.fog) {

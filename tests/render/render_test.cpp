@@ -40,12 +40,12 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
   RenderSettings settings;
   settings.size = {160, 90};
   settings.camera = scene.cameras.front();
-  for (const bool blinn : {false, true}) {
-    settings.shade.blinn = blinn;
+  for (const Model model : {Model::kPhong, Model::kBlinnPhong}) {
+    settings.shade.model = model;
     Stats stats;
     const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
     const Image ours = renderScene(testDevice(), scene, settings, stats);
-    const Image truth = referenceShade(scene, gbuffer, {.blinn = blinn});
+    const Image truth = referenceShade(scene, gbuffer, {.model = model});
     ASSERT_EQ(ours.pixels.size(), truth.pixels.size());
     // About 40 roundings of 2^-24 between a light and the sum, on the largest of three lights' terms below 2;
     // the lobe's power multiplies its argument's error (4·2^-24) by the exponent 32 and by log2 e.
@@ -54,6 +54,39 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
     for (std::size_t i = 0; i < ours.pixels.size(); ++i)
       worst = std::max(worst, std::abs(double(ours.pixels[i]) - truth.pixels[i]));
     EXPECT_LE(worst, tolerance);
+  }
+}
+
+TEST(Render, ListLengthLayerHoldsWhatIsEvaluatedAndAtLeastWhatIsInRange) {
+  const Scene scene = sceneFromJson(R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
+    "objects": [{"primitive": "plane", "rotate": [90, 0, 0], "scale": 20}],
+    "light_fields": [{"count": 60, "min": [-2, -2, 0.1], "max": [2, 2, 0.5], "range": 0.6}]})");
+  for (const Culling culling : {Culling::kNone, Culling::kTiles}) {
+    for (const int tile : {4, 8, 16}) {
+      RenderSettings settings;
+      settings.size = {64, 48};  // whole tiles, all covered: every pixel of a list is one of the picture
+      settings.camera = scene.cameras.front();
+      settings.aovs = {Aov::kLightCount, Aov::kListLength};
+      settings.shade.culling = culling;
+      settings.shade.tile_size = tile;
+      Stats stats;
+      const Image image = renderScene(testDevice(), scene, settings, stats);
+      double evaluated = 0, largest = 0;
+      for (std::size_t i = 0; i < image.pixels.size(); i += 5) {
+        const float in_range = image.pixels[i + 3], length = image.pixels[i + 4];
+        ASSERT_GE(length, in_range);
+        evaluated += length;
+        largest = std::max<double>(largest, length);
+      }
+      for (const auto& [name, count] : stats.counts) {
+        if (name == "pixel_lights_evaluated") EXPECT_EQ(double(count), evaluated);
+      }
+      if (culling == Culling::kNone) {
+        EXPECT_EQ(evaluated, 60.0 * 64 * 48);
+      } else {
+        EXPECT_LT(largest, 60);
+      }
+    }
   }
 }
 

@@ -48,7 +48,7 @@ inline std::optional<std::string> hunt(const Property& property, unsigned first,
             .string();
     std::ofstream(path) << smallest.dump(1) << "\n";
     const SceneJson size = smallest.value("size", SceneJson{1, 1});
-    const char* model = usesBlinn({size[0], size[1]}) ? "blinn-phong" : "phong";
+    const char* model = modelName(modelFor({size[0], size[1]}));
     return fmt::format("seed {}: {}\nshrunk: {}\nSCENE={}\nMODEL={}\n{}", seed, *property.failure(scene),
                        *property.failure(smallest), path, model, property.reproduce);
   }

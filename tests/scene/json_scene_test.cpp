@@ -263,10 +263,93 @@ TEST_F(JsonScene, RefusesWhatCannotBeDrawn) {
       R"({"light_fields": [{"count": 1, "shape": "ball", "min": [2,0,0], "max": [1,1,1]}]})",
       R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "range": [3,2]}]})",
       R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "colors": []}]})",
+      R"({"light_fields": [{"count": 1, "shape": "cone"}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "offset": 1}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "cutoff": 0}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "cutoff": 1, "range": 1}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "cutoff": 1, "attenuation": [1,0,0]}]})",
+      R"({"light_fields": [{"count": 1, "shape": "surface"}]})",
+      R"({"light_fields": [{"count": 1, "shape": "surface", "radius": 1}], "objects": [{"primitive": "box"}]})",
+      R"({"light_fields": [{"count": 1, "shape": "clusters", "min": [0,0,0], "max": [1,1,1], "radius": 1}]})",
+      R"({"light_fields": [{"count": 1, "shape": "clusters", "min": [0,0,0], "max": [1,1,1], "clusters": 3}]})",
+      R"({"light_fields": [{"count": 1, "shape": "clusters", "min": [0,0,0], "max": [1,1,1], "clusters": 0, "radius": 1}]})",
+      R"({"light_fields": [{"count": 1, "shape": "curve"}]})",
+      R"({"light_fields": [{"count": 1, "shape": "curve", "points": 3}]})",
+      R"({"light_fields": [{"count": 1, "shape": "curve", "points": [[0,0,0]]}]})",
+      R"({"light_fields": [{"count": 1, "shape": "curve", "points": [[0,0,0],[1,1]]}]})",
+      R"({"light_fields": [{"count": 1, "shape": "curve", "points": [[0,0,0],[1,1,1]], "min": [0,0,0]}]})",
+      R"({"light_fields": [{"csv": "none.csv"}]})",
+      R"({"light_fields": [{"csv": 3}]})",
+      R"({"light_fields": [{"csv": "scene.json", "color": 1}]})",
+      R"({"light_fields": [{"csv": "scene.json", "shape": "box"}]})",
   };
   for (const std::string& text : texts) {
     EXPECT_THAT(refusal(text), HasSubstr("scene.json: ")) << text;
   }
+}
+
+TEST_F(JsonScene, ReadsEveryShapeOfLightField) {
+  write("lamps.csv", "x,y,z,r,g,b,range\n1,2,3,1,1,1,4\n5,6,7,1,1,1,\n8,9,10,1,1,1,\n");
+  const Scene scene =
+      load(R"({"objects": [{"primitive": "plane", "scale": 2, "translate": [0, 5, 0]}], "light_fields": [
+    {"count": 2, "shape": "surface", "offset": 0.5, "cutoff": 0.25, "color": 4, "shadow": true},
+    {"count": 3, "shape": "clusters", "clusters": 2, "min": [9,9,9], "max": [9,9,9], "radius": 0.5},
+    {"count": 4, "shape": "curve", "points": [[0,0,7],[1,0,7],[2,0,7]]},
+    {"csv": "lamps.csv", "count": 2, "intensity": 3},
+    {"csv": "lamps.csv", "range": 2}]})");
+  ASSERT_EQ(scene.lights.size(), 14u);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(scene.lights[i].position.y, 5.5);
+    EXPECT_EQ(scene.lights[i].range, 4);
+    EXPECT_EQ(scene.lights[i].attenuation, glm::vec3(0, 0, 1));
+    EXPECT_TRUE(scene.lights[i].shadow);
+  }
+  for (int i = 2; i < 5; ++i) EXPECT_LE(glm::distance(scene.lights[i].position, glm::dvec3(9)), 0.5 + 1e-14);
+  for (int i = 5; i < 9; ++i) EXPECT_EQ(scene.lights[i].position.z, 7);
+  EXPECT_EQ(scene.lights[10].position, glm::dvec3(5, 6, 7));
+  EXPECT_EQ(scene.lights[9].diffuse, glm::vec3(3));
+  EXPECT_EQ(scene.lights[9].range, 4);
+  EXPECT_EQ(scene.lights[13].range, 2);
+}
+
+TEST_F(JsonScene, MistakesInListsOfLightsNameTheirFileAndLine) {
+  write("lamps.csv", "1,2,3,1,1,1,4\n1,2\n");
+  EXPECT_THAT(refusal(R"({"light_fields": [{"csv": "lamps.csv"}]})"),
+              HasSubstr("lamps.csv: line 2: expected"));
+  EXPECT_THAT(refusal(R"({"light_fields": [{"csv": "lamps.csv", "count": 1}, {"csv": "no.csv"}]})"),
+              HasSubstr("light_fields[1].csv: there is no file"));
+}
+
+TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
+  std::filesystem::create_directory(folder_ / "parts");
+  std::filesystem::create_directory(folder_ / "copies");
+  write("parts/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("parts/p.ppm", std::string("P6 1 1 255\n") + "abc");
+  write("scene.json", R"({ // a comment
+    "cameras": {"zoom": {"eye": [0,0,5], "target": [0,0,0]}, "all": {"eye": [0,0,9], "target": [0,0,0]}},
+    "materials": {"z": {"diffuse_map": "parts/p.ppm"}, "a": {"diffuse": 0.1, "emission_map": ")" +
+                          (folder_ / "parts/p.ppm") + R"("}},
+    "lights": [{"type": "directional", "direction": [0,-1,0]}],
+    "objects": [{"mesh": "parts/t.obj", "material": "z", "translate": [0.1, 1e-7, 3]}, {"primitive": "box"}],
+    "light_fields": [{"count": 3, "shape": "surface"}], "size": [7, 5]})");
+  std::vector<Light> lights(2);
+  lights[1].position = {1, 2, 3};
+  write("copies/lit.json", sceneWithLights(folder_ / "scene.json", folder_ / "copies", lights));
+  const Scene scene = loadScene(folder_ / "scene.json");
+  const Scene copy = loadScene(folder_ / "copies/lit.json");
+  ASSERT_EQ(copy.lights.size(), 2u);
+  EXPECT_EQ(copy.lights[1].position, glm::dvec3(1, 2, 3));
+  ASSERT_EQ(copy.cameras.size(), 2u);
+  EXPECT_EQ(copy.cameras[0].name, "zoom");
+  EXPECT_EQ(copy.cameras[0].camera_to_world, scene.cameras[0].camera_to_world);
+  ASSERT_EQ(copy.objects.size(), 2u);
+  EXPECT_EQ(copy.objects[0].object_to_world, scene.objects[0].object_to_world);
+  EXPECT_EQ(copy.meshes[0].positions, scene.meshes[0].positions);
+  EXPECT_EQ(copy.textures.size(), scene.textures.size());
+  EXPECT_EQ(copy.size, scene.size);
+  write("bare.json", "{}");
+  write("copies/bare.json", sceneWithLights(folder_ / "bare.json", folder_ / "copies", {}));
+  EXPECT_TRUE(loadScene(folder_ / "copies/bare.json").lights.empty());
 }
 
 TEST_F(JsonScene, HugeCountsAreRefusedBeforeTheyAreAllocated) {
@@ -317,12 +400,13 @@ TEST_F(JsonScene, WrittenLightsReadBackToTheBit) {
   field.range = {0.1f, 7.3f};
   field.attenuation = {0.1f, 0.2f, 0.3f};
   field.shadow = true;
-  std::vector<Light> lights;
-  expandLightField(field, lights);
+  Scene written;
+  expandLightField(field, written);
   field.range = LightField{}.range;
   field.attenuation = LightField{}.attenuation;
   field.shadow = false;
-  expandLightField(field, lights);
+  expandLightField(field, written);
+  const std::vector<Light>& lights = written.lights;
   write("t \"é\".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const Scene scene = load(lightsScene("t \"é\".obj", lights));
   EXPECT_EQ(scene.objects.size(), 1u);

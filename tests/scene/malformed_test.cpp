@@ -160,7 +160,10 @@ constexpr const char* kSeedGltf = R"({"asset":{"version":"2.0"},"scene":0,"scene
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
 {"bufferView":0,"byteOffset":4,"componentType":5121,"normalized":true,"count":3,"type":"VEC2",
 "sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":1}}},
-{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],
+{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},
+{"bufferView":0,"byteOffset":8,"componentType":5126,"count":2,"type":"SCALAR"},
+{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"}],
+"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":[{"input":3,"output":4}]}],
 "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
 "buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]})";
 

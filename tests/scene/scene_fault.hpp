@@ -10,7 +10,9 @@ namespace luciole::test {
 
 /// What is wrong with a scene that a loader let through; empty: nothing.
 inline std::string sceneFault(const Scene& scene) {
-  for (const Mesh& mesh : scene.meshes) {
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const Mesh& mesh = scene.meshes[i];
+    if (static_cast<int>(i) == scene.animation.no_mesh) continue;
     const std::size_t count = mesh.positions.size();
     if (mesh.triangles.empty()) return "a mesh without triangles";
     if (mesh.normals.size() != count) return "normals are missing";
@@ -43,6 +45,10 @@ inline std::string sceneFault(const Scene& scene) {
   }
   for (const Object& object : scene.objects) {
     if (object.mesh >= scene.meshes.size()) return "an object's mesh is out of range";
+  }
+  for (const Hanging& hanging : scene.animation.objects) {
+    if (hanging.index >= scene.objects.size()) return "a hanging object is out of range";
+    if (hanging.node >= scene.animation.nodes.size()) return "a hanging object's node is out of range";
   }
   return "";
 }

@@ -1,4 +1,4 @@
-#include "image/error_map.hpp"
+#include "image/heat_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -114,6 +114,11 @@ TEST(ErrorMap, SmallPicturesAreEnlargedByWholeFactors) {
   }
 }
 
+TEST(ErrorMap, WidePicturesFillTheMapsWidth) {
+  for (const auto& [width, map_width] : {std::pair(320, 640), {479, 958}, {480, 480}, {481, 481}, {100, 500}})
+    EXPECT_EQ(errorMap(differences(width, 2, std::vector<double>(std::size_t(width) * 2))).width, map_width);
+}
+
 TEST(ErrorMap, LargePicturesKeepTheirPixels) {
   std::vector<double> of_pixel(640 * 3);
   of_pixel[640 + 17] = 1.0;
@@ -173,6 +178,24 @@ TEST(ErrorMap, DecadesAreMarkedAndLabelled) {
     EXPECT_GT(inkIn(x - 6, x + 7), 0) << i;
     EXPECT_EQ(inkIn(x + decade / 2 - 3, x + decade / 2 + 4), 0) << i;
   }
+}
+
+TEST(ListMap, OneLightIsTheLowestColourAndThePowerOfTenAboveTheMostTheHighest) {
+  const Image map = listMap(4, 1, {0, 1, 10, 100});
+  EXPECT_EQ(codesAt(map, 60, 60), kBlack);
+  EXPECT_EQ(codesAt(map, 180, 60), kLowest);
+  EXPECT_EQ(codesAt(map, 420, 60), kHighest);
+  // Half-way up the scale of viridis lies 33 145 140; OpenImageIO's table has 17 colours, between which it is
+  // linear in light, so that a few codes differ.
+  const Codes middle = codesAt(map, 300, 60);
+  EXPECT_NEAR(middle[0], 33, 6);
+  EXPECT_NEAR(middle[1], 145, 6);
+  EXPECT_NEAR(middle[2], 140, 6);
+}
+
+TEST(ListMap, PicturesWithoutLightsAreBlackOnAScaleOfOneDecade) {
+  const Image map = listMap(2, 2, {0, 0, 0, 0});
+  for (const int x : {100, 300}) EXPECT_EQ(codesAt(map, x, 100), kBlack);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "image/error_map.hpp"
+#include "image/heat_map.hpp"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -23,7 +23,7 @@ using Color = std::array<float, 3>;
 
 // All linear, as OpenImageIO's maps are: its viridis begins at what sRGB calls 68 1 84 and ends at 253
 // 231 37.
-constexpr Color kEqualColor{0.0f, 0.0f, 0.0f};
+constexpr Color kZeroColor{0.0f, 0.0f, 0.0f};
 constexpr Color kNotComparedColor{0.05f, 0.05f, 0.05f};
 constexpr Color kNotFiniteColor{1.0f, 0.0f, 0.0f};
 constexpr Color kPaper{1.0f, 1.0f, 1.0f};
@@ -42,9 +42,26 @@ struct Scale {
   int high = 0;
 };
 
-bool isOnScale(double difference) { return difference > 0 && std::isfinite(difference); }
+/// A colour off the scale and what it means.
+struct Swatch {
+  Color color;
+  std::string meaning;
+};
 
-Scale scaleOf(const std::vector<double>& differences) {
+/// What a map shows.
+struct Content {
+  int width, height;
+  const std::vector<double>& values;  ///< row-major; those that aren't on the scale have a swatch's colour
+  Scale scale;
+  std::string title, figures;
+  double mark;  ///< a value that the scale names, 0: none
+  std::string mark_name;
+  std::vector<Swatch> swatches;
+};
+
+bool isOnScale(double value) { return value > 0 && std::isfinite(value); }
+
+Scale errorScale(const std::vector<double>& differences) {
   double smallest = HUGE_VAL, largest = 0;
   for (const double d : differences) {
     if (!isOnScale(d)) continue;
@@ -60,8 +77,8 @@ Scale scaleOf(const std::vector<double>& differences) {
 }
 
 /// 0 at the low end, 1 at the high end, and beyond.
-double placeOn(const Scale& scale, double difference) {
-  return (std::log10(difference) - scale.low) / (scale.high - scale.low);
+double placeOn(const Scale& scale, double value) {
+  return (std::log10(value) - scale.low) / (scale.high - scale.low);
 }
 
 /// The map's colours of values in [0,1].
@@ -70,18 +87,19 @@ ImageBuf falseColors(int width, int height, std::vector<float>& values) {
   return OIIO::ImageBufAlgo::color_map(source, 0, "viridis");
 }
 
-ImageBuf colorPixels(const ImageDifference& difference, const Scale& scale) {
+ImageBuf colorPixels(const Content& content) {
   std::vector<float> places;
-  places.reserve(difference.of_pixel.size());
-  for (const double d : difference.of_pixel) {
-    places.push_back(isOnScale(d) ? float(std::clamp(placeOn(scale, d), 0.0, 1.0)) : 0.0f);
-  }
-  ImageBuf colors = falseColors(difference.width, difference.height, places);
-  for (std::size_t p = 0; p < difference.of_pixel.size(); ++p) {
-    const double d = difference.of_pixel[p];
-    if (isOnScale(d)) continue;
-    const Color& color = d == 0 ? kEqualColor : d == kNotCompared ? kNotComparedColor : kNotFiniteColor;
-    colors.setpixel(int(p % difference.width), int(p / difference.width), color.data());
+  places.reserve(content.values.size());
+  for (const double value : content.values)
+    places.push_back(isOnScale(value) ? float(std::clamp(placeOn(content.scale, value), 0.0, 1.0)) : 0.0f);
+  ImageBuf colors = falseColors(content.width, content.height, places);
+  for (std::size_t p = 0; p < content.values.size(); ++p) {
+    const double value = content.values[p];
+    if (isOnScale(value)) continue;
+    const Color& color = value == 0              ? kZeroColor
+                         : value == kNotCompared ? kNotComparedColor
+                                                 : kNotFiniteColor;
+    colors.setpixel(int(p % content.width), int(p / content.width), color.data());
   }
   return colors;
 }
@@ -123,8 +141,9 @@ struct Panel {
 constexpr double kMargin = 2.0;
 constexpr double kTickWidth = 0.1;
 
-void drawBar(const Panel& panel, const Scale& scale) {
+void drawBar(const Panel& panel, const Content& content) {
   constexpr double kTop = 3.6, kHeight = 1.2, kTick = 0.35;
+  const Scale& scale = content.scale;
   const double length = panel.width() - 2 * kMargin;
   const int columns = panel.pixels(length), rows = panel.pixels(kHeight);
   std::vector<float> ramp;
@@ -137,57 +156,93 @@ void drawBar(const Panel& panel, const Scale& scale) {
     tick(x, kTop + kHeight);
     panel.write(x, kTop + kHeight + 1.5, power == 0 ? "1" : fmt::format("1e{}", power), TextAlignX::Center);
   }
-  const double step = placeOn(scale, 1.0 / 255);
-  if (step < 0) {
-    panel.write(kMargin, kTop - 0.5, "< 1/255", TextAlignX::Left);
-  } else if (step > 1) {
-    panel.write(kMargin + length, kTop - 0.5, "1/255 >", TextAlignX::Right);
+  if (content.mark == 0) return;
+  const double place = placeOn(scale, content.mark);
+  if (place < 0) {
+    panel.write(kMargin, kTop - 0.5, "< " + content.mark_name, TextAlignX::Left);
+  } else if (place > 1) {
+    panel.write(kMargin + length, kTop - 0.5, content.mark_name + " >", TextAlignX::Right);
   } else {
-    tick(kMargin + length * step, kTop - kTick);
-    panel.write(kMargin + length * step, kTop - 0.5, "1/255", TextAlignX::Center);
+    tick(kMargin + length * place, kTop - kTick);
+    panel.write(kMargin + length * place, kTop - 0.5, content.mark_name, TextAlignX::Center);
   }
 }
 
-void drawPanel(const Panel& panel, const ImageDifference& difference, const Scale& scale) {
+void drawPanel(const Panel& panel, const Content& content) {
   panel.fill(0, 0, panel.width(), kPanelHeight, kPaper);
-  double largest = 0;
-  bool all_compared = true;
-  for (const double d : difference.of_pixel) {
-    if (isOnScale(d)) largest = std::max(largest, d);
-    all_compared = all_compared && d != kNotCompared;
-  }
-  panel.write(kMargin, 1.5, "|B - A|, linear", TextAlignX::Left);
-  panel.write(panel.width() - kMargin, 1.5,
-              fmt::format("max {:.2g}, mean {:.2g}", largest, difference.mean_abs), TextAlignX::Right);
-  drawBar(panel, scale);
+  panel.write(kMargin, 1.5, content.title, TextAlignX::Left);
+  panel.write(panel.width() - kMargin, 1.5, content.figures, TextAlignX::Right);
+  drawBar(panel, content);
   double x = kMargin;
-  const auto swatch = [&](const Color& color, const std::string& meaning) {
+  for (const Swatch& swatch : content.swatches) {
     constexpr double kBaseline = 7.9;
-    panel.fill(x, kBaseline - 0.75, 0.8, 0.8, color);
-    panel.write(x + 1.2, kBaseline, meaning, TextAlignX::Left);
-    x += 2.4 + panel.textWidth(meaning);
-  };
-  swatch(kEqualColor, "equal");
-  if (!all_compared) swatch(kNotComparedColor, "not compared");
-  if (difference.nonfinite > 0)
-    swatch(kNotFiniteColor, fmt::format("not finite ({} values)", difference.nonfinite));
+    panel.fill(x, kBaseline - 0.75, 0.8, 0.8, swatch.color);
+    panel.write(x + 1.2, kBaseline, swatch.meaning, TextAlignX::Left);
+    x += 2.4 + panel.textWidth(swatch.meaning);
+  }
 }
 
-}  // namespace
+/// How many pixels a side of the map a pixel becomes. A wide picture fills the map's width exactly, so that
+/// one can be laid over the other; a tall one becomes no taller than the map need be wide.
+int enlargement(int width, int height) {
+  return width >= height ? std::max(1, (kMinWidth + width - 1) / width) : std::max(1, kMinWidth / height);
+}
 
-Image errorMap(const ImageDifference& difference) {
-  const int factor = std::max(1, kMinWidth / std::max(difference.width, difference.height));
-  const int picture_width = difference.width * factor, picture_height = difference.height * factor;
+Image drawMap(const Content& content) {
+  const int factor = enlargement(content.width, content.height);
+  const int picture_width = content.width * factor, picture_height = content.height * factor;
   Image map{std::max(kMinWidth, picture_width), 0, {"R", "G", "B"}, {}};
   const int text_size = std::max(kMinTextSize, map.width / 64);
   map.height = picture_height + int(std::lround(kPanelHeight * text_size));
   map.pixels.assign(std::size_t(map.width) * map.height * 3, 1.0f);
 
   ImageBuf canvas(OIIO::ImageSpec(map.width, map.height, 3, OIIO::TypeDesc::FLOAT), map.pixels.data());
-  const Scale scale = scaleOf(difference.of_pixel);
-  lay(canvas, (map.width - picture_width) / 2, 0, colorPixels(difference, scale), factor);
-  drawPanel({canvas, picture_height, text_size}, difference, scale);
+  lay(canvas, (map.width - picture_width) / 2, 0, colorPixels(content), factor);
+  drawPanel({canvas, picture_height, text_size}, content);
   return map;
+}
+
+}  // namespace
+
+Image errorMap(const ImageDifference& difference) {
+  double largest = 0;
+  bool all_compared = true;
+  for (const double d : difference.of_pixel) {
+    if (isOnScale(d)) largest = std::max(largest, d);
+    all_compared = all_compared && d != kNotCompared;
+  }
+  std::vector<Swatch> swatches{{kZeroColor, "equal"}};
+  if (!all_compared) swatches.push_back({kNotComparedColor, "not compared"});
+  if (difference.nonfinite > 0)
+    swatches.push_back({kNotFiniteColor, fmt::format("not finite ({} values)", difference.nonfinite)});
+  return drawMap({.width = difference.width,
+                  .height = difference.height,
+                  .values = difference.of_pixel,
+                  .scale = errorScale(difference.of_pixel),
+                  .title = "|B - A|, linear",
+                  .figures = fmt::format("max {:.2g}, mean {:.2g}", largest, difference.mean_abs),
+                  .mark = 1.0 / 255,
+                  .mark_name = "1/255",
+                  .swatches = swatches});
+}
+
+Image listMap(int width, int height, const std::vector<float>& list_lengths) {
+  const std::vector<double> values(list_lengths.begin(), list_lengths.end());
+  double largest = 0, sum = 0;
+  for (const double value : values) {
+    largest = std::max(largest, value);
+    sum += value;
+  }
+  const int decades = std::max(1, int(std::ceil(std::log10(std::max(largest, 1.0)))));
+  return drawMap({.width = width,
+                  .height = height,
+                  .values = values,
+                  .scale = {0, decades},
+                  .title = "lights per tile",
+                  .figures = fmt::format("most {:.0f}, mean {:.3g}", largest, sum / double(values.size())),
+                  .mark = 0,
+                  .mark_name = {},
+                  .swatches = {{kZeroColor, "none"}}});
 }
 
 }  // namespace luciole

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "image/compare.hpp"
 #include "image/image.hpp"
 
@@ -11,5 +13,10 @@ namespace luciole {
 /// pictures are enlarged by a whole factor, and under the picture is a scale bar. Throws MachineError where
 /// there is no font for its labels, DejaVu Sans.
 Image errorMap(const ImageDifference& difference);
+
+/// How many lights each pixel goes through, row-major, as a picture of the same make, on a logarithmic scale
+/// from 1 to the next power of ten that holds the largest. Pixels with none are black. Throws as errorMap
+/// does.
+Image listMap(int width, int height, const std::vector<float>& list_lengths);
 
 }  // namespace luciole

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
+#include "cli/scale_plan.hpp"
+#include "cli/shard.hpp"
+#include "error.hpp"
+#include "experiment/gnuplot.hpp"
+#include "experiment/page.hpp"
+#include "experiment/scale.hpp"
+#include "experiment/scale_files.hpp"
+#include "experiment/scale_log.hpp"
+#include "experiment/scale_plot.hpp"
+#include "image/write_file.hpp"
+#include "scene/load_scene.hpp"
+
+namespace luciole {
+namespace {
+
+struct MergeOptions {
+  std::vector<std::string> folders;
+  std::string output, plot;
+};
+
+std::string duration(double seconds) {
+  const int whole = int(seconds + 0.5);
+  return whole < 3600 ? fmt::format("{}:{:02}", whole / 60, whole % 60)
+                      : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+/// One line that is rewritten, on a terminal only.
+void showProgress(const std::string& what, std::size_t done, std::size_t total) {
+  fmt::print(stderr, "\r\x1b[K{}, {} left", what, duration(double(total - done) / 1000));
+  std::fflush(stderr);
+}
+
+/// Throws, before any work is done, what writing the page and the plot would meet.
+void checkDrawing(const std::string& plot) {
+  requireChartLibrary();
+  if (plot.empty()) return;
+  if (!plot.ends_with(".svg")) throw InputError(fmt::format("--plot {}: expected a .svg file", plot));
+  checkPlace(plot);
+  requireGnuplot();
+}
+
+/// Everything that is made from a log.
+void writeResults(const ScaleResults& results, const std::string& folder, const std::string& plot,
+                  const std::string& command_line, bool quiet) {
+  const ScaleSummary summary = summarizeScale(results);
+  writeTextFile(folder + "/results.csv", scaleCsv(summary));
+  writeTextFile(folder + "/growth.json", growthJson(summary));
+  writeTextFile(folder + "/report.html", experimentPage(pageData(summary, folder, command_line)));
+  if (!plot.empty() && !summary.points.empty()) writeTextFile(plot, scalePlot(summary));
+  if (!quiet) fmt::print("{}", growthTable(summary));
+  if (summary.incomplete > 0)
+    fmt::print(stderr, "{}: {} of {} points are not complete\n", folder, summary.incomplete,
+               summary.description.points.size());
+}
+
+/// Returns the exit status.
+int scale(CLI::App& command, ScaleOptions& options, const std::string& command_line) {
+  checkScaleOptions(command, options);
+  const Shard shard = chosenShard(options.shard);
+  checkDrawing(options.plot);
+  if (options.shard.empty() && shard.count > 1 && !options.picture.quiet)
+    fmt::print(stderr, "shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count);
+  Scene scene = loadScene(options.scene);
+  ScaleExperiment experiment = planExperiment(command, options, scene);
+  Device device;
+  openDevice(options.picture.device, device);
+  ScaleLog log(options.output, experiment.description);
+  log.append(describeMachine(device));
+  std::vector<std::size_t> mine;
+  for (std::size_t i = 0; i < experiment.tasks.size(); ++i)
+    if (isMine(shard, i)) mine.push_back(i);
+  const bool progress = !options.picture.quiet && isatty(STDERR_FILENO);
+  const std::vector<ScaleFailure> failures =
+      runScale(device, scene, experiment, mine, log, progress ? OnProgress(showProgress) : OnProgress());
+  if (progress) fmt::print(stderr, "\r\x1b[K");
+  for (const ScaleFailure& failure : failures)
+    fmt::print(stderr, "luciole: {}: {}\n", failure.point, failure.reason);
+  writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet);
+  return failures.empty() ? kDone : kMachineFailed;
+}
+
+}  // namespace
+
+void addScaleCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand(
+      "scale", "many-light experiments: time and error against the number of lights, as data and a page");
+  auto options = std::make_shared<ScaleOptions>();
+  options->picture.shadows = "off";
+  command->add_option("SCENE", options->scene,
+                      "a .json, .obj, .gltf or .glb file; its own lights are left out");
+  command->add_option("--lights", options->lights, "numbers of lights: 1,10,100 or 1,10,...,1000000");
+  command
+      ->add_option("--vary", options->vary,
+                   "options to try in every combination: culling,tile=4,8 (without values: some that make "
+                   "sense); repeatable")
+      ->allow_extra_args(false);
+  command->add_option("--repeat", options->repeats, "timed runs of each point")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option(
+      "-o,--output", options->output,
+      "folder for results and report.html; what it holds of this experiment isn't done again");
+  command->add_option("--plot", options->plot,
+                      "also write time against lights as an SVG picture (by gnuplot)");
+  command
+      ->add_option("--check-pixels", options->check_pixels,
+                   "about how many pixels are held against the reference")
+      ->check(CLI::Range(1, 1 << 30))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the lights and the checked pixels")->capture_default_str();
+  command
+      ->add_option("--field", options->field,
+                   "where lights are: " + std::string(kFieldShapeNames) + ", or a .csv file")
+      ->capture_default_str();
+  const CLI::Range positive(1e-18, 1e18);
+  auto* density = command
+                      ->add_option("--density", options->density,
+                                   "lights in range of a visible pixel on average: the more there are, the "
+                                   "less far each reaches")
+                      ->check(positive)
+                      ->capture_default_str();
+  auto* range = command->add_option("--range", options->range, "or: metres that all lights reach")
+                    ->check(positive)
+                    ->excludes(density);
+  command
+      ->add_option(
+          "--cutoff", options->cutoff,
+          "or: lights fade with the square of the distance, and reach to where they have faded to this")
+      ->check(positive)
+      ->excludes(density)
+      ->excludes(range);
+  command->add_option("--intensity", options->intensity, "of each light")
+      ->check(CLI::Range(0.0, 1e18))
+      ->capture_default_str();
+  command->add_option("--shard", options->shard,
+                      "I/N: only every N-th point from the I-th on (default: the task of a Slurm array)");
+  addPictureOptions(
+      *command, options->picture,
+      kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption | kManyPictures);
+  command->get_option("--size")->description("WxH pixels (default: 640x360)");
+
+  CLI::App* merge = command->add_subcommand("merge", "put the results of shards together");
+  auto merging = std::make_shared<MergeOptions>();
+  merge->add_option("FOLDER", merging->folders, "the shards' folders")->required();
+  merge->add_option("-o,--output", merging->output, "a new folder")->required();
+  merge->add_option("--plot", merging->plot, "as for scale");
+  merge->callback([&context, merging] {
+    checkDrawing(merging->plot);
+    writeResults(mergeScaleLogs(merging->folders, merging->output), merging->output, merging->plot,
+                 context.command_line, false);
+  });
+  command->callback([&context, command, merge, options] {
+    if (!merge->parsed()) context.status = scale(*command, *options, context.command_line);
+  });
+}
+
+}  // namespace luciole

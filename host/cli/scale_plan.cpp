@@ -1,0 +1,317 @@
+#include "cli/scale_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "error.hpp"
+#include "raster/visible_points.hpp"
+#include "scene/light_list.hpp"
+
+namespace luciole {
+namespace {
+
+/// What --vary may name: options of this command, and the values tried where none are given; those of
+/// `range` depend on the scene (defaultRanges).
+const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
+                                   {"tile", {"4", "8", "16"}},
+                                   {"samples", {"1", "4", "16"}},
+                                   {"shadows", {"off", "hard", "pcf", "exact"}},
+                                   {"model", {"phong", "blinn-phong", "toon", "cook-torrance"}},
+                                   {"shading", {"flat", "gouraud", "phong"}},
+                                   {"field", {"box", "surface", "clusters"}},
+                                   {"density", {"1", "8", "64"}},
+                                   {"range", {}},
+                                   {"cutoff", {"0.1", "0.01", "0.001"}},
+                                   {"intensity", {"0.5", "1", "2"}},
+                                   {"pcf-width", {"2", "4", "6"}},
+                                   {"shadow-memory", {"64", "512"}}};
+
+/// Axes that each say how far lights reach, so that a variant takes a value of one alone.
+constexpr const char* kReaches[] = {"density", "range", "cutoff"};
+
+constexpr glm::ivec2 kDefaultSize(640, 360);
+/// Enough for a box that holds most of what is seen.
+constexpr std::size_t kSeenPoints = 1000;
+/// Samples of the truth for each sample of the best picture, where pictures have several.
+constexpr int kTruthSamples = 4;
+
+/// "1,10,…,1000" or "1,10,...,1000": after two numbers, dots stand for all up to the next that are as many
+/// times the one before as the second is the first.
+std::vector<std::uint64_t> parseLights(const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(fmt::format("--lights {}: {}", text, why));
+  };
+  std::vector<std::uint64_t> lights;
+  std::uint64_t factor = 0;  // of dots that wait for their end
+  for (const std::string& part : split(text, ',')) {
+    if (part == "..." || part == "…") {
+      const std::size_t n = lights.size();
+      if (n < 2 || factor > 0 || lights[n - 1] % lights[n - 2] != 0)
+        refuse("dots go on from two numbers, of which the second is a multiple of the first");
+      factor = lights[n - 1] / lights[n - 2];
+      continue;
+    }
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (error != std::errc() || end != part.data() + part.size() || number < 1 || number > kMostLights)
+      refuse(fmt::format("'{}' is no number of lights from 1 to {}", part, kMostLights));
+    if (!lights.empty() && number <= lights.back()) refuse("expected each number above the one before");
+    for (; factor > 0 && lights.back() < number / factor; lights.push_back(lights.back() * factor)) {
+    }
+    if (factor > 0 && lights.back() * factor != number)
+      refuse("the dots don't lead to the number after them");
+    factor = 0;
+    lights.push_back(number);
+  }
+  if (factor > 0) refuse("expected a number after the dots");
+  return lights;
+}
+
+/// "culling,tile=4,8": names of axes, each with the values after its '='.
+std::vector<ScaleAxis> parseAxes(const std::vector<std::string>& vary) {
+  const auto refuse = [](const std::string& part, const std::string& why) {
+    throw InputError(fmt::format("--vary {}: {}", part, why));
+  };
+  std::vector<ScaleAxis> axes;
+  for (const std::string& text : vary) {
+    bool takes_values = false;
+    for (const std::string& part : split(text, ',')) {
+      const std::size_t equals = part.find('=');
+      const std::string name = part.substr(0, equals);
+      const auto known =
+          std::find_if(kAxes.begin(), kAxes.end(), [&](const ScaleAxis& axis) { return axis.name == name; });
+      if (known == kAxes.end()) {
+        if (!takes_values) {
+          std::vector<std::string> names;
+          for (const ScaleAxis& axis : kAxes) names.push_back(axis.name);
+          refuse(part, fmt::format("expected one of {}", fmt::join(names, ", ")));
+        }
+        axes.back().values.push_back(part);
+        continue;
+      }
+      if (std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; }))
+        refuse(part, "is there twice");
+      takes_values = equals != std::string::npos;
+      axes.push_back({name, takes_values ? std::vector{part.substr(equals + 1)} : known->values});
+    }
+  }
+  for (const ScaleAxis& axis : axes)
+    for (std::size_t i = 0; i < axis.values.size(); ++i)
+      if (axis.values[i].empty() || axis.values[i] == kNotThis ||
+          std::count(axis.values.begin(), axis.values.end(), axis.values[i]) > 1)
+        refuse(axis.name, fmt::format("value '{}' is none or there twice", axis.values[i]));
+  return axes;
+}
+
+bool isReach(const ScaleAxis& axis) {
+  return std::find(std::begin(kReaches), std::end(kReaches), axis.name) != std::end(kReaches);
+}
+
+/// Metres: a 64th, a 32nd and a 16th of the box's diagonal, with two digits.
+std::vector<std::string> defaultRanges(const Bounds& box) {
+  std::vector<std::string> ranges;
+  for (const double part : {64.0, 32.0, 16.0})
+    ranges.push_back(
+        fmt::format("{}", std::stod(fmt::format("{:.1e}", glm::length(box.high - box.low) / part))));
+  return ranges;
+}
+
+/// Fills in values that depend on the scene, and lets axes that say how far lights reach take turns.
+void completeAxes(std::vector<ScaleAxis>& axes, const Bounds& box) {
+  const bool take_turns = std::count_if(axes.begin(), axes.end(), isReach) > 1;
+  for (ScaleAxis& axis : axes) {
+    if (axis.values.empty()) axis.values = defaultRanges(box);
+    if (take_turns && isReach(axis)) axis.values.push_back(kNotThis);
+  }
+}
+
+/// Every choice of one value from each axis, the last axis changing fastest.
+std::vector<std::vector<std::string>> allVariants(const std::vector<ScaleAxis>& axes) {
+  std::vector<std::vector<std::string>> variants{{}};
+  for (const ScaleAxis& axis : axes) {
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& variant : variants)
+      for (const std::string& value : axis.values) {
+        longer.push_back(variant);
+        longer.back().push_back(value);
+      }
+    variants = std::move(longer);
+  }
+  return variants;
+}
+
+/// Whether a variant is none, with several ways or none to say how far lights reach, or another one over
+/// again: an axis that means nothing beside another's value keeps its first value.
+bool isLeftOut(const std::vector<ScaleAxis>& axes, const std::vector<std::string>& variant) {
+  const auto has = [&](const std::string& name, const std::string& value) {
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (axes[i].name == name) return variant[i] == value;
+    return false;
+  };
+  const auto isFirst = [&](const std::string& name) {
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (axes[i].name == name) return variant[i] == axes[i].values.front();
+    return true;
+  };
+  int reaches = 0, reach_axes = 0;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    reach_axes += isReach(axes[i]);
+    reaches += isReach(axes[i]) && variant[i] != kNotThis;
+  }
+  if (reach_axes > 0 && reaches != 1) return true;
+  const bool varies_shadows =
+      std::any_of(axes.begin(), axes.end(), [](const ScaleAxis& axis) { return axis.name == "shadows"; });
+  return (has("culling", "none") && !isFirst("tile")) ||
+         (varies_shadows && !has("shadows", "pcf") && !isFirst("pcf-width")) ||
+         (has("shadows", "off") && !isFirst("shadow-memory"));
+}
+
+/// Sets an option as if it had been typed, with its checks.
+void setOption(CLI::App& command, const std::string& name, const std::string& value) {
+  CLI::Option* option = command.get_option("--" + name);
+  option->clear();
+  if (value == kNotThis) return;
+  option->add_result(value);
+  try {
+    option->run_callback();
+  } catch (const CLI::ParseError& error) {
+    throw InputError(fmt::format("--vary {}={}: {}", name, value, error.what()));
+  }
+}
+
+LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64_t most_lights) {
+  LightField field;
+  if (options.field.ends_with(".csv")) {
+    field.shape = FieldShape::kList;
+    field.list = readLightList(options.field, most_lights);
+  } else {
+    const auto shape = fieldShapeNamed(options.field);
+    if (!shape)
+      throw InputError(
+          fmt::format("--field {}: expected {}, or a .csv file", options.field, kFieldShapeNames));
+    field = fieldInBox(*shape, box);
+  }
+  field.count = most_lights;
+  field.seed = options.seed;
+  field.colors.assign(std::begin(kLampColors), std::end(kLampColors));
+  field.intensity = glm::vec2(float(options.intensity));
+  if (options.range) field.range = glm::vec2(float(*options.range));
+  if (options.cutoff) {
+    field.cutoff = *options.cutoff;
+    field.attenuation = {0, 0, 1};
+  }
+  field.shadow = options.picture.shadows != "off";
+  return field;
+}
+
+/// Whether ranges are chosen for a density of lights: unless they are given, be it by a file of lights.
+bool choosesRanges(const CLI::App& command, const ScaleOptions& options) {
+  const bool is_asked_for = command.get_option("--density")->count() > 0;
+  return is_asked_for || (!options.range && !options.cutoff && !options.field.ends_with(".csv"));
+}
+
+/// What all points share, as text.
+std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& command,
+                                                                const ScaleOptions& options,
+                                                                const std::vector<ScaleAxis>& axes,
+                                                                const RenderSettings& settings) {
+  std::vector<std::pair<std::string, std::string>> shared{
+      {"size", fmt::format("{}x{}", settings.size.x, settings.size.y)}};
+  if (!settings.camera.name.empty()) shared.emplace_back("camera", settings.camera.name);
+  std::vector<std::string> names{"seed", "check-pixels", "exposure"};
+  for (const ScaleAxis& axis : kAxes) names.push_back(axis.name);
+  const bool varies_reach = std::any_of(axes.begin(), axes.end(), isReach);
+  for (const std::string& name : names) {
+    const bool is_varied =
+        std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; }) ||
+        (varies_reach && isReach({name, {}}));
+    const bool is_meant = name == "range"           ? options.range.has_value()
+                          : name == "cutoff"        ? options.cutoff.has_value()
+                          : name == "density"       ? choosesRanges(command, options)
+                          : name == "pcf-width"     ? options.picture.shadows == "pcf"
+                          : name == "shadow-memory" ? options.picture.shadows != "off"
+                                                    : true;
+    if (!is_varied && is_meant) shared.emplace_back(name, command.get_option("--" + name)->as<std::string>());
+  }
+  if (!options.picture.device.empty()) shared.emplace_back("device", options.picture.device);
+  return shared;
+}
+
+}  // namespace
+
+void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
+  for (const auto& [name, value] :
+       {std::pair("SCENE", &options.scene), std::pair("--lights", &options.lights),
+        std::pair("--output", &options.output)})
+    if (value->empty()) throw InputError(fmt::format("scale: {} is required", name));
+  if (options.scene == "-") throw InputError("scale: expected a file as SCENE, got standard input");
+  int reaches = options.range.has_value() + options.cutoff.has_value();
+  for (const ScaleAxis& axis : parseAxes(options.vary)) {
+    if (command.get_option("--" + axis.name)->count() > 0)
+      throw InputError(fmt::format("scale: --{} is given and varied; expected one", axis.name));
+    reaches += isReach(axis) && command.get_option("--density")->count() > 0;
+    if (isReach(axis) && reaches > 0)
+      throw InputError(fmt::format(
+          "scale: --vary {}, --density, --range and --cutoff say how far lights reach; expected one",
+          axis.name));
+  }
+}
+
+ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const Scene& scene) {
+  ScaleExperiment experiment;
+  ScaleDescription& description = experiment.description;
+  description.version = LUCIOLE_VERSION;
+  description.scene = options.scene;
+  description.digest = sceneDigest(scene);
+  description.lights = parseLights(options.lights);
+  description.axes = parseAxes(options.vary);
+  description.repeats = options.repeats;
+  experiment.check_pixels = options.check_pixels;
+  experiment.seed = options.seed;
+
+  const auto settingsNow = [&] {
+    RenderSettings settings = renderSettings(options.picture, scene);
+    if (options.picture.size.empty()) settings.size = kDefaultSize;
+    return settings;
+  };
+  description.settings = sharedSettings(command, options, description.axes, settingsNow());
+  const RenderSettings first = settingsNow();
+  const std::vector<glm::dvec3> seen =
+      visiblePoints(scene, first.camera, first.size, kSeenPoints, options.seed);
+  if (seen.empty())
+    throw InputError(
+        fmt::format("{}: its camera sees nothing that lights could be put around", options.scene));
+  const Bounds box = seenBox(seen, glm::dvec3(first.camera.camera_to_world[3]));
+  completeAxes(description.axes, box);
+
+  std::vector<std::vector<std::string>> variants;
+  std::vector<ScaleTask> of_variant;
+  std::map<std::string, std::size_t> field_of;
+  int most_samples = 1;
+  for (const std::vector<std::string>& variant : allVariants(description.axes)) {
+    if (isLeftOut(description.axes, variant)) continue;
+    for (std::size_t i = 0; i < variant.size(); ++i) setOption(command, description.axes[i].name, variant[i]);
+    const bool has_range = !choosesRanges(command, options);
+    const auto [place, is_new] = field_of.try_emplace(
+        fmt::format("{} {} {} {} {}", options.field, options.range.value_or(0), options.cutoff.value_or(0),
+                    options.intensity, options.picture.shadows == "off"),
+        experiment.fields.size());
+    if (is_new) experiment.fields.push_back(makeField(options, box, description.lights.back()));
+    variants.push_back(variant);
+    of_variant.push_back({settingsNow(), place->second, has_range ? 0 : options.density});
+    most_samples = std::max(most_samples, options.picture.samples);
+  }
+  if (most_samples > 1) experiment.truth_samples = kTruthSamples * most_samples;
+  for (const std::uint64_t lights : description.lights) {
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      description.points.push_back({lights, variants[i]});
+      experiment.tasks.push_back(of_variant[i]);
+    }
+  }
+  return experiment;
+}
+
+}  // namespace luciole

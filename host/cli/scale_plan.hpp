@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/picture_options.hpp"
+#include "experiment/scale.hpp"
+
+namespace luciole {
+
+/// The options of luciole scale, as typed.
+struct ScaleOptions {
+  PictureOptions picture;
+  std::string scene, output, plot, lights, shard, field = "box";
+  std::vector<std::string> vary;
+  double density = 8;
+  std::optional<double> range, cutoff;
+  double intensity = 1;
+  int repeats = 5;
+  std::size_t check_pixels = 1024;
+  std::uint64_t seed = 0;
+};
+
+/// Throws InputError where options are missing or contradict each other; `command` is what they were typed
+/// for.
+void checkScaleOptions(const CLI::App& command, const ScaleOptions& options);
+
+/// The experiment that they mean for this scene. Each variant is set through the command's own options, and
+/// so checked as they are: afterwards `options` hold the last one. Throws InputError.
+ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const Scene& scene);
+
+}  // namespace luciole

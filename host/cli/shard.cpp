@@ -1,0 +1,61 @@
+#include "cli/shard.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+
+#include "error.hpp"
+
+namespace luciole {
+namespace {
+
+std::optional<int> wholeNumber(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+/// Slurm sets all four of a job array's variables.
+int slurmNumber(const char* name, int least) {
+  const char* text = std::getenv(name);
+  const std::optional<int> number = text ? wholeNumber(text) : std::nullopt;
+  if (!number || *number < least)
+    throw InputError(fmt::format("{}: expected a whole number of {} or more, as Slurm sets it, got {}", name,
+                                 least, text ? fmt::format("'{}'", text) : "nothing"));
+  return *number;
+}
+
+Shard slurmShard() {
+  const int id = slurmNumber("SLURM_ARRAY_TASK_ID", 0);
+  const int count = slurmNumber("SLURM_ARRAY_TASK_COUNT", 1);
+  const int first = slurmNumber("SLURM_ARRAY_TASK_MIN", 0);
+  const int step = slurmNumber("SLURM_ARRAY_TASK_STEP", 1);
+  const int steps = (id - first) / step;
+  if (id < first || (id - first) % step != 0 || steps >= count)
+    throw InputError(
+        fmt::format("SLURM_ARRAY_TASK_ID: {} is none of the {} tasks {}, {}, …; say which one by --shard", id,
+                    count, first, std::int64_t(first) + step));
+  return {steps, count};
+}
+
+}  // namespace
+
+Shard chosenShard(const std::string& option) {
+  if (option.empty()) return std::getenv("SLURM_ARRAY_TASK_ID") ? slurmShard() : Shard{};
+  const std::size_t slash = option.find('/');
+  const std::string_view text = option;
+  const std::optional<int> number = wholeNumber(text.substr(0, slash));
+  const std::optional<int> count =
+      slash == std::string::npos ? std::nullopt : wholeNumber(text.substr(slash + 1));
+  if (!number || !count || *number < 1 || *number > *count)
+    throw InputError(fmt::format(
+        "--shard {}: expected I/N with I from 1 to N, such as 2/8 for the second of eight", option));
+  return {*number - 1, *count};
+}
+
+}  // namespace luciole

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace luciole {
+
+/// One of several runs that share a job: of its pieces, counted from 0, this one does every count-th from
+/// index on. The default does all.
+struct Shard {
+  int index = 0;  ///< 0 ≤ index < count
+  int count = 1;
+};
+
+/// What --shard says ("2/8": the second of eight), or if it is empty, which task of a Slurm job array this is
+/// (SLURM_ARRAY_TASK_ID, _COUNT, _MIN and _STEP), or all. Throws InputError naming the option or the
+/// variable, also for a Slurm array whose tasks aren't numbered evenly.
+Shard chosenShard(const std::string& option);
+
+/// Whether this shard does piece k.
+inline bool isMine(Shard shard, std::size_t k) {
+  return k % static_cast<std::size_t>(shard.count) == static_cast<std::size_t>(shard.index);
+}
+
+}  // namespace luciole

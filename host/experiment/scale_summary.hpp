@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiment/growth.hpp"
+#include "experiment/scale_log.hpp"
+#include "experiment/statistics.hpp"
+
+namespace luciole {
+
+struct StageSummary {
+  std::string name;
+  Quartiles milliseconds;
+};
+
+/// A point that was checked and timed once or more.
+struct PointSummary {
+  ScalePoint point;
+  int runs = 0;
+  Quartiles milliseconds;            ///< of all stages together
+  std::vector<StageSummary> stages;  ///< in the order in which they ran
+  PointCheck check;
+  std::uint64_t device_bytes = 0, peak_bytes = 0;  ///< the most of any run
+  bool front =
+      false;  ///< no way to make the picture by as many lights is both faster and nearer to the truth
+};
+
+/// How a stage's time grows with the lights, other things being equal.
+struct StageGrowth {
+  std::vector<std::string> values;  ///< of the axes
+  std::string stage;                ///< "total" for all together
+  Growth growth;
+};
+
+struct ScaleSummary {
+  ScaleDescription description;
+  std::vector<Machine> machines;
+  std::vector<PointSummary> points;  ///< in the order of the description
+  std::vector<StageGrowth> growth;
+  std::size_t incomplete = 0;  ///< points that lack their check or one of their runs
+};
+
+/// What a log's results come to.
+ScaleSummary summarizeScale(const ScaleResults& results);
+
+}  // namespace luciole

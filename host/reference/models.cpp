@@ -1,0 +1,94 @@
+#include "reference/models.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace luciole {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+glm::dvec3 unitOrZero(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : glm::dvec3(0.0);
+}
+
+glm::dvec3 halfVector(const Directions& at) { return unitOrZero(at.to_light + at.to_eye); }
+
+/// 0^0 = 1, as in OpenGL.
+double power(double cosine, double shininess) { return std::pow(std::clamp(cosine, 0.0, 1.0), shininess); }
+
+/// Phong, CACM 18(6), 1975.
+double phongLobe(const Directions& at, double shininess) {
+  const glm::dvec3 mirrored = 2 * glm::dot(at.normal, at.to_light) * at.normal - at.to_light;
+  return power(glm::dot(mirrored, at.to_eye), shininess);
+}
+
+/// Blinn, SIGGRAPH 1977.
+double blinnLobe(const Directions& at, double shininess) {
+  return power(glm::dot(at.normal, halfVector(at)), shininess);
+}
+
+/// A value that is 0 below `start`, 1 from 1/32 above it on, and grows evenly between.
+double ramp(double x, double start) {
+  const double end = start + 1.0 / 32;
+  return x <= start ? 0 : x >= end ? 1 : (x - start) / (end - start);
+}
+
+/// Smith's masking for GGX in one direction, Walter et al. 2007, equation 34: 2 / (1 + √(1 + α²·tan²)), here
+/// divided by 2·cosine, which makes it finite at a cosine of 0.
+double maskingOverCosine(double cosine, double alpha) {
+  const double sine = std::sqrt(1 - cosine * cosine);
+  return 1 / (cosine + std::hypot(cosine, alpha * sine));
+}
+
+/// GGX, equation 33. The cosine is N·H, or 0 where that is less.
+double facetDistribution(double cosine, double alpha) {
+  const double alpha2 = alpha * alpha, cosine2 = cosine * cosine;
+  const double tangent_term = alpha2 * cosine2 + (1 - cosine2);  // cos²·(α² + tan²)
+  return alpha2 / (kPi * tangent_term * tangent_term);
+}
+
+}  // namespace
+
+// Lake et al., NPAR 2000: three tones.
+double toonTone(double cosine) {
+  return 0.25 * ramp(cosine, 0) + (0.625 - 0.25) * ramp(cosine, 0.25) + (1 - 0.625) * ramp(cosine, 0.625);
+}
+
+double toonHighlight(double lobe) { return ramp(lobe, 0.5); }
+
+// Cook and Torrance 1982, D·G·F / (4 N·L N·V), times the irradiance π·N·L that a light of 1 stands for.
+double cookTorrance(const Directions& at, double f0, double shininess) {
+  const glm::dvec3 half_way = halfVector(at);
+  const double n_dot_l = std::clamp(glm::dot(at.normal, at.to_light), 0.0, 1.0);
+  const double n_dot_v = std::clamp(glm::dot(at.normal, at.to_eye), 0.0, 1.0);
+  const double n_dot_h = std::clamp(glm::dot(at.normal, half_way), 0.0, 1.0);
+  const double v_dot_h = std::clamp(glm::dot(at.to_eye, half_way), 0.0, 1.0);
+  const double alpha = std::sqrt(2 / (shininess + 2));
+  const double f90 = std::min(50 * f0, 1.0);
+  const double fresnel = f0 + (f90 - f0) * std::pow(1 - v_dot_h, 5);
+  // G/(4 N·L N·V), with both directions' factors of 2.
+  const double masking = maskingOverCosine(n_dot_l, alpha) * maskingOverCosine(n_dot_v, alpha);
+  return facetDistribution(n_dot_h, alpha) * masking * fresnel * kPi * n_dot_l;
+}
+
+Reflected reflectedLight(Model model, const Directions& at, const glm::dvec3& specular, double shininess) {
+  const double cosine = glm::dot(at.normal, at.to_light);
+  switch (model) {
+    case Model::kPhong:
+      return {cosine, specular * phongLobe(at, shininess)};
+    case Model::kBlinnPhong:
+      return {cosine, specular * blinnLobe(at, shininess)};
+    case Model::kToon:
+      return {toonTone(cosine), specular * toonHighlight(phongLobe(at, shininess))};
+    case Model::kCookTorrance:
+      break;
+  }
+  glm::dvec3 glint;
+  for (int c = 0; c < 3; ++c) glint[c] = cookTorrance(at, specular[c], shininess);
+  return {cosine, glint};
+}
+
+}  // namespace luciole

@@ -1,0 +1,196 @@
+#include "scene/pose.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "error.hpp"
+#include "scene/frame.hpp"
+
+namespace luciole {
+namespace {
+
+/// The least distance that has a direction.
+constexpr double kLeastDistance = 1e-18;
+/// Closer to parallel or opposite, rounding would decide: 10⁻⁸ leaves half of a double's digits.
+constexpr double kLeastSine = 1e-8;
+
+[[noreturn]] void fail(const Scene& scene, double frame, const std::string& thing, const std::string& what) {
+  throw InputError(fmt::format("{}: {} at frame {}: {}", scene.name, thing, frame, what));
+}
+
+std::string cameraName(const Scene& scene, std::size_t index) {
+  const std::string& name = scene.cameras[index].name;
+  return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", name);
+}
+
+glm::dvec4 valueOf(const Animation& animation, int curve, double frame, const glm::dvec4& otherwise) {
+  return curve < 0 ? otherwise : valueAt(animation.curves[static_cast<std::size_t>(curve)], frame);
+}
+
+glm::dmat4 localTransform(const Animation& animation, const MovingNode& node, double frame) {
+  const glm::dvec3 translate = valueOf(animation, node.translate, frame, glm::dvec4(0));
+  const glm::dvec3 scale = valueOf(animation, node.scale, frame, glm::dvec4(1));
+  if (node.quaternion) {
+    const glm::dvec4 rotation = valueOf(animation, node.rotate, frame, {0, 0, 0, 1});
+    return placementByQuaternion(translate, rotation, scale);
+  }
+  return placement(translate, glm::dvec3(valueOf(animation, node.rotate, frame, glm::dvec4(0))), scale);
+}
+
+std::vector<glm::dmat4> nodeTransforms(const Scene& scene, double frame) {
+  const std::vector<MovingNode>& nodes = scene.animation.nodes;
+  std::vector<glm::dmat4> worlds;
+  worlds.reserve(nodes.size());
+  for (const MovingNode& node : nodes) {
+    const glm::dmat4 local = node.before * localTransform(scene.animation, node, frame);
+    worlds.push_back(node.parent < 0 ? local : worlds[static_cast<std::size_t>(node.parent)] * local);
+    if (!isFinite(worlds.back())) fail(scene, frame, "a moving node", "its transform is not finite");
+  }
+  return worlds;
+}
+
+}  // namespace
+
+void poseScene(Scene& scene, double frame) {
+  const Animation& animation = scene.animation;
+  const std::vector<glm::dmat4> worlds = nodeTransforms(scene, frame);
+  const auto placeOf = [&](const Hanging& hanging) {
+    const glm::dmat4 place = worlds[hanging.node] * hanging.after;
+    if (!isFinite(place)) fail(scene, frame, "what hangs on a moving node", "its transform is not finite");
+    return place;
+  };
+  for (const Hanging& hanging : animation.objects) {
+    Object& object = scene.objects[hanging.index];
+    object.object_to_world = placeOf(hanging);
+    object.mesh =
+        isFlat(object.object_to_world) ? static_cast<std::uint32_t>(animation.no_mesh) : hanging.mesh;
+  }
+  for (const Hanging& hanging : animation.hanging_cameras) {
+    const std::string fault = hangCamera(placeOf(hanging), scene.cameras[hanging.index]);
+    if (!fault.empty()) fail(scene, frame, cameraName(scene, hanging.index), fault);
+  }
+  for (const Hanging& hanging : animation.hanging_lights) {
+    const std::string fault = hangLight(placeOf(hanging), scene.lights[hanging.index]);
+    if (!fault.empty()) fail(scene, frame, fmt::format("light {}", hanging.index), fault);
+  }
+  for (const CameraMotion& motion : animation.cameras) {
+    const std::string fault = poseCamera(motion, frame, scene.cameras[motion.camera]);
+    if (!fault.empty()) fail(scene, frame, cameraName(scene, motion.camera), fault);
+  }
+  for (const LightMotion& motion : animation.lights) {
+    const std::string fault = poseLight(motion, frame, scene.lights[motion.light]);
+    if (!fault.empty()) fail(scene, frame, fmt::format("light {}", motion.light), fault);
+  }
+}
+
+void hang(Scene& scene, const Hanging& object) {
+  int& no_mesh = scene.animation.no_mesh;
+  if (no_mesh < 0) {
+    no_mesh = static_cast<int>(scene.meshes.size());
+    scene.meshes.emplace_back();
+  }
+  scene.animation.objects.push_back(object);
+}
+
+std::string poseCamera(const CameraMotion& motion, double frame, Camera& camera) {
+  const glm::dvec3 target = valueAt(motion.target, frame);
+  const glm::dvec3 place = valueAt(motion.eye, frame);
+  if (!motion.fov_y.keys.empty()) camera.fov_y = glm::radians(valueAt(motion.fov_y, frame).x);
+  return aimCamera(motion.orbits ? orbitEye(place, target) : place, target, motion.up, camera);
+}
+
+std::string poseLight(const LightMotion& motion, double frame, Light& light) {
+  if (!motion.position.keys.empty()) light.position = valueAt(motion.position, frame);
+  if (!motion.range.keys.empty()) light.range = static_cast<float>(valueAt(motion.range, frame).x);
+  if (!motion.color.keys.empty() || !motion.intensity.keys.empty()) {
+    light.ambient = motion.ambient;
+    light.diffuse = motion.diffuse;
+    light.specular = motion.specular;
+    if (!motion.color.keys.empty())
+      light.diffuse = light.specular = glm::vec3(glm::dvec3(valueAt(motion.color, frame)));
+    const float intensity = motion.intensity.keys.empty()
+                                ? motion.own_intensity
+                                : static_cast<float>(valueAt(motion.intensity, frame).x);
+    light.ambient *= intensity;
+    light.diffuse *= intensity;
+    light.specular *= intensity;
+  }
+  if (!motion.target.keys.empty()) return aimSpot(glm::dvec3(valueAt(motion.target, frame)), light);
+  if (!motion.direction.keys.empty()) {
+    const glm::dvec3 direction = valueAt(motion.direction, frame);
+    const double length = glm::length(direction);
+    if (!(length >= kLeastSine)) return "it turns from one direction to the opposite one, which is no way";
+    light.direction = direction / length;
+  }
+  return "";
+}
+
+std::string aimCamera(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, Camera& camera) {
+  const double distance = glm::length(target - eye);
+  if (!(distance >= kLeastDistance)) return "eye and target are the same point";
+  if (glm::length(glm::cross((target - eye) / distance, up)) < kLeastSine)
+    return "up is parallel to the view from eye to target";
+  camera.camera_to_world = cameraToWorld(eye, target, up);
+  return "";
+}
+
+std::string aimSpot(const glm::dvec3& target, Light& light) {
+  const glm::dvec3 ray = target - light.position;
+  if (!(glm::length(ray) >= kLeastDistance)) return "is the light's position, so it has no direction";
+  light.direction = glm::normalize(ray);
+  return "";
+}
+
+glm::dvec3 orbitEye(const glm::dvec3& orbit, const glm::dvec3& target) {
+  const double azimuth = glm::radians(std::remainder(orbit.x, 360.0)), elevation = glm::radians(orbit.y);
+  const double out = orbit.z * std::cos(elevation);
+  return target + glm::dvec3(out * std::sin(azimuth), orbit.z * std::sin(elevation), out * std::cos(azimuth));
+}
+
+glm::dmat4 placement(const glm::dvec3& translate, const glm::dvec3& degrees, const glm::dvec3& scale) {
+  const glm::dvec3 angles = glm::radians(degrees);
+  glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), translate);
+  matrix = glm::rotate(matrix, angles.z, {0, 0, 1});
+  matrix = glm::rotate(matrix, angles.y, {0, 1, 0});
+  matrix = glm::rotate(matrix, angles.x, {1, 0, 0});
+  return glm::scale(matrix, scale);
+}
+
+glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& rotation,
+                                 const glm::dvec3& scale) {
+  const glm::dquat turn(rotation.w, rotation.x, rotation.y, rotation.z);
+  return glm::scale(glm::translate(glm::dmat4(1.0), translate) * glm::mat4_cast(glm::normalize(turn)), scale);
+}
+
+std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera) {
+  const glm::dvec3 back(node_to_world[2]), up(node_to_world[1]);
+  const glm::dvec3 right = glm::cross(up, back);
+  if (!(glm::length(right) > 0)) return "its scale leaves a camera no direction";
+  const glm::dvec3 x = glm::normalize(right), z = glm::normalize(back);
+  camera.camera_to_world = {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0),
+                            node_to_world[3]};
+  return "";
+}
+
+std::string hangLight(const glm::dmat4& node_to_world, Light& light) {
+  light.position = glm::dvec3(node_to_world[3]);
+  if (light.kind == LightKind::kPoint) return "";
+  const glm::dvec3 back(node_to_world[2]);
+  if (!(glm::length(back) > 0)) return "its scale leaves a light no direction";
+  light.direction = -glm::normalize(back);
+  return "";
+}
+
+bool isFinite(const glm::dmat4& matrix) {
+  for (int i = 0; i < 16; ++i) {
+    if (!std::isfinite(matrix[i / 4][i % 4])) return false;
+  }
+  return true;
+}
+
+bool isFlat(const glm::dmat4& matrix) { return glm::determinant(glm::dmat3(matrix)) == 0; }
+
+}  // namespace luciole

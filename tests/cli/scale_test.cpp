@@ -1,0 +1,331 @@
+// luciole scale as a person types it, on a picture of few pixels.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "cli/run_program.hpp"
+#include "image/compare.hpp"
+#include "image/image.hpp"
+
+namespace luciole::test {
+namespace {
+
+using testing::HasSubstr;
+
+using Row = std::map<std::string, std::string>;
+
+/// A CSV file without quotes in it, a line a row.
+std::vector<Row> readCsv(const std::string& path) {
+  std::istringstream lines(readText(path));
+  const auto cellsOf = [](const std::string& line) {
+    std::vector<std::string> cells(1);
+    for (const char c : line) {
+      if (c == ',')
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    return cells;
+  };
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> head = cellsOf(line);
+  std::vector<Row> rows;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> cells = cellsOf(line);
+    EXPECT_EQ(cells.size(), head.size());
+    rows.emplace_back();
+    for (std::size_t i = 0; i < cells.size() && i < head.size(); ++i) rows.back()[head[i]] = cells[i];
+  }
+  return rows;
+}
+
+/// Without what no two runs have in common: times, the front that they decide, and the process's memory.
+std::vector<Row> withoutTimes(std::vector<Row> rows) {
+  for (Row& row : rows)
+    std::erase_if(row, [](const auto& cell) {
+      return cell.first.find("ms") != std::string::npos ? cell.first != "rmse"
+                                                        : cell.first == "front" || cell.first == "peak_bytes";
+    });
+  return rows;
+}
+
+std::vector<std::string> linesOf(const std::string& path) {
+  std::istringstream file(readText(path));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+class ScaleCommand : public testing::Test {
+ protected:
+  ScaleCommand() { writeText(folder / "scene.json", kSmallScene); }
+
+  Outcome scale(const std::string& arguments) {
+    return runLine(folder, "luciole scale scene.json --size 48x27 --check-pixels 40 " + arguments);
+  }
+  void succeed(const std::string& arguments) {
+    const Outcome outcome = scale(arguments);
+    ASSERT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
+  }
+  /// What standard error says of wrong input.
+  std::string refuse(const std::string& arguments) {
+    const Outcome outcome = scale(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments << "\n" << outcome.err;
+    EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
+    return outcome.err;
+  }
+
+  const TemporaryFolder folder;
+};
+
+TEST_F(ScaleCommand, MeasuresAndChecksEveryCombinationOnce) {
+  const Outcome outcome = scale("--lights 1,10,...,1000 --vary culling,tile=4,16 --repeat 2 -o run");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");  // no progress line but on a terminal
+  EXPECT_THAT(outcome.out, HasSubstr("shade"));
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  // Without culling there are no tiles, so their size is tried but once.
+  ASSERT_EQ(rows.size(), 4u * 3);
+  const std::vector<std::string> lines = linesOf(folder / "run/results.jsonl");
+  EXPECT_EQ(lines.size(), 2 + 12u * (1 + 2));
+  EXPECT_EQ(std::set<std::string>(lines.begin(), lines.end()).size(), lines.size());
+
+  for (std::size_t i = 0; i < rows.size(); i += 3) {
+    const Row& none = rows[i];
+    EXPECT_EQ(none.at("lights"), std::to_string(std::lround(std::pow(10, i / 3))));
+    EXPECT_EQ(none.at("culling"), "none");
+    const std::string picture = readText(folder / ("run/" + none.at("picture")));
+    ASSERT_FALSE(picture.empty());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Row& row = rows[i + k];
+      // Culling changes no bit of the picture and none of what is in range.
+      EXPECT_EQ(readText(folder / ("run/" + row.at("picture"))), picture);
+      EXPECT_EQ(row.at("mean_abs"), none.at("mean_abs"));
+      EXPECT_EQ(row.at("pairs_in_range"), none.at("pairs_in_range"));
+      EXPECT_LE(std::stod(row.at("pairs_in_range")), std::stod(row.at("pairs_evaluated")));
+      EXPECT_LE(std::stod(row.at("pairs_evaluated")), std::stod(none.at("pairs_evaluated")));
+      EXPECT_EQ(row.at("runs"), "2");
+      EXPECT_GT(std::stod(row.at("ms")), 0);
+      EXPECT_GT(std::stod(row.at("shade_ms")), 0);
+      EXPECT_GE(std::stod(row.at("peak_bytes")), 1 << 20);
+      // A cell of 5 x 5 pixels each, those at the right and lower edge smaller.
+      EXPECT_EQ(row.at("checked_pixels"), "60");
+      // Right to a quarter of an 8-bit step, and not more right than float is.
+      EXPECT_LT(std::stod(row.at("max_abs")), 0.25 / 255);
+      EXPECT_GT(std::stod(row.at("max_abs")), 0);
+      for (const char* file : {"error_map", "list_map"})
+        EXPECT_EQ(readImage(folder / ("run/" + row.at(file))).width, 480);
+    }
+  }
+  const auto growth = nlohmann::json::parse(readText(folder / "run/growth.json"));
+  EXPECT_EQ(growth["machines"].size(), 1u);
+  EXPECT_FALSE(growth["machines"][0]["processor"].get<std::string>().empty());
+  EXPECT_FALSE(growth["growth"].empty());
+  EXPECT_THAT(readText(folder / "run/report.html"), HasSubstr("scene.json"));
+}
+
+TEST_F(ScaleCommand, LightsInRangeAreAsManyAsTheDensityAsksFor) {
+  succeed("--lights 100,1000 --vary density=2,20 --repeat 1 -o run");
+  for (const Row& row : readCsv(folder / "run/results.csv")) {
+    const double mean = std::stod(row.at("pairs_in_range")) / std::stod(row.at("pixels_lit"));
+    // Ranges come from 1000 pixels at random of 1296, and all of them are lit or the background; of the mean
+    // over so many of them nothing is left to chance but the share that wasn't drawn.
+    EXPECT_NEAR(mean, std::stod(row.at("density")), 0.1 * std::stod(row.at("density")))
+        << row.at("lights") << " lights";
+  }
+}
+
+TEST_F(ScaleCommand, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
+  const std::string arguments = "--lights 1,10,100 --vary culling --repeat 20 -o ";
+  succeed(arguments + "whole");
+  // Killed while it checks, whatever it does then, and once more while it times.
+  std::vector<std::string> before;
+  for (const std::size_t results : {8u, 40u}) {
+    // The program itself, as the function that runLine makes would run in a shell of its own.
+    const Outcome killed = runLine(
+        folder,
+        "'" LUCIOLE_BINARY "' scale scene.json --size 48x27 --check-pixels 40 " + arguments +
+            "parts & running=$!; while kill -0 $running 2>&-; do if [ $(cat parts/results.jsonl 2>&- | "
+            "wc -l) -ge " +
+            std::to_string(results) + " ]; then kill -9 $running; break; fi; done; wait $running");
+    ASSERT_EQ(killed.status, 128 + SIGKILL) << killed.err;
+    const std::vector<std::string> now = linesOf(folder / "parts/results.jsonl");
+    ASSERT_GE(now.size(), results);
+    ASSERT_TRUE(std::equal(before.begin(), before.end(), now.begin()));
+    before = now;
+  }
+  // And in the middle of a line, as a full disk or a lost machine would leave it.
+  writeText(folder / "parts/results.jsonl", readText(folder / "parts/results.jsonl") + "{\"point\": \"li");
+  succeed(arguments + "parts");
+  const std::vector<std::string> lines = linesOf(folder / "parts/results.jsonl");
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), lines.begin()));
+  EXPECT_EQ(lines.size(), 2 + 6u * (1 + 20));  // nothing lost, nothing done again
+  EXPECT_EQ(withoutTimes(readCsv(folder / "parts/results.csv")),
+            withoutTimes(readCsv(folder / "whole/results.csv")));
+  for (const Row& row : readCsv(folder / "whole/results.csv"))
+    for (const char* file : {"picture", "error_map", "list_map"})
+      EXPECT_EQ(readText(folder / ("parts/" + row.at(file))), readText(folder / ("whole/" + row.at(file))));
+  // Done a third time, nothing is left to do.
+  succeed(arguments + "parts");
+  EXPECT_EQ(linesOf(folder / "parts/results.jsonl"), lines);
+}
+
+TEST_F(ScaleCommand, MergedShardsEqualOneRun) {
+  const std::string arguments = "--lights 1,10,100 --vary culling --repeat 2 ";
+  succeed(arguments + "-o whole");
+  succeed(arguments + "--shard 1/2 -o one");
+  const Outcome second =
+      runLine(folder,
+              "export SLURM_ARRAY_TASK_ID=7 SLURM_ARRAY_TASK_MIN=6 SLURM_ARRAY_TASK_COUNT=2 "
+              "SLURM_ARRAY_TASK_STEP=1; luciole scale scene.json --size 48x27 --check-pixels 40 " +
+                  arguments + "-o two");
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("shard 2/2"));
+  EXPECT_THAT(second.err, HasSubstr("3 of 6 points are not complete"));
+  const Outcome merged = runLine(folder, "luciole scale merge one two -o all");
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(withoutTimes(readCsv(folder / "all/results.csv")),
+            withoutTimes(readCsv(folder / "whole/results.csv")));
+  for (const Row& row : readCsv(folder / "whole/results.csv"))
+    EXPECT_EQ(readText(folder / ("all/" + row.at("picture"))),
+              readText(folder / ("whole/" + row.at("picture"))));
+  EXPECT_EQ(runLine(folder, "luciole scale merge one one -o twice").status, 2);
+  EXPECT_EQ(runLine(folder, "luciole scale merge one two -o all").status, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "twice"));
+}
+
+TEST_F(ScaleCommand, ShardWithoutAnyPointLeavesNothingToMergeAndNoError) {
+  succeed("--lights 1 --repeat 1 --shard 1/2 -o one");
+  succeed("--lights 1 --repeat 1 --shard 2/2 -o two --plot two.svg");
+  EXPECT_TRUE(readCsv(folder / "two/results.csv").empty());
+  EXPECT_FALSE(std::filesystem::exists(folder / "two.svg"));
+  const Outcome merged = runLine(folder, "luciole scale merge one two -o all");
+  EXPECT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(readCsv(folder / "all/results.csv").size(), 1u);
+}
+
+TEST_F(ScaleCommand, WaysToSayHowFarLightsReachTakeTurns) {
+  succeed("--lights 50 --vary range,density=2,4,tile=4,8 --repeat 1 -o run");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), (3u + 2) * 2);
+  std::set<double> reaches;
+  for (const Row& row : rows) {
+    EXPECT_NE(row.at("range") == "-", row.at("density") == "-");
+    reaches.insert(std::stod(row.at("reach")));
+  }
+  EXPECT_EQ(reaches.size(), 5u);
+}
+
+TEST_F(ScaleCommand, MoreSamplesComeNearerToATruthOfMore) {
+  succeed("--lights 100 --vary samples=1,16 --repeat 1 -o run");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_LT(std::stod(rows[1].at("mean_abs")), std::stod(rows[0].at("mean_abs")) / 2);
+}
+
+TEST_F(ScaleCommand, ShadowsAreCastWhereTheyAreAskedForAndJudgedByRays) {
+  succeed("--lights 20 --vary shadows=off,exact --density 10 --repeat 1 -o run");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NE(readText(folder / ("run/" + rows[0].at("picture"))),
+            readText(folder / ("run/" + rows[1].at("picture"))));
+  EXPECT_EQ(rows[0].at("shadow_maps_ms"), "");
+  EXPECT_GT(std::stod(rows[1].at("shadow_maps_ms")), 0);
+  for (const Row& row : rows) EXPECT_LT(std::stod(row.at("mean_abs")), 0.25 / 255);
+}
+
+TEST_F(ScaleCommand, LightsOfAFileMakeThePictureThatRenderMakesOfThem) {
+  writeText(folder / "lights.csv", "x,y,z,r,g,b,range\n0,2,0,1,1,1,3\n1,1,2,1,0.5,0,2\n-1,1,2,0,1,0,2\n");
+  succeed("--lights 1,2 --field lights.csv --repeat 1 -o run");
+  std::string lit = kSmallScene;
+  const std::size_t lights = lit.find("\"lights\"");
+  lit = lit.substr(0, lights) + R"("lights": [
+    {"type": "point", "position": [0, 2, 0], "color": [1, 1, 1], "range": 3},
+    {"type": "point", "position": [1, 1, 2], "color": [1, 0.5, 0], "range": 2}]})";
+  writeText(folder / "lit.json", lit);
+  ASSERT_EQ(runLine(folder, "luciole render lit.json --size 48x27 -o lit.png --quiet").status, 0);
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].at("reach"), "3");
+  EXPECT_EQ(readImage(folder / ("run/" + rows[1].at("picture"))).pixels,
+            readImage(folder / "lit.png").pixels);
+  EXPECT_NE(readImage(folder / ("run/" + rows[0].at("picture"))).pixels,
+            readImage(folder / "lit.png").pixels);
+  EXPECT_THAT(refuse("--lights 1,4 --field lights.csv --repeat 1 -o more"), HasSubstr("lights.csv"));
+}
+
+TEST_F(ScaleCommand, PointThatTheMachineCannotDoIsToldAndTheOthersAreMade) {
+  // 10⁸ lights take more than 10 GB, which are refused when they are asked for.
+  const Outcome outcome =
+      runLine(folder,
+              "ulimit -v 10000000; luciole scale scene.json --size 48x27 --check-pixels 40 "
+              "--lights 1,100000000 --repeat 2 -o run");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("lights=100000000: "));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 2 points"));
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].at("runs"), "2");
+  EXPECT_THAT(readText(folder / "run/report.html"), HasSubstr("</html>"));
+}
+
+TEST_F(ScaleCommand, RefusesAFolderOfAnotherExperiment) {
+  succeed("--lights 1 --repeat 1 -o run");
+  const std::string log = readText(folder / "run/results.jsonl");
+  EXPECT_THAT(refuse("--lights 1,2 --repeat 1 -o run"), HasSubstr("numbers of lights"));
+  EXPECT_THAT(refuse("--lights 1 --repeat 1 --seed 3 -o run"), HasSubstr("seed"));
+  std::string moved = kSmallScene;
+  moved.replace(moved.find("[3, 2, 5]"), 9, "[3, 2, 6]");
+  writeText(folder / "scene.json", moved);
+  EXPECT_THAT(refuse("--lights 1 --repeat 1 -o run"), HasSubstr("state of the scene"));
+  EXPECT_EQ(readText(folder / "run/results.jsonl"), log);
+}
+
+TEST_F(ScaleCommand, WrongArgumentsAreRefusedBeforeAnythingIsWritten) {
+  for (const auto& [arguments, said] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"-o run", "--lights"},
+           {"--lights 1", "--output"},
+           {"--lights 0 -o run", "'0'"},
+           {"--lights 10,1 -o run", "above"},
+           {"--lights 1,x -o run", "'x'"},
+           {"--lights 1,-1 -o run", "'-1'"},
+           {"--lights 1,...,10 -o run", "two numbers"},
+           {"--lights 1,10,... -o run", "after the dots"},
+           {"--lights 1,10,...,500 -o run", "lead"},
+           {"--lights 1,200000000 -o run", "200000000"},
+           {"--lights 1 --vary colour -o run", "culling"},
+           {"--lights 1 --vary culling=some -o run", "culling=some"},
+           {"--lights 1 --vary tile=4,4 -o run", "there twice"},
+           {"--lights 1 --vary tile,tile -o run", "there twice"},
+           {"--lights 1 --vary tile= -o run", "none"},
+           {"--lights 1 --vary tile=4,- -o run", "none"},
+           {"--lights 1 --vary range --density 3 -o run", "expected one"},
+           {"--lights 1 --vary range --cutoff 1 -o run", "expected one"},
+           {"--lights 1 --tile 8 --vary tile -o run", "--tile"},
+           {"--lights 1 --range 1 --density 2 -o run", "--density"},
+           {"--lights 1 --range 0 -o run", "--range"},
+           {"--lights 1 --field ring -o run", "ring"},
+           {"--lights 1 --field none.csv -o run", "none.csv"},
+           {"--lights 1 --shard 3/2 -o run", "3/2"},
+           {"--lights 1 --repeat 0 -o run", "--repeat"},
+           {"--lights 1 --check-pixels 0 -o run", "--check-pixels"},
+           {"--lights 1 --plot plot.png -o run", "plot.png"},
+           {"--lights 1 --plot no/plot.svg -o run", "no"},
+           {"--lights 1 -o scene.json/run", "scene.json/run"}}) {
+    EXPECT_THAT(refuse(arguments), HasSubstr(said)) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder / "run")) << arguments;
+  }
+  EXPECT_EQ(runLine(folder, "luciole scale missing.json --lights 1 -o run").status, 2);
+  EXPECT_EQ(runLine(folder, "luciole scale merge -o run").status, 2);
+  EXPECT_EQ(runLine(folder, "luciole scale merge nothing -o run").status, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
+}
+
+}  // namespace
+}  // namespace luciole::test

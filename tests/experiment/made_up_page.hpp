@@ -1,0 +1,103 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace luciole::test {
+
+/// PNGs of 4 × 2 pixels, each of one colour: red, green, blue.
+inline const std::vector<std::string> kTinyPictures{
+    "data:image/"
+    "png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAQAAAACCAIAAADwyuo0AAAAEElEQVR42mO4IycHRwzIHAB3ygjBBv3NOQAAAABJRU5ErkJggg==",
+    "data:image/"
+    "png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAQAAAACCAIAAADwyuo0AAAAEElEQVR42mOQOyEHRwzIHABpugghSRyuZAAAAABJRU5ErkJggg==",
+    "data:image/"
+    "png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAQAAAACCAIAAADwyuo0AAAAEElEQVR42mOQk7sDRwzIHABr6gjBYwphawAAAABJRU5ErkJggg=="};
+
+/// A point whose figures follow from its lights and its variant's number: time 2 + (variant + 1) lights / 100
+/// milliseconds. The first variant has no error.
+inline nlohmann::json madeUpPoint(int lights, int variant, const nlohmann::json& values) {
+  const double shade = (variant + 1) * lights / 100.0, error = variant * 1e-6;
+  return {{"lights", lights},
+          {"values", values},
+          {"milliseconds", {{"median", 2 + shade}, {"low", 1.9 + shade}, {"high", 2.5 + shade}}},
+          {"stages",
+           {{{"name", "rasterize"}, {"median", 2}, {"low", 1.8}, {"high", 2.2}},
+            {{"name", "shade"}, {"median", shade}, {"low", shade * 0.9}, {"high", shade * 1.1}}}},
+          {"pairs_evaluated", 2000 * lights},
+          {"pairs_in_range", 1000 * lights},
+          {"pixels_lit", 230400},
+          {"list_entries", variant == 0 ? 0 : 3 * lights},
+          {"device_bytes", 40000000 + 64 * lights},
+          {"peak_bytes", 180000000 + 200 * lights},
+          {"error", {{"mean_abs", error}, {"max_abs", 50 * error}, {"rmse", 2 * error}, {"pixels", 1024}}},
+          {"front", true},
+          {"picture", 0},
+          {"error_map", 1},
+          {"tile_map", variant == 0 ? nlohmann::json() : nlohmann::json(2)}};
+}
+
+/// An experiment without points.
+inline nlohmann::json madeUpExperiment() {
+  return {{"title", "a scene.obj, 1 to 10,000 lights"},
+          {"scene", "a scene.obj"},
+          {"command", "luciole scale 'a scene.obj' --lights 1,100,10000 -o results"},
+          {"version", "0.1.0"},
+          {"machine", {{"processor", "A processor"}, {"threads", 2}, {"memory_bytes", 8589934592}}},
+          {"settings", {{"size", {640, 360}}, {"field", "box"}, {"seed", 1}}},
+          {"axes", nlohmann::json::array()},
+          {"points", nlohmann::json::array()},
+          {"growth", nlohmann::json::array()},
+          {"pictures", kTinyPictures},
+          {"incomplete", 0}};
+}
+
+/// Three variants at 1, 100 and 10000 lights.
+inline nlohmann::json madeUpVariants() {
+  nlohmann::json data = madeUpExperiment();
+  const std::vector<std::string> names{"none", "tiles", "a \"tree\", in full"};
+  data["axes"] = {{{"name", "culling"}, {"values", names}}};
+  for (int variant = 0; variant < 3; ++variant) {
+    const nlohmann::json values{{"culling", names[variant]}};
+    for (int lights : {1, 100, 10000}) data["points"].push_back(madeUpPoint(lights, variant, values));
+    data["growth"].push_back({{"values", values},
+                              {"stage", "total"},
+                              {"a", 2},
+                              {"b", 0.01 * (variant + 1)},
+                              {"c", 1},
+                              {"c_low", 0.95},
+                              {"c_high", 1.05}});
+    data["growth"].push_back({{"values", values},
+                              {"stage", "rasterize"},
+                              {"a", 2},
+                              {"b", 0},
+                              {"c", nullptr},
+                              {"c_low", nullptr},
+                              {"c_high", nullptr}});
+  }
+  return data;
+}
+
+/// 24 variants of three axes at seven numbers of lights.
+inline nlohmann::json madeUpHundreds() {
+  nlohmann::json data = madeUpExperiment();
+  data["axes"] = {{{"name", "culling"}, {"values", {"none", "tiles", "tree"}}},
+                  {{"name", "tile"}, {"values", {4, 8, 16, 32}}},
+                  {{"name", "shadows"}, {"values", {"off", "hard"}}}};
+  int variant = 0;
+  for (const auto& culling : data["axes"][0]["values"])
+    for (const auto& tile : data["axes"][1]["values"])
+      for (const auto& shadows : data["axes"][2]["values"]) {
+        for (int lights = 1; lights <= 1000000; lights *= 10)
+          data["points"].push_back(
+              madeUpPoint(lights, variant, {{"culling", culling}, {"tile", tile}, {"shadows", shadows}}));
+        ++variant;
+      }
+  return data;
+}
+
+}  // namespace luciole::test

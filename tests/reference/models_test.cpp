@@ -1,0 +1,90 @@
+#include "reference/models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace luciole::test {
+namespace {
+
+const glm::dvec3 kUp{0, 0, 1};
+constexpr double kRounding = 0x1p-50;  // some ten roundings of 2^-53
+
+glm::dvec3 leaning(double angle, double around = 0) {
+  return {std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle)};
+}
+
+TEST(ToonModel, TonesAreFlatBetweenTheRamps) {
+  EXPECT_EQ(toonTone(-0.5), 0);
+  EXPECT_EQ(toonTone(0), 0);
+  for (const double cosine : {1.0 / 32, 0.1, 0.25}) EXPECT_EQ(toonTone(cosine), 0.25);
+  for (const double cosine : {0.25 + 1.0 / 32, 0.5, 0.625}) EXPECT_EQ(toonTone(cosine), 0.625);
+  for (const double cosine : {0.625 + 1.0 / 32, 0.9, 1.0}) EXPECT_EQ(toonTone(cosine), 1);
+  EXPECT_EQ(toonTone(1.0 / 64), 0.125);
+}
+
+TEST(ToonModel, HighlightIsWhereTheLobeReachesOneHalf) {
+  for (const double lobe : {0.0, 0.3, 0.5}) EXPECT_EQ(toonHighlight(lobe), 0);
+  EXPECT_EQ(toonHighlight(0.5 + 1.0 / 64), 0.5);
+  for (const double lobe : {0.5 + 1.0 / 32, 0.7, 1.0}) EXPECT_EQ(toonHighlight(lobe), 1);
+}
+
+// All of D, G and F are known there: D = (n + 2)/(2π), G = 1, F = F0.
+TEST(CookTorranceModel, PeaksAtTheSpecularColourTimesNPlusTwoEighths) {
+  for (const double n : {0.0, 1.0, 30.0, 1e4, 1e6})
+    EXPECT_NEAR(cookTorrance({kUp, kUp, kUp}, 0.3, n), 0.3 * (n + 2) / 8, kRounding * n + kRounding) << n;
+}
+
+TEST(CookTorranceModel, AtAGlanceReflectsAsWhiteUnlessItIsBlack) {
+  const Directions glance{kUp, leaning(1.57), leaning(1.57, std::numbers::pi)};
+  const double white = cookTorrance(glance, 1, 100);
+  // (1 − V·H)⁵ is within 5·cos(1.57) = 0.004 of 1.
+  for (const double f0 : {0.02, 0.3}) EXPECT_NEAR(cookTorrance(glance, f0, 100), white, 0.004 * white);
+  EXPECT_EQ(cookTorrance(glance, 0, 100), 0);
+}
+
+TEST(CookTorranceModel, LightAndEyeMayChangePlaces) {
+  const glm::dvec3 a = leaning(0.3, 1), b = leaning(1.2, 2);
+  // What is reflected has the light's cosine in it.
+  EXPECT_NEAR(cookTorrance({kUp, a, b}, 0.3, 20) / std::cos(0.3),
+              cookTorrance({kUp, b, a}, 0.3, 20) / std::cos(1.2), kRounding * 20);
+}
+
+/// The share of a parallel light that goes anywhere, of a white surface; midpoints of a grid.
+double wholeReflectance(double n, double angle) {
+  constexpr int kSteps = 200;
+  const double step = std::numbers::pi / 2 / kSteps;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < 4 * kSteps; ++j) {
+      const double away = (i + 0.5) * step, around = (j + 0.5) * step;
+      const double radiance = cookTorrance({kUp, leaning(angle), leaning(away, around)}, 1, n);
+      sum += radiance / std::numbers::pi * std::cos(away) * std::sin(away) * step * step;
+    }
+  return sum / std::cos(angle);
+}
+
+// Single scattering loses what hits a second facet: nothing where the surface is smooth. At n = 0 (α = 1) and
+// normal incidence D = 1/π, the maskings are 1/2 and 1/(1 + c), and ∫ c/(1 + c) dc from 0 to 1 is 1 − ln 2.
+TEST(CookTorranceModel, NeverReflectsMoreThanItGetsAndNearlyAllWhereSmooth) {
+  for (const double angle : {0.0, 0.8, 1.4}) {
+    EXPECT_LE(wholeReflectance(0, angle), 1) << angle;
+    // Midpoints of a twelfth of the lobe's width are exact to far less than this.
+    EXPECT_LE(wholeReflectance(200, angle), 1.001) << angle;
+  }
+  EXPECT_GE(wholeReflectance(200, 0.3), 0.97);
+  // Midpoints err by h²/24 of the second derivative, which is some units, over a quarter turn.
+  EXPECT_NEAR(wholeReflectance(0, 0), 1 - std::numbers::ln2, 1e-4);
+}
+
+TEST(Models, OnlyToonChangesDiffuseLight) {
+  const Directions at{kUp, leaning(1.0), leaning(0.2)};
+  for (const Model model : kAllModels) {
+    const double diffuse = reflectedLight(model, at, glm::dvec3(0), 10).diffuse;
+    EXPECT_EQ(diffuse, model == Model::kToon ? 0.625 : at.to_light.z) << modelName(model);
+  }
+}
+
+}  // namespace
+}  // namespace luciole::test
