@@ -96,6 +96,8 @@ SchedulerParameters=sched_interval=1
 SlurmdParameters=config_overrides
 MailProg=/bin/true
 CONFIGURATION
+  # Nothing above uses cgroups; named, they are not looked for, which fails where none are mounted.
+  echo CgroupPlugin=cgroup/v1 >"$folder/cgroup.conf"
 }
 
 # Fails where the port is another's.
