@@ -112,7 +112,6 @@ LightField shapedField(const LightsOptions& options, const std::string& shape, c
 }
 
 void setColors(const LightsOptions& options, LightField& field) {
-  field.colors.assign(std::begin(kLampColors), std::end(kLampColors));
   if (options.colors.empty()) return;
   field.colors.clear();
   for (std::size_t i = 0; 3 * i < options.colors.size(); ++i)

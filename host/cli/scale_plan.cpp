@@ -19,7 +19,7 @@ const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"tile", {"4", "8", "16"}},
                                    {"samples", {"1", "4", "16"}},
                                    {"shadows", {"off", "hard", "pcf", "exact"}},
-                                   {"model", {"phong", "blinn-phong", "toon", "cook-torrance"}},
+                                   {"model", {kModelNames.begin(), kModelNames.end()}},
                                    {"shading", {"flat", "gouraud", "phong"}},
                                    {"field", {"box", "surface", "clusters"}},
                                    {"density", {"1", "8", "64"}},
@@ -196,7 +196,6 @@ LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64
   }
   field.count = most_lights;
   field.seed = options.seed;
-  field.colors.assign(std::begin(kLampColors), std::end(kLampColors));
   field.intensity = glm::vec2(float(options.intensity));
   if (options.range) field.range = glm::vec2(float(*options.range));
   if (options.cutoff) {

@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <limits>
 #include <new>
-#include <span>
+#include <optional>
 
 #include "error.hpp"
 #include "experiment/scale_log.hpp"

@@ -7,20 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/z_curve.hpp"
+
 namespace luciole {
 namespace {
 
 /// Of the Z curve's 2¹⁸ cells along an axis; with 10 bits for the range a key has 64.
 constexpr int kCellBits = 18;
-
-/// Bits 0 to 17 of v, moved to bits 0, 3, 6 …
-std::uint64_t everyThirdBit(std::uint64_t v) {
-  v = (v | v << 32) & 0x001f00000000ffff;
-  v = (v | v << 16) & 0x001f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  return (v | v << 2) & 0x1249249249249249;
-}
 
 bool reachesEverywhere(const Light& light) {
   return light.kind == LightKind::kDirectional || !std::isfinite(light.range);

@@ -69,6 +69,8 @@ LightField fieldInBox(FieldShape shape, const Bounds& box) {
   field.center = box.low + 0.5 * sides;
   field.offset = longest / 100;
   field.clusters = 32;
+  field.colors = {
+      {1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
   if (shape == FieldShape::kBall || shape == FieldShape::kSphere) field.radius = average / 2;
   if (shape == FieldShape::kClusters) field.radius = average / 10;
   if (shape == FieldShape::kCurve) field.radius = average / 50;

@@ -58,13 +58,9 @@ inline constexpr std::uint64_t kMostLights = 100'000'000;
 inline constexpr std::string_view kFieldShapeNames = "box, ball, sphere, surface, clusters or curve";
 std::optional<FieldShape> fieldShapeNamed(std::string_view name);
 
-/// Lamps, fireflies and neon: what lights get that nobody chose a colour for.
-inline constexpr glm::vec3 kLampColors[]{
-    {1.0f, 0.55f, 0.2f}, {1.0f, 0.8f, 0.5f}, {0.4f, 0.6f, 1.0f}, {0.5f, 1.0f, 0.6f}, {1.0f, 0.35f, 0.5f}};
-
 /// A field of no lights yet, of a shape that fills or runs through a box: a ball or sphere as wide as the box
 /// on average, 32 clusters, a winding curve. Lights on surfaces lie in front of them by a hundredth of the
-/// box's longest side.
+/// box's longest side. Colours are those of lamps and neon.
 LightField fieldInBox(FieldShape shape, const Bounds& box);
 
 /// Appends the field's lights to the scene's, whose triangles FieldShape::kSurface is about. Throws

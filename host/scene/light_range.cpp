@@ -12,6 +12,8 @@
 #include <limits>
 #include <vector>
 
+#include "scene/z_curve.hpp"
+
 namespace luciole {
 namespace {
 
@@ -37,16 +39,7 @@ struct Blocks {
   std::size_t size(std::size_t block) const { return std::min(kBlockLights, x.size() - first(block)); }
 };
 
-/// Bit i of the 21 lowest goes to bit 3i.
-std::uint64_t everyThirdBit(std::uint64_t v) {
-  v = (v | v << 32) & 0x1f00000000ffff;
-  v = (v | v << 16) & 0x1f0000ff0000ff;
-  v = (v | v << 8) & 0x100f00f00f00f00f;
-  v = (v | v << 4) & 0x10c30c30c30c30c3;
-  return (v | v << 2) & 0x1249249249249249;
-}
-
-/// Along a Z curve (G. Morton, 1966) through the box around them.
+/// Along a Z curve through the box around them.
 Blocks makeBlocks(std::span<const Light> lights) {
   glm::dvec3 low(1e300), high(-1e300);
   for (const Light& light : lights) {
