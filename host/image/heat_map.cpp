@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "image/oiio.hpp"
+#include "image/label_font.hpp"
 
 namespace luciole {
 namespace {
@@ -29,7 +28,6 @@ constexpr Color kNotFiniteColor{1.0f, 0.0f, 0.0f};
 constexpr Color kPaper{1.0f, 1.0f, 1.0f};
 constexpr Color kInk{0.0f, 0.0f, 0.0f};
 
-constexpr const char* kFont = "DejaVuSans";
 constexpr int kMinDecades = 3;
 constexpr int kMaxDecades = 6;
 constexpr int kMinWidth = 480;  ///< pixels that the bar and its labels need
@@ -116,11 +114,13 @@ struct Panel {
   ImageBuf& canvas;
   int top;
   int text_size;
+  std::string font;  ///< a file; "": nothing is written
 
   int pixels(double length) const { return int(std::lround(length * text_size)); }
   double width() const { return double(canvas.spec().width) / text_size; }
   double textWidth(const std::string& text) const {
-    return double(OIIO::ImageBufAlgo::text_size(text, text_size, kFont).width()) / text_size;
+    const ROI box = font.empty() ? ROI() : OIIO::ImageBufAlgo::text_size(text, text_size, font);
+    return box.defined() ? double(box.width()) / text_size : 0;
   }
 
   /// Upper and lower edges are rounded alike wherever things meet, widths are the same everywhere.
@@ -128,13 +128,11 @@ struct Panel {
     const int left = pixels(x), right = left + pixels(across);
     OIIO::ImageBufAlgo::fill(canvas, color, ROI(left, right, top + pixels(y), top + pixels(y + down)));
   }
+  /// A label that can't be drawn is left out: the colours are worth having without.
   void write(double x, double baseline, const std::string& text, TextAlignX align) const {
-    if (!OIIO::ImageBufAlgo::render_text(canvas, pixels(x), top + pixels(baseline), text, text_size, kFont,
-                                         kInk, align)) {
-      throw MachineError(
-          fmt::format("error map: no labels without DejaVu Sans (Debian: fonts-dejavu-core): {}",
-                      oneLine(canvas.geterror())));
-    }
+    if (font.empty()) return;
+    OIIO::ImageBufAlgo::render_text(canvas, pixels(x), top + pixels(baseline), text, text_size, font, kInk,
+                                    align);
   }
 };
 
@@ -198,7 +196,7 @@ Image drawMap(const Content& content) {
 
   ImageBuf canvas(OIIO::ImageSpec(map.width, map.height, 3, OIIO::TypeDesc::FLOAT), map.pixels.data());
   lay(canvas, (map.width - picture_width) / 2, 0, colorPixels(content), factor);
-  drawPanel({canvas, picture_height, text_size}, content);
+  drawPanel({canvas, picture_height, text_size, findLabelFont()}, content);
   return map;
 }
 

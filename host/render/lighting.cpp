@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 #include "raster/packed_normal.hpp"
 #include "render/cull.hpp"
 #include "render/exact_shadows.hpp"

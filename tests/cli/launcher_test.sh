@@ -43,16 +43,47 @@ END
 standIn apt-get <<'END'
 if [[ " $* " == *" update "* ]]; then touch "$folder/lists"; else [[ -e $folder/lists ]]; fi
 END
+standIn apt-cache <<'END'
+[[ -e $folder/lists && ! -e $folder/unknown/${@: -1} ]]
+END
 standIn sudo <<'END'
 exec "$@"
 END
-standIn ctest </dev/null
+# Tells three tests, of which two were skipped, as ctest does.
+standIn ctest <<'END'
+while (($#)) && [[ $1 != --output-junit ]]; do shift; done
+cat >"$2" <<'XML'
+<testsuite>
+	<testcase name="A.Runs" status="run">
+		<system-out>all is well</system-out>
+	</testcase>
+	<testcase name="A.IsSkippedByGoogleTest" status="notrun">
+		<skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
+		<properties/>
+		<system-out>Note: Google Test filter = A.IsSkippedByGoogleTest
+[ RUN      ] A.IsSkippedByGoogleTest
+a_test.cpp:7: Skipped
+needs oclgrind, which this system&apos;s archive lacks
+
+[  SKIPPED ] A.IsSkippedByGoogleTest (0 ms)
+</system-out>
+	</testcase>
+	<testcase name="B.IsSkippedByAScript" status="notrun">
+		<skipped message="SKIP_RETURN_CODE=77"/>
+		<properties/>
+		<system-out>needs munged
+</system-out>
+	</testcase>
+</testsuite>
+XML
+printf '%s\n' "1/3 Test A" "50% tests passed, 1 tests failed out of 2" "" "Errors while running CTest"
+END
 
 expect() {  # expect WHAT FOUND WANTED
   [[ $2 == "$3" ]] || { printf '%s is\n  %s\ninstead of\n  %s\n' "$1" "$2" "$3" && exit 1; }
 }
 callsOf() { grep -c "^$1 " "$calls" || true; }
-launch() { "$project/luciole" "$@" </dev/null >/dev/null 2>"$folder/errors" || status=$?; }
+launch() { "$project/luciole" "$@" </dev/null >"$folder/output" 2>"$folder/errors" || status=$?; }
 
 KeepsFolderArgumentsInputAndStatus() {
   mkdir "$folder/some where"
@@ -116,6 +147,35 @@ TestBuildsAllAndPassesArgumentsOn() {
   launch test -R "Two Words"
   expect "target" "$(grep '^ninja' "$calls" | sed 's/.* //')" "'all'"
   expect "arguments of ctest" "$(grep '^ctest' "$calls" | sed "s/.*'-j' '[0-9]*' //")" "'-R' 'Two Words'"
+}
+
+TestPackagesThatTheArchiveLacksAreLeftOutAndTold() {
+  mkdir "$folder"/{missing,unknown}
+  touch "$folder"/missing/{clang,oclgrind} "$folder/unknown/oclgrind"
+  # shellcheck disable=SC2016
+  standIn ninja <<<'echo "unavailable: $LUCIOLE_UNAVAILABLE" >"$folder/told"'
+  launch test
+  expect "what the tests are told" "$(<"$folder/told")" "unavailable: oclgrind"
+  expect "last apt call" "$(grep '^apt-get' "$calls" | tail -n 1 | sed "s/.*'install'/'install'/")" \
+    "'install' '--no-install-recommends' 'clang'"
+  grep -q "archive lacks oclgrind" "$folder/errors"
+  launch test
+  expect "number of list updates" "$(grep -c "^apt-get .* 'update'$" "$calls")" 1
+}
+
+SkippedTestsAreToldWithTheirReasonsAboveCtestsLastLines() {
+  launch test
+  expect output "$(<"$folder/output")" "1/3 Test A
+Skipped tests: 2
+  1 × needs munged
+  1 × needs oclgrind, which this system's archive lacks
+50% tests passed, 1 tests failed out of 2
+
+Errors while running CTest"
+  expect status "$status" 0
+  standIn ctest <<<'exit 8'
+  launch test
+  expect "status of tests that fail" "$status" 8
 }
 
 status=0

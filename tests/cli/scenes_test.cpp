@@ -1,6 +1,7 @@
 // Every scene at hand, through the program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "cli/run_program.hpp"

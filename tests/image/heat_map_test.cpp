@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <vector>
 
 #include "image/srgb.hpp"
+#include "shared_files.hpp"
 
 namespace luciole {
 namespace {
@@ -177,6 +181,43 @@ TEST(ErrorMap, DecadesAreMarkedAndLabelled) {
     const int x = bar.left + decade * i;
     EXPECT_GT(inkIn(x - 6, x + 7), 0) << i;
     EXPECT_EQ(inkIn(x + decade / 2 - 3, x + decade / 2 + 4), 0) << i;
+  }
+}
+
+/// The test's own folder in place of those where fonts are.
+class FontFolder {
+ public:
+  FontFolder() {
+    for (const char* name : {"XDG_DATA_DIRS", "XDG_DATA_HOME"}) setenv(name, folder_.path().c_str(), 1);
+  }
+  ~FontFolder() {
+    for (const char* name : {"XDG_DATA_DIRS", "XDG_DATA_HOME"}) unsetenv(name);
+  }
+  std::filesystem::path fonts() const { return folder_.path() / "fonts"; }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST(ErrorMap, WithoutAFontThatCanBeReadItLacksOnlyItsLabels) {
+  const ImageDifference difference = differences(2, 1, {1e-6, 1.0});
+  const Image labelled = errorMap(difference);
+  const FontFolder folder;
+  for (const bool junk : {false, true}) {
+    if (junk) {
+      std::filesystem::create_directories(folder.fonts() / "truetype");
+      std::ofstream(folder.fonts() / "truetype" / "DejaVuSans.ttf") << "not a font";
+    }
+    const Image map = errorMap(difference);
+    ASSERT_EQ(map.width, labelled.width);
+    ASSERT_EQ(map.height, labelled.height);
+    const Bar bar = barUnder(map, 240);
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x)
+        if (const Codes with = codesAt(labelled, x, y), without = codesAt(map, x, y); with != without)
+          ASSERT_TRUE(without == kWhite && y >= 240 && (y < bar.top || y > bar.bottom)) << x << " " << y;
+    EXPECT_EQ(codesAt(map, 0, 0), kLowest);
+    EXPECT_EQ(barUnder(labelled, 240).left, bar.left);
   }
 }
 

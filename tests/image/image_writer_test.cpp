@@ -1,6 +1,7 @@
 // Pictures that come row by row.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 

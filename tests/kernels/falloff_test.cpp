@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
@@ -15,9 +16,8 @@ constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 /// distance_falloff and spot_falloff of one light for each vector to it.
 std::vector<Column> falloffs(int lanes, const ShadeLight& light, const std::vector<Column>& to_light,
                              const std::string& defines = "") {
-  Device& device = deviceWithLanes(lanes);
-  const cl::Buffer buffer = inputBuffer(device, &light, sizeof light);
-  return probe(device, "falloff_probe.cl", "probe_falloff", to_light, 2, {buffer}, defines);
+  return probe(deviceWithLanes(lanes), "falloff_probe.cl", "probe_falloff", to_light, 2, {bytesOf(light)},
+               defines);
 }
 
 /// Vectors of these lengths along no axis: (2, 3, 6)/7.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/glm.hpp>
@@ -55,21 +56,15 @@ struct Map {
 };
 
 Column visibility(int lanes, const Map& map, const std::vector<Receiver>& receivers, const char* defines) {
-  Device& device = deviceWithLanes(lanes);
-  const std::vector<cl_uint> count{cl_uint(map.texels.size())};
-  const cl::Buffer map_buffer = inputBuffer(device, &map.map, sizeof map.map),
-                   faces = inputBuffer(device, map.faces), texels = inputBuffer(device, map.texels),
-                   texel_count = inputBuffer(device, count);
-  return probe(device, "shadow_probe.cl", "probe_shadow", columnsOf(receivers), 1,
-               {map_buffer, faces, texels, texel_count}, defines)[0];
+  const auto texel_count = cl_uint(map.texels.size());
+  return probe(deviceWithLanes(lanes), "shadow_probe.cl", "probe_shadow", columnsOf(receivers), 1,
+               {bytesOf(map.map), bytesOf(map.faces), bytesOf(map.texels), bytesOf(texel_count)}, defines)[0];
 }
 
 /// Where lookups go: x, y, depth, rise_x, rise_y, face, inside.
 std::vector<Column> places(int lanes, const Map& map, const std::vector<Receiver>& receivers) {
-  Device& device = deviceWithLanes(lanes);
-  const cl::Buffer map_buffer = inputBuffer(device, &map.map, sizeof map.map),
-                   faces = inputBuffer(device, map.faces);
-  return probe(device, "shadow_probe.cl", "probe_point", columnsOf(receivers), 7, {map_buffer, faces});
+  return probe(deviceWithLanes(lanes), "shadow_probe.cl", "probe_point", columnsOf(receivers), 7,
+               {bytesOf(map.map), bytesOf(map.faces)});
 }
 
 /// Texels whose filters stay on a face of the tests' maps.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <algorithm>
 #include <random>
 
 #include "raster/raster_scenes.hpp"

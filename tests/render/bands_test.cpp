@@ -1,6 +1,8 @@
 // A picture is rendered in bands of rows. Nobody sees that, in the picture or in what is counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "raster/bins.hpp"
 #include "render/memory.hpp"
 #include "render_json.hpp"

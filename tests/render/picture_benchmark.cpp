@@ -3,6 +3,7 @@
 //   build/tests/picture_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/reference.hpp"

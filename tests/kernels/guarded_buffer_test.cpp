@@ -1,0 +1,54 @@
+#include "kernels/guarded_buffer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "kernels/probe.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// Writes a float to `values[place]` of a guarded buffer of 16 and says whether its guard words were left
+/// alone.
+bool intactAfterWriteAt(int place) {
+  Device& device = deviceWithLanes(1);
+  const GuardedBuffer values(device, 16 * sizeof(float));
+  cl::Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "write_at", "");
+  kernel.setArg(0, values.buffer());
+  kernel.setArg(1, cl_int(place));
+  launch(device, kernel, 1, 1);
+  return values.intact(device);
+}
+
+TEST(GuardedBuffer, SeesAWriteJustPastEitherEndAndAsFarAsItIsLong) {
+  for (const int place : {0, 15}) EXPECT_TRUE(intactAfterWriteAt(place)) << place;
+  for (const int place : {-16, -1, 16, 31}) EXPECT_FALSE(intactAfterWriteAt(place)) << place;
+}
+
+TEST(GuardedBuffer, ReadsPastTheEndAreNaN) {
+  Device& device = deviceWithLanes(1);
+  const std::vector<float> ones(16, 1.0f);
+  const GuardedBuffer values(device, bytesOf(ones));
+  std::vector<float> found(1);
+  const GuardedBuffer output(device, sizeof(float));
+  cl::Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "read_at", "");
+  for (const int place : {-1, 0, 15, 16}) {
+    kernel.setArg(0, values.buffer());
+    kernel.setArg(1, output.buffer());
+    kernel.setArg(2, cl_int(place));
+    launch(device, kernel, 1, 1);
+    device.queue.enqueueReadBuffer(output.buffer(), CL_TRUE, 0, sizeof(float), found.data());
+    EXPECT_EQ(std::isnan(found[0]), place < 0 || place > 15) << place;
+  }
+}
+
+TEST(Probe, FailsWhereAKernelWritesMoreColumnsThanItWasAskedFor) {
+  const std::vector<Column> in(3, Column{1});
+  EXPECT_THROW(probe(deviceWithLanes(1), "math_probe.cl", "probe_normalize", in, 2), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace luciole::test
