@@ -17,13 +17,15 @@
 #include <string_view>
 
 #include "error.hpp"
+#include "scene/gltf_uris.hpp"
 #include "scene/text_file.hpp"
 
 namespace luciole {
 namespace {
 
 constexpr std::string_view kSupportedExtensions[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                     "KHR_materials_unlit", "KHR_mesh_quantization"};
+                                                     "KHR_materials_unlit", "KHR_mesh_quantization",
+                                                     "KHR_texture_transform"};
 
 bool isSupported(const std::string& extension) {
   const auto end = std::end(kSupportedExtensions);
@@ -80,6 +82,7 @@ void parse(GltfModel& model) {
   const std::size_t size = bytes.size();
   if (size > std::numeric_limits<int>::max()) throw InputError(model.path + ": is larger than 2 GiB");
   checkNesting(model.path, jsonOf(bytes, is_binary));
+  checkUris(model.path, jsonOf(bytes, is_binary));
   bytes.resize(size +
                16);  // tinygltf 2.7 reads up to 8 bytes beyond a GLB whose last chunk lies about its length
 
@@ -134,12 +137,12 @@ std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, co
   return std::as_bytes(std::span(buffer.data)).subspan(view.byteOffset, view.byteLength);
 }
 
+bool isMissing(const tinygltf::Image& image) { return image.bufferView < 0 && image.image.empty(); }
+
 std::span<const std::byte> imageBytes(const GltfModel& model, int image) {
   const tinygltf::Image& entry = model.file.images[image];
   const std::string place = fmt::format("images[{}]", image);
   if (entry.bufferView >= 0) return viewBytes(model, entry.bufferView, place);
-  if (entry.image.empty())
-    failGltf(model, place, fmt::format("there is no picture '{}'", forMessage(entry.uri)));
   return std::as_bytes(std::span(entry.image));
 }
 

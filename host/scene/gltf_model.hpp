@@ -31,7 +31,9 @@ const T& element(const GltfModel& model, const std::vector<T>& list, int index, 
 /// The bytes that a buffer view shows. Throws InputError where it reaches past its buffer.
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place);
 
-/// The bytes of a picture file. Throws InputError where it is missing.
+/// Whether a picture file wasn't there to be read.
+bool isMissing(const tinygltf::Image& image);
+/// The bytes of one that isn't missing.
 std::span<const std::byte> imageBytes(const GltfModel& model, int image);
 
 /// The member of an extension's JSON, as a number; `otherwise` where there is none.
