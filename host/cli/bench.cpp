@@ -91,6 +91,8 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
       ->capture_default_str();
   command->add_option("--device", options->picture.device,
                       "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
+  addCastShadowsOption(*command, options->picture);
+  addMissingTexturesOption(*command, options->picture.missing_textures);
   command->add_flag("--quiet", options->picture.quiet, "no progress line");
   command->callback([options] { bench(*options); });
 }

@@ -22,7 +22,6 @@ struct ReferenceOptions : PictureOptions {
   std::string scene;    ///< what is shown
   std::string gbuffer;  ///< or a file of surfaces, and
   std::string lights;   ///< the scene that lights them
-  std::string shadows = "rays";
   int shadow_samples = 64;
   int frame = 1;
   std::size_t pixels = 0;  ///< 0: all
@@ -245,14 +244,14 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "reference", "the same picture in double precision: every light on every pixel, shadows by ray");
   auto options = std::make_shared<ReferenceOptions>();
+  options->shadows = "rays";
   command->add_option("SCENE", options->scene,
                       "a .json, .obj, .gltf or .glb file (- : JSON on standard input)");
   command->add_option("--gbuffer", options->gbuffer, "an EXR whose surfaces to light instead");
   command->add_option("--scene", options->lights, "with --gbuffer: the scene that lights it");
-  addPictureOptions(*command, *options, kViewOptions | kSampleOption | kModelOptions | kFrameOption);
-  command->add_option("--shadows", options->shadows, "by a ray to each light, or none")
-      ->check(CLI::IsMember({"off", "rays"}))
-      ->capture_default_str();
+  addPictureOptions(*command, *options,
+                    kViewOptions | kSampleOption | kModelOptions | kCastOption | kFrameOption);
+  addShadowsOption(*command, *options, "by a ray to each light, or none", {"off", "rays"});
   command
       ->add_option("--shadow-samples", options->shadow_samples,
                    "rays from a pixel to a light that has a size (others need one)")

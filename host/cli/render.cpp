@@ -150,8 +150,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command
       ->add_option("SCENE", options->scene, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options,
-                    kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption);
+  addPictureOptions(
+      *command, *options,
+      kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kDeviceOption);
   command->add_option(
       "--frames", options->frames,
       "frame A or frames A-B of a scene that moves (default: 1); #### in the output's name (and "
@@ -195,7 +196,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   auto scene_path = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options, kViewOptions | kDeviceOption | kFrameOption);
+  addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path] {
     const int frame = useFrame(*options, "gbuffer");
     checkOutput(*options);
@@ -227,7 +228,8 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
       ->required();
   command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
       ->required();
-  addPictureOptions(*command, *options, kModelOptions | kShadeOptions | kDeviceOption | kFrameOption);
+  addPictureOptions(*command, *options,
+                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);

@@ -67,6 +67,28 @@ TEST_F(Warnings, AreSilencedByQuietAndStandInTheStatistics) {
   EXPECT_THAT(stats["warnings"][0].get<std::string>(), HasSubstr("'KHR_materials_transmission'"));
 }
 
+TEST_F(Warnings, MissingTexturesAreErrorsUnlessAWarningWillDo) {
+  writeText(folder / "holes.json", R"({"camera": {"eye": [0, 3, 3], "target": [0, 0, 0]}, "ambient": 1,
+      "materials": {"m": {"diffuse": [0.5, 0.25, 1], "diffuse_map": "gone.png"}},
+      "objects": [{"primitive": "plane", "material": "m"}]})");
+  const std::string fault = "holes.json: materials.m.diffuse_map: there is no file gone.png";
+  const Outcome refused = runLine(folder, "luciole render holes.json --size 16x9 -o a.png");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err, "luciole: " + fault + "\n");
+  EXPECT_EQ(countOf(told("luciole render holes.json --size 16x9 --missing-textures warn -o a.png"),
+                    "luciole: warning: " + fault + "; drawn without\n"),
+            1u);
+  EXPECT_EQ(told("luciole reference holes.json --size 16x9 --missing-textures warn --quiet -o a.exr"), "");
+  EXPECT_EQ(runLine(folder, "luciole render holes.json --missing-textures ignore -o a.png").status, 2);
+}
+
+TEST_F(Warnings, AMalformedAddressInAGltfIsWrongInput) {
+  writeText(folder / "escape.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":"2.0"}})");
+  const Outcome outcome = runLine(folder, "luciole render escape.gltf -o a.png");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("escape.gltf: images[0].uri: '%!Q'"));
+}
+
 TEST_F(Warnings, AreNoneWhereThereIsNothingToSay) {
   writeText(folder / "plain.json", kSmallScene);
   EXPECT_THAT(told("luciole render plain.json --size 16x9 --stats s.json -o a.png"),
