@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
 #include "error.hpp"
 #include "image/write_file.hpp"
 #include "raster/visible_points.hpp"
@@ -28,6 +29,7 @@ struct LightsOptions {
   std::optional<double> radius, offset, density, cutoff;
   double intensity = 1;
   bool shadow = false;
+  std::string missing_textures = "error";
 };
 
 constexpr std::uint64_t kDefaultCount = 1000;
@@ -145,7 +147,8 @@ void generateLights(const LightsOptions& options) {
   Scene scene;
   std::vector<glm::dvec3> seen;
   if (!options.scene.empty()) {
-    scene = loadScene(options.scene);
+    scene = loadScene(options.scene, 1, missingTexturesOf(options.missing_textures));
+    tellWarnings(scene.warnings);
     scene.lights.clear();
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
                          kSeenPoints, 0);
@@ -248,6 +251,7 @@ void addGenerateCommand(CLI::App& app, CommandContext&) {
       ->allow_extra_args(false)
       ->check(not_negative);
   lights->add_flag("--shadow", options->shadow, "all lights cast shadows");
+  addMissingTexturesOption(*lights, options->missing_textures);
   lights->add_option("-o,--output", options->output, "scene file (- : standard output)")
       ->capture_default_str();
   lights->callback([options] {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/commands.hpp"
 #include "cli/frames.hpp"
 #include "error.hpp"
 #include "image/write_file.hpp"
@@ -50,6 +51,18 @@ const Camera& findCamera(const Scene& scene, const std::string& wanted) {
       fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
                   scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
                   names.empty() ? "unnamed" : names));
+}
+
+void castShadows(const PictureOptions& options, Scene& scene) {
+  const auto casts = [](const Light& light) { return light.shadow; };
+  const bool asked_for = options.shadows_given && options.shadows != "off";
+  const bool any_marked = std::any_of(scene.lights.begin(), scene.lights.end(), casts);
+  const bool all = options.cast_shadows.empty() ? asked_for && !any_marked : options.cast_shadows == "all";
+  if (all || options.cast_shadows == "none")
+    for (Light& light : scene.lights) light.shadow = all;
+  if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
+    scene.warnings.push_back(
+        fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows));
 }
 
 }  // namespace
@@ -119,13 +132,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "pixels a side of the squares that share a light list; never changes the picture")
         ->check(CLI::IsMember({4, 8, 16}))
         ->capture_default_str();
-    command
-        .add_option("--shadows", options.shadows,
-                    "how shadow maps are looked up: hard (the texel that the point falls into), pcf (the "
-                    "nearest texels, weighted), soft (edges as wide as the light's size makes them) or exact "
-                    "(as rays to the light's middle)")
-        ->check(CLI::IsMember({"off", "hard", "pcf", "soft", "exact"}))
-        ->capture_default_str();
+    addShadowsOption(
+        command, options,
+        "how shadow maps are looked up: hard (the texel that the point falls into), pcf (the "
+        "nearest texels, weighted), soft (edges as wide as the light's size makes them) or exact "
+        "(as rays to the light's middle)",
+        {"off", "hard", "pcf", "soft", "exact"});
     command.add_option("--pcf-width", options.pcf_width, "texels a side that pcf weighs: 2 is the sharpest")
         ->check(CLI::Range(2, 6))
         ->capture_default_str();
@@ -139,6 +151,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
           "--aov", options.aovs,
           "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,list_length,shadow");
   }
+  if (groups & kCastOption) addCastShadowsOption(command, options);
+  addMissingTexturesOption(command, options.missing_textures);
   if (groups & kFrameOption)
     command.add_option(
         "--frames", options.frames,
@@ -149,6 +163,43 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (is_one_picture)
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
+}
+
+CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
+                              const std::vector<std::string>& values) {
+  return command.add_option("--shadows", options.shadows, help)
+      ->check(CLI::IsMember(values))
+      ->each([&options](const std::string&) { options.shadows_given = true; })
+      ->capture_default_str();
+}
+
+void addCastShadowsOption(CLI::App& command, PictureOptions& options) {
+  command
+      .add_option(
+          "--cast-shadows", options.cast_shadows,
+          "which lights cast shadows: all, none, or those that the scene's file marks (default: marked, "
+          "but all where none is marked and --shadows is given)")
+      ->check(CLI::IsMember({"all", "marked", "none"}));
+}
+
+void addMissingTexturesOption(CLI::App& command, std::string& value) {
+  command
+      .add_option("--missing-textures", value,
+                  "a picture that the scene names and that isn't there is an error, or a warning and its "
+                  "materials are drawn without it")
+      ->check(CLI::IsMember({"error", "warn"}))
+      ->capture_default_str();
+}
+
+MissingTextures missingTexturesOf(const std::string& value) {
+  return value == "warn" ? MissingTextures::kWarn : MissingTextures::kError;
+}
+
+Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
+  Scene scene = loadScene(path, frame, missingTexturesOf(options.missing_textures));
+  castShadows(options, scene);
+  if (!options.quiet) tellWarnings(scene.warnings);
+  return scene;
 }
 
 Model modelOf(const PictureOptions& options) {

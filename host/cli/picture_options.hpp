@@ -6,6 +6,7 @@
 #include "cl/device.hpp"
 #include "image/image.hpp"
 #include "render/render.hpp"
+#include "scene/load_scene.hpp"
 
 namespace luciole {
 
@@ -21,11 +22,14 @@ struct PictureOptions {
   std::string culling = "auto";
   int tile = ShadeSettings{}.tile_size;
   std::string shadows = "hard";
+  bool shadows_given = false;  ///< --shadows was typed
+  std::string cast_shadows;    ///< empty: see openScene()
   int pcf_width = ShadeSettings{}.pcf_width;
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   std::string aovs;
   double exposure = 0;
   std::string device;
+  std::string missing_textures = "error";
   std::string stats;
   std::string frames;
   bool quiet = false;
@@ -39,9 +43,22 @@ enum OptionGroup : unsigned {
   kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --aov
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
+  kCastOption = 128,   ///< --cast-shadows
   kManyPictures = 64,  ///< without what is about one file: -o, --stats, --crop, --aov
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
+
+/// The option --shadows of a command, which has values of its own.
+CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
+                              const std::vector<std::string>& values);
+/// --cast-shadows, and --missing-textures.
+void addCastShadowsOption(CLI::App& command, PictureOptions& options);
+void addMissingTexturesOption(CLI::App& command, std::string& value);
+MissingTextures missingTexturesOf(const std::string& value);
+
+/// Loads the scene at a frame (see loadScene), lets its lights cast shadows as --cast-shadows says, or else
+/// those that it marks, or else all where --shadows asks for shadows, and tells its warnings, unless --quiet.
+Scene openScene(const std::string& path, double frame, const PictureOptions& options);
 
 /// What --model says.
 Model modelOf(const PictureOptions& options);

@@ -14,7 +14,6 @@
 #include "image/gbuffer_file.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
-#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -23,7 +22,6 @@ struct ReferenceOptions : PictureOptions {
   std::string scene;    ///< what is shown
   std::string gbuffer;  ///< or a file of surfaces, and
   std::string lights;   ///< the scene that lights them
-  std::string shadows = "rays";
   int shadow_samples = 64;
   int frame = 1;
   std::size_t pixels = 0;  ///< 0: all
@@ -169,7 +167,8 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 
 /// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
 void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.scene, options.frame); });
+  const Scene scene =
+      timed(stats, "load scene", [&] { return openScene(options.scene, options.frame, options); });
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
@@ -205,7 +204,8 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
 
 /// Shades a G-buffer from a file.
 void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.lights, options.frame); });
+  const Scene scene =
+      timed(stats, "load scene", [&] { return openScene(options.lights, options.frame, options); });
   const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(options.gbuffer); });
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
@@ -244,14 +244,14 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "reference", "the same picture in double precision: every light on every pixel, shadows by ray");
   auto options = std::make_shared<ReferenceOptions>();
+  options->shadows = "rays";
   command->add_option("SCENE", options->scene,
                       "a .json, .obj, .gltf or .glb file (- : JSON on standard input)");
   command->add_option("--gbuffer", options->gbuffer, "an EXR whose surfaces to light instead");
   command->add_option("--scene", options->lights, "with --gbuffer: the scene that lights it");
-  addPictureOptions(*command, *options, kViewOptions | kSampleOption | kModelOptions | kFrameOption);
-  command->add_option("--shadows", options->shadows, "by a ray to each light, or none")
-      ->check(CLI::IsMember({"off", "rays"}))
-      ->capture_default_str();
+  addPictureOptions(*command, *options,
+                    kViewOptions | kSampleOption | kModelOptions | kCastOption | kFrameOption);
+  addShadowsOption(*command, *options, "by a ray to each light, or none", {"off", "rays"});
   command
       ->add_option("--shadow-samples", options->shadow_samples,
                    "rays from a pixel to a light that has a size (others need one)")

@@ -15,7 +15,6 @@
 #include "error.hpp"
 #include "image/gbuffer_file.hpp"
 #include "render/render.hpp"
-#include "scene/load_scene.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
@@ -151,8 +150,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command
       ->add_option("SCENE", options->scene, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options,
-                    kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption);
+  addPictureOptions(
+      *command, *options,
+      kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kDeviceOption);
   command->add_option(
       "--frames", options->frames,
       "frame A or frames A-B of a scene that moves (default: 1); #### in the output's name (and "
@@ -174,8 +174,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    Scene scene = timed(stats, "load scene",
-                        [&] { return loadScene(options->scene, range.is_range ? 1 : range.first); });
+    Scene scene = timed(stats, "load scene", [&] {
+      return openScene(options->scene, range.is_range ? 1 : range.first, *options);
+    });
     if (range.is_range) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
@@ -195,13 +196,13 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   auto scene_path = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(*command, *options, kViewOptions | kDeviceOption | kFrameOption);
+  addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path] {
     const int frame = useFrame(*options, "gbuffer");
     checkOutput(*options);
     Stats stats;
     stats.command = context.command_line;
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path, frame); });
+    const Scene scene = timed(stats, "load scene", [&] { return openScene(*scene_path, frame, *options); });
     const RenderSettings settings = renderSettings(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;
@@ -227,7 +228,8 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
       ->required();
   command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
       ->required();
-  addPictureOptions(*command, *options, kModelOptions | kShadeOptions | kDeviceOption | kFrameOption);
+  addPictureOptions(*command, *options,
+                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);
@@ -235,7 +237,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path, frame); });
+    const Scene scene = timed(stats, "load scene", [&] { return openScene(*scene_path, frame, *options); });
     const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);

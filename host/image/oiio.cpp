@@ -7,8 +7,11 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <system_error>
+#include <utility>
 
 #include "error.hpp"
 #include "image/exr_header.hpp"
@@ -55,6 +58,31 @@ std::string oneLine(std::string message) {
   return line.empty() ? "unknown error" : line;
 }
 
+namespace {
+
+/// A library's message as one line, in which a file in memory has no path.
+std::string messageAbout(std::string message, const std::string& path, const std::string& name) {
+  if (path == name) return oneLine(std::move(message));
+  for (const std::string& called : {'"' + path + '"', path})
+    for (std::size_t at; (at = message.find(called)) != std::string::npos;)
+      message.replace(at, called.size(), "it");
+  return oneLine(std::move(message));
+}
+
+/// Some decoders throw at what they didn't expect: what the standard library says then helps nobody.
+template <class Function>
+auto decoded(const std::string& name, Function&& function) {
+  try {
+    return function();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    throw InputError(name + ": can't read as a picture: its decoder gave up");
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std::string& name) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -67,9 +95,10 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
 
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &config);
+  auto input = decoded(name, [&] { return OIIO::ImageInput::open(path, &config); });
   if (!input)
-    throw InputError(fmt::format("{}: can't read as a picture: {}", name, oneLine(OIIO::geterror())));
+    throw InputError(
+        fmt::format("{}: can't read as a picture: {}", name, messageAbout(OIIO::geterror(), path, name)));
 
   const OIIO::ImageSpec& spec = input->spec();
   const auto side_ok = [](int side) { return side >= 1 && side <= kMaxSide; };
@@ -91,7 +120,8 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
 
 void readValues(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, void* values) {
   // Some decoders report a truncated file, fill the rest with grey and call it a success.
-  const bool read = input.read_image(0, 0, 0, input.spec().nchannels, type, values);
+  const bool read =
+      decoded(name, [&] { return input.read_image(0, 0, 0, input.spec().nchannels, type, values); });
   const std::string message = input.geterror();
   if (!read || !message.empty()) throw InputError(fmt::format("{}: damaged: {}", name, oneLine(message)));
 }

@@ -40,7 +40,8 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
   storePixel(glm::vec3(normal), place, stride, gbuffer.normal);
   storePixel(material.diffuse * color, place, stride, gbuffer.diffuse);
   if (!gbuffer.ambient.empty()) storePixel(material.ambient * color, place, stride, gbuffer.ambient);
-  if (!gbuffer.emission.empty()) storePixel(material.emission, place, stride, gbuffer.emission);
+  const glm::vec3 glow = material.colored_emission ? material.emission * color : material.emission;
+  if (!gbuffer.emission.empty()) storePixel(glow, place, stride, gbuffer.emission);
   // A vertex has no triangle of its own.
   if (!gbuffer.facet.empty()) gbuffer.facet[place] = packNormal(normal);
   if (!gbuffer.specular.empty()) {

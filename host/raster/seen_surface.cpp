@@ -32,6 +32,9 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   const bool mapped =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   if (mapped && !mesh.uvs.empty()) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
+  // What light made of the vertices is looked up as the diffuse map is.
+  seen.glows_apart = mapped && !mesh.emission_uvs.empty() && !input.litVertices();
+  if (seen.glows_apart) seen.emission_uv = between<glm::dvec2>(mesh.emission_uvs.data(), surface.corners);
   if (input.litVertices()) {
     seen.colored = true;
     seen.color =

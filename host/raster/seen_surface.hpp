@@ -24,6 +24,8 @@ struct SeenSurface {
   std::uint32_t facet = 0;         ///< that, by packNormal()
   Interpolant<glm::dvec3> normal;  ///< on the viewer's side, of any length
   Interpolant<glm::dvec2> uv;      ///< zero where no map needs them
+  bool glows_apart = false;        ///< the emission map is looked up elsewhere:
+  Interpolant<glm::dvec2> emission_uv;
   bool colored = false;
   Interpolant<glm::dvec3> color;  ///< where colored: of the vertices, or what light makes of them
 };

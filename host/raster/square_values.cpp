@@ -103,12 +103,13 @@ void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
 /// The steps of texture coordinates to the next pixel along an axis of the picture. With u = n / d from the
 /// first corner on, and n and d the values at p of two rows, which grow by n' and d' a pixel,
 ///     (n + n') / (d + d') − n / d = (n' − u · d') / (d + d').
-void stepAlong(int axis, const SeenSurface& seen, double pixel, const PlaneMeeting& meeting,
-               const Lanes<double>& u, const Lanes<double>& v, Lanes<float>& du, Lanes<float>& dv) {
-  const double weight1 = pixel * seen.surface.weight1[axis], weight2 = pixel * seen.surface.weight2[axis];
-  const double determinant = pixel * seen.surface.determinant[axis];
-  const glm::dvec2 row = weight1 * seen.uv.to_second + weight2 * seen.uv.to_third;
-  const glm::dvec2 first = seen.uv.first;
+void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& uv, double pixel,
+               const PlaneMeeting& meeting, const Lanes<double>& u, const Lanes<double>& v, Lanes<float>& du,
+               Lanes<float>& dv) {
+  const double weight1 = pixel * surface.weight1[axis], weight2 = pixel * surface.weight2[axis];
+  const double determinant = pixel * surface.determinant[axis];
+  const glm::dvec2 row = weight1 * uv.to_second + weight2 * uv.to_third;
+  const glm::dvec2 first = uv.first;
   for (int i = 0; i < kSquarePixels; ++i) {
     const double scale = meeting.scale[i];
     const float next = 1.0f / float(1.0 + determinant * scale);
@@ -118,14 +119,14 @@ void stepAlong(int axis, const SeenSurface& seen, double pixel, const PlaneMeeti
   clearUnlessFinite(du, dv);
 }
 
-void setFootprints(const SeenSurface& seen, const ViewPlane& plane, const PlaneMeeting& meeting,
-                   const SquareWeights& weights, SquareFootprints& result) {
-  result.u = rounded(interpolate(seen.uv, 0, weights));
-  result.v = rounded(interpolate(seen.uv, 1, weights));
-  const Lanes<double> u = interpolate(seen.uv, 0, meeting.weights);
-  const Lanes<double> v = interpolate(seen.uv, 1, meeting.weights);
-  stepAlong(0, seen, plane.scale.x, meeting, u, v, result.du_dx, result.dv_dx);
-  stepAlong(1, seen, plane.scale.y, meeting, u, v, result.du_dy, result.dv_dy);
+void setFootprints(const Surface& surface, const Interpolant<glm::dvec2>& uv, const ViewPlane& plane,
+                   const PlaneMeeting& meeting, const SquareWeights& weights, SquareFootprints& result) {
+  result.u = rounded(interpolate(uv, 0, weights));
+  result.v = rounded(interpolate(uv, 1, weights));
+  const Lanes<double> u = interpolate(uv, 0, meeting.weights);
+  const Lanes<double> v = interpolate(uv, 1, meeting.weights);
+  stepAlong(0, surface, uv, plane.scale.x, meeting, u, v, result.du_dx, result.dv_dx);
+  stepAlong(1, surface, uv, plane.scale.y, meeting, u, v, result.du_dy, result.dv_dy);
 }
 
 void fill(const glm::vec3& value, Lanes3<float>& out) {
@@ -163,6 +164,7 @@ void setMaterial(const ResolveInput& input, const SeenSurface& seen, const Squar
   if (!seen.colored) return;
   multiply(color, out.diffuse);
   multiply(color, out.ambient);
+  if (material.colored_emission) multiply(color, out.emission);
 }
 
 template <class T>
@@ -173,6 +175,15 @@ template <std::size_t kCount>
 void put(const std::array<Lanes<float>, kCount>& values, const LaneMask& mask,
          std::array<Lanes<float>, kCount>& out) {
   for (std::size_t c = 0; c < kCount; ++c) put(values[c], mask, out[c]);
+}
+
+void put(const SquareFootprints& values, const LaneMask& mask, SquareFootprints& out) {
+  put(values.u, mask, out.u);
+  put(values.v, mask, out.v);
+  put(values.du_dx, mask, out.du_dx);
+  put(values.dv_dx, mask, out.dv_dx);
+  put(values.du_dy, mask, out.du_dy);
+  put(values.dv_dy, mask, out.dv_dy);
 }
 
 bool anyMap(const Lanes<const TextureUse*>& maps) {
@@ -204,7 +215,10 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
             seen.facing_normal, values.normal);
   values.facet.fill(seen.facet);
   setMaterial(input, seen, weights, values);
-  setFootprints(seen, input.plane, meeting, weights, values.footprints);
+  setFootprints(surface, seen.uv, input.plane, meeting, weights, values.footprints);
+  values.emission_footprints = values.footprints;
+  if (seen.glows_apart)
+    setFootprints(surface, seen.emission_uv, input.plane, meeting, weights, values.emission_footprints);
   return values;
 }
 
@@ -218,12 +232,8 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.facet, sees_it, out.facet);
   put(values.reflection_map, sees_it, out.reflection_map);
   put(values.emission_map, sees_it, out.emission_map);
-  put(values.footprints.u, sees_it, out.footprints.u);
-  put(values.footprints.v, sees_it, out.footprints.v);
-  put(values.footprints.du_dx, sees_it, out.footprints.du_dx);
-  put(values.footprints.dv_dx, sees_it, out.footprints.dv_dx);
-  put(values.footprints.du_dy, sees_it, out.footprints.du_dy);
-  put(values.footprints.dv_dy, sees_it, out.footprints.dv_dy);
+  put(values.footprints, sees_it, out.footprints);
+  put(values.emission_footprints, sees_it, out.emission_footprints);
 }
 
 void applyMaps(const Scene& scene, SquareValues& values) {
@@ -233,7 +243,8 @@ void applyMaps(const Scene& scene, SquareValues& values) {
     multiply(colors, values.ambient);
   }
   if (anyMap(values.emission_map))
-    multiply(sampleTextures(scene.textures, values.emission_map, values.footprints), values.emission);
+    multiply(sampleTextures(scene.textures, values.emission_map, values.emission_footprints),
+             values.emission);
 }
 
 }  // namespace luciole

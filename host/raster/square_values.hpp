@@ -21,6 +21,7 @@ struct SquareValues {
   Lanes<const TextureUse*> reflection_map;  ///< into diffuse and ambient; null: none
   Lanes<const TextureUse*> emission_map;
   SquareFootprints footprints;
+  SquareFootprints emission_footprints;
 };
 
 /// Where a square's pixels look, as by ViewPlane::at.

@@ -15,7 +15,8 @@
 namespace luciole {
 namespace {
 
-/// The decoded pictures by their index in the file, and where those that are drawn went in Scene::textures.
+/// The decoded pictures by their index in the file, but for those that are missing, and where those that are
+/// drawn went in Scene::textures.
 struct Pictures {
   std::map<int, Texture> decoded;
   std::map<int, int> in_scene;
@@ -33,26 +34,28 @@ int imageOf(const GltfModel& model, int texture, const std::string& place) {
   return image;
 }
 
-std::string materialPlace(int material) { return fmt::format("materials[{}]", material); }
-
-const tinygltf::Material& materialOf(const GltfModel& model, int material) {
-  static const tinygltf::Material kDefault;
-  return material < 0 ? kDefault : element(model, model.file.materials, material, "a primitive", "material");
-}
-
-Pictures decodePictures(const GltfModel& model, const std::vector<int>& materials) {
+Pictures decodePictures(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {
   Pictures pictures;
   for (const int index : materials) {
-    const tinygltf::Material& material = materialOf(model, index);
+    const tinygltf::Material& material = gltfMaterial(model, index);
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     for (const int texture :
          {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, material.emissiveTexture.index}) {
-      const int image = imageOf(model, texture, materialPlace(index));
+      const int image = imageOf(model, texture, gltfMaterialPlace(index));
       if (image >= 0) pictures.decoded.try_emplace(image);
     }
   }
   std::vector<int> images;
-  for (const auto& [image, texture] : pictures.decoded) images.push_back(image);
+  for (const auto& [image, texture] : pictures.decoded) {
+    const tinygltf::Image& entry = model.file.images[image];
+    if (isMissing(entry))
+      scene.missing_textures.push_back(
+          fmt::format("{}: images[{}]: there is no picture '{}'", model.path, image, forMessage(entry.uri)));
+    else
+      images.push_back(image);
+  }
+  std::erase_if(pictures.decoded,
+                [&](const auto& entry) { return isMissing(model.file.images[entry.first]); });
   tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
     const tinygltf::Image& entry = model.file.images[images[i]];
     const std::string name = forMessage(entry.uri.empty() ? entry.name : entry.uri);
@@ -72,7 +75,7 @@ TextureUse textureUse(const GltfModel& model, int texture, const std::string& pl
                       Scene& scene) {
   TextureUse use;
   const int image = imageOf(model, texture, place);
-  if (image < 0) return use;
+  if (!pictures.decoded.count(image)) return use;
   const auto [entry, is_new] = pictures.in_scene.try_emplace(image, static_cast<int>(scene.textures.size()));
   if (is_new) scene.textures.push_back(pictures.decoded.at(image));
   use.texture = entry->second;
@@ -125,12 +128,12 @@ void setReflection(Material& material, const glm::dvec3& base, const glm::dvec3&
 }
 
 Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& scene) {
-  const tinygltf::Material& source = materialOf(model, index);
+  const tinygltf::Material& source = gltfMaterial(model, index);
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  const std::string place = materialPlace(index);
+  const std::string place = gltfMaterialPlace(index);
   const auto picture = [&](const tinygltf::TextureInfo& info) -> const Texture* {
-    const int image = imageOf(model, info.index, place);
-    return image < 0 ? nullptr : &pictures.decoded.at(image);
+    const auto found = pictures.decoded.find(imageOf(model, info.index, place));
+    return found == pictures.decoded.end() ? nullptr : &found->second;
   };
   const glm::dvec4 base = factor(model, pbr.baseColorFactor, glm::dvec4(1), place);
   const glm::dvec3 emission = factor(model, source.emissiveFactor, glm::dvec4(0), place);
@@ -155,9 +158,13 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
     failGltf(model, place, "emissiveStrength is negative or too large");
   }
   material.emission_map = textureUse(model, source.emissiveTexture.index, place, pictures, scene);
-  if (source.extensions.count("KHR_materials_unlit")) {
+  // What glows by a picture that is missing doesn't.
+  if (source.emissiveTexture.index >= 0 && material.emission_map.texture < 0)
+    material.emission = glm::vec3(0);
+  if (isUnlit(source)) {
     material.emission = glm::vec3(base);
     material.emission_map = material.diffuse_map;
+    material.colored_emission = true;
     material.ambient = material.diffuse = material.specular = glm::vec3(0);
   }
   material.alpha = static_cast<float>(base.a);
@@ -170,20 +177,19 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
 
 }  // namespace
 
-int textureCoordinateSet(const GltfModel& model, int material) {
-  const tinygltf::Material& source = materialOf(model, material);
-  const tinygltf::TextureInfo& base = source.pbrMetallicRoughness.baseColorTexture;
-  const tinygltf::TextureInfo& emissive = source.emissiveTexture;
-  if (base.index >= 0 && emissive.index >= 0 && base.texCoord != emissive.texCoord) {
-    failGltf(model, materialPlace(material),
-             "baseColorTexture and emissiveTexture use different texCoord sets, which is not supported");
-  }
-  if (base.index >= 0) return base.texCoord;
-  return emissive.index >= 0 ? emissive.texCoord : -1;
+const tinygltf::Material& gltfMaterial(const GltfModel& model, int material) {
+  static const tinygltf::Material kDefault;
+  return material < 0 ? kDefault : element(model, model.file.materials, material, "a primitive", "material");
+}
+
+std::string gltfMaterialPlace(int material) { return fmt::format("materials[{}]", material); }
+
+bool isUnlit(const tinygltf::Material& material) {
+  return material.extensions.count("KHR_materials_unlit") > 0;
 }
 
 void addGltfMaterials(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {
-  Pictures pictures = decodePictures(model, materials);
+  Pictures pictures = decodePictures(model, materials, scene);
   for (const int index : materials) scene.materials.push_back(convert(model, index, pictures, scene));
 }
 

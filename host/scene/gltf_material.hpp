@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scene/gltf_model.hpp"
@@ -7,10 +8,12 @@
 
 namespace luciole {
 
-/// Which TEXCOORD attribute a material's textures use; -1: it has no texture. A mesh has one set of texture
-/// coordinates, so InputError where the textures want different ones. `material` −1 is glTF's default
-/// material.
-int textureCoordinateSet(const GltfModel& model, int material);
+/// A material of the file; −1 is glTF's default material. Throws InputError where there is no such one.
+const tinygltf::Material& gltfMaterial(const GltfModel& model, int material);
+/// What messages call it.
+std::string gltfMaterialPlace(int material);
+/// Whether it shows its base colour as it is (KHR_materials_unlit).
+bool isUnlit(const tinygltf::Material& material);
 
 /// Appends the materials in the order given, −1 being glTF's default one, and their textures. Throws
 /// InputError.
@@ -23,6 +26,7 @@ int textureCoordinateSet(const GltfModel& model, int material);
 /// quarter of it for the reflected one. 1/(4 α²) is the peak of the GGX lobe relative to a Lambertian 1/π; it
 /// is limited to 1, for the highlight to stay in range, and r is kept above 0.15 (shininess 987): a sharper
 /// highlight falls between pixels. Nothing is blended here: alphaMode BLEND is drawn as MASK with cutoff 0.5.
+/// An unlit material reflects nothing and glows in its base colour, which is that colour to the bit.
 void addGltfMaterials(const GltfModel& model, const std::vector<int>& materials, Scene& scene);
 
 }  // namespace luciole

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "scene/gltf_accessor.hpp"
-#include "scene/gltf_material.hpp"
+#include "scene/gltf_uvs.hpp"
 #include "scene/normals.hpp"
 
 namespace luciole {
@@ -90,6 +90,7 @@ std::vector<T> unshared(const std::vector<T>& values, const std::vector<glm::uve
 void makeFlat(Mesh& mesh) {
   mesh.positions = unshared(mesh.positions, mesh.triangles);
   mesh.uvs = unshared(mesh.uvs, mesh.triangles);
+  mesh.emission_uvs = unshared(mesh.emission_uvs, mesh.triangles);
   mesh.colors = unshared(mesh.colors, mesh.triangles);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
   mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
@@ -109,6 +110,26 @@ void repairNormals(Mesh& mesh) {
   }
 }
 
+/// Texture coordinates as a texture reads them; none where the primitive hasn't got them.
+std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& primitive, const GltfUvs& use,
+                             const std::string& place) {
+  auto uvs = readAttribute<glm::vec2>(model, primitive, fmt::format("TEXCOORD_{}", use.set), place);
+  if (use.matrix != glm::dmat2(1) || use.offset != glm::dvec2(0))
+    for (glm::vec2& uv : uvs) uv = glm::vec2(use.matrix * glm::dvec2(uv) + use.offset);
+  return uvs;
+}
+
+/// A primitive has one material, so that its vertices can carry what its textures make of their coordinates.
+void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
+             Mesh& mesh) {
+  const GltfUvs base = baseColorUvs(model, primitive.material),
+                emission = emissionUvs(model, primitive.material);
+  if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
+  if (emission.set < 0 || emission == base) return;
+  std::vector<glm::vec2>& uvs = base.set < 0 ? mesh.uvs : mesh.emission_uvs;
+  uvs = uvsOf(model, primitive, emission, place);
+}
+
 Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place) {
   Mesh mesh;
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return mesh;
@@ -118,18 +139,18 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   mesh.positions = readAttribute<glm::vec3>(model, primitive, "POSITION", place);
   if (mesh.positions.empty())
     return mesh;  // glTF lets an extension say where such vertices are: nothing to draw
-  const int uv_set = textureCoordinateSet(model, primitive.material);
-  if (uv_set >= 0)
-    mesh.uvs = readAttribute<glm::vec2>(model, primitive, fmt::format("TEXCOORD_{}", uv_set), place);
+  readUvs(model, primitive, place, mesh);
   mesh.normals = readAttribute<glm::vec3>(model, primitive, "NORMAL", place);
   mesh.colors = readColors(model, primitive, place);
-  for (const std::size_t count : {mesh.uvs.size(), mesh.normals.size(), mesh.colors.size()}) {
+  for (const std::size_t count :
+       {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normals.size(), mesh.colors.size()}) {
     if (count == 0 || count == mesh.positions.size()) continue;
     failGltf(model, place,
              fmt::format("its attributes have {} and {} elements", mesh.positions.size(), count));
   }
   checkFinite(model, mesh.positions, place + ".POSITION");
   checkFinite(model, mesh.uvs, place + ".TEXCOORD");
+  checkFinite(model, mesh.emission_uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.colors, place + ".COLOR_0");
   for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));
 
@@ -154,6 +175,12 @@ void appendOptional(std::vector<T>& all, std::size_t count_before, const std::ve
 
 void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
   const std::size_t before = mesh.positions.size(), added = more.positions.size();
+  if (!mesh.emission_uvs.empty() || !more.emission_uvs.empty()) {
+    // A side without looks everything up at the same place.
+    if (mesh.emission_uvs.empty()) mesh.emission_uvs = mesh.uvs;
+    appendOptional(mesh.emission_uvs, before, more.emission_uvs.empty() ? more.uvs : more.emission_uvs, added,
+                   glm::vec2(0));
+  }
   appendOptional(mesh.uvs, before, more.uvs, added, glm::vec2(0));
   appendOptional(mesh.colors, before, more.colors, added, glm::vec4(1));
   mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());

@@ -17,13 +17,20 @@
 #include <string_view>
 
 #include "error.hpp"
+#include "scene/gltf_uris.hpp"
 #include "scene/text_file.hpp"
 
 namespace luciole {
 namespace {
 
 constexpr std::string_view kSupportedExtensions[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                     "KHR_materials_unlit", "KHR_mesh_quantization"};
+                                                     "KHR_materials_unlit", "KHR_mesh_quantization",
+                                                     "KHR_texture_transform"};
+
+bool isSupported(const std::string& extension) {
+  const auto end = std::end(kSupportedExtensions);
+  return std::find(std::begin(kSupportedExtensions), end, extension) != end;
+}
 
 /// Keeps a picture's bytes as they are. A picture in a buffer view is left alone: tinygltf has not checked
 /// that the view lies inside its buffer.
@@ -62,9 +69,10 @@ std::string_view jsonOf(std::string_view bytes, bool is_binary) {
 
 void checkRequiredExtensions(const GltfModel& model) {
   for (const std::string& extension : model.file.extensionsRequired) {
-    const auto end = std::end(kSupportedExtensions);
-    if (std::find(std::begin(kSupportedExtensions), end, extension) != end) continue;
-    failGltf(model, "extensionsRequired", fmt::format("'{}' is not supported", forMessage(extension)));
+    if (isSupported(extension)) continue;
+    failGltf(model, "extensionsRequired",
+             fmt::format("'{}' is not supported; known are {}", forMessage(extension),
+                         fmt::join(kSupportedExtensions, ", ")));
   }
 }
 
@@ -74,6 +82,7 @@ void parse(GltfModel& model) {
   const std::size_t size = bytes.size();
   if (size > std::numeric_limits<int>::max()) throw InputError(model.path + ": is larger than 2 GiB");
   checkNesting(model.path, jsonOf(bytes, is_binary));
+  checkUris(model.path, jsonOf(bytes, is_binary));
   bytes.resize(size +
                16);  // tinygltf 2.7 reads up to 8 bytes beyond a GLB whose last chunk lies about its length
 
@@ -128,13 +137,24 @@ std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, co
   return std::as_bytes(std::span(buffer.data)).subspan(view.byteOffset, view.byteLength);
 }
 
+bool isMissing(const tinygltf::Image& image) { return image.bufferView < 0 && image.image.empty(); }
+
 std::span<const std::byte> imageBytes(const GltfModel& model, int image) {
   const tinygltf::Image& entry = model.file.images[image];
   const std::string place = fmt::format("images[{}]", image);
   if (entry.bufferView >= 0) return viewBytes(model, entry.bufferView, place);
-  if (entry.image.empty())
-    failGltf(model, place, fmt::format("there is no picture '{}'", forMessage(entry.uri)));
   return std::as_bytes(std::span(entry.image));
+}
+
+std::vector<std::string> ignoredExtensions(const GltfModel& model) {
+  std::vector<std::string> warnings;
+  const std::vector<std::string>& used = model.file.extensionsUsed;
+  for (auto extension = used.begin(); extension != used.end(); ++extension) {
+    if (isSupported(*extension) || std::find(used.begin(), extension, *extension) != extension) continue;
+    warnings.push_back(fmt::format("{}: extensionsUsed: '{}' is not supported and left out", model.path,
+                                   forMessage(*extension)));
+  }
+  return warnings;
 }
 
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace luciole {
 
@@ -19,6 +20,9 @@ struct GltfModel {
 /// than 2.x, a missing buffer, and a required extension that is not supported.
 GltfModel readGltfModel(const std::string& path);
 
+/// A line for each extension in use that is not supported and that the file doesn't require.
+std::vector<std::string> ignoredExtensions(const GltfModel& model);
+
 /// `list[index]`, or an InputError: "`place` refers to `what` `index`, but the file has only …".
 template <typename T>
 const T& element(const GltfModel& model, const std::vector<T>& list, int index, const std::string& place,
@@ -27,7 +31,9 @@ const T& element(const GltfModel& model, const std::vector<T>& list, int index, 
 /// The bytes that a buffer view shows. Throws InputError where it reaches past its buffer.
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place);
 
-/// The bytes of a picture file. Throws InputError where it is missing.
+/// Whether a picture file wasn't there to be read.
+bool isMissing(const tinygltf::Image& image);
+/// The bytes of one that isn't missing.
 std::span<const std::byte> imageBytes(const GltfModel& model, int image);
 
 /// The member of an extension's JSON, as a number; `otherwise` where there is none.

@@ -51,12 +51,14 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-void refuse(const JsonNode& node, const std::string& what) {
+std::string messageAt(const JsonNode& node, const std::string& what) {
   const JsonNode* root = &node;
   while (root->parent) root = root->parent;
   const std::string place = placeOf(node);
-  throw InputError(fmt::format("{}: {}{}{}", root->key, place, place.empty() ? "" : ": ", what));
+  return fmt::format("{}: {}{}{}", root->key, place, place.empty() ? "" : ": ", what);
 }
+
+void refuse(const JsonNode& node, const std::string& what) { throw InputError(messageAt(node, what)); }
 
 void allowKeys(const JsonNode& object, std::span<const std::string_view> known) {
   needObject(object);
@@ -154,12 +156,21 @@ std::string readText(const JsonNode& node) {
   return node.json->get<std::string>();
 }
 
-std::string readPath(const JsonNode& node, const std::string& folder) {
-  const std::string path = (std::filesystem::path(folder) / readText(node)).lexically_normal().string();
+std::string pathOf(const JsonNode& node, const std::string& folder) {
+  return (std::filesystem::path(folder) / readText(node)).lexically_normal().string();
+}
+
+std::string faultOfPath(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse(node, fmt::format("there is no file {}", path));
+  if (!std::filesystem::exists(path, ignored)) return fmt::format("there is no file {}", path);
   if (std::filesystem::is_directory(path, ignored))
-    refuse(node, fmt::format("{} is a folder; expected a file", path));
+    return fmt::format("{} is a folder; expected a file", path);
+  return "";
+}
+
+std::string readPath(const JsonNode& node, const std::string& folder) {
+  const std::string path = pathOf(node, folder), fault = faultOfPath(path);
+  if (!fault.empty()) refuse(node, fault);
   return path;
 }
 

@@ -25,7 +25,10 @@ struct JsonNode {
   std::size_t index = kNoIndex;      ///< inside an array
 };
 
-/// Throws InputError "file: place: what".
+/// "file: place: what".
+std::string messageAt(const JsonNode& node, const std::string& what);
+
+/// Throws it as an InputError.
 [[noreturn]] void refuse(const JsonNode& node, const std::string& what);
 
 /// Parses JSON with // and /* */ comments. Refuses syntax errors (with line and column), a key given twice in
@@ -61,6 +64,10 @@ double readPositive(const JsonNode& node);
 std::uint64_t readCount(const JsonNode& node, std::uint64_t largest);
 bool readBool(const JsonNode& node);
 std::string readText(const JsonNode& node);
+/// The name of a file, relative to `folder`.
+std::string pathOf(const JsonNode& node, const std::string& folder);
+/// Why no file can be read there, or "".
+std::string faultOfPath(const std::string& path);
 /// The name of a file that exists, relative to `folder`.
 std::string readPath(const JsonNode& node, const std::string& folder);
 glm::dvec3 readVector(const JsonNode& node);

@@ -46,11 +46,13 @@ void readColors(const JsonNode& node, Light& light) {
 }
 
 /// Where a spot shines and how it falls off to the sides. With OpenGL's cutoff of 180° it is a point light,
-/// whatever its exponent and direction.
+/// whatever its exponent and direction; but that it shines somewhere must be said, as for a directional
+/// light.
 void readSpot(const JsonNode& node, Light& light) {
   const auto direction = find(node, "direction");
   const auto target = find(node, "target");
   if (direction && target) refuse(*target, "expected either \"direction\" or \"target\", got both");
+  if (!direction && !target) refuse(node, "\"direction\" or \"target\" is missing");
   if (direction) light.direction = readDirection(*direction);
   if (target) {
     const std::string fault = aimSpot(readVector(*target), light);
@@ -84,7 +86,6 @@ void readSpot(const JsonNode& node, Light& light) {
     }
     light.cutoff = glm::radians(cutoff);
   }
-  if (!direction && !target) refuse(node, "\"direction\" or \"target\" is missing");
 }
 
 /// One number, or [low, high].

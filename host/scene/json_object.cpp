@@ -34,9 +34,14 @@ struct Loaded {
   std::map<Primitive, std::uint32_t> primitives;  ///< -> index in Scene::meshes
 };
 
+/// No texture where the file is missing.
 TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene) {
   TextureUse use;
-  use.texture = addTexture(scene, readPath(node, folder));
+  const std::string path = pathOf(node, folder), fault = faultOfPath(path);
+  if (fault.empty())
+    use.texture = addTexture(scene, path);
+  else
+    scene.missing_textures.push_back(messageAt(node, fault));
   return use;
 }
 
@@ -58,9 +63,11 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
     material.emission = glm::vec3(1);  // the map's factor: black would hide it
   }
   if (const auto n = find(node, "emission")) material.emission = readColor(*n);
+  // What glows by a picture that is missing doesn't.
+  if (find(node, "emission_map") && material.emission_map.texture < 0) material.emission = glm::vec3(0);
   if (const auto n = find(node, "alpha_map")) {
     material.alpha_map = readMap(*n, folder, scene);
-    material.alpha_cutoff = 0.5f;
+    if (material.alpha_map.texture >= 0) material.alpha_cutoff = 0.5f;
   }
   if (const auto n = find(node, "alpha")) material.alpha = static_cast<float>(readNumber(*n, 0, 1));
   if (const auto n = find(node, "alpha_cutoff"))

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -111,13 +112,13 @@ Fog readFog(const JsonNode& node) {
   const std::string name = readText(mode);
   if (name == "linear") {
     fog.mode = FogMode::kLinear;
-    refuseKeys(node, {"density"}, "for linear fog");
+    refuseKeys(node, {"density"}, "for linear fog, only for the modes exp and exp2");
     if (const auto n = find(node, "start")) fog.start = static_cast<float>(readNumber(*n));
     if (const auto n = find(node, "end")) fog.end = static_cast<float>(readNumber(*n));
     if (fog.start == fog.end) refuse(node, "start and end are the same distance");
   } else if (name == "exp" || name == "exp2") {
     fog.mode = name == "exp" ? FogMode::kExp : FogMode::kExp2;
-    refuseKeys(node, {"start", "end"}, "for exponential fog");
+    refuseKeys(node, {"start", "end"}, fmt::format("for {} fog, only for the mode linear", name));
     if (const auto n = find(node, "density")) fog.density = readColor(*n);
   } else {
     refuse(mode, fmt::format("expected \"linear\", \"exp\" or \"exp2\", got {}", mode.json->dump()));
@@ -131,6 +132,16 @@ Fog readFog(const JsonNode& node) {
     fog.radial = distance == "radial";
   }
   return fog;
+}
+
+/// Whether a scene file says anything of what lights its objects. What glows counts.
+bool saysLight(const JsonNode& top) {
+  for (const char* key : {"lights", "light_fields", "ambient", "lighting"})
+    if (find(top, key)) return true;
+  const auto materials = find(top, "materials");
+  return materials && std::any_of(materials->json->begin(), materials->json->end(), [](const Json& material) {
+           return material.contains("emission") || material.contains("emission_map");
+         });
 }
 
 glm::ivec2 readSize(const JsonNode& node) {
@@ -209,6 +220,7 @@ Scene loadJsonScene(const std::string& path) {
   std::vector<LightField> fields;
   if (const auto n = find(top, "light_fields")) fields = readLightFields(*n, folder, scene.lights.size());
   readObjects(top, folder, scene);
+  scene.says_light = saysLight(top);
   if (!fields.empty()) poseScene(scene, 1);  // the surfaces that lights lie on
   for (const LightField& field : fields) expandLightField(field, scene);
   return scene;

@@ -49,9 +49,16 @@ void lightObject(const glm::dmat4& camera_to_world, Scene& scene) {
   scene.ambient = glm::vec3(0.2f);
 }
 
+/// Whether nothing that a scene shows has any light of its own or of others.
+bool isDark(const Scene& scene) {
+  const auto glows = [](const Material& material) { return material.emission != glm::vec3(0); };
+  return scene.lighting && scene.lights.empty() && scene.ambient == glm::vec3(0) &&
+         std::none_of(scene.materials.begin(), scene.materials.end(), glows);
+}
+
 }  // namespace
 
-Scene loadScene(const std::string& path, double frame) {
+Scene loadScene(const std::string& path, double frame, MissingTextures missing) {
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
   if (is_mesh_file) {
@@ -63,6 +70,10 @@ Scene loadScene(const std::string& path, double frame) {
     throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
                                  path, extensionOf(path)));
   }
+  if (missing == MissingTextures::kError && !scene.missing_textures.empty())
+    throw InputError(scene.missing_textures.front());
+  for (const std::string& texture : scene.missing_textures)
+    scene.warnings.push_back(texture + "; drawn without");
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);
   if (frame != 1) poseScene(scene, frame);
@@ -70,7 +81,8 @@ Scene loadScene(const std::string& path, double frame) {
 }
 
 void completeScene(Scene& scene, bool is_mesh_file) {
-  const bool needs_lights = is_mesh_file && scene.lights.empty();
+  const bool needs_lights = !scene.says_light && scene.lights.empty();
+  if (scene.says_light && isDark(scene)) scene.warnings.push_back(scene.name + ": nothing lights this scene");
   if (!scene.cameras.empty() && !needs_lights) return;
   const Framing framing = frameScene(scene);
   if (scene.cameras.empty()) scene.cameras.push_back(framing.camera);
@@ -80,7 +92,7 @@ void completeScene(Scene& scene, bool is_mesh_file) {
   } else {
     lightObject(scene.cameras[0].camera_to_world, scene);
   }
-  scene.background = 0.8f * glm::vec3(0.45f, 0.6f, 0.8f);
+  if (is_mesh_file) scene.background = 0.8f * glm::vec3(0.45f, 0.6f, 0.8f);
 }
 
 Bounds objectBounds(const Scene& scene, const Object& object) {

@@ -16,8 +16,12 @@
 namespace luciole {
 namespace {
 
+std::string messageAt(const MtlEntry& entry, const std::string& what) {
+  return fmt::format("{}: material '{}': {}", entry.file, forMessage(entry.name), what);
+}
+
 [[noreturn]] void fail(const MtlEntry& entry, const std::string& what) {
-  throw InputError(fmt::format("{}: material '{}': {}", entry.file, forMessage(entry.name), what));
+  throw InputError(messageAt(entry, what));
 }
 
 glm::vec3 color(const MtlEntry& entry, const char* statement, const tinyobj::real_t (&values)[3]) {
@@ -40,7 +44,9 @@ TextureUse textureUse(const MtlEntry& entry, const char* statement, std::string 
   std::replace(name.begin(), name.end(), '\\', '/');
   const std::filesystem::path path = std::filesystem::path(entry.file).parent_path() / name;
   if (!isFile(path)) {
-    fail(entry, fmt::format("{}: there is no picture '{}'", statement, forMessage(path.string())));
+    scene.missing_textures.push_back(
+        messageAt(entry, fmt::format("{}: there is no picture '{}'", statement, forMessage(path.string()))));
+    return use;
   }
   use.texture = addTexture(scene, path.string());
   use.wrap_u = use.wrap_v = options.clamp ? Wrap::kClampToEdge : Wrap::kRepeat;
@@ -106,6 +112,8 @@ Material readMaterial(const MtlEntry& entry, Scene& scene) {
   // A map_Ke alone is meant to be seen.
   const bool only_map = material.emission_map.texture >= 0 && material.emission == glm::vec3(0);
   if (only_map) material.emission = glm::vec3(1);
+  // What glows by a picture that is missing doesn't.
+  if (!values.emissive_texname.empty() && material.emission_map.texture < 0) material.emission = glm::vec3(0);
   material.double_sided = true;
   return material;
 }

@@ -19,7 +19,8 @@ std::vector<MtlEntry> readMtl(const std::string& path);
 
 /// Interprets a material and adds its textures to `scene`, not decoded yet. Always double-sided, because OBJ
 /// says nothing of culling. `d` and `Tr` are ignored: nothing is blended here, and programs are known to
-/// write "d 0" for opaque materials. Throws InputError naming a missing picture.
+/// write "d 0" for opaque materials. A picture that is missing is told in
+/// Scene::missing_textures. Throws InputError.
 Material readMaterial(const MtlEntry& entry, Scene& scene);
 
 /// Once the textures are decoded: map_d, or a diffuse map with some alpha below 1, makes holes where the

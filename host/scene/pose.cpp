@@ -8,6 +8,7 @@
 
 #include "error.hpp"
 #include "scene/frame.hpp"
+#include "scene/place_limits.hpp"
 
 namespace luciole {
 namespace {
@@ -84,6 +85,7 @@ void poseScene(Scene& scene, double frame) {
     const std::string fault = poseLight(motion, frame, scene.lights[motion.light]);
     if (!fault.empty()) fail(scene, frame, fmt::format("light {}", motion.light), fault);
   }
+  checkPlaces(scene);
 }
 
 void hang(Scene& scene, const Hanging& object) {

@@ -10,7 +10,8 @@ namespace luciole {
 /// Puts what moves in a scene where it is at a frame, which may lie between two: sets members of cameras,
 /// lights and objects, and nothing of the rest. The result doesn't depend on earlier poses. Objects that a
 /// scale of 0 flattens show an empty mesh. Throws InputError naming the frame where there is no such pose: a
-/// camera whose up is parallel to its view, a spot at its target, a transform that isn't finite.
+/// camera whose up is parallel to its view, a spot at its target, a transform that isn't finite; and what
+/// checkPlaces() does.
 void poseScene(Scene& scene, double frame);
 
 /// Makes an object hang on a node, from the next pose on.

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "error.hpp"
@@ -54,6 +55,17 @@ RTCRay makeRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& 
   return ray;
 }
 
+/// Embree takes origins and directions up to 1.844·10¹⁸ a component, and stops the program where one is
+/// beyond that or no number. Rays for which that is so, in a scene of 10¹⁸ metres or from a point that no
+/// direction leads away from, meet nothing.
+bool canBeCast(const RTCRay& ray) {
+  constexpr float kLargest = 1.8e18f;
+  bool valid = !std::isnan(ray.tfar);
+  for (const float value : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+    valid &= std::abs(value) <= kLargest;
+  return valid;
+}
+
 constexpr std::size_t kPacketSize = 16;
 /// Packets that a thread takes on at once.
 constexpr std::size_t kPacketsPerTask = 64;
@@ -72,7 +84,7 @@ void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span
     packet.dir_z[i] = ray.dir_z;
     packet.tfar[i] = ray.tfar;
     packet.mask[i] = ray.mask;
-    valid[i] = -1;
+    valid[i] = canBeCast(ray) ? -1 : 0;
   }
 #if RTC_VERSION_MAJOR >= 4
   RTCOccludedArguments arguments;
@@ -140,6 +152,7 @@ std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, con
   RTCRayHit query{};
   query.ray = makeRay(scene, from, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!canBeCast(query.ray)) return std::nullopt;
 #if RTC_VERSION_MAJOR >= 4
   rtcIntersect1(scene.scene.get(), &query);
 #else
@@ -155,6 +168,7 @@ std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, con
 
 bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance) {
   RTCRay ray = makeRay(scene, from, direction, distance);
+  if (!canBeCast(ray)) return false;
 #if RTC_VERSION_MAJOR >= 4
   rtcOccluded1(scene.scene.get(), &ray);
 #else

@@ -23,7 +23,7 @@ struct TextureUse {
 };
 
 /// Phong's reflection coefficients, linear Rec.709. Defaults are OpenGL's.
-/// The diffuse map multiplies ambient and diffuse; vertex colours likewise.
+/// The diffuse map multiplies ambient and diffuse; vertex colours likewise, and emission where it says so.
 struct Material {
   std::string name;
   glm::vec3 ambient{0.2f};
@@ -37,6 +37,7 @@ struct Material {
   float alpha = 1.0f;         ///< constant opacity, multiplied with the maps' and the vertex colour's alpha
   float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
   bool double_sided = false;  ///< otherwise back faces are culled
+  bool colored_emission = false;  ///< vertex colours multiply the emission too
 };
 
 /// An indexed triangle mesh in its own (object) space, metres. All per-vertex arrays have positions.size()
@@ -46,6 +47,7 @@ struct Mesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  ///< unit, never missing: loaders make them
   std::vector<glm::vec2> uvs;      ///< optional; v grows downwards: (0,0) is the picture's top left corner
+  std::vector<glm::vec2> emission_uvs;  ///< optional; where given, emission maps are looked up here instead
   std::vector<glm::vec4> colors;   ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
@@ -123,6 +125,12 @@ struct Camera {
 /// Indices are checked by the loaders; every number is finite unless its comment says otherwise.
 struct Scene {
   std::string name;  ///< the file, for messages and metadata
+  /// What a file asks for and the picture won't show, a line each that begins with the file. Loaders print
+  /// nothing: the command line does.
+  std::vector<std::string> warnings;
+  /// Pictures that its files name and that aren't there, a line each as above. Materials do without them;
+  /// loadScene() decides whether that is good enough.
+  std::vector<std::string> missing_textures;
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
@@ -133,7 +141,8 @@ struct Scene {
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
   Fog fog;
-  bool lighting = true;  ///< false: every surface shows its emission + diffuse colour unlit
+  bool says_light = false;  ///< its file says what lights it, be that nothing: see completeScene()
+  bool lighting = true;     ///< false: every surface shows its emission + diffuse colour unlit
   Animation animation;   ///< what moves: poseScene() sets cameras, lights and objects by it
 };
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <span>
+#include <string>
 
 #include "error.hpp"
 #include "image/image.hpp"
@@ -189,6 +191,21 @@ TEST(ReadTexture, ErrorsNameThePicture) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
   }
   EXPECT_THROW(readTexture({}, "empty"), InputError);
+}
+
+TEST(ReadTexture, JunkIsRefusedByTheNameThatPeopleKnow) {
+  // The last one's decoder throws.
+  for (const std::string& junk : {std::string("RIFF\x10\0\0\0WEBPVP8 junkjunkjunk", 28), std::string("junk"),
+                                  std::string("GIF89ajunkjunkjunkjunkjunkjunkjunk")}) {
+    try {
+      readTexture(std::as_bytes(std::span(junk)), "a.gltf: images[0] 'x.webp'");
+      ADD_FAILURE() << "threw nothing";
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(message.rfind("a.gltf: images[0] 'x.webp': can't read as a picture: ", 0), 0u) << message;
+      EXPECT_EQ(message.find("/proc"), std::string::npos) << message;
+    }
+  }
 }
 
 TEST(ReadTexture, EveryTextureOfTheSharedScenesLoads) {

@@ -1,5 +1,6 @@
 #include "scene/json_scene.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -112,8 +113,8 @@ TEST_F(JsonScene, RotationIsAboutXThenYThenZ) {
 }
 
 TEST_F(JsonScene, SpotWithCutoff180IsAPointLight) {
-  const Scene scene =
-      load(R"({"lights": [{"type": "spot", "position": [0,0,0], "cutoff": 180, "exponent": 9}]})");
+  const Scene scene = load(
+      R"({"lights": [{"type": "spot", "position": [0,0,0], "direction": [0,-1,0], "cutoff": 180, "exponent": 9}]})");
   EXPECT_EQ(scene.lights[0].kind, LightKind::kPoint);
 }
 
@@ -166,8 +167,6 @@ TEST_F(JsonScene, MessagesNameFilePlaceFaultAndExpectation) {
             "scene.json: lights[0].cutoff: means nothing for a light that isn't a spot");
   EXPECT_EQ(refusal(R"({"objects": [{"mesh": "gone.obj"}]})"),
             "scene.json: objects[0].mesh: there is no file " + folder_ / "gone.obj");
-  EXPECT_EQ(refusal(R"({"materials": {"m": {"diffuse_map": "gone.png"}}})"),
-            "scene.json: materials.m.diffuse_map: there is no file " + folder_ / "gone.png");
   EXPECT_EQ(refusal(R"({"objects": [{"primitive": "box", "material": "gold"}]})"),
             "scene.json: objects[0].material: no material is called \"gold\"");
   EXPECT_EQ(refusal(R"({"size": [0, 5]})"),
@@ -179,6 +178,35 @@ TEST_F(JsonScene, MessagesNameFilePlaceFaultAndExpectation) {
               EndsWith("scene.json: ambient: this key is given twice"));
   EXPECT_THAT(refusal(R"({"lights": [{"type":"point","position":[0,0,0]}, {"type":"point","type":"spot"}]})"),
               EndsWith("scene.json: lights[1].type: this key is given twice"));
+}
+
+TEST_F(JsonScene, AMissingPictureIsToldByItsPlaceAndItsMaterialDoesWithout) {
+  const Scene scene = load(
+      R"({"materials": {"m": {"diffuse_map": "gone.png", "emission_map": "gone.png", "alpha_map": "gone.png"}}})");
+  ASSERT_EQ(scene.missing_textures.size(), 3u);
+  EXPECT_EQ(scene.missing_textures[0], fmt::format("{}: materials.m.diffuse_map: there is no file {}",
+                                                   folder_ / "scene.json", folder_ / "gone.png"));
+  const Material& material = scene.materials.back();
+  EXPECT_EQ(material.diffuse_map.texture, -1);
+  EXPECT_EQ(material.emission, glm::vec3(0));
+  EXPECT_EQ(material.alpha_cutoff, 0);
+}
+
+TEST_F(JsonScene, FogKeysOfAnotherModeAreToldWithTheModesTheyFit) {
+  EXPECT_EQ(refusal(R"({"fog": {"mode": "linear", "density": 0.1}})"),
+            "scene.json: fog.density: means nothing for linear fog, only for the modes exp and exp2");
+  EXPECT_EQ(refusal(R"({"fog": {"mode": "exp", "start": 1}})"),
+            "scene.json: fog.start: means nothing for exp fog, only for the mode linear");
+  EXPECT_EQ(refusal(R"({"fog": {"mode": "exp2", "end": 1}})"),
+            "scene.json: fog.end: means nothing for exp2 fog, only for the mode linear");
+}
+
+TEST_F(JsonScene, SpotsAndDirectionalLightsMustSayWhereTheyShine) {
+  EXPECT_EQ(refusal(R"({"lights": [{"type": "directional"}]})"),
+            "scene.json: lights[0]: \"direction\" is missing");
+  for (const char* spread : {"", R"(, "cutoff": 180)", R"(, "cutoff": 30)", R"(, "outer_cone": 30)"})
+    EXPECT_EQ(refusal(fmt::format(R"({{"lights": [{{"type": "spot", "position": [0,3,0]{}}}]}})", spread)),
+              "scene.json: lights[0]: \"direction\" or \"target\" is missing");
 }
 
 TEST_F(JsonScene, RefusesWhatCannotBeDrawn) {

@@ -41,6 +41,7 @@ Ending loadHere(const std::string& path) {
   } catch (const std::exception& error) {
     return {false, '?', error.what()};
   }
+  if (!scene.missing_textures.empty()) return {false, 'I', scene.missing_textures.front()};
   return {false, 'S', test::sceneFault(scene)};
 }
 

@@ -275,14 +275,16 @@ TEST_F(ObjLoader, ClampedMapsAreClamped) {
   EXPECT_EQ(material("map_Kd a.png\n").diffuse_map.wrap_v, Wrap::kRepeat);
 }
 
-TEST_F(ObjLoader, AMissingPictureNamesFileAndMaterial) {
-  try {
-    material("map_Kd nowhere.png\n");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr(folder / "m.mtl: material 'x': map_Kd"));
-    EXPECT_THAT(e.what(), HasSubstr("nowhere.png"));
-  }
+TEST_F(ObjLoader, AMissingPictureIsToldByFileAndMaterialWhichDoesWithout) {
+  write("m.mtl", "newmtl x\nKd 0.5 0 0\nKe 1 1 1\nmap_Kd nowhere.png\nmap_Ke gone.png\n");
+  const Scene scene = load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle);
+  ASSERT_EQ(scene.missing_textures.size(), 2u);
+  EXPECT_THAT(scene.missing_textures[0], HasSubstr(folder / "m.mtl: material 'x': map_Kd"));
+  EXPECT_THAT(scene.missing_textures[0], HasSubstr("nowhere.png"));
+  EXPECT_THAT(scene.missing_textures[1], HasSubstr("map_Ke"));
+  EXPECT_EQ(scene.materials.at(0).diffuse, glm::vec3(0.5f, 0, 0));
+  EXPECT_EQ(scene.materials.at(0).diffuse_map.texture, -1);
+  EXPECT_EQ(scene.materials.at(0).emission, glm::vec3(0)) << "it glows by the picture only";
 }
 
 TEST_F(ObjLoader, TexturesOfUnusedMaterialsAreNotLoaded) {

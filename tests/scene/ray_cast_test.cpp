@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "scene/load_scene.hpp"
 #include "shadow/shadow_rays.hpp"
@@ -52,6 +55,27 @@ std::vector<std::uint8_t> oneByOne(const RayScene& scene, std::span<const Shadow
   for (const ShadowRay& ray : rays)
     blocked.push_back(isBlocked(scene, ray.from, ray.direction, ray.distance));
   return blocked;
+}
+
+TEST(RayCast, RaysThatNoFloatHoldsMeetNothing) {
+  Scene scene = loadScene(LUCIOLE_SOURCE_DIR "/scenes/cornell.json");
+  const RayScene rays = buildRayScene(scene, glm::dvec3(0));
+  const double infinite = std::numeric_limits<double>::infinity(), none = std::nan("");
+  const glm::dvec3 here(0), ahead(0, 0, -1);
+  const std::vector<ShadowRay> impossible{{{1e38, 0, 0}, ahead, 1},   {{0, 2e18, 0}, ahead, infinite},
+                                          {{none, 0, 0}, ahead, 1},   {here, {none, 0, 0}, infinite},
+                                          {here, {0, none, 0}, none}, {{infinite, none, 0}, ahead, 1}};
+  for (const ShadowRay& ray : impossible) {
+    EXPECT_FALSE(castRay(rays, ray.from, ray.direction));
+    EXPECT_FALSE(isBlocked(rays, ray.from, ray.direction, ray.distance));
+  }
+  // Beside one that can be cast.
+  std::vector<ShadowRay> all = impossible;
+  all.push_back({cameraPlace(scene), -glm::dvec3(scene.cameras.front().camera_to_world[2]), infinite});
+  std::vector<std::uint8_t> blocked(all.size(), 7), expected(all.size(), 0);
+  expected.back() = 1;
+  areBlocked(rays, all, blocked);
+  EXPECT_EQ(blocked, expected);
 }
 
 TEST(RayCast, ManyRaysAtOnceAreBlockedAsOneByOne) {
