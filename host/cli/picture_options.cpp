@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "cli/commands.hpp"
 #include "cli/frames.hpp"
 #include "error.hpp"
+#include "image/file_format.hpp"
 #include "image/write_file.hpp"
 #include "scene/json_scene.hpp"
 
@@ -97,6 +97,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (is_one_picture)
     command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")
         ->required();
+  if (is_one_picture)
+    command.add_option("--format", options.format,
+                       "png, exr ...: what to write, whatever the name says (default: its extension)");
   if (groups & kViewOptions) {
     command.add_option("--size", options.size, "WxH pixels (default: the scene's, or 1280x720)");
     command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
@@ -120,6 +123,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(CLI::IsMember(std::vector<std::string>(kModelNames.begin(), kModelNames.end())))
         ->capture_default_str();
     command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
+    if (is_one_picture)
+      command
+          .add_option("--dither", options.dither,
+                      "of integer formats (png, jpg ...): a grain of half a step in place of bands")
+          ->check(CLI::IsMember({"on", "off"}))
+          ->capture_default_str();
   }
   if (groups & kShadeOptions) {
     command
@@ -244,8 +253,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
 }
 
 void checkOutput(const PictureOptions& options) {
-  checkWritable(options.output);
-  if (!parseAovs(options.aovs).empty() && std::filesystem::path(options.output).extension() != ".exr")
+  checkWritable(options.output, options.format);
+  if (!parseAovs(options.aovs).empty() && outputFormat(options.output, options.format).extension != "exr")
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
@@ -257,6 +266,20 @@ int useFrame(PictureOptions& options, const std::string& command) {
   options.output = frameFile(options.output, frame);
   options.stats = frameFile(options.stats, frame);
   return frame;
+}
+
+WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
+                          glm::ivec2 picture_size, glm::ivec2 crop_origin) {
+  return {.format = options.format,
+          .dither = options.dither == "on",
+          .picture_size = picture_size,
+          .crop_origin = crop_origin,
+          .camera = camera};
+}
+
+WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
+  const auto camera = gbuffer.knows_camera ? std::optional(gbuffer.camera) : std::nullopt;
+  return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
 }
 
 Metadata pictureMetadata(const std::string& command_line, const Device* device) {

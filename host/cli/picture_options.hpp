@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "cl/device.hpp"
@@ -13,6 +14,7 @@ namespace luciole {
 /// The options that the picture commands share, as typed.
 struct PictureOptions {
   std::string output;
+  std::string format;
   std::string size;
   std::string camera;
   int samples = 1;
@@ -28,6 +30,7 @@ struct PictureOptions {
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   std::string aovs;
   double exposure = 0;
+  std::string dither = "on";
   std::string device;
   std::string missing_textures = "error";
   std::string stats;
@@ -35,16 +38,16 @@ struct PictureOptions {
   bool quiet = false;
 };
 
-/// Which of them a command takes, beside the output, --stats and --quiet.
+/// Which of them a command takes, beside the output, --format, --stats and --quiet.
 enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
-  kModelOptions = 4,   ///< --model, --exposure
+  kModelOptions = 4,   ///< --model, --exposure, --dither
   kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --aov
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
-  kManyPictures = 64,  ///< without what is about one file: -o, --stats, --crop, --aov
+  kManyPictures = 64,  ///< without what is about one file: -o, --format, --dither, --stats, --crop, --aov
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
 
@@ -74,6 +77,12 @@ void checkOutput(const PictureOptions& options);
 /// The frame that --frames names for a command that makes one picture (1 without), whose number goes into the
 /// names of its files. Throws InputError.
 int useFrame(PictureOptions& options, const std::string& command);
+
+/// How to write a picture, or part of one, that this camera sees.
+WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
+                          glm::ivec2 picture_size, glm::ivec2 crop_origin);
+/// The same of all the pixels of a G-buffer.
+WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
 
 /// Text attributes for the picture: software, command and device.
 Metadata pictureMetadata(const std::string& command_line, const Device* device);

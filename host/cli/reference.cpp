@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "error.hpp"
+#include "image/file_format.hpp"
 #include "image/gbuffer_file.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
@@ -193,7 +194,10 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   metadata.emplace_back(kRequest, request);
   metadata.emplace_back(kWindow, fmt::format("{},{},{},{}", piece.window.x, piece.window.y,
                                              piece.window.width, piece.window.height));
-  timed(stats, "write", [&] { writeImage(piece.image, options.output, metadata); });
+  timed(stats, "write", [&] {
+    writeImage(piece.image, options.output, metadata,
+               writeOptions(options, settings.camera, settings.size, {piece.window.x, piece.window.y}));
+  });
   describeScene(scene, {}, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
@@ -215,7 +219,7 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   });
   timed(stats, "write", [&] {
     writeImage(makePicture(size, pixels, colors, options.exposure), options.output,
-               pictureMetadata(stats.command, nullptr));
+               pictureMetadata(stats.command, nullptr), writeOptions(options, gbuffer));
   });
   describeScene(scene, {}, stats);
   stats.width = gbuffer.width;
@@ -233,7 +237,7 @@ void checkOptions(const ReferenceOptions& options) {
                        options.samples != 1 || options.shading != "phong";
   if (!options.gbuffer.empty() && of_view)
     throw InputError("reference: a G-buffer has its size, camera, crop, shading and samples already");
-  if (options.pixels > 0 && std::filesystem::path(options.output).extension() != ".exr")
+  if (options.pixels > 0 && outputFormat(options.output, options.format).extension != "exr")
     throw InputError(
         fmt::format("--pixels: {} cannot say which pixels it holds, an .exr can", options.output));
 }

@@ -38,14 +38,14 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
                    const std::function<void(int, int)>& on_pass, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
-  const glm::ivec2 size =
-      settings.crop ? glm::ivec2(settings.crop->width, settings.crop->height) : settings.size;
+  const Crop window = settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
     timed(stats, "write", [&] {
       if (!writer)
-        writer.emplace(options.output, size.x, size.y, rows.channels,
-                       pictureMetadata(stats.command, &device));
+        writer.emplace(options.output, window.width, window.height, rows.channels,
+                       pictureMetadata(stats.command, &device),
+                       writeOptions(options, settings.camera, settings.size, {window.x, window.y}));
       writer->write(rows);
     });
   };
@@ -114,7 +114,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     Stats stats = std::exchange(started, Stats{});
     stats.command = command;
     try {
-      checkWritable(one.output);
+      checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);
       renderPicture(device, scene, one, {}, stats);
       if (on_terminal) fmt::print(stderr, "\r\x1b[K");
@@ -213,7 +213,8 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     }
     const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
     timed(stats, "write", [&] {
-      writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr));
+      writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
+                   options->format);
     });
     reportStats(*options, stats);
   });
@@ -241,8 +242,10 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
-    timed(stats, "write",
-          [&] { writeImage(image, options->output, pictureMetadata(context.command_line, &device)); });
+    timed(stats, "write", [&] {
+      writeImage(image, options->output, pictureMetadata(context.command_line, &device),
+                 writeOptions(*options, gbuffer));
+    });
     reportStats(*options, stats);
   });
 }

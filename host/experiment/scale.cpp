@@ -190,12 +190,12 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
                    .list_map = {}};
   for (const Light& light : bench.scene.lights) check.reach = std::max<double>(check.reach, light.range);
   const std::string name = fileName(bench.experiment.description, index);
-  const auto write = [&](const Image& image, const char* ending) {
+  const auto write = [&](const Image& image, const char* ending, const WriteOptions& options = {}) {
     const std::string file = name + ending;
-    writeImage(image, bench.log.folder() + "/" + file, {{"Software", "Luciole " LUCIOLE_VERSION}});
+    writeImage(image, bench.log.folder() + "/" + file, {{"Software", "Luciole " LUCIOLE_VERSION}}, options);
     return file;
   };
-  check.picture = write(colors, ".png");
+  check.picture = write(colors, ".png", {.dither = true});
   check.error_map = write(errorMap(difference), "-error.png");
   check.list_map =
       write(listMap(picture.width, picture.height, layerOf(picture, "list_length")), "-lists.png");

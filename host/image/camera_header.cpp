@@ -155,6 +155,13 @@ bool looksAlongPlusZ(const glm::dmat4& world_to_camera, const std::optional<glm:
 
 }  // namespace
 
+void setWindow(glm::ivec2 crop_origin, glm::ivec2 picture_size, OIIO::ImageSpec& spec) {
+  spec.x = crop_origin.x;
+  spec.y = crop_origin.y;
+  spec.full_width = picture_size.x;
+  spec.full_height = picture_size.y;
+}
+
 void writeCamera(const Camera& camera, glm::ivec2 picture_size, OIIO::ImageSpec& spec) {
   const glm::dmat4 world_to_camera = mirrorZ() * glm::inverse(camera.camera_to_world);
   setMatrix(spec, "worldtocamera", world_to_camera);

@@ -32,6 +32,9 @@ struct CameraHeader {
   std::optional<glm::dvec2> half_extent;
 };
 
+/// Makes the pixels a part of a whole picture, the data window of an EXR's display window.
+void setWindow(glm::ivec2 crop_origin, glm::ivec2 picture_size, OIIO::ImageSpec& spec);
+
 void writeCamera(const Camera& camera, glm::ivec2 picture_size, OIIO::ImageSpec& spec);
 
 /// Empty where the header has no camera. Some programs let worldToCamera look along −z; the sign of w in

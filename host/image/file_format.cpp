@@ -33,23 +33,26 @@ std::string lowerCase(std::string text) {
 
 }  // namespace
 
-FileFormat outputFormat(const std::string& path) {
-  if (path == "-") return kFormats[0];
-  std::string extension = lowerCase(std::filesystem::path(path).extension().string());
-  if (!extension.empty()) extension.erase(0, 1);
+FileFormat outputFormat(const std::string& path, const std::string& named) {
+  if (path == "-" && named.empty()) return kFormats[0];
+  std::string extension = lowerCase(named);
+  if (named.empty()) {
+    extension = lowerCase(std::filesystem::path(path).extension().string());
+    if (!extension.empty()) extension.erase(0, 1);
+  }
   for (const FileFormat& format : kFormats) {
     if (extension == format.extension) return format;
   }
   if (openImageIOWrites(extension)) return {extension, false, 3};
   std::string known;
-  for (const FileFormat& format : kFormats) known += fmt::format(" .{}", format.extension);
-  throw InputError(
-      fmt::format("{}: unknown extension '{}', expected one of{} or another that OpenImageIO writes", path,
-                  extension, known));
+  for (const FileFormat& format : kFormats) known += fmt::format(" {}", format.extension);
+  throw InputError(fmt::format("{}: unknown {} '{}', expected one of{} or another that OpenImageIO writes{}",
+                               path, named.empty() ? "extension" : "format", extension, known,
+                               extension.empty() ? " (or --format)" : ""));
 }
 
-void checkWritable(const std::string& path) {
-  outputFormat(path);
+void checkWritable(const std::string& path, const std::string& format) {
+  outputFormat(path, format);
   checkPlace(path);
 }
 

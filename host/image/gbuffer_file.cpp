@@ -135,6 +135,7 @@ class Surface {
     if (!isThere(normal_)) throw InputError(file.path + ": channel N.X: missing, expected N.X N.Y N.Z");
     const auto header = readCamera(spec, file.path, visiblePoints(file, position_, normal_));
     if (header) gbuffer.camera = header->camera;
+    gbuffer.knows_camera = header && header->half_extent;
     world_to_view_ = glm::inverse(gbuffer.camera.camera_to_world);
 
     const auto view_position = file.findThree("Pcam", "XYZ"), view_normal = file.findThree("Ncam", "XYZ");
@@ -259,22 +260,20 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
 
 }  // namespace
 
-void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata) {
-  if (outputFormat(path).extension != std::string("exr")) {
+void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
+                  const std::string& format) {
+  if (outputFormat(path, format).extension != "exr") {
     throw InputError(path + ": a G-buffer has many float channels, expected .exr");
   }
   OIIO::ImageSpec spec(gbuffer.width, gbuffer.height, 0, OIIO::TypeDesc::FLOAT);
   spec.channelnames = channelNames(gbuffer);
   spec.nchannels = int(spec.channelnames.size());
-  spec.x = gbuffer.crop_origin.x;
-  spec.y = gbuffer.crop_origin.y;
-  spec.full_width = gbuffer.picture_size.x;
-  spec.full_height = gbuffer.picture_size.y;
+  setWindow(gbuffer.crop_origin, gbuffer.picture_size, spec);
   spec.attribute("compression", "zip");
   for (const auto& [name, value] : metadata) spec.attribute(name, value);
   writeCamera(gbuffer.camera, gbuffer.picture_size, spec);
 
-  PictureFile file(path, spec);
+  PictureFile file(path, "exr", spec);
   // Some rows at a time: all of them together would take more memory than the G-buffer.
   constexpr int kRows = 64;
   std::vector<float> values;

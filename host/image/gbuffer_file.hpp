@@ -13,9 +13,10 @@ namespace luciole {
 /// ambient.R/G/B, emission.R/G/B, Ng.X Ng.Y Ng.Z (the triangle's own normal, unit, world; groups that the
 /// G-buffer has), Z (metres along the view axis, +inf where nothing was hit), and Pcam.X/Y/Z, Ncam.X/Y/Z:
 /// position and normal in view space as the kernels had them, so that shading the file equals rendering the
-/// scene bit for bit. Where nothing was hit P, N and Ng are 0. Whole file or none. Throws as writeImage does,
-/// and InputError for an extension other than .exr.
-void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata);
+/// scene bit for bit. Where nothing was hit P, N and Ng are 0. Whole file or none. `format` as in
+/// WriteOptions. Throws as writeImage does, and InputError for a format other than exr.
+void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
+                  const std::string& format = "");
 
 /// Reads a G-buffer written by this program or another with OpenImageIO: the first part of the file, channels
 /// in any order, case ignored, half or float; channels it doesn't know are skipped. N is required, and P or

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "error.hpp"
+#include "image/camera_header.hpp"
 #include "image/oiio.hpp"
 #include "image/picture_file.hpp"
 #include "image/row_file.hpp"
@@ -17,7 +18,7 @@ namespace luciole {
 namespace {
 
 OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& channels,
-                         const FileFormat& format, const Metadata& metadata) {
+                         const FileFormat& format, const Metadata& metadata, const WriteOptions& options) {
   const bool is_byte = !format.is_float;
   OIIO::ImageSpec spec(width, height, int(channels.size()),
                        is_byte ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
@@ -31,6 +32,11 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
     spec.attribute("oiio:ColorSpace", "Linear");
   }
   if (is_byte) spec.attribute("oiio:ColorSpace", "sRGB");
+  if (format.extension == "exr") {
+    const glm::ivec2 whole = options.picture_size.x > 0 ? options.picture_size : glm::ivec2(width, height);
+    setWindow(options.crop_origin, whole, spec);
+    if (options.camera) writeCamera(*options.camera, whole, spec);
+  }
   // OpenImageIO's own 98 doubles the size for what nobody sees.
   if (format.extension == "jpg" || format.extension == "jpeg") spec.attribute("compression", "jpeg:88");
   return spec;
@@ -68,8 +74,9 @@ std::string readAttribute(const std::string& path, const std::string& name) {
 
 std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
                                          const std::vector<std::string>& channels, const FileFormat& format,
-                                         const Metadata& metadata) {
-  return std::make_unique<PictureFile>(path, makeSpec(width, height, channels, format, metadata));
+                                         const Metadata& metadata, const WriteOptions& options) {
+  return std::make_unique<PictureFile>(path, format.extension,
+                                       makeSpec(width, height, channels, format, metadata, options));
 }
 
 }  // namespace luciole

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "scene/scene.hpp"
 
 namespace luciole {
 
@@ -19,6 +23,15 @@ struct Image {
 /// "ImageDescription" …).
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
+/// How a picture is written.
+struct WriteOptions {
+  std::string format = {};            ///< an extension that stands for the path's own, empty: none does
+  bool dither = false;                ///< integer formats, see dither.hpp
+  glm::ivec2 picture_size{0};         ///< of the whole picture where this is a crop; 0: this is the whole
+  glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
+  std::optional<Camera> camera = {};  ///< for an EXR's header
+};
+
 /// Reads any picture OpenImageIO reads; 8- and 16-bit integer files are taken as sRGB and linearized (alpha
 /// apart), unless the file says that it is linear. Colours are as the file has them: never multiplied or
 /// divided by alpha. Sizes are checked before anything is allocated. Throws InputError.
@@ -28,11 +41,13 @@ Image readImage(const std::string& path);
 std::string readAttribute(const std::string& path, const std::string& name);
 
 /// Writes by the extension. Integer formats (png, tga, jpg, bmp, ppm) take the R, G, B channels (and A: png,
-/// tga) as sRGB, rounded to nearest, NaN as 0; exr and tif every channel as it is, 32-bit float; hdr R, G, B.
-/// Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
+/// tga) as sRGB, rounded to nearest or dithered, NaN as 0; exr and tif every channel as it is, 32-bit float;
+/// hdr R, G, B. Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
+/// An EXR of a crop has it as data window inside the display window.
 /// The file appears whole or not at all (see OutputFile). "-" writes a PNG to standard output.
 /// Throws InputError (unknown extension, no such folder, read-only folder) or MachineError (disk full).
-void writeImage(const Image& image, const std::string& path, const Metadata& metadata);
+void writeImage(const Image& image, const std::string& path, const Metadata& metadata,
+                const WriteOptions& options = {});
 
 /// The same for a picture that comes in pieces: whole rows, from the top down. Of most formats what has come
 /// takes no memory any more (see PictureFile).
@@ -40,7 +55,7 @@ class ImageWriter {
  public:
   /// Throws as writeImage does.
   ImageWriter(const std::string& path, int width, int height, const std::vector<std::string>& channels,
-              const Metadata& metadata);
+              const Metadata& metadata, const WriteOptions& options = {});
   ~ImageWriter();
 
   /// The next rows: a piece of the picture's width, with its channels. Throws MachineError.
@@ -55,7 +70,7 @@ class ImageWriter {
 };
 
 /// Throws the InputError that writing to `path` would meet, before any work is done: an unknown extension, a
-/// folder that isn't there or can't be written to, a folder in the file's place.
-void checkWritable(const std::string& path);
+/// folder that isn't there or can't be written to, a folder in the file's place. `format` as in WriteOptions.
+void checkWritable(const std::string& path, const std::string& format = "");
 
 }  // namespace luciole

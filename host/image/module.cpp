@@ -42,12 +42,13 @@ std::string readAttribute(const std::string& path, const std::string& name) {
 
 std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
                                          const std::vector<std::string>& channels, const FileFormat& format,
-                                         const Metadata& metadata) {
-  return functions().open_picture_file(path, width, height, channels, format, metadata);
+                                         const Metadata& metadata, const WriteOptions& options) {
+  return functions().open_picture_file(path, width, height, channels, format, metadata, options);
 }
 
-void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata) {
-  functions().write_gbuffer(gbuffer, path, metadata);
+void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
+                  const std::string& format) {
+  functions().write_gbuffer(gbuffer, path, metadata, format);
 }
 
 GBuffer readGBuffer(const std::string& path) { return functions().read_gbuffer(path); }

@@ -16,11 +16,12 @@
 #include "error.hpp"
 #include "image/exr_header.hpp"
 #include "image/output_file.hpp"
+#include "image/png_input.hpp"
+#include "picture_size.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr int kMaxSide = 65536;
 constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 31;
 // Deflate, the best compressor of these formats on a constant picture, reaches 1 : 1032; JPEG's progressive
 // mode can do better on empty pictures. A header that promises more than this has been made up.
@@ -91,20 +92,27 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
   if (access(path.c_str(), R_OK) != 0)
     throw InputError(fmt::format("{}: can't read: {}", name, systemReason()));
   const std::uint64_t file_size = std::filesystem::file_size(path, error);
-  checkExrHeader(path, name, kMaxSide);
+  checkExrHeader(path, name, kLargestSide);
 
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
-  auto input = decoded(name, [&] { return OIIO::ImageInput::open(path, &config); });
+  std::unique_ptr<OIIO::ImageInput> input = openPng(path, name);
+  if (!input) input = decoded(name, [&] { return OIIO::ImageInput::open(path, &config); });
   if (!input)
     throw InputError(
         fmt::format("{}: can't read as a picture: {}", name, messageAbout(OIIO::geterror(), path, name)));
 
   const OIIO::ImageSpec& spec = input->spec();
-  const auto side_ok = [](int side) { return side >= 1 && side <= kMaxSide; };
-  if (!side_ok(spec.width) || !side_ok(spec.height)) {
-    throw InputError(
-        fmt::format("{}: {} x {} pixels, expected 1 to {} a side", name, spec.width, spec.height, kMaxSide));
+  const auto sides_ok = [](int width, int height) {
+    return width >= 1 && width <= kLargestSide && height >= 1 && height <= kLargestSide;
+  };
+  if (!sides_ok(spec.width, spec.height)) {
+    throw InputError(fmt::format("{}: {} x {} pixels, expected 1 to {} a side", name, spec.width, spec.height,
+                                 kLargestSide));
+  }
+  if (!sides_ok(spec.full_width, spec.full_height)) {
+    throw InputError(fmt::format("{}: part of a picture of {} x {} pixels, expected 1 to {} a side", name,
+                                 spec.full_width, spec.full_height, kLargestSide));
   }
   if (spec.deep || spec.depth > 1) throw InputError(name + ": a deep or volume picture, expected a flat one");
   if (spec.nchannels < 1 || spec.image_pixels() * std::uint64_t(spec.nchannels) > kMaxValues) {

@@ -32,8 +32,8 @@ class MemoryFile {
 std::string oneLine(std::string message);
 
 /// Opens the first picture of a file whose colours are not to be multiplied by its alpha, and checks its size
-/// (65536 pixels a side, 2³¹ values, no more than a file of its length can hold) before anything is
-/// allocated. `name` is for messages. Throws InputError.
+/// (kLargestSide of the pixels and of the whole picture that they are part of, 2³¹ values, no more than a
+/// file of its length can hold) before anything is allocated. `name` is for messages. Throws InputError.
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std::string& name);
 
 /// Reads the open picture as `type` into `values`, width × height × channels of them. Throws InputError.

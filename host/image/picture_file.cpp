@@ -36,7 +36,7 @@ class Stream : public OIIO::Filesystem::IOProxy {
     if (error_) return count;
     try {
       file_.writeAt(std::uint64_t(offset), {static_cast<const std::byte*>(bytes), count});
-    } catch (const MachineError&) {
+    } catch (...) {
       error_ = std::current_exception();
     }
     return count;
@@ -69,11 +69,11 @@ void copy(const MemoryFile& from, OutputFile& to, const std::string& name) {
 }  // namespace
 
 struct PictureFile::State {
-  State(const std::string& of_path, const OIIO::ImageSpec& of_spec)
+  State(const std::string& of_path, const std::string& extension, const OIIO::ImageSpec& of_spec)
       : path(of_path),
         spec(of_spec),
         file(of_path),
-        output(OIIO::ImageOutput::create(outputFormat(of_path).extension)),
+        output(OIIO::ImageOutput::create(extension)),
         next_row(of_spec.y) {}
 
   std::string path;
@@ -94,12 +94,13 @@ struct PictureFile::State {
   }
 };
 
-PictureFile::PictureFile(const std::string& path, const OIIO::ImageSpec& spec) {
-  checkWritable(path);
+PictureFile::PictureFile(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec) {
+  checkWritable(path, extension);
   checkSizeLimit(spec.image_bytes(), path);
-  state_ = std::make_unique<State>(path, spec);
+  state_ = std::make_unique<State>(path, extension, spec);
   std::string name = path;
-  if (!state_->output->supports("ioproxy") || !state_->output->set_ioproxy(&state_->stream))
+  if (state_->file.isStream() || !state_->output->supports("ioproxy") ||
+      !state_->output->set_ioproxy(&state_->stream))
     name = state_->memory.emplace().path();
   state_->check(state_->output->open(name, state_->spec));
 }

@@ -10,11 +10,12 @@
 namespace luciole {
 
 /// A file that OpenImageIO writes. Where it can write a format through a stream of ours, rows go to the disk
-/// as they come; the others are encoded in memory first.
+/// as they come; the others are encoded in memory first, and so is what goes to a FIFO, a device or standard
+/// output, where no encoder can go back to what it wrote.
 class PictureFile : public RowFile {
  public:
-  /// The format is that of the path's extension. Throws as writeImage does.
-  PictureFile(const std::string& path, const OIIO::ImageSpec& spec);
+  /// `extension`: the format's. Throws as writeImage does.
+  PictureFile(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec);
   ~PictureFile() override;
   PictureFile(PictureFile&&) noexcept;
 

@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <algorithm>
+#include <csetjmp>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 
 #include "error.hpp"
 #include "image/output_file.hpp"
@@ -12,57 +17,92 @@
 namespace luciole {
 namespace {
 
+bool isUtf8(const std::string& text) {
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
+bool isAscii(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
+}
+
 class PngFile : public RowFile {
  public:
   explicit PngFile(const std::string& path)
       : path_(path),
         file_(path),
-        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, this, onError, nullptr)),
-        info_(png_create_info_struct(png_)) {
+        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, this, onError, onWarning)),
+        info_(png_ ? png_create_info_struct(png_) : nullptr) {
     if (!info_) throw MachineError("out of memory");
   }
   ~PngFile() override { png_destroy_write_struct(&png_, &info_); }
 
   void begin(int width, int height, int channels, const Metadata& metadata) {
     row_bytes_ = std::size_t(width) * channels;
-    png_set_write_fn(png_, this, writeBytes, nullptr);
-    png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), 8,
-                 channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
+    call([&] {
+      png_set_write_fn(png_, this, writeBytes, nullptr);
+      png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), 8,
+                   channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                   PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+      png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
+    });
     for (const auto& [name, value] : metadata) addText(name, value);
-    png_write_info(png_, info_);
-    throwError();
+    call([&] { png_write_info(png_, info_); });
   }
 
   void write(const void* values, int rows) override {
-    for (int y = 0; y < rows; ++y)
-      png_write_row(png_, static_cast<const png_byte*>(values) + std::size_t(y) * row_bytes_);
-    throwError();
+    call([&] {
+      for (int y = 0; y < rows; ++y)
+        png_write_row(png_, static_cast<const png_byte*>(values) + std::size_t(y) * row_bytes_);
+    });
   }
 
   void close() override {
-    png_write_end(png_, info_);
-    throwError();
+    call([&] { png_write_end(png_, info_); });
     file_.putInPlace();
   }
 
  private:
+  /// tEXt where it can be, which every reader knows: its bytes are Latin-1, of which ASCII is the part that
+  /// UTF-8 writes alike. Text beyond is UTF-8 in iTXt, or bytes that stay what they are.
   void addText(const std::string& name, const std::string& value) {
     std::string key = name == "ImageDescription" ? "Description" : name;  // PNG's own word for it
     std::string content = value;
     png_text text{};
-    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    text.compression =
+        !isAscii(value) && isUtf8(value) ? PNG_ITXT_COMPRESSION_NONE : PNG_TEXT_COMPRESSION_NONE;
     text.key = key.data();
     text.text = content.data();
-    png_set_text(png_, info_, &text, 1);
+    call([&] { png_set_text(png_, info_, &text, 1); });
+  }
+
+  /// Runs `use`, which calls the library, and throws what went wrong in it. No exception goes through the
+  /// library, which is C: an error of its own jumps back to here, past nothing that has a destructor.
+  template <class Use>
+  void call(const Use& use) {
+    if (setjmp(png_jmpbuf(png_)) == 0) use();
+    if (error_) std::rethrow_exception(error_);
   }
 
   /// The library can't go on after an error of its own: of a picture that fits its rows, lack of memory.
   [[noreturn]] static void onError(png_structp png, png_const_charp message) {
-    const PngFile* self = static_cast<PngFile*>(png_get_error_ptr(png));
-    throw MachineError(fmt::format("{}: can't encode: {}", self->path_, message));
+    keepError(png, message);
+    png_longjmp(png, 1);
   }
+
+  static void keepError(png_structp png, png_const_charp message) {
+    PngFile* self = static_cast<PngFile*>(png_get_error_ptr(png));
+    if (self->error_) return;
+    self->error_ =
+        std::make_exception_ptr(MachineError(fmt::format("{}: can't encode: {}", self->path_, message)));
+  }
+
+  /// The library's own would print it.
+  static void onWarning(png_structp, png_const_charp) {}
 
   /// Keeps the first error of the disk until the library, which is not to be left in the middle, returns.
   static void writeBytes(png_structp png, png_bytep bytes, std::size_t count) {
@@ -71,13 +111,9 @@ class PngFile : public RowFile {
     try {
       self->file_.writeAt(self->size_, std::as_bytes(std::span(bytes, count)));
       self->size_ += count;
-    } catch (const MachineError&) {
+    } catch (...) {
       self->error_ = std::current_exception();
     }
-  }
-
-  void throwError() const {
-    if (error_) std::rethrow_exception(error_);
   }
 
   std::string path_;
@@ -93,7 +129,7 @@ class PngFile : public RowFile {
 
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
                                      const Metadata& metadata) {
-  checkWritable(path);
+  checkWritable(path, "png");
   checkSizeLimit(std::uint64_t(width) * height * channels, path);
   auto file = std::make_unique<PngFile>(path);
   file->begin(width, height, channels, metadata);

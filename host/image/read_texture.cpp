@@ -89,7 +89,12 @@ Texture readTexture(const std::string& path) { return read(path, path); }
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {
   const MemoryFile in_memory(file);
-  return read(in_memory.path(), name);
+  try {
+    return read(in_memory.path(), name);
+  } catch (const InputError& error) {
+    // Some decoders name the file that they read.
+    throw InputError(OIIO::Strutil::replace(error.what(), in_memory.path(), name, true));
+  }
 }
 
 }  // namespace luciole

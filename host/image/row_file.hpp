@@ -27,9 +27,10 @@ class RowFile {
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
                                      const Metadata& metadata);
 
-/// A file that OpenImageIO writes, of 32-bit float or 8-bit sRGB. Throws as writeImage does.
+/// A file that OpenImageIO writes, of 32-bit float or 8-bit sRGB; of the options, those about an EXR's header
+/// are heeded. Throws as writeImage does.
 std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
                                          const std::vector<std::string>& channels, const FileFormat& format,
-                                         const Metadata& metadata);
+                                         const Metadata& metadata, const WriteOptions& options);
 
 }  // namespace luciole

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "error.hpp"
+#include "image/dither.hpp"
 #include "image/file_format.hpp"
 #include "image/image.hpp"
 #include "image/row_file.hpp"
@@ -34,12 +35,16 @@ std::vector<int> colorChannels(const std::vector<std::string>& channels, const F
   return colors;
 }
 
-std::uint8_t toByte(float value, bool is_alpha) {
-  const float unit = is_alpha ? (value > 0.0f ? std::min(value, 1.0f) : 0.0f) : encodeSrgb(value);
-  return std::uint8_t(unit * 255.0f + 0.5f);
+constexpr float kHalfUp = 0.5f;  ///< rounds to nearest
+
+std::uint8_t colorByte(float value, float threshold) {
+  return std::uint8_t(encodeSrgb(value) * 255.0f + threshold);
+}
+std::uint8_t alphaByte(float value) {
+  return std::uint8_t((value > 0.0f ? std::min(value, 1.0f) : 0.0f) * 255.0f + kHalfUp);
 }
 
-/// The values of a picture's rows that its file takes, converted by `convert(value, channel)`.
+/// The values of a picture's rows that its file takes, converted by `convert(value, channel, x, y)`.
 template <class T, class Convert>
 std::vector<T> convertRows(const Image& rows, const std::vector<int>& sources, Convert convert) {
   std::vector<T> values(std::size_t(rows.width) * rows.height * sources.size());
@@ -48,7 +53,7 @@ std::vector<T> convertRows(const Image& rows, const std::vector<int>& sources, C
     const float* in = rows.pixels.data() + std::size_t(y) * rows.width * channels;
     T* out = values.data() + std::size_t(y) * rows.width * sources.size();
     for (int x = 0; x < rows.width; ++x, in += channels)
-      for (std::size_t c = 0; c < sources.size(); ++c) *out++ = convert(in[sources[c]], c);
+      for (std::size_t c = 0; c < sources.size(); ++c) *out++ = convert(in[sources[c]], c, x, y);
   });
   return values;
 }
@@ -58,12 +63,16 @@ std::vector<T> convertRows(const Image& rows, const std::vector<int>& sources, C
 struct ImageWriter::State {
   FileFormat format;
   std::vector<int> sources;  ///< which channels the file takes; all where it takes any
+  bool dither;
+  glm::ivec2 place;  ///< of the next row's first pixel in the whole picture
   std::unique_ptr<RowFile> file;
 };
 
 ImageWriter::ImageWriter(const std::string& path, int width, int height,
-                         const std::vector<std::string>& channels, const Metadata& metadata)
-    : state_(new State{outputFormat(path), {}, nullptr}) {
+                         const std::vector<std::string>& channels, const Metadata& metadata,
+                         const WriteOptions& options)
+    : state_(
+          new State{outputFormat(path, options.format), {}, options.dither, options.crop_origin, nullptr}) {
   const FileFormat& format = state_->format;
   std::vector<std::string> names = channels;
   if (format.max_channels <= 4) {
@@ -71,8 +80,9 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
     names = {"R", "G", "B", "A"};
     names.resize(state_->sources.size());
   }
-  state_->file = format.extension == "png" ? openPngFile(path, width, height, int(names.size()), metadata)
-                                           : openPictureFile(path, width, height, names, format, metadata);
+  state_->file = format.extension == "png"
+                     ? openPngFile(path, width, height, int(names.size()), metadata)
+                     : openPictureFile(path, width, height, names, format, metadata, options);
 }
 
 ImageWriter::~ImageWriter() = default;
@@ -81,21 +91,24 @@ void ImageWriter::write(const Image& rows) {
   if (state_->sources.empty()) {
     state_->file->write(rows.pixels.data(), rows.height);
   } else if (state_->format.is_float) {
-    state_->file->write(
-        convertRows<float>(rows, state_->sources, [](float v, std::size_t) { return v; }).data(),
-        rows.height);
+    const auto same = [](float value, std::size_t, int, int) { return value; };
+    state_->file->write(convertRows<float>(rows, state_->sources, same).data(), rows.height);
   } else {
-    state_->file->write(convertRows<std::uint8_t>(rows, state_->sources,
-                                                  [](float v, std::size_t c) { return toByte(v, c == 3); })
-                            .data(),
-                        rows.height);
+    const auto byte = [&](float value, std::size_t channel, int x, int y) {
+      if (channel == 3) return alphaByte(value);
+      const glm::ivec2 pixel = state_->place + glm::ivec2(x, y);
+      return colorByte(value, state_->dither ? ditherThreshold(pixel.x, pixel.y) : kHalfUp);
+    };
+    state_->file->write(convertRows<std::uint8_t>(rows, state_->sources, byte).data(), rows.height);
   }
+  state_->place.y += rows.height;
 }
 
 void ImageWriter::close() { state_->file->close(); }
 
-void writeImage(const Image& image, const std::string& path, const Metadata& metadata) {
-  ImageWriter writer(path, image.width, image.height, image.channels, metadata);
+void writeImage(const Image& image, const std::string& path, const Metadata& metadata,
+                const WriteOptions& options) {
+  ImageWriter writer(path, image.width, image.height, image.channels, metadata, options);
   writer.write(image);
   writer.close();
 }

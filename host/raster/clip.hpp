@@ -3,13 +3,14 @@
 #include <array>
 #include <glm/glm.hpp>
 
+#include "picture_size.hpp"
 #include "raster/view.hpp"
 
 namespace luciole {
 
-/// How far from the picture's centre a triangle may reach before it is cut, in pixels. It keeps the edge
-/// functions within 32 bits (see coverage.cpp), and is the largest half width of a picture.
-constexpr int kGuardPixels = 1 << 14;
+/// How far from the picture's centre a triangle may reach before it is cut, in pixels: as far as the largest
+/// picture does. It keeps the edge functions within 32 bits (see coverage.cpp).
+constexpr int kGuardPixels = kLargestSide / 2;
 
 /// The part of clip space that is drawn: 0 ≤ z ≤ w, |x| ≤ guard.x · w, |y| ≤ guard.y · w.
 struct ClipVolume {

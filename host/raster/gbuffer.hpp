@@ -49,6 +49,7 @@ struct GBuffer {
   Plane emission;              ///< r g b; optional
   PackedNormals facet;         ///< the triangle's own, on the side that `normal` was turned to; optional
   Camera camera;               ///< whose view space this is
+  bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "error.hpp"
+#include "picture_size.hpp"
 #include "raster/bins.hpp"
 #include "raster/clip.hpp"
 #include "raster/coverage.hpp"
@@ -19,11 +20,10 @@ namespace luciole {
 namespace {
 
 void checkView(const View& view) {
-  constexpr int kLargest = 2 * kGuardPixels;
   const auto& [size, origin, crop] = std::tie(view.size, view.crop_origin, view.crop_size);
-  if (size.x < 1 || size.y < 1 || size.x > kLargest || size.y > kLargest)
-    throw InputError(
-        fmt::format("size: a picture of {}x{} pixels, expected 1 to {} a side", size.x, size.y, kLargest));
+  if (size.x < 1 || size.y < 1 || size.x > kLargestSide || size.y > kLargestSide)
+    throw InputError(fmt::format("size: a picture of {}x{} pixels, expected 1 to {} a side", size.x, size.y,
+                                 kLargestSide));
   if (origin.x < 0 || origin.y < 0 || crop.x < 1 || crop.y < 1 || crop.x > size.x - origin.x ||
       crop.y > size.y - origin.y)
     throw InputError(fmt::format("crop: {}x{} pixels at {},{}, expected a part of the picture of {}x{}",

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "picture_size.hpp"
 #include "scene/json_fields.hpp"
 #include "scene/json_keys.hpp"
 #include "scene/json_light.hpp"
@@ -21,9 +22,6 @@
 
 namespace luciole {
 namespace {
-
-constexpr int kLongestSide = 65536;
-constexpr std::int64_t kMostPixels = std::int64_t{1} << 30;
 
 std::string readWhole(const std::string& path) {
   if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
@@ -149,7 +147,7 @@ glm::ivec2 readSize(const JsonNode& node) {
   if (node.json->size() != 2) refuse(node, "expected [width, height]");
   glm::ivec2 size;
   for (int i = 0; i < 2; ++i) {
-    size[i] = static_cast<int>(readCount(element(node, static_cast<std::size_t>(i)), kLongestSide));
+    size[i] = static_cast<int>(readCount(element(node, static_cast<std::size_t>(i)), kLargestSide));
   }
   checkPictureSize(size, fmt::format("{}: size", node.parent->key));
   return size;
@@ -173,10 +171,9 @@ std::vector<LightField> readLightFields(const JsonNode& node, const std::string&
 }  // namespace
 
 void checkPictureSize(glm::ivec2 size, const std::string& where) {
-  const bool sides_fit = size.x >= 1 && size.y >= 1 && size.x <= kLongestSide && size.y <= kLongestSide;
-  if (!sides_fit || std::int64_t{size.x} * size.y > kMostPixels) {
-    throw InputError(fmt::format("{}: {}x{} pixels; expected 1 to {} a side and {} in all at most", where,
-                                 size.x, size.y, kLongestSide, kMostPixels));
+  if (size.x < 1 || size.y < 1 || size.x > kLargestSide || size.y > kLargestSide) {
+    throw InputError(
+        fmt::format("{}: {}x{} pixels, expected 1 to {} a side", where, size.x, size.y, kLargestSide));
   }
 }
 

@@ -12,7 +12,7 @@ namespace luciole {
 /// what is wrong".
 Scene loadJsonScene(const std::string& path);
 
-/// Throws InputError "where: …" unless each side is from 1 to 65536 pixels and all are 2³⁰ at most.
+/// Throws InputError "where: …" unless each side is from 1 to kLargestSide pixels.
 void checkPictureSize(glm::ivec2 size, const std::string& where);
 
 }  // namespace luciole

@@ -12,6 +12,7 @@
 #include "error.hpp"
 #include "hard_cases/shot.hpp"
 #include "image/image.hpp"
+#include "png_chunk.hpp"
 
 namespace luciole::test {
 namespace {
@@ -78,43 +79,12 @@ TEST(HardTextures, GreyIsGreyAndBlendsInLinearLight) {
   EXPECT_NEAR(colorAt(shot.image, 29, 7).x, 0.025 * 0.0512695 + 0.975 * 0.2158605, 1e-6);
 }
 
-void append(std::string& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += char(value >> shift);
-}
-
-/// A chunk of a PNG file, with its CRC (ISO 15948).
-std::string pngChunk(const std::string& type, const std::string& data) {
-  std::uint32_t crc = 0xffffffff;
-  for (const char c : type + data) {
-    crc ^= std::uint8_t(c);
-    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
-  }
-  std::string chunk;
-  append(chunk, std::uint32_t(data.size()));
-  chunk += type + data;
-  append(chunk, ~crc);
-  return chunk;
-}
-
-/// One row of R G B A in 16 bits, uncompressed (RFC 1950 and 1951).
+/// One row of R G B A in 16 bits.
 std::string rowOfPng(const std::vector<std::array<std::uint16_t, 4>>& texels) {
   std::string row(1, '\0');  // unfiltered
   for (const auto& texel : texels)
     for (const std::uint16_t value : texel) row += {char(value >> 8), char(value)};
-  std::uint32_t low = 1, high = 0;
-  for (const char c : row) {
-    low = (low + std::uint8_t(c)) % 65521;
-    high = (high + low) % 65521;
-  }
-  const auto size = std::uint16_t(row.size());
-  std::string stream{'\x78', '\x01', '\x01', char(size), char(size >> 8), char(~size), char(~size >> 8)};
-  stream += row;
-  append(stream, high << 16 | low);
-  std::string header;
-  append(header, std::uint32_t(texels.size()));
-  append(header, 1);
-  header += {16, 6, 0, 0, 0};
-  return "\x89PNG\r\n\x1a\n" + pngChunk("IHDR", header) + pngChunk("IDAT", stream) + pngChunk("IEND", "");
+  return pngFile(std::uint32_t(texels.size()), 1, 16, 6, false, "", row);
 }
 
 TEST(HardTextures, SixteenBitsAreKept) {
@@ -185,7 +155,7 @@ TEST(HardTextures, SixteenThousandTexelsAcrossAreTold) {
 TEST(HardTextures, HeadersThatPromiseMoreThanTheFileHoldsAreRefused) {
   // 16384 × 16384 in a few bytes; one texel too wide; and one that is what it says, but cut short.
   for (const auto& [header, expected] : {std::pair("P5 16384 16384 255\n", "claims 16384 x 16384 pixels"),
-                                         {"P6 65537 1 255\n", "expected 1 to 65536 a side"},
+                                         {"P6 32769 1 255\n", "expected 1 to 32768 a side"},
                                          {"P5 16 16 255\n", "map.pgm: "}}) {
     try {
       mapped("map.pgm", {4, 4}, pnm(header, {1, 2, 3}));

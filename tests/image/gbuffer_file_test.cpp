@@ -10,11 +10,13 @@
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <utility>
 
 #include "cli/run_program.hpp"
 #include "error.hpp"
 #include "image/camera_header.hpp"
 #include "image/oiio.hpp"
+#include "image/read_texture.hpp"
 #include "raster/packed_normal.hpp"
 #include "shared_files.hpp"
 
@@ -356,7 +358,7 @@ TEST(GBufferFile, APromiseThatTheFileDoesNotKeepTakesNoMemory) {
   const std::string path = folder / "promise.exr";
   writeGBuffer(somePicture(16, 16, someCamera()), path, {});
   std::string bytes = test::readText(path);
-  const std::int32_t last[2] = {65535, 255};
+  const std::int32_t last[2] = {32767, 511};
   for (const std::string name : {"dataWindow", "displayWindow"}) {
     // Name and type, each with its end, then the length and the box's first x and y.
     const std::size_t at = bytes.find(name + '\0') + name.size() + 1 + sizeof "box2i" + 4 + 8;
@@ -366,9 +368,70 @@ TEST(GBufferFile, APromiseThatTheFileDoesNotKeepTakesNoMemory) {
   test::writeText(path, bytes);
   const std::size_t before = peakMemory();
   EXPECT_THAT([&] { readGBuffer(path); }, ThrowsMessage<InputError>(HasSubstr("damaged")));
-  // 20 channels at least are promised, of 65536 × 256 floats each; a decoder's block is 16 rows of them.
-  constexpr std::size_t kPlane = std::size_t(65536) * 256 * sizeof(float);
+  // 20 channels at least are promised, of 32768 × 512 floats each; a decoder's block is 16 rows of them.
+  constexpr std::size_t kPlane = std::size_t(32768) * 512 * sizeof(float);
   EXPECT_LT(peakMemory() - before, 10 * kPlane);
+}
+
+TEST(GBufferFile, WindowsOfAnImpossiblePictureAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "g.exr";
+  // The largest that OpenEXR takes, and one pixel more than a picture may have.
+  for (const auto& [first, side] : {std::pair(-(1 << 30) + 2, 2147483645), {-1, 32769}}) {
+    writeForeign(
+        path, 1, 1, {"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"}, [](int, int, int) { return 1.0f; },
+        [&](OIIO::ImageSpec& spec) {
+          spec.full_x = spec.full_y = first;
+          spec.full_width = spec.full_height = side;
+        });
+    const auto message = ThrowsMessage<InputError>(HasSubstr("g.exr: part of a picture of "));
+    EXPECT_THAT([&] { readGBuffer(path); }, message);
+    EXPECT_THAT([&] { readImage(path); }, message);
+    EXPECT_THAT([&] { readTexture(path); }, message);
+  }
+}
+
+TEST(GBufferFile, PicturesCarryTheCameraAsGBuffersDo) {
+  const TemporaryFolder folder;
+  GBuffer gbuffer = somePicture(4, 3, someCamera());
+  gbuffer.picture_size = {20, 10};
+  gbuffer.crop_origin = {5, 2};
+  writeGBuffer(gbuffer, folder / "g.exr", {});
+  writeImage({4, 3, {"R", "G", "B"}, std::vector<float>(36, 0.5f)}, folder / "p.exr", {},
+             {.picture_size = {20, 10}, .crop_origin = {5, 2}, .camera = someCamera()});
+  const auto g = OIIO::ImageInput::open(folder / "g.exr"), p = OIIO::ImageInput::open(folder / "p.exr");
+  ASSERT_TRUE(g && p);
+  const OIIO::TypeDesc matrix(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44);
+  for (const char* name : {"worldToCamera", "worldToNDC"}) {
+    const auto *of_g = g->spec().find_attribute(name, matrix), *of_p = p->spec().find_attribute(name, matrix);
+    ASSERT_TRUE(of_g && of_p) << name;
+    EXPECT_EQ(std::memcmp(of_g->data(), of_p->data(), 16 * sizeof(float)), 0) << name;
+  }
+  for (const char* name : {"luciole:cameraToWorld", "luciole:projection", "luciole:cameraName"}) {
+    EXPECT_NE(readAttribute(folder / "p.exr", name), "");
+    EXPECT_EQ(readAttribute(folder / "p.exr", name), readAttribute(folder / "g.exr", name));
+  }
+  EXPECT_EQ(p->spec().x, 5);
+  EXPECT_EQ(p->spec().y, 2);
+  EXPECT_EQ(p->spec().full_width, 20);
+  EXPECT_EQ(p->spec().full_height, 10);
+}
+
+TEST(GBufferFile, WhetherTheCameraIsKnownIsTold) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "g.exr";
+  const auto knows = [&](const std::function<void(OIIO::ImageSpec&)>& header) {
+    writeForeign(
+        path, 1, 1, {"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"}, [](int, int, int) { return 1.0f; }, header);
+    return readGBuffer(path).knows_camera;
+  };
+  EXPECT_FALSE(knows({}));
+  EXPECT_TRUE(knows([](OIIO::ImageSpec& spec) { writeCamera(someCamera(), {1, 1}, spec); }));
+  EXPECT_TRUE(knows([](OIIO::ImageSpec& spec) { standardHeader(spec, someCamera(), true); }));
+  EXPECT_FALSE(knows([](OIIO::ImageSpec& spec) {
+    standardHeader(spec, someCamera(), true);
+    spec.erase_attribute("worldToNDC");  // how wide it sees
+  }));
 }
 
 /// A header of these attributes (name, type, value), and nothing after it.

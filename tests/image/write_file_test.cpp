@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -26,6 +27,18 @@ TEST(WriteFile, UnwritableFoldersAreInputErrors) {
   EXPECT_THROW(writeTextFile(folder / "no/a.json", "{}"), InputError);
   // Linux lets nobody, root included, create files in /proc.
   EXPECT_THROW(writeTextFile("/proc/a.json", "{}"), InputError);
+}
+
+TEST(WriteFile, PlacesAreCheckedWhereTheirLinksLead) {
+  const test::TemporaryFolder folder;
+  // Linux lets nobody, root included, create files in /proc.
+  std::filesystem::create_symlink("/proc/a.json", folder / "unwritable");
+  EXPECT_THROW(writeTextFile(folder / "unwritable", "{}"), InputError);
+  std::filesystem::create_symlink("no/a.json", folder / "nowhere");
+  EXPECT_THROW(checkPlace(folder / "nowhere"), InputError);
+  std::filesystem::create_symlink("a.json", folder / "new");
+  EXPECT_NO_THROW(checkPlace(folder / "new"));
+  EXPECT_NO_THROW(checkPlace("/dev/null"));
 }
 
 }  // namespace
