@@ -23,6 +23,7 @@ struct PictureOptions {
   std::string shadows = "hard";
   int pcf_width = ShadeSettings{}.pcf_width;
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
+  int shadow_size = ShadowLimits{}.size;
   std::string aovs;
   double exposure = 0;
   std::string device;
@@ -36,7 +37,7 @@ enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
   kModelOptions = 4,   ///< --model, --exposure
-  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --aov
+  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kManyPictures = 64,  ///< without what is about one file: -o, --stats, --crop, --aov
