@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
@@ -21,6 +22,7 @@ struct BenchOptions {
   PictureOptions picture;  ///< of which --size, --device and --quiet are options here
   std::string scene, json, plot;
   std::vector<std::string> only;
+  std::optional<int> shadow_size;
   int repeats = 9;
 };
 
@@ -64,6 +66,7 @@ void bench(const BenchOptions& options) {
                      .named_scene = !options.scene.empty(),
                      .program = std::filesystem::read_symlink("/proc/self/exe")};
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
+  choice.shadow_size = options.shadow_size;
   const BenchResult result = runBench(scene, settings, choice);
   if (progress) fmt::print(stderr, "\r\x1b[K");
   if (!options.json.empty()) writeTextFile(options.json, benchJson(result));
@@ -86,6 +89,10 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
   command->add_option("--plot", options->plot, "write speed against error as an SVG picture (by gnuplot)");
   command->add_option("--size", options->picture.size,
                       "WxH pixels of every picture (default: each one's own)");
+  command
+      ->add_option("--shadow-size", options.shadow_size,
+                   "texels a side of shadow maps, as for render (default: several are tried)")
+      ->check(CLI::Range(kSmallestFace, kLargestFace));
   command->add_option("--repeats", options->repeats, "timed runs of each row")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

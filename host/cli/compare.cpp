@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "error.hpp"
@@ -22,25 +23,36 @@ struct CompareOptions {
 
 constexpr float kDifferenceGain = 10.0f;
 
-/// JSON has no infinity: an infinite figure becomes null.
-nlohmann::ordered_json figure(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+/// Why a figure is infinite.
+const char* whyInfinite(const std::string& name, const ImageDifference& d) {
+  if (name == "psnr" && d.rmse == 0) return "no finite value differs";
+  return d.nonfinite > 0 ? "a pixel of one picture alone is not finite"
+                         : "A is black, of which nothing is a share";
 }
 
+/// JSON has no infinity: an infinite figure becomes null, with a reason beside it.
 nlohmann::ordered_json differenceJson(const ImageDifference& d) {
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json, reasons;
   json["channels"] = d.channels;
   json["pixels"] = d.pixels;
-  json["max_abs"] = figure(d.max_abs);
-  json["mean_abs"] = figure(d.mean_abs);
-  json["max_relative"] = figure(d.max_relative);
-  json["mean_relative"] = figure(d.mean_relative);
-  json["mean_signed"] = figure(d.mean_signed);
-  json["rmse"] = figure(d.rmse);
-  json["psnr"] = figure(d.psnr);
-  json["relmse"] = figure(d.relmse);
-  json["p99_abs"] = figure(d.p99_abs);
-  json["p999_abs"] = figure(d.p999_abs);
+  for (const auto& [name, value] : {std::pair("max_abs", d.max_abs),
+                                    {"mean_abs", d.mean_abs},
+                                    {"max_relative", d.max_relative},
+                                    {"mean_relative", d.mean_relative},
+                                    {"mean_signed", d.mean_signed},
+                                    {"rmse", d.rmse},
+                                    {"psnr", d.psnr},
+                                    {"relmse", d.relmse},
+                                    {"p99_abs", d.p99_abs},
+                                    {"p999_abs", d.p999_abs}}) {
+    if (std::isfinite(value)) {
+      json[name] = value;
+    } else {
+      json[name] = nullptr;
+      reasons[name] = whyInfinite(name, d);
+    }
+  }
+  if (!reasons.empty()) json["reasons"] = reasons;
   json["nonfinite"] = d.nonfinite;
   json["pixels_over"] = {{"half_step", d.over[0]}, {"one_step", d.over[1]}, {"four_steps", d.over[2]}};
   json["worst_pixel"] = d.worst_pixel;

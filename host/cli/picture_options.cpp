@@ -155,6 +155,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "MiB that all shadow maps may take: where they would take more, they get coarser")
         ->check(CLI::Range(1, 16000))  // fewer texels than 31 bits count
         ->capture_default_str();
+    command
+        .add_option("--shadow-size", options.shadow_size,
+                    "texels a side that the shadow map of a spot and each of a directional light may have; "
+                    "half as many for each face of a point light's")
+        ->check(CLI::Range(kSmallestFace, kLargestFace))
+        ->capture_default_str();
     if (is_one_picture)
       command.add_option(
           "--aov", options.aovs,
@@ -244,6 +250,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                                                        : ShadowMethod::kExact;
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
+  settings.shade.shadow_limits.size = options.shadow_size;
   settings.aovs = parseAovs(options.aovs);
   if (!(std::abs(options.exposure) <= 100))
     throw InputError("--exposure: expected stops between -100 and 100");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/shard.hpp"
@@ -73,8 +74,7 @@ bool isDone(const std::string& path) {
 }
 
 /// The frames of the range that are this run's to make.
-std::vector<int> framesToMake(const RenderOptions& options, const FrameRange& range) {
-  const Shard shard = chosenShard(options.shard);
+std::vector<int> framesToMake(const RenderOptions& options, const FrameRange& range, const Shard& shard) {
   if (options.shard.empty() && shard.count > 1 && !options.quiet)
     fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count);
   std::vector<int> frames, done;
@@ -97,16 +97,18 @@ void showFrames(std::size_t done, std::size_t count, std::chrono::steady_clock::
   std::fflush(stderr);
 }
 
-/// Renders frame after frame, of which one that fails is told and left out. `started`: what loading cost,
-/// which the first frame's statistics tell. Returns the first failure's status.
+/// Renders frame after frame, of which one that fails is told and left out. `claims`: of a run that others
+/// may be at work beside, else null. `started`: what loading cost, which the first frame's statistics tell.
+/// Returns the first failure's status; throws InputError for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-                 Stats started) {
+                 FrameClaims* claims, Stats started) {
   const bool on_terminal = !options.quiet && isatty(STDERR_FILENO);
   const auto start = std::chrono::steady_clock::now();
   const std::string command = started.command;
   int status = kDone;
   std::vector<int> failed;
   for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (claims) claims->claim(frames[i]);
     if (on_terminal) showFrames(i, frames.size(), start);
     PictureOptions one = options;
     one.output = frameFile(options.output, frames[i]);
@@ -166,9 +168,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     if (!range.is_range) useFrame(*options, "render");
     checkOptions(*options, range);
     std::vector<int> frames;
+    std::optional<FrameClaims> claims;
     if (range.is_range) {
-      frames = framesToMake(*options, range);
+      const Shard shard = chosenShard(options->shard);
+      frames = framesToMake(*options, range, shard);
       if (frames.empty()) return;
+      if (shard.is_chosen) claims.emplace(options->output).claim(frames.front());  // before any work is done
     }
     Stats stats;
     stats.command = context.command_line;
@@ -180,7 +185,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     if (range.is_range) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
-      context.status = renderFrames(device, scene, *options, frames, std::move(stats));
+      context.status =
+          renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
       return;
     }
     const bool shows_progress = !options->quiet && isatty(STDERR_FILENO);

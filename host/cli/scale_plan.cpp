@@ -27,7 +27,8 @@ const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"cutoff", {"0.1", "0.01", "0.001"}},
                                    {"intensity", {"0.5", "1", "2"}},
                                    {"pcf-width", {"2", "4", "6"}},
-                                   {"shadow-memory", {"64", "512"}}};
+                                   {"shadow-memory", {"64", "512"}},
+                                   {"shadow-size", {"512", "1024", "2048", "4096"}}};
 
 /// Axes that each say how far lights reach, so that a variant takes a value of one alone.
 constexpr const char* kReaches[] = {"density", "range", "cutoff"};
@@ -166,7 +167,7 @@ bool isLeftOut(const std::vector<ScaleAxis>& axes, const std::vector<std::string
       std::any_of(axes.begin(), axes.end(), [](const ScaleAxis& axis) { return axis.name == "shadows"; });
   return (has("culling", "none") && !isFirst("tile")) ||
          (varies_shadows && !has("shadows", "pcf") && !isFirst("pcf-width")) ||
-         (has("shadows", "off") && !isFirst("shadow-memory"));
+         (has("shadows", "off") && (!isFirst("shadow-memory") || !isFirst("shadow-size")));
 }
 
 /// Sets an option as if it had been typed, with its checks.
@@ -227,12 +228,13 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
     const bool is_varied =
         std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; }) ||
         (varies_reach && isReach({name, {}}));
-    const bool is_meant = name == "range"           ? options.range.has_value()
-                          : name == "cutoff"        ? options.cutoff.has_value()
-                          : name == "density"       ? choosesRanges(command, options)
-                          : name == "pcf-width"     ? options.picture.shadows == "pcf"
-                          : name == "shadow-memory" ? options.picture.shadows != "off"
-                                                    : true;
+    const bool is_meant = name == "range"       ? options.range.has_value()
+                          : name == "cutoff"    ? options.cutoff.has_value()
+                          : name == "density"   ? choosesRanges(command, options)
+                          : name == "pcf-width" ? options.picture.shadows == "pcf"
+                          : name == "shadow-memory" || name == "shadow-size"
+                              ? options.picture.shadows != "off"
+                              : true;
     if (!is_varied && is_meant) shared.emplace_back(name, command.get_option("--" + name)->as<std::string>());
   }
   if (!options.picture.device.empty()) shared.emplace_back("device", options.picture.device);

@@ -20,7 +20,7 @@ std::optional<int> wholeNumber(std::string_view text) {
   return number;
 }
 
-/// Slurm sets all four of a job array's variables.
+/// Slurm sets all of a job array's variables.
 int slurmNumber(const char* name, int least) {
   const char* text = std::getenv(name);
   const std::optional<int> number = text ? wholeNumber(text) : std::nullopt;
@@ -30,17 +30,36 @@ int slurmNumber(const char* name, int least) {
   return *number;
 }
 
+/// A task that starts several processes starts as many that take the same part.
+void refuseManyProcesses() {
+  const char* text = std::getenv("SLURM_STEP_NUM_TASKS");
+  const std::optional<int> processes = text ? wholeNumber(text) : std::nullopt;
+  if (processes && *processes > 1)
+    throw InputError(fmt::format(
+        "SLURM_STEP_NUM_TASKS: {} processes of one array task would all do its part; expected one, as by "
+        "srun -n1, or say each one's by --shard",
+        *processes));
+}
+
 Shard slurmShard() {
   const int id = slurmNumber("SLURM_ARRAY_TASK_ID", 0);
   const int count = slurmNumber("SLURM_ARRAY_TASK_COUNT", 1);
   const int first = slurmNumber("SLURM_ARRAY_TASK_MIN", 0);
+  const int last = slurmNumber("SLURM_ARRAY_TASK_MAX", 0);
   const int step = slurmNumber("SLURM_ARRAY_TASK_STEP", 1);
+  refuseManyProcesses();
+  // With a hole, as in --array=1,3,7, no task can tell from these how many come before it.
+  if (std::int64_t(first) + std::int64_t(count - 1) * step != last)
+    throw InputError(fmt::format(
+        "SLURM_ARRAY_TASK_MAX: the array's {} tasks from {} to {} aren't numbered evenly; expected an array "
+        "such as 1-{}, or say which part this is by --shard",
+        count, first, last, count));
   const int steps = (id - first) / step;
   if (id < first || (id - first) % step != 0 || steps >= count)
     throw InputError(
         fmt::format("SLURM_ARRAY_TASK_ID: {} is none of the {} tasks {}, {}, …; say which one by --shard", id,
                     count, first, std::int64_t(first) + step));
-  return {steps, count};
+  return {steps, count, true};
 }
 
 }  // namespace
@@ -55,7 +74,7 @@ Shard chosenShard(const std::string& option) {
   if (!number || !count || *number < 1 || *number > *count)
     throw InputError(fmt::format(
         "--shard {}: expected I/N with I from 1 to N, such as 2/8 for the second of eight", option));
-  return {*number - 1, *count};
+  return {*number - 1, *count, true};
 }
 
 }  // namespace luciole

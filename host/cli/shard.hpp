@@ -10,11 +10,13 @@ namespace luciole {
 struct Shard {
   int index = 0;  ///< 0 ≤ index < count
   int count = 1;
+  bool is_chosen = false;  ///< by the option or by Slurm, so that others may be at work beside it
 };
 
 /// What --shard says ("2/8": the second of eight), or if it is empty, which task of a Slurm job array this is
-/// (SLURM_ARRAY_TASK_ID, _COUNT, _MIN and _STEP), or all. Throws InputError naming the option or the
-/// variable, also for a Slurm array whose tasks aren't numbered evenly.
+/// (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _MAX and _STEP), or all. Throws InputError naming the option or the
+/// variable, also for a Slurm array whose tasks aren't numbered evenly, and in a task that runs several
+/// processes.
 Shard chosenShard(const std::string& option);
 
 /// Whether this shard does piece k.

@@ -54,13 +54,14 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
                      .width = settings.picture.size.x,
                      .height = settings.picture.size.y,
                      .repeats = settings.repeats};
-  std::vector<VariantGroup> groups = benchVariants(scene, device.description.lanes);
-  std::erase_if(groups, [&](const VariantGroup& group) { return !chosen(group.name); });
+  std::vector<VariantGroup> groups = benchVariants(scene, device.description.lanes, choice.shadow_size);
+  std::erase_if(groups, [&](const VariantGroup& group) { return !chosen(group.chosen_by); });
   if (!groups.empty()) result.groups = measureVariants(scene, groups, settings);
   const SpeedInput input{.device = device,
                          .device_selector = settings.device,
                          .scene = choice.named_scene ? &scene : nullptr,
                          .size = choice.size,
+                         .shadow_size = choice.shadow_size,
                          .repeats = settings.repeats,
                          .program = choice.program,
                          .on_progress = settings.on_progress};

@@ -24,6 +24,7 @@ struct BenchChoice {
   std::vector<std::string> only{};   ///< of benchNames(); empty: everything
   bool named_scene = false;          ///< the scene is the user's rather than makeBenchScene()
   std::optional<glm::ivec2> size{};  ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size{};  ///< of all shadow maps, instead of those that are tried
   std::string program{};             ///< the path of luciole itself
 };
 

@@ -64,6 +64,7 @@ void addLights(Scene& scene) {
   sun.direction = glm::normalize(glm::dvec3(-0.5, -1, -0.7));
   sun.diffuse = sun.specular = {0.35f, 0.33f, 0.3f};
   sun.shadow = true;
+  sun.half_angle = glm::radians(0.25);
   scene.lights.push_back(sun);
 
   Light spot;
@@ -74,6 +75,7 @@ void addLights(Scene& scene) {
   spot.cutoff = glm::radians(35.0);
   spot.exponent = 12;
   spot.shadow = true;
+  spot.radius = 0.15;
   scene.lights.push_back(spot);
 
   Light lamp;
@@ -81,6 +83,7 @@ void addLights(Scene& scene) {
   lamp.diffuse = lamp.specular = {0.5f, 0.6f, 0.8f};
   lamp.attenuation = {1, 0.05f, 0.02f};
   lamp.shadow = true;
+  lamp.radius = 0.15;
   scene.lights.push_back(lamp);
 
   LightField field;

@@ -55,8 +55,8 @@ SpeedTable measureCulledShading(const SpeedInput& input) {
                            countOf(stats, "list_entries"),
                            1e-6 * evaluated,
                            1e-6 * in_range,
-                           evaluated / in_range,
-                           in_range / countOf(stats, "pixels_lit")}});
+                           quotient(evaluated, in_range, "no light is in range of a pixel"),
+                           quotient(in_range, countOf(stats, "pixels_lit"), "no pixel shows a surface")}});
   }
   const auto rounds =
       runInRounds(std::size(kRows), input.repeats, table.name, input.on_progress, [&](std::size_t row) {

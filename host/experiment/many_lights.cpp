@@ -73,7 +73,7 @@ SpeedTable measureManyLights(const SpeedInput& input) {
                            listBytes(*row.gbuffer, entries),
                            1e-6 * countOf(stats, "pixel_lights_evaluated"),
                            1e-6 * in_range,
-                           in_range / countOf(stats, "pixels_lit")}});
+                           quotient(in_range, countOf(stats, "pixels_lit"), "no pixel shows a surface")}});
   }
   const auto rounds =
       runInRounds(rows.size(), input.repeats, table.name, input.on_progress, [&](std::size_t row) {

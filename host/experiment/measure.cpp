@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -60,18 +59,26 @@ void report(const BenchSettings& settings, const std::string& what, std::size_t 
   if (settings.on_progress) settings.on_progress(what, done, total);
 }
 
+/// The scene with all its lights as points, or as far away as they seem.
+Scene withoutLightSizes(Scene scene) {
+  for (Light& light : scene.lights) light.radius = light.half_angle = 0;
+  return scene;
+}
+
 Truth makeTruth(const Bench& bench, const VariantGroup& group, Model model) {
   ReferenceSettings settings{.model = model};
+  const Scene sharp = group.shadows == TruthShadows::kSharp ? withoutLightSizes(bench.scene) : Scene();
+  const Scene& scene = group.shadows == TruthShadows::kSharp ? sharp : bench.scene;
   std::optional<RayScene> rays;
-  if (group.shadows)
+  if (group.shadows != TruthShadows::kNone)
     settings.shadow_rays =
-        &rays.emplace(buildShadowRays(bench.scene, glm::dvec3(bench.gbuffer.camera.camera_to_world[3])));
+        &rays.emplace(buildShadowRays(scene, glm::dvec3(bench.gbuffer.camera.camera_to_world[3])));
   settings.on_progress = [&](std::size_t done, std::size_t total) {
     report(bench.settings, group.name + ": the truth", done, total);
   };
   const RenderSettings& picture = bench.settings.picture;
-  if (group.samples) return sampledTruth(bench.scene, cameraView(picture.camera, picture.size), settings);
-  return {referenceShade(bench.scene, bench.gbuffer, settings)};
+  if (group.samples) return sampledTruth(scene, cameraView(picture.camera, picture.size), settings);
+  return {referenceShade(scene, bench.gbuffer, settings)};
 }
 
 BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
@@ -87,9 +94,7 @@ BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
     Stats ignored;
     const Image picture = runVariant(bench, group, variant, ignored);
     const Image& truth = truths.at(variant.shade.model).image;
-    // More than 0, for shares of it in a black picture.
-    const float brightest = std::max(*std::max_element(truth.pixels.begin(), truth.pixels.end()),
-                                     std::numeric_limits<float>::min());
+    const float brightest = *std::max_element(truth.pixels.begin(), truth.pixels.end());
     result.rows.push_back(
         {.variant = variant, .error = compareImages(truth, picture), .brightest = brightest});
   }

@@ -22,7 +22,7 @@ struct BenchRow {
   Variant variant;
   Repeated time{};          ///< milliseconds
   ImageDifference error{};  ///< from the truth, linear units
-  double brightest = 0;     ///< the truth's largest value: what relative errors are relative to
+  double brightest = 0;     ///< the truth's largest value: what relative errors are relative to, if not 0
   bool front = false;       ///< on the Pareto front, in a group that has one truth
 };
 

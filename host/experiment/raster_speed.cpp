@@ -65,7 +65,8 @@ SpeedTable measureRasterizer(const SpeedInput& input) {
       });
   for (std::size_t i = 0; i < std::size(rows); ++i) {
     const RoundFigures &all = rounds[kRuns * i], &one = rounds[kRuns * i + 1];
-    table.rows.push_back({rows[i].first, {all.summary(0), one.summary(0), ratio(one, all, 0)}});
+    table.rows.push_back(
+        {rows[i].first, {all.summary(0), one.summary(0), ratio(one.figures[0], all.figures[0])}});
   }
   return table;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "experiment/text_table.hpp"
@@ -18,51 +19,77 @@ constexpr const char* kColumns[]{"ms",         "spread",      "max, steps", "mea
                                  "max, share", "mean, share", "front"};
 using Cells = std::vector<std::string>;
 
+/// Stands in a table for a figure that there isn't.
+constexpr const char* kNoFigure = "–";
+
+/// Under a table: why figures of it have no value, each reason once.
+class Reasons {
+ public:
+  void add(const std::string& why) {
+    if (std::find(reasons_.begin(), reasons_.end(), why) == reasons_.end()) reasons_.push_back(why);
+  }
+  std::string text() const {
+    return reasons_.empty() ? "" : fmt::format("\n{}: {}.\n", kNoFigure, fmt::join(reasons_, "; "));
+  }
+
+ private:
+  std::vector<std::string> reasons_;
+};
+
+constexpr const char* kBlackTruth = "the truth is black, of which no error is a share";
+
 std::string spreadText(const Repeated& runs) {
-  return fmt::format("± {:.0f} %", runs.median != 0 ? 100 * runs.spread / runs.median : 0);
+  return fmt::format("± {:.0f} %", runs.median != 0 ? 100 * runs.spread / std::abs(runs.median) : 0);
 }
 
-Cells rowCells(const BenchRow& row) {
+Cells rowCells(const BenchRow& row, Reasons& reasons) {
   const ImageDifference& error = row.error;
+  if (row.brightest == 0) reasons.add(kBlackTruth);
+  const auto share = [&](double value) {
+    return row.brightest == 0 ? kNoFigure : fmt::format("{:.1e}", value / row.brightest);
+  };
   return {row.variant.is_default ? row.variant.name + " (default)" : row.variant.name,
           fmt::format("{:.1f}", row.time.median),
           spreadText(row.time),
           fmt::format("{:.1e}", error.max_abs * kSteps),
           fmt::format("{:.1e}", error.mean_abs * kSteps),
           fmt::format("{:+.1e}", error.mean_signed * kSteps),
-          fmt::format("{:.1e}", error.max_abs / row.brightest),
-          fmt::format("{:.1e}", error.mean_abs / row.brightest),
+          share(error.max_abs),
+          share(error.mean_abs),
           row.front ? "*" : ""};
 }
 
 std::string groupTable(const BenchGroup& group) {
   std::vector<Cells> lines{{group.group.name}};
   lines[0].insert(lines[0].end(), std::begin(kColumns), std::end(kColumns));
-  for (const BenchRow& row : group.rows) lines.push_back(rowCells(row));
-  return textTable(lines);
+  Reasons reasons;
+  for (const BenchRow& row : group.rows) lines.push_back(rowCells(row, reasons));
+  return textTable(lines) + reasons.text();
 }
 
-std::string cellText(const SpeedCell& cell, int decimals) {
+std::string cellText(const SpeedCell& cell, int decimals, Reasons& reasons) {
   if (const double* value = std::get_if<double>(&cell)) return fmt::format("{:.{}f}", *value, decimals);
   if (const Repeated* runs = std::get_if<Repeated>(&cell))
     return fmt::format("{:.{}f} {}", runs->median, decimals, spreadText(*runs));
-  return "";
+  reasons.add(std::get<NoValue>(cell).why);
+  return kNoFigure;
 }
 
 std::string speedTable(const SpeedTable& table) {
   std::vector<Cells> lines{{table.name}};
   for (const SpeedColumn& column : table.columns) lines[0].push_back(column.head);
+  Reasons reasons;
   for (const SpeedRow& row : table.rows) {
     lines.push_back({row.name});
     for (std::size_t i = 0; i < table.columns.size(); ++i)
-      lines.back().push_back(cellText(row.cells[i], table.columns[i].decimals));
+      lines.back().push_back(cellText(row.cells[i], table.columns[i].decimals, reasons));
   }
-  return textTable(lines);
+  return textTable(lines) + reasons.text();
 }
 
 Json settingsJson(const Variant& variant) {
   static constexpr const char* kCulling[] = {"none", "tiles"};
-  static constexpr const char* kShadows[] = {"off", "hard", "pcf"};
+  static constexpr const char* kShadows[] = {"off", "hard", "pcf", "soft", "exact"};
   const ShadeSettings& shade = variant.shade;
   return {{"lanes", variant.lanes},
           {"model", modelName(shade.model)},
@@ -75,10 +102,18 @@ Json settingsJson(const Variant& variant) {
           {"samples", variant.samples}};
 }
 
-/// max, mean and signed mean in units of `unit`.
+/// max, mean and signed mean in units of `unit`; null, and a reason, where there is no such figure.
 Json errorJson(const ImageDifference& error, double unit) {
-  return {
-      {"max", error.max_abs / unit}, {"mean", error.mean_abs / unit}, {"signed", error.mean_signed / unit}};
+  Json json;
+  bool all_finite = true;
+  for (const auto& [name, value] :
+       {std::pair("max", error.max_abs), {"mean", error.mean_abs}, {"signed", error.mean_signed}}) {
+    const bool is_finite = unit != 0 && std::isfinite(value);
+    json[name] = is_finite ? Json(value / unit) : Json(nullptr);
+    all_finite &= is_finite;
+  }
+  if (!all_finite) json["reason"] = unit == 0 ? kBlackTruth : "a pixel of one picture alone is not finite";
+  return json;
 }
 
 Json rowJson(const BenchRow& row) {
@@ -98,6 +133,10 @@ Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
     if (const double* value = std::get_if<double>(&row.cells[i])) json[table.columns[i].key] = *value;
     if (const Repeated* runs = std::get_if<Repeated>(&row.cells[i]))
       json[table.columns[i].key] = {{"median", runs->median}, {"spread", runs->spread}};
+    if (const NoValue* none = std::get_if<NoValue>(&row.cells[i])) {
+      json[table.columns[i].key] = nullptr;
+      json["reasons"][table.columns[i].key] = none->why;
+    }
   }
   return json;
 }

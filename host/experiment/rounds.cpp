@@ -17,11 +17,4 @@ std::vector<RoundFigures> runInRounds(std::size_t rows, int rounds, const std::s
   return results;
 }
 
-Repeated ratio(const RoundFigures& over, const RoundFigures& under, std::size_t figure) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < over.figures[figure].size(); ++i)
-    ratios.push_back(over.figures[figure][i] / under.figures[figure][i]);
-  return summarize(ratios);
-}
-
 }  // namespace luciole

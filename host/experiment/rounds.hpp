@@ -25,7 +25,4 @@ std::vector<RoundFigures> runInRounds(std::size_t rows, int rounds, const std::s
                                       const OnProgress& on_progress,
                                       const std::function<std::vector<double>(std::size_t row)>& run);
 
-/// One row's figure over another's, round by round.
-Repeated ratio(const RoundFigures& over, const RoundFigures& under, std::size_t figure);
-
 }  // namespace luciole

@@ -297,6 +297,15 @@ std::string pointName(const ScaleDescription& description, const ScalePoint& poi
   return name;
 }
 
+std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck& check) {
+  std::vector<std::pair<std::string, std::string>> reasons;
+  if (std::isinf(check.reach)) reasons.emplace_back("reach", "a light without a range reaches everywhere");
+  for (const auto& [name, error] :
+       {std::pair("mean_abs", check.mean_abs), {"max_abs", check.max_abs}, {"rmse", check.rmse}})
+    if (!std::isfinite(error)) reasons.emplace_back(name, "a pixel is not finite");
+  return reasons;
+}
+
 // FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo), over numbers that have no padding between them.
 std::uint64_t sceneDigest(const Scene& scene) {
   std::uint64_t digest = 0xcbf29ce484222325u;

@@ -77,6 +77,9 @@ struct PointCheck {
   std::string picture, error_map, list_map;    ///< files in the experiment's folder
 };
 
+/// Figures of a check that JSON has no number for, by name, and why.
+std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck& check);
+
 /// One timed run.
 struct PointRun {
   std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, in order

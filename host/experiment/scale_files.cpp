@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -71,7 +72,9 @@ class PagePictures {
 
   /// The index of a picture file; null where it is missing or there is no more room.
   Json add(const std::string& file) {
-    std::ifstream stream(folder_ + "/" + file, std::ios::binary);
+    std::error_code none;
+    if (!std::filesystem::exists(folder_ + "/" + file, none)) return nullptr;
+    std::ifstream stream(pictureFile(folder_, file), std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     if (bytes.empty()) return nullptr;
     if (const auto known = index_of_.find(bytes); known != index_of_.end()) return known->second;
@@ -151,7 +154,9 @@ Json pointJson(const ScaleDescription& description, const PointSummary& point) {
               {"max_abs", finiteOrNull(point.check.max_abs)},
               {"rmse", finiteOrNull(point.check.rmse)},
               {"pixels", point.check.pixels}}},
+            {"truth", point.truth},
             {"front", point.front}};
+  for (const auto& [name, why] : reasonsForNull(point.check)) json["reasons"][name] = why;
   for (const StageSummary& stage : point.stages) {
     Json row{{"name", stage.name}};
     row.update(quartilesJson(stage.milliseconds));
@@ -184,7 +189,7 @@ std::string scaleCsv(const ScaleSummary& summary) {
     for (const char* ending : {"_ms", "_ms_low", "_ms_high"}) head.push_back(snakeCase(stage) + ending);
   for (const char* name : {"reach", "pairs_evaluated", "pairs_in_range", "pixels_lit", "list_entries",
                            "device_bytes", "peak_bytes", "checked_pixels", "mean_abs", "max_abs", "rmse",
-                           "front", "picture", "error_map", "list_map"})
+                           "front", "picture", "error_map", "list_map", "truth"})
     head.push_back(name);
   std::string csv = csvLine(head);
   for (const PointSummary& point : summary.points) {
@@ -212,6 +217,7 @@ std::string scaleCsv(const ScaleSummary& summary) {
       cells.push_back(fmt::format("{}", error));
     cells.push_back(point.front ? "1" : "0");
     for (const std::string& file : {check.picture, check.error_map, check.list_map}) cells.push_back(file);
+    cells.push_back(point.truth);
     csv += csvLine(cells);
   }
   return csv;

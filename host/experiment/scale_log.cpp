@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFile = "/results.jsonl";
 
 // The lines, there and back. Reading throws nlohmann::json::exception where something is missing or of
-// another type.
+// another type, and InputError where it can't be so.
 
 Json toJson(const ScaleDescription& description) {
   Json settings = Json::object(), axes = Json::array(), points = Json::array();
@@ -62,6 +62,11 @@ ScaleDescription descriptionOf(const Json& line) {
     description.points.push_back(
         {point.at("lights").get<std::uint64_t>(), point.at("values").get<std::vector<std::string>>()});
   description.repeats = json.at("repeats").get<int>();
+  const bool is_whole =
+      std::all_of(description.points.begin(), description.points.end(),
+                  [&](const ScalePoint& point) { return point.values.size() == description.axes.size(); });
+  if (description.lights.empty() || !is_whole)
+    throw InputError("expected numbers of lights, and a value of each axis for every point");
   return description;
 }
 
@@ -97,20 +102,34 @@ double numberOrInfinity(const Json& json) {
 }
 
 Json toJson(const std::string& point, const PointCheck& check) {
-  return {{"point", point},
-          {"check",
-           {{"pairs_evaluated", check.pairs_evaluated},
-            {"pairs_in_range", check.pairs_in_range},
-            {"pixels_lit", check.pixels_lit},
-            {"list_entries", check.list_entries},
-            {"reach", finiteOrNull(check.reach)},
-            {"pixels", check.pixels},
-            {"mean_abs", finiteOrNull(check.mean_abs)},
-            {"max_abs", finiteOrNull(check.max_abs)},
-            {"rmse", finiteOrNull(check.rmse)},
-            {"picture", check.picture},
-            {"error_map", check.error_map},
-            {"list_map", check.list_map}}}};
+  Json json{{"point", point},
+            {"check",
+             {{"pairs_evaluated", check.pairs_evaluated},
+              {"pairs_in_range", check.pairs_in_range},
+              {"pixels_lit", check.pixels_lit},
+              {"list_entries", check.list_entries},
+              {"reach", finiteOrNull(check.reach)},
+              {"pixels", check.pixels},
+              {"mean_abs", finiteOrNull(check.mean_abs)},
+              {"max_abs", finiteOrNull(check.max_abs)},
+              {"rmse", finiteOrNull(check.rmse)},
+              {"picture", check.picture},
+              {"error_map", check.error_map},
+              {"list_map", check.list_map}}}};
+  for (const auto& [name, why] : reasonsForNull(check)) json["reasons"][name] = why;
+  return json;
+}
+
+/// The file that a line names by this key. Throws InputError unless it lies among the pictures in the log's
+/// own folder; links there are looked at when it is used.
+std::string fileNamed(const Json& json, const char* key) {
+  const std::string file = json.at(key).get<std::string>();
+  const fs::path path(file);
+  if (path.parent_path().empty() || *path.begin() != kPictureFolder ||
+      std::any_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; }))
+    throw InputError(fmt::format("{} {}: expected a file in the folder {} of the experiment", key,
+                                 Json(file).dump(), kPictureFolder));
+  return file;
 }
 
 PointCheck checkOf(const Json& line) {
@@ -124,9 +143,9 @@ PointCheck checkOf(const Json& line) {
           .mean_abs = numberOrInfinity(json.at("mean_abs")),
           .max_abs = numberOrInfinity(json.at("max_abs")),
           .rmse = numberOrInfinity(json.at("rmse")),
-          .picture = json.at("picture").get<std::string>(),
-          .error_map = json.at("error_map").get<std::string>(),
-          .list_map = json.at("list_map").get<std::string>()};
+          .picture = fileNamed(json, "picture"),
+          .error_map = fileNamed(json, "error_map"),
+          .list_map = fileNamed(json, "list_map")};
 }
 
 Json toJson(const std::string& point, int repeat, const PointRun& run) {
@@ -161,6 +180,10 @@ void take(const Json& line, ScaleResults& results) {
     record.runs[line.at("repeat").get<int>()] = runOf(line);
 }
 
+std::vector<std::string> filesOf(const PointCheck& check) {
+  return {check.picture, check.error_map, check.list_map};
+}
+
 std::string readFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -183,6 +206,8 @@ ScaleResults parseLog(const std::string& path, const std::string& text) {
       throw InputError(fmt::format(
           "{}: line {}: expected {}", path, number,
           number == 1 ? "the description of an experiment" : "a machine, a check or a run of one"));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: line {}: {}", path, number, error.what()));
     }
     start = end + 1;
   }
@@ -291,6 +316,20 @@ ScaleResults readScaleLog(const std::string& folder) {
   return parseLog(path, text);
 }
 
+std::string pictureFile(const std::string& folder, const std::string& file) {
+  const std::string path = folder + "/" + file;
+  std::error_code failed;
+  const fs::path target = fs::canonical(path, failed);
+  if (failed) throw InputError(fmt::format("{}: {}", path, failed.message()));
+  const fs::path home = fs::canonical(folder, failed);
+  const bool is_inside =
+      std::mismatch(home.begin(), home.end(), target.begin(), target.end()).first == home.end();
+  if (failed || !is_inside || !fs::is_regular_file(target, failed))
+    throw InputError(
+        fmt::format("{}: expected a file in the experiment's folder, not a link out of it", path));
+  return path;
+}
+
 ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged) {
   std::vector<ScaleResults> parts;
   for (const std::string& folder : folders) parts.push_back(readScaleLog(folder));
@@ -308,6 +347,7 @@ ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::
         if (!is_new) throw InputError(fmt::format("{} and {}: both have {}", other, folders[i], point));
       };
       if (record.check) {
+        for (const std::string& file : filesOf(*record.check)) pictureFile(folders[i], file);
         const auto [place, is_new] = folder_of_check.emplace(point, folders[i]);
         once(is_new, place->second);
       }
@@ -323,11 +363,10 @@ ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::
     for (const Machine& machine : parts[i].machines) log.append(machine);
     for (const auto& [point, record] : parts[i].records) {
       if (record.check) {
-        for (const std::string& file :
-             {record.check->picture, record.check->error_map, record.check->list_map}) {
+        for (const std::string& file : filesOf(*record.check)) {
           std::error_code failed;
-          fs::copy_file(folders[i] + "/" + file, merged + "/" + file, fs::copy_options::overwrite_existing,
-                        failed);
+          fs::copy_file(pictureFile(folders[i], file), merged + "/" + file,
+                        fs::copy_options::overwrite_existing, failed);
           if (failed) throw InputError(fmt::format("{}/{}: {}", folders[i], file, failed.message()));
         }
         log.append(point, *record.check);

@@ -54,9 +54,13 @@ class ScaleLog {
 /// Reads the log in a folder. Throws InputError: there is none, or a line isn't of one.
 ScaleResults readScaleLog(const std::string& folder);
 
+/// The path of a file that the log in a folder names. A log may come from anybody: throws InputError unless
+/// it is a regular file in there, links followed.
+std::string pictureFile(const std::string& folder, const std::string& file);
+
 /// Puts what shards of one experiment found together in a new folder, with their pictures. Throws InputError
-/// where they aren't of one experiment, where two have the same check or run, and where the folder holds a
-/// log already; MachineError.
+/// where they aren't of one experiment, where two have the same check or run, where a picture is missing or
+/// no file of its shard's folder, and where the folder holds a log already; MachineError.
 ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged);
 
 }  // namespace luciole

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
+
+#include "experiment/scale_truth.hpp"
 
 namespace luciole {
 namespace {
@@ -21,9 +24,11 @@ double timeOf(const PointRun& run, const std::string& stage) {
   return 0;
 }
 
-PointSummary summarizePoint(const ScalePoint& point, const PointRecord& record) {
+PointSummary summarizePoint(const ScaleDescription& description, const ScalePoint& point,
+                            const PointRecord& record) {
   PointSummary summary;
   summary.point = point;
+  summary.truth = truthName(description, point);
   summary.runs = int(record.runs.size());
   summary.check = *record.check;
   std::vector<double> totals;
@@ -44,9 +49,9 @@ PointSummary summarizePoint(const ScalePoint& point, const PointRecord& record) 
 }
 
 void markFronts(std::vector<PointSummary>& points) {
-  std::map<std::uint64_t, std::vector<PointSummary*>> of_lights;
-  for (PointSummary& point : points) of_lights[point.point.lights].push_back(&point);
-  for (const auto& [lights, rivals] : of_lights) {
+  std::map<std::pair<std::uint64_t, std::string>, std::vector<PointSummary*>> of_picture;
+  for (PointSummary& point : points) of_picture[{point.point.lights, point.truth}].push_back(&point);
+  for (const auto& [picture, rivals] : of_picture) {
     std::vector<SpeedAndError> figures;
     for (const PointSummary* rival : rivals) {
       const Quartiles& time = rival->milliseconds;
@@ -104,7 +109,7 @@ ScaleSummary summarizeScale(const ScaleResults& results) {
     const bool is_checked = found != results.records.end() && found->second.check;
     if (!is_checked || int(found->second.runs.size()) < results.description.repeats) ++summary.incomplete;
     if (is_checked && !found->second.runs.empty())
-      summary.points.push_back(summarizePoint(point, found->second));
+      summary.points.push_back(summarizePoint(results.description, point, found->second));
   }
   markFronts(summary.points);
   summary.growth = fitAll(summary.points);

@@ -22,8 +22,9 @@ struct PointSummary {
   std::vector<StageSummary> stages;  ///< in the order in which they ran
   PointCheck check;
   std::uint64_t device_bytes = 0, peak_bytes = 0;  ///< the most of any run
-  bool front =
-      false;  ///< no way to make the picture by as many lights is both faster and nearer to the truth
+  std::string truth;  ///< what `check` holds it against, see truthName(): errors compare where it is equal
+  /// Of those with this truth and as many lights none is both faster and nearer to it.
+  bool front = false;
 };
 
 /// How a stage's time grows with the lights, other things being equal.

@@ -215,9 +215,11 @@ SpeedTable measureShadingRate(const SpeedInput& input) {
                                   [&](std::size_t row) { return std::vector{rows[row].run()}; });
   for (std::size_t i = 0; i < rounds.size(); ++i) {
     const Repeated time = rounds[i].summary(0);
-    table.rows.push_back({rows[i].name,
-                          {time, 1000 * million_pairs / time.median, ratio(rounds[0], rounds[i], 0),
-                           ratio(rounds[2], rounds[i], 0)}});
+    table.rows.push_back(
+        {rows[i].name,
+         {time, quotient(1000 * million_pairs, time.median, "a time is too short to be measured"),
+          ratio(rounds[0].figures[0], rounds[i].figures[0]),
+          ratio(rounds[2].figures[0], rounds[i].figures[0])}});
   }
   return table;
 }

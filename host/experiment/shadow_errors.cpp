@@ -9,6 +9,7 @@
 #include "experiment/shadow_scenes.hpp"
 #include "experiment/shadow_truth.hpp"
 #include "experiment/stage_figures.hpp"
+#include "experiment/variants.hpp"
 #include "raster/rasterize.hpp"
 #include "render/lighting.hpp"
 #include "render/pair_visibility.hpp"
@@ -26,7 +27,6 @@ struct Method {
 };
 constexpr Method kMethods[] = {
     {"hard", ShadowMethod::kHard}, {"pcf", ShadowMethod::kPcf}, {"exact", ShadowMethod::kExact}};
-constexpr int kSizes[] = {512, 1024, 2048, 4096};
 
 /// A scene as its first camera sees it, and what rays say of it. The rays refer to the scene, so it stays
 /// where it is.
@@ -193,11 +193,43 @@ std::vector<double> timeMaps(Device& device, const Row& row) {
   const double look_up = stageTime(with, "classify") + stageTime(with, "trace unsure") +
                          stageTime(with, "shade") - stageTime(without, "shade");
   const double rays = rayMilliseconds(*row.judged, buildRayScene(row.judged->scene, row.judged->rays.origin));
-  return {draw, look_up, draw + look_up, rays, (draw + look_up) / rays};
+  return {draw, look_up, draw + look_up, rays};
 }
 
-double percent(std::uint64_t part, std::uint64_t whole) {
-  return whole == 0 ? 0 : 100.0 * double(part) / double(whole);
+/// Sizes of maps to try: the scenes made for it differ in kind, not in size.
+std::vector<int> sizesFor(const SpeedInput& input) {
+  if (input.shadow_size) return {*input.shadow_size};
+  if (!input.scene) return {ShadowLimits{}.size};
+  return {std::begin(kShadowSizes), std::end(kShadowSizes)};
+}
+
+SpeedCell percent(std::uint64_t part, std::uint64_t whole, const std::string& why_none) {
+  return quotient(100.0 * double(part), double(whole), why_none);
+}
+
+/// What a row counts, its times left to be filled in.
+std::vector<SpeedCell> countedCells(const Judged& judged, const Verdict& verdict) {
+  const ShadowErrors& errors = verdict.errors;
+  const std::string none =
+      fmt::format("{}: no surface in the picture faces a light that casts shadows", judged.scene.name);
+  const auto ofPairs = [&](std::uint64_t part) { return percent(part, judged.pairs.size(), none); };
+  const auto ofSome = [&](std::uint64_t part, std::uint64_t whole, const char* kind) {
+    return percent(part, whole,
+                   judged.pairs.empty() ? none : fmt::format("{}: no pair is {}", judged.scene.name, kind));
+  };
+  return {double(judged.pairs.size()),
+          double(verdict.faces),
+          1e-6 * double(verdict.texels),
+          {},
+          {},
+          {},
+          {},
+          NoValue{none},
+          ofPairs(verdict.traced),
+          ofSome(errors.wrongly_dark, errors.lit, "lit away from edges"),
+          ofSome(errors.wrongly_lit, errors.dark, "dark away from edges"),
+          ofPairs(errors.edges),
+          ofSome(errors.wrong_edges, errors.edges, "near an edge")};
 }
 
 }  // namespace
@@ -236,36 +268,23 @@ SpeedTable measureShadowErrors(const SpeedInput& input) {
   std::vector<Row> rows;
   for (const auto& one : judged) {
     for (const Method& method : kMethods) {
-      for (const int map_size : kSizes) {
+      for (const int map_size : sizesFor(input)) {
         Row row{one.get(), {}};
-        // The scenes made for it differ in kind, not in size.
-        if (!input.scene && map_size != row.settings.shadow_limits.size) continue;
         row.settings.shadows = method.method;
         row.settings.shadow_limits.size = map_size;
-        const Verdict verdict = judgeMaps(input.device, *one, row.settings);
-        const ShadowErrors& errors = verdict.errors;
         table.rows.push_back({fmt::format("{}, {} {}", one->scene.name, method.name, map_size),
-                              {double(one->pairs.size()),
-                               double(verdict.faces),
-                               1e-6 * double(verdict.texels),
-                               {},
-                               {},
-                               {},
-                               {},
-                               {},
-                               percent(verdict.traced, one->pairs.size()),
-                               percent(errors.wrongly_dark, errors.lit),
-                               percent(errors.wrongly_lit, errors.dark),
-                               percent(errors.edges, one->pairs.size()),
-                               percent(errors.wrong_edges, errors.edges)}});
+                              countedCells(*one, judgeMaps(input.device, *one, row.settings))});
         rows.push_back(row);
       }
     }
   }
   const auto rounds = runInRounds(rows.size(), input.repeats, table.name, input.on_progress,
                                   [&](std::size_t row) { return timeMaps(input.device, rows[row]); });
-  for (std::size_t row = 0; row < rounds.size(); ++row)
-    for (std::size_t i = 0; i < 5; ++i) table.rows[row].cells[3 + i] = rounds[row].summary(i);
+  for (std::size_t row = 0; row < rounds.size(); ++row) {
+    for (std::size_t i = 0; i < 4; ++i) table.rows[row].cells[3 + i] = rounds[row].summary(i);
+    if (!rows[row].judged->pairs.empty())
+      table.rows[row].cells[7] = ratio(rounds[row].figures[2], rounds[row].figures[3]);
+  }
   return table;
 }
 

@@ -16,6 +16,7 @@ struct SpeedInput {
   std::string device_selector;     ///< that opened it
   const Scene* scene = nullptr;    ///< null: the built-in scenes only
   std::optional<glm::ivec2> size;  ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size;  ///< of shadow maps, instead of those that are tried
   int repeats = 9;
   std::string program;  ///< the path of luciole itself, for measurements of the whole process
   OnProgress on_progress;

@@ -12,9 +12,8 @@ namespace {
 constexpr int kLog2Degrees[] = {3, 4, 5, 6, 7, 9};
 constexpr int kExp2Degrees[] = {2, 3, 4, 5, 7};
 
-constexpr std::pair<ShadowMethod, const char*> kFilters[] = {{ShadowMethod::kHard, "hard"},
-                                                             {ShadowMethod::kPcf, "pcf"}};
-constexpr int kShadowSizes[] = {512, 1024, 2048, 4096};
+constexpr std::pair<ShadowMethod, const char*> kSharpMethods[] = {
+    {ShadowMethod::kHard, "hard"}, {ShadowMethod::kPcf, "pcf"}, {ShadowMethod::kExact, "exact"}};
 
 VariantGroup shadingVariants(int lanes) {
   Variant usual{.lanes = lanes, .is_default = true};
@@ -22,6 +21,7 @@ VariantGroup shadingVariants(int lanes) {
   usual.name =
       fmt::format("lanes {}, log2 {}, exp2 {}", lanes, usual.shade.log2_degree, usual.shade.exp2_degree);
   VariantGroup group{.name = "shading",
+                     .chosen_by = "shading",
                      .measured = "culling and shading, against the same G-buffer shaded in double precision",
                      .stages = {"cull", "shade"},
                      .variants = {usual}};
@@ -44,6 +44,7 @@ VariantGroup shadingVariants(int lanes) {
 
 VariantGroup modelVariants(int lanes) {
   VariantGroup group{.name = "models",
+                     .chosen_by = "models",
                      .measured = "culling and shading, each model against itself in double precision",
                      .stages = {"cull", "shade"}};
   for (const Model model : kAllModels) {
@@ -55,31 +56,58 @@ VariantGroup modelVariants(int lanes) {
   return group;
 }
 
-VariantGroup shadowVariants(int lanes) {
+bool hasSize(const Light& light) {
+  return light.shadow && (light.kind == LightKind::kDirectional ? light.half_angle : light.radius) > 0;
+}
+
+Variant shadowVariant(int lanes, ShadowMethod method, const std::string& name, int size) {
   const ShadeSettings usual;
-  VariantGroup group{.name = "shadows",
-                     .measured =
-                         "shadow maps, culling and shading, against shadows by rays from the same "
-                         "G-buffer in double precision",
-                     .stages = {"find shadow texels", "shadow maps", "cull", "shade"},
-                     .shadows = true};
-  for (const auto& [method, name] : kFilters) {
-    for (const int size : kShadowSizes) {
-      Variant variant{.name = fmt::format("{} {}", name, size), .lanes = lanes};
-      variant.shade.shadows = method;
-      variant.shade.shadow_limits.size = size;
-      variant.is_default = method == usual.shadows && size == usual.shadow_limits.size;
-      group.variants.push_back(variant);
-    }
-  }
+  Variant variant{.name = fmt::format("{} {}", name, size), .lanes = lanes};
+  variant.shade.shadows = method;
+  variant.shade.shadow_limits.size = size;
+  variant.is_default = method == usual.shadows && size == usual.shadow_limits.size;
+  return variant;
+}
+
+VariantGroup shadowGroup(const std::string& name, const std::string& truth, TruthShadows shadows) {
+  return {.name = name,
+          .chosen_by = "shadows",
+          .measured = "shadow maps, culling and shading, against " + truth +
+                      " from the same G-buffer in double precision",
+          .stages = {"find shadow texels", "shadow maps", "ray tree", "cull", "classify", "trace unsure",
+                     "shade"},
+          .shadows = shadows};
+}
+
+/// One group, or for lights that have a size two, of which the second one's truth has their penumbrae: there
+/// the methods that take lights for points have a row each, too.
+std::vector<VariantGroup> shadowVariants(const Scene& scene, int lanes, std::optional<int> only_size) {
+  const std::vector<int> sizes =
+      only_size ? std::vector{*only_size} : std::vector(std::begin(kShadowSizes), std::end(kShadowSizes));
+  const int usual_size = only_size.value_or(ShadowLimits{}.size);
   Variant off{.name = "no shadows", .lanes = lanes};
   off.shade.shadows = ShadowMethod::kOff;
-  group.variants.push_back(off);
-  return group;
+  std::vector<VariantGroup> groups{
+      shadowGroup("shadows", "shadows by rays to the lights' middles", TruthShadows::kSharp)};
+  for (const auto& [method, name] : kSharpMethods)
+    for (const int size : sizes) groups[0].variants.push_back(shadowVariant(lanes, method, name, size));
+  const bool soft = std::any_of(scene.lights.begin(), scene.lights.end(), hasSize);
+  if (soft) {
+    groups[0].variants.push_back(off);
+    groups.push_back(shadowGroup("soft shadows", "shadows by many rays to each light that has a size",
+                                 TruthShadows::kSoft));
+    for (const auto& [method, name] : kSharpMethods)
+      groups[1].variants.push_back(shadowVariant(lanes, method, name, usual_size));
+  }
+  for (const int size : sizes)
+    groups.back().variants.push_back(shadowVariant(lanes, ShadowMethod::kSoft, "soft", size));
+  groups.back().variants.push_back(off);
+  return groups;
 }
 
 VariantGroup sampleVariants(int lanes) {
   VariantGroup group{.name = "samples",
+                     .chosen_by = "samples",
                      .measured =
                          "the whole picture but shadows, against the mean of many more samples in "
                          "double precision",
@@ -103,11 +131,12 @@ bool haveOneTruth(const VariantGroup& group) {
   });
 }
 
-std::vector<VariantGroup> benchVariants(const Scene& scene, int lanes) {
+std::vector<VariantGroup> benchVariants(const Scene& scene, int lanes, std::optional<int> shadow_size) {
   std::vector<VariantGroup> groups{shadingVariants(lanes), modelVariants(lanes)};
   const bool shadows = scene.lighting && std::any_of(scene.lights.begin(), scene.lights.end(),
                                                      [](const Light& l) { return l.shadow; });
-  if (shadows) groups.push_back(shadowVariants(lanes));
+  if (shadows)
+    for (VariantGroup& group : shadowVariants(scene, lanes, shadow_size)) groups.push_back(std::move(group));
   groups.push_back(sampleVariants(lanes));
   return groups;
 }

@@ -137,6 +137,7 @@ ImageDifference compareImages(const Image& a, const Image& b) {
       result.worst_pixel = {int(p % a.width), int(p / a.width)};
     }
   }
+  if (finite == 0) sum = sum_abs = sum_squared = sum_relative = kInfinity;
   const double count = double(std::max<std::uint64_t>(finite, 1));
   const auto relative = [&](double difference) { return difference > 0 ? difference / largest_value : 0.0; };
   result.pixels = compared.size();

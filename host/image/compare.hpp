@@ -12,7 +12,8 @@ namespace luciole {
 /// How B differs from A, over the compared pixels and channels, in linear units unless said otherwise.
 /// Equal values, infinities of one sign and NaN with NaN among them, differ by 0. Values of which one is not
 /// finite and the other isn't the same count in `nonfinite` and as an infinite difference in max_abs, the
-/// percentiles and `over`; means leave them out.
+/// percentiles and `over`; means leave them out, and are infinite where
+/// nothing else is left.
 struct ImageDifference {
   std::vector<std::string> channels;  ///< compared
   std::uint64_t pixels = 0;           ///< compared

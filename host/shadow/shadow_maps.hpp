@@ -73,7 +73,8 @@ bool usesCubeMap(const Light& light);
 ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMethod method,
                           const ShadowLimits& limits);
 
-inline constexpr int kSmallestFace = 16;
+/// Texels a side: faces have no fewer, and limits ask for no more.
+inline constexpr int kSmallestFace = 16, kLargestFace = 16384;
 
 /// Draws the bins that are needed (see findNeeded) and weren't drawn yet, from the triangles that can be seen
 /// there within the light's reach, and no farther away than what looks there.

@@ -240,6 +240,43 @@ TEST_F(CommandLine, NonFiniteDifferencesNeverPass) {
   succeed("luciole compare b.exr b.exr --max-abs 0");
 }
 
+TEST_F(CommandLine, CompareSaysWhyAFigureIsNull) {
+  const Image black{1, 1, {"R", "G", "B"}, {0, 0, 0}};
+  writeImage(black, folder / "black.exr", {});
+  writeImage({1, 1, {"R", "G", "B"}, {1, 1, 1}}, folder / "white.exr", {});
+  writeImage({1, 1, {"R", "G", "B"}, {NAN, NAN, NAN}}, folder / "nothing.exr", {});
+  const auto reasons = [&](const std::string& pair) {
+    const auto json = nlohmann::json::parse(succeed("luciole compare " + pair + " --json -"));
+    std::vector<std::string> nulls, explained;
+    for (const auto& [key, value] : json.items())
+      if (value.is_null()) nulls.push_back(key);
+    const auto found = json.value("reasons", nlohmann::json::object());
+    for (const auto& [key, why] : found.items()) explained.push_back(key);
+    EXPECT_EQ(nulls, explained) << json;
+    return found;
+  };
+  EXPECT_EQ(reasons("black.exr black.exr"), (nlohmann::json{{"psnr", "no finite value differs"}}));
+  EXPECT_EQ(reasons("white.exr black.exr"), nlohmann::json::object());
+  EXPECT_EQ(reasons("black.exr white.exr"),
+            (nlohmann::json{{"max_relative", "A is black, of which nothing is a share"},
+                            {"mean_relative", "A is black, of which nothing is a share"}}));
+  EXPECT_EQ(reasons("nothing.exr white.exr").size(), 10u);
+  EXPECT_EQ(succeed("luciole compare nothing.exr white.exr").find("nan"), std::string::npos);
+}
+
+TEST_F(CommandLine, ShadowSizeBoundsTheMaps) {
+  succeed(
+      "luciole render scene.json -o usual.exr && luciole render scene.json --shadow-size 2048 -o same.exr");
+  succeed("luciole compare usual.exr same.exr --max-abs 0");
+  succeed("luciole render scene.json --shadow-size 16 -o coarse.exr --shadows hard");
+  EXPECT_EQ(runLine(folder, "luciole compare usual.exr coarse.exr --max-abs 0.01").status, 1);
+  succeed("luciole gbuffer scene.json -o g.exr");
+  succeed("luciole shade g.exr --scene scene.json --shadow-size 16 -o shaded.exr");
+  succeed("luciole compare coarse.exr shaded.exr --max-abs 0");
+  for (const char* size : {"15", "16385", "many"})
+    refuse(std::string("luciole render scene.json -o out.png --shadow-size ") + size, 2, "--shadow-size");
+}
+
 TEST_F(CommandLine, ComparedPicturesOnStandardOutputStandAlone) {
   writeImage({1, 1, {"R", "G", "B"}, {1, 1, 1}}, folder / "a.exr", {});
   for (const char* option : {"--diff", "--error-map"}) {

@@ -200,7 +200,8 @@ TEST_F(Frames, ShardsShareThem) {
 
 TEST_F(Frames, TasksOfASlurmArrayShareThemAndSaySo) {
   const std::string slurm =
-      "export SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_STEP=1 SLURM_ARRAY_TASK_ID=";
+      "export SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=2 SLURM_ARRAY_TASK_STEP=1 "
+      "SLURM_ARRAY_TASK_ID=";
   const std::string line = "; luciole render scene.json --frames 1-4 -o f.#.png";
   EXPECT_THAT(succeed(slurm + "2" + line), StartsWith("shard 2/2 of the frames"));
   EXPECT_EQ(files("f."), (Names{"f.2.png", "f.4.png"}));

@@ -181,11 +181,11 @@ TEST_F(ScaleCommand, MergedShardsEqualOneRun) {
   const std::string arguments = "--lights 1,10,100 --vary culling --repeat 2 ";
   succeed(arguments + "-o whole");
   succeed(arguments + "--shard 1/2 -o one");
-  const Outcome second =
-      runLine(folder,
-              "export SLURM_ARRAY_TASK_ID=7 SLURM_ARRAY_TASK_MIN=6 SLURM_ARRAY_TASK_COUNT=2 "
-              "SLURM_ARRAY_TASK_STEP=1; luciole scale scene.json --size 48x27 --check-pixels 40 " +
-                  arguments + "-o two");
+  const Outcome second = runLine(folder,
+                                 "export SLURM_ARRAY_TASK_ID=7 SLURM_ARRAY_TASK_MIN=6 SLURM_ARRAY_TASK_MAX=7 "
+                                 "SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_STEP=1; luciole scale scene.json "
+                                 "--size 48x27 --check-pixels 40 " +
+                                     arguments + "-o two");
   ASSERT_EQ(second.status, 0) << second.err;
   EXPECT_THAT(second.err, HasSubstr("shard 2/2"));
   EXPECT_THAT(second.err, HasSubstr("3 of 6 points are not complete"));
@@ -239,6 +239,26 @@ TEST_F(ScaleCommand, ShadowsAreCastWhereTheyAreAskedForAndJudgedByRays) {
   EXPECT_EQ(rows[0].at("shadow_maps_ms"), "");
   EXPECT_GT(std::stod(rows[1].at("shadow_maps_ms")), 0);
   for (const Row& row : rows) EXPECT_LT(std::stod(row.at("mean_abs")), 0.25 / 255);
+}
+
+TEST_F(ScaleCommand, PicturesWithoutShadowsBeatNoneThatHaveThem) {
+  succeed("--lights 20 --vary shadows=off,hard,pcf,exact --density 10 --repeat 2 -o run");
+  std::map<std::string, int> on_front;
+  for (const Row& row : readCsv(folder / "run/results.csv")) {
+    EXPECT_EQ(row.at("truth"), row.at("shadows") == "off" ? "no shadows" : "shadows by rays");
+    on_front[row.at("truth")] += row.at("front") == "1";
+  }
+  EXPECT_EQ(on_front["no shadows"], 1);
+  EXPECT_GE(on_front["shadows by rays"], 1);
+}
+
+TEST_F(ScaleCommand, LargerShadowMapsAreNearerToTheirTruthAndNeedNoneWithoutShadows) {
+  succeed("--lights 5 --vary shadows=off,hard,shadow-size=16,1024 --range 6 --repeat 1 -o run");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1].at("shadow-size"), "16");
+  EXPECT_LT(std::stod(rows[2].at("mean_abs")), std::stod(rows[1].at("mean_abs")));
+  EXPECT_EQ(rows[1].at("truth"), rows[2].at("truth"));
 }
 
 TEST_F(ScaleCommand, LightsOfAFileMakeThePictureThatRenderMakesOfThem) {
@@ -311,6 +331,8 @@ TEST_F(ScaleCommand, WrongArgumentsAreRefusedBeforeAnythingIsWritten) {
            {"--lights 1 --tile 8 --vary tile -o run", "--tile"},
            {"--lights 1 --range 1 --density 2 -o run", "--density"},
            {"--lights 1 --range 0 -o run", "--range"},
+           {"--lights 1 --vary shadow-size=8 -o run", "shadow-size=8"},
+           {"--lights 1 --shadow-size 32768 -o run", "--shadow-size"},
            {"--lights 1 --field ring -o run", "ring"},
            {"--lights 1 --field none.csv -o run", "none.csv"},
            {"--lights 1 --shard 3/2 -o run", "3/2"},

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <tuple>
@@ -14,15 +15,18 @@ namespace {
 
 /// The environment of one task of a Slurm job array, while it lives. A null variable is not set.
 struct SlurmTask {
-  SlurmTask(const char* id, const char* count, const char* first, const char* step) {
+  SlurmTask(const char* id, const char* count, const char* first, const char* last, const char* step) {
     set("SLURM_ARRAY_TASK_ID", id);
     set("SLURM_ARRAY_TASK_COUNT", count);
     set("SLURM_ARRAY_TASK_MIN", first);
+    set("SLURM_ARRAY_TASK_MAX", last);
     set("SLURM_ARRAY_TASK_STEP", step);
+    set("SLURM_STEP_NUM_TASKS", nullptr);
   }
   ~SlurmTask() {
-    for (const char* name : {"ID", "COUNT", "MIN", "STEP"})
-      unsetenv((std::string("SLURM_ARRAY_TASK_") + name).c_str());
+    for (const char* name : {"ARRAY_TASK_ID", "ARRAY_TASK_COUNT", "ARRAY_TASK_MIN", "ARRAY_TASK_MAX",
+                             "ARRAY_TASK_STEP", "STEP_NUM_TASKS"})
+      unsetenv((std::string("SLURM_") + name).c_str());
   }
   static void set(const char* name, const char* value) {
     if (value)
@@ -42,7 +46,7 @@ std::string errorOf(const std::string& option) {
 }
 
 TEST(Shard, IsAllUnlessSomethingSaysOtherwise) {
-  const SlurmTask none(nullptr, nullptr, nullptr, nullptr);
+  const SlurmTask none(nullptr, nullptr, nullptr, nullptr, nullptr);
   const Shard shard = chosenShard("");
   EXPECT_EQ(shard.index, 0);
   EXPECT_EQ(shard.count, 1);
@@ -68,9 +72,10 @@ TEST(Shard, RefusesWhatIsNoPartOfAWhole) {
 }
 
 TEST(Shard, IsTheTaskOfASlurmArray) {
-  // sbatch --array=0-3, =1-4, =10-40:10
-  for (const auto& [id, first, step] : {std::tuple{"2", "0", "1"}, {"3", "1", "1"}, {"30", "10", "10"}}) {
-    const SlurmTask task(id, "4", first, step);
+  // sbatch --array=0-3, =1-4%2, =10-40:10
+  for (const auto& [id, first, last, step] :
+       {std::tuple{"2", "0", "3", "1"}, {"3", "1", "4", "1"}, {"30", "10", "40", "10"}}) {
+    const SlurmTask task(id, "4", first, last, step);
     const Shard shard = chosenShard("");
     EXPECT_EQ(shard.index, 2) << id;
     EXPECT_EQ(shard.count, 4) << id;
@@ -78,7 +83,7 @@ TEST(Shard, IsTheTaskOfASlurmArray) {
 }
 
 TEST(Shard, TypedOnesWinOverSlurm) {
-  const SlurmTask task("2", "4", "0", "1");
+  const SlurmTask task("2", "4", "0", "3", "1");
   EXPECT_EQ(chosenShard("5/8").index, 4);
   EXPECT_EQ(chosenShard("5/8").count, 8);
 }
@@ -87,17 +92,42 @@ TEST(Shard, RefusesSlurmVariablesThatMakeNoSense) {
   const auto expectError = [](const SlurmTask&, const std::string& what) {
     EXPECT_THAT(errorOf(""), testing::StartsWith(what));
   };
-  expectError({"x", "4", "0", "1"}, "SLURM_ARRAY_TASK_ID: expected a whole number of 0 or more");
-  expectError({"", "4", "0", "1"}, "SLURM_ARRAY_TASK_ID: expected");
-  expectError({"0", nullptr, "0", "1"}, "SLURM_ARRAY_TASK_COUNT: expected a whole number of 1 or more");
-  expectError({"0", "0", "0", "1"}, "SLURM_ARRAY_TASK_COUNT: expected");
-  expectError({"0", "4", "-1", "1"}, "SLURM_ARRAY_TASK_MIN: expected");
-  expectError({"0", "4", "0", "0"}, "SLURM_ARRAY_TASK_STEP: expected");
-  expectError({"0", "4", "0", "2147483648"}, "SLURM_ARRAY_TASK_STEP: expected");
-  // Outside the array, or between its tasks, as in --array=1,3,7.
-  expectError({"4", "4", "0", "1"}, "SLURM_ARRAY_TASK_ID: 4 is none of the 4 tasks");
-  expectError({"0", "4", "1", "1"}, "SLURM_ARRAY_TASK_ID: 0 is none of the 4 tasks");
-  expectError({"3", "4", "0", "2"}, "SLURM_ARRAY_TASK_ID: 3 is none of the 4 tasks");
+  expectError({"x", "4", "0", "3", "1"}, "SLURM_ARRAY_TASK_ID: expected a whole number of 0 or more");
+  expectError({"", "4", "0", "3", "1"}, "SLURM_ARRAY_TASK_ID: expected");
+  expectError({"0", nullptr, "0", "3", "1"}, "SLURM_ARRAY_TASK_COUNT: expected a whole number of 1 or more");
+  expectError({"0", "0", "0", "3", "1"}, "SLURM_ARRAY_TASK_COUNT: expected");
+  expectError({"0", "4", "-1", "3", "1"}, "SLURM_ARRAY_TASK_MIN: expected");
+  expectError({"0", "4", "0", nullptr, "1"}, "SLURM_ARRAY_TASK_MAX: expected");
+  expectError({"0", "4", "0", "3", "0"}, "SLURM_ARRAY_TASK_STEP: expected");
+  expectError({"0", "4", "0", "3", "2147483648"}, "SLURM_ARRAY_TASK_STEP: expected");
+  // Outside the array, or between its tasks.
+  expectError({"4", "4", "0", "3", "1"}, "SLURM_ARRAY_TASK_ID: 4 is none of the 4 tasks");
+  expectError({"0", "4", "1", "4", "1"}, "SLURM_ARRAY_TASK_ID: 0 is none of the 4 tasks");
+  expectError({"3", "4", "0", "6", "2"}, "SLURM_ARRAY_TASK_ID: 3 is none of the 4 tasks");
+}
+
+TEST(Shard, RefusesEveryTaskOfAnArrayWithHoles) {
+  // sbatch --array=1,3,7 and =0,3-4: Slurm says a step of 1, so that some would take a part that isn't
+  // theirs, and one that nobody takes is left.
+  for (const auto& [first, last, ids] :
+       {std::tuple{"1", "7", std::array{"1", "3", "7"}}, {"0", "4", std::array{"0", "3", "4"}}})
+    for (const char* id : ids) {
+      const SlurmTask task(id, "3", first, last, "1");
+      EXPECT_THAT(errorOf(""),
+                  testing::AllOf(testing::StartsWith("SLURM_ARRAY_TASK_MAX: the array's 3 tasks"),
+                                 testing::HasSubstr("1-3")))
+          << id;
+    }
+}
+
+TEST(Shard, RefusesATaskThatRunsSeveralProcesses) {
+  // sbatch --array=1-4 -n2 --wrap 'srun luciole …'
+  const SlurmTask task("2", "4", "1", "4", "1");
+  SlurmTask::set("SLURM_STEP_NUM_TASKS", "2");
+  EXPECT_THAT(errorOf(""), testing::StartsWith("SLURM_STEP_NUM_TASKS: 2 processes of one array task"));
+  EXPECT_EQ(chosenShard("3/8").index, 2);
+  SlurmTask::set("SLURM_STEP_NUM_TASKS", "1");
+  EXPECT_EQ(chosenShard("").index, 1);
 }
 
 TEST(Shard, EveryPieceIsInExactlyOne) {

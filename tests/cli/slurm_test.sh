@@ -199,6 +199,26 @@ ArrayOfFourShardsWithOneKilledAndRequeuedEqualsOneProcess() {
   done
 }
 
+TaskThatAnotherArrayIsAtIsRefused() {
+  local array again command='./luciole render scene.json --frames 1-8 -o frame.####.exr --resume --stats - --quiet'
+  prepare "$folder/together"
+  holdSecondTask "$folder/together"
+  startCluster
+  array=$(sbatch --parsable --array=1-4 -D "$folder/together" -o "$folder/%a.out" --wrap "$command")
+  await 120 "the second task's first frame" test -e "$folder/together/frame.0002.exr"
+  await 120 "the end of the other tasks" hasStates "$array" "3 COMPLETED 1 RUNNING"
+  # Taken away, as if it were being made: the second task holds it for as long as it runs.
+  rm "$folder/together/frame.0002.exr"
+  # An array of one does all frames, which are others' here.
+  again=$(sbatch --parsable --array=9 -D "$folder/together" -o "$folder/again.out" --wrap "$command")
+  await 120 "the end of the second array" hasStates "$again" "1 FAILED"
+  grep -q 'frame 2: another run is making it' "$folder/again.out" || fail "the second array doesn't say why"
+  killAndRequeue "${array}_2"
+  await 120 "the end of all tasks" hasStates "$array" "4 COMPLETED"
+  expect "number of frames" "$(find "$folder/together" -name 'frame.*.exr' | wc -l)" 8
+  expect "files left behind" "$(find "$folder/together" -name '.*.lock')" ""
+}
+
 # Lines of a log: "check" what was found of a point, "repeat" a timed run.
 countLines() { grep -c "\"$2\":" "$1/results.jsonl" 2>/dev/null || true; }
 hasChecked() { [[ $(countLines "$1" check) -gt 0 ]]; }

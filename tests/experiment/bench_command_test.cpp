@@ -49,8 +49,8 @@ TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
     }
     EXPECT_GE(on_front, 1) << group["name"];
   }
-  // Each row is another variant: 16 of shading, 9 of shadows, 5 of samples.
-  EXPECT_EQ(settings.size(), 16u + 9 + 5);
+  // Each row is another variant: 16 of shading, 17 of shadows, 5 of samples.
+  EXPECT_EQ(settings.size(), 16u + 17 + 5);
 
   const auto& shading = json["groups"][0];
   const auto& usual = defaultRow(shading)["error"]["steps"];
@@ -69,6 +69,111 @@ TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
   EXPECT_LT(samples[4]["error"]["steps"]["mean"], samples[0]["error"]["steps"]["mean"]);
   // The truth must be nearer to itself than what it judges.
   EXPECT_LT(json["groups"][2]["truth_error_steps"], samples[4]["error"]["steps"]["mean"]);
+}
+
+/// The mean error of a row, in 8-bit steps.
+double meanOf(const nlohmann::json& group, const std::string& name) {
+  for (const auto& row : group["rows"])
+    if (row["name"] == name) return row["error"]["steps"]["mean"];
+  throw std::logic_error("no row " + name);
+}
+
+TEST(BenchCommand, SharpAndSoftShadowsAreEachHeldAgainstTheirOwnTruth) {
+  const TemporaryFolder folder;
+  std::string scene = kScene;
+  scene.replace(scene.find("\"shadow\": true"), 14, "\"shadow\": true, \"radius\": 0.4");
+  writeText(folder / "scene.json", scene);
+  const Outcome outcome = runLine(
+      folder, "luciole bench scene.json --only shadows --size 160x90 --repeats 1 --quiet --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto groups = nlohmann::json::parse(readText(folder / "out.json"))["groups"];
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0]["name"], "shadows");
+  EXPECT_EQ(groups[1]["name"], "soft shadows");
+  // Exact ones are what rays to the light's middle say, but for what shading rounds. Held against the
+  // penumbra they would be as wrong as it is wide.
+  EXPECT_LT(meanOf(groups[0], "exact 2048"), 1e-3);
+  EXPECT_LT(meanOf(groups[0], "exact 2048"), meanOf(groups[0], "hard 2048"));
+  EXPECT_GT(meanOf(groups[1], "exact 2048"), 10 * meanOf(groups[0], "exact 2048"));
+  // Soft ones know the light's size.
+  EXPECT_LT(meanOf(groups[1], "soft 2048"), meanOf(groups[1], "hard 2048"));
+  EXPECT_LT(meanOf(groups[1], "soft 2048"), meanOf(groups[1], "no shadows"));
+  for (const auto& group : groups) {
+    std::set<std::string> methods;
+    for (const auto& row : group["rows"]) methods.insert(row["settings"]["shadows"]);
+    EXPECT_EQ(methods.count("soft"), group["name"] == "soft shadows");
+    EXPECT_EQ(methods.count("exact"), 1u);
+    EXPECT_NE(outcome.out.find("\n" + group["name"].get<std::string>() + ": "), std::string::npos);
+  }
+}
+
+TEST(BenchCommand, ShadowSizeIsTheOnlyOneTried) {
+  const TemporaryFolder folder;
+  writeText(folder / "scene.json", kScene);
+  const Outcome outcome =
+      runLine(folder,
+              "luciole bench scene.json --only shadows --only 'shadow errors' --shadow-size "
+              "96 --size 64x36 --repeats 1 --quiet --json -");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  std::vector<std::string> names;
+  for (const auto& row : json["groups"][0]["rows"]) names.push_back(row["name"]);
+  EXPECT_EQ(names, (std::vector<std::string>{"hard 96", "pcf 96", "exact 96", "soft 96", "no shadows"}));
+  for (const auto& row : json["speed"][0]["rows"])
+    EXPECT_TRUE(row["name"].get<std::string>().ends_with(" 96"));
+}
+
+/// No light that casts a shadow, and nothing to be seen.
+std::string withoutShadows() {
+  std::string scene = kScene;
+  return scene.replace(scene.find("\"shadow\": true"), 14, "\"shadow\": false");
+}
+std::string withoutAnySurfaceInSight() {
+  std::string scene = kScene;
+  return scene.replace(scene.find("\"target\": [0, 0.5, 0]"), 21, "\"target\": [3, 9, 5.5]");
+}
+
+/// No table or JSON holds a number that is none, and every null has its reason.
+void expectReasons(const nlohmann::json& row) {
+  for (const auto& [key, value] : row.items())
+    if (value.is_null()) EXPECT_TRUE(row["reasons"].contains(key)) << row;
+}
+
+TEST(BenchCommand, WhatHasNoValueSaysWhy) {
+  for (const std::string& scene : {withoutShadows(), withoutAnySurfaceInSight()}) {
+    const TemporaryFolder folder;
+    writeText(folder / "scene.json", scene);
+    const Outcome outcome =
+        runLine(folder,
+                "luciole bench scene.json --only 'shadow errors' --only shading --size 64x36 --repeats 2 "
+                "--shadow-size 512 --quiet --json out.json");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+    EXPECT_NE(
+        outcome.out.find("\n–: scene.json: no surface in the picture faces a light that casts shadows.\n"),
+        std::string::npos)
+        << outcome.out;
+    const std::string text = readText(folder / "out.json");
+    const auto json = nlohmann::json::parse(text);
+    ASSERT_EQ(json["speed"][0]["rows"].size(), 3u);
+    for (const auto& row : json["speed"][0]["rows"]) {
+      for (const char* key : {"times_rays", "wrongly_dark_percent", "wrongly_lit_percent", "edge_percent"})
+        EXPECT_TRUE(row.contains(key) && row[key].is_null()) << key;
+      EXPECT_EQ(row["pairs"], 0);
+      expectReasons(row);
+    }
+  }
+}
+
+TEST(BenchCommand, TablesOfOnePixelHaveNoValueThatIsNone) {
+  const TemporaryFolder folder;
+  const Outcome outcome = runLine(
+      folder, "luciole bench --only 'culling and shading' --size 1x1 --repeats 1 --quiet --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("inf"), std::string::npos) << outcome.out;
+  const auto json = nlohmann::json::parse(readText(folder / "out.json"));
+  for (const auto& row : json["speed"][0]["rows"]) expectReasons(row);
 }
 
 TEST(BenchCommand, EveryModelIsHeldAgainstItself) {
@@ -148,6 +253,7 @@ TEST(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench --only everything", 2, "--only");
   refuse("luciole bench --size 64", 2, "--size");
   refuse("luciole bench --repeats 0", 2, "--repeats");
+  refuse("luciole bench --shadow-size 15", 2, "--shadow-size");
   refuse("luciole bench --device no-such-device", 2, "no-such-device");
 }
 

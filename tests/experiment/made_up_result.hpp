@@ -44,7 +44,8 @@ inline BenchResult madeUpResult() {
   result.speed = {{.name = "a stage",
                    .measured = "what it costs",
                    .columns = {{"milliseconds", "ms", 2}, {"entries", "entries", 0}},
-                   .rows = {{"one", {Repeated{12.345, 1.2345}, 7.0}}, {"two", {Repeated{0, 0}, {}}}}}};
+                   .rows = {{"one", {Repeated{12.345, 1.2345}, 7.0}},
+                            {"two", {Repeated{0, 0}, NoValue{"nobody counted"}}}}}};
   return result;
 }
 

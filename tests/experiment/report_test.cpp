@@ -54,11 +54,12 @@ TEST(BenchTable, SaysWhatTheTruthOfTheSamplesIsWorth) {
   EXPECT_THAT(lines[0], HasSubstr("1.0e-02"));
 }
 
-TEST(BenchTable, ATableOfSpeedHasAFigureOrNothingInEachCell) {
+TEST(BenchTable, ATableOfSpeedHasAFigureOrADashAndItsReasonInEachCell) {
   const std::string table = benchTable(madeUpResult());
   EXPECT_THAT(table, HasSubstr("a stage: what it costs."));
   EXPECT_EQ(linesWith(table, "| one "), std::vector<std::string>{"| one     | 12.35 ± 10 % |       7 |"});
-  EXPECT_EQ(linesWith(table, "| two "), std::vector<std::string>{"| two     |   0.00 ± 0 % |         |"});
+  EXPECT_EQ(linesWith(table, "| two "), std::vector<std::string>{"| two     |   0.00 ± 0 % |       – |"});
+  EXPECT_EQ(linesWith(table, "–: "), std::vector<std::string>{"–: nobody counted."});
 }
 
 TEST(BenchJson, ATableOfSpeedHasItsFiguresByKey) {
@@ -68,7 +69,8 @@ TEST(BenchJson, ATableOfSpeedHasItsFiguresByKey) {
   EXPECT_EQ(json["rows"][0], (nlohmann::json{{"name", "one"},
                                              {"milliseconds", {{"median", 12.345}, {"spread", 1.2345}}},
                                              {"entries", 7.0}}));
-  EXPECT_FALSE(json["rows"][1].contains("entries"));
+  EXPECT_TRUE(json["rows"][1].at("entries").is_null());
+  EXPECT_EQ(json["rows"][1]["reasons"]["entries"], "nobody counted");
 }
 
 TEST(BenchJson, HoldsEveryRowWithItsSettingsTimeAndErrors) {
@@ -101,6 +103,22 @@ TEST(BenchJson, AnInfiniteErrorIsNull) {
   result.groups[0].rows[0].error.max_abs = std::numeric_limits<double>::infinity();
   const auto json = nlohmann::json::parse(benchJson(result));
   EXPECT_TRUE(json["groups"][0]["rows"][0]["error"]["steps"]["max"].is_null());
+  EXPECT_EQ(json["groups"][0]["rows"][0]["error"]["steps"]["reason"],
+            "a pixel of one picture alone is not finite");
+}
+
+TEST(BenchReport, OfABlackTruthNoErrorIsAShare) {
+  BenchResult result = madeUpResult();
+  for (BenchRow& row : result.groups[0].rows) row.brightest = 0;
+  const std::string table = benchTable(result);
+  EXPECT_EQ(linesWith(table, "–: "),
+            (std::vector<std::string>{"–: the truth is black, of which no error is a share.",
+                                      "–: nobody counted."}));
+  EXPECT_EQ(table.find("inf"), std::string::npos) << table;
+  const auto error = nlohmann::json::parse(benchJson(result))["groups"][0]["rows"][0]["error"];
+  EXPECT_TRUE(error["relative"]["mean"].is_null());
+  EXPECT_EQ(error["relative"]["reason"], "the truth is black, of which no error is a share");
+  EXPECT_FALSE(error["steps"].contains("reason"));
 }
 
 }  // namespace

@@ -24,11 +24,5 @@ TEST(Rounds, EveryRowRunsOnceARoundAndEachRoundBeginsWithAnother) {
   EXPECT_EQ(rounds[1].summary(0).median, 4);
 }
 
-TEST(Rounds, ARatioIsTakenRoundByRound) {
-  const RoundFigures over{{{10, 20, 300}}}, under{{{5, 10, 100}}};
-  EXPECT_EQ(ratio(over, under, 0).median, 2);
-  EXPECT_EQ(ratio(over, under, 0).spread, 0.25);  // of 2, 2 and 3: quartiles 2 and 2.5
-}
-
 }  // namespace
 }  // namespace luciole::test

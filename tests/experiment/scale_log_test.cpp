@@ -199,5 +199,89 @@ TEST(ScaleLog, MergeRefusesWhatIsNotOneExperiment) {
   EXPECT_THAT(merge("other", "0"), HasSubstr("already"));
 }
 
+/// A shard whose log says that the first point's picture is `file`.
+void makeShardNaming(const std::string& folder, const std::string& file) {
+  makeShard(folder, madeUpExperiment(), 0, "one");
+  std::string log = readText(folder + "/results.jsonl");
+  const std::string named = "\"pictures/0.png\"";
+  log.replace(log.find(named), named.size(), "\"" + file + "\"");
+  writeText(folder + "/results.jsonl", log);
+}
+
+TEST(ScaleLog, NamesPicturesOfItsOwnFolderOrIsRefusedWithItsLine) {
+  const TemporaryFolder folder;
+  writeText(folder / "secret.png", "secret");
+  for (const std::string& file :
+       {"../secret.png", "pictures/../../secret.png", "/etc/hostname", "", ".", "..", "pictures", "0.png",
+        "results.jsonl", "pictures/../results.jsonl", "other/pictures/0.png"}) {
+    makeShardNaming(folder / "shard", file);
+    const std::string said = refusal([&] { mergeScaleLogs({folder / "shard"}, folder / "merged"); });
+    EXPECT_THAT(said, HasSubstr("results.jsonl: line 3: picture \"" + file + "\"")) << file;
+    EXPECT_EQ(said.find('\n'), std::string::npos);
+    EXPECT_EQ(refusal([&] { readScaleLog(folder / "shard"); }), said);
+    EXPECT_EQ(refusal([&] { ScaleLog(folder / "shard", madeUpExperiment()); }), said);
+    EXPECT_FALSE(std::filesystem::exists(folder / "merged")) << file;
+    std::filesystem::remove_all(folder / "shard");
+  }
+  EXPECT_EQ(readText(folder / "secret.png"), "secret");
+}
+
+TEST(ScaleLog, LinksOutOfItsFolderAreNotFollowed) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  writeText(folder / "secret.png", "secret");
+  writeText(folder / "elsewhere/0.png", "secret");
+  for (const char* name : {"file", "chain", "folder", "device"})
+    makeShard(folder / name, madeUpExperiment(), 0, "one");
+  const auto relink = [&](const std::string& link, const std::string& target) {
+    fs::remove_all(link);
+    fs::create_symlink(target, link);
+  };
+  relink(folder / "file/pictures/0.png", folder / "secret.png");
+  relink(folder / "chain/pictures/0.png", "again.png");
+  relink(folder / "chain/pictures/again.png", "../../secret.png");
+  relink(folder / "folder/pictures", "../elsewhere");
+  relink(folder / "device/pictures/0.png", "/dev/zero");
+  for (const char* name : {"file", "chain", "folder", "device"}) {
+    EXPECT_THAT(refusal([&] { mergeScaleLogs({folder / name}, folder / "merged"); }),
+                HasSubstr("pictures/0.png: expected a file in the experiment's folder"))
+        << name;
+    EXPECT_FALSE(fs::exists(folder / "merged")) << name;
+  }
+  // One that stays inside is as good as the file.
+  makeShard(folder / "inside", madeUpExperiment(), 0, "one");
+  fs::rename(folder / "inside/pictures/0.png", folder / "inside/kept.png");
+  relink(folder / "inside/pictures/0.png", "../kept.png");
+  EXPECT_EQ(refusal([&] { mergeScaleLogs({folder / "inside"}, folder / "merged"); }), "");
+  EXPECT_EQ(readText(folder / "merged/pictures/0.png"), "pictures/0.png");
+}
+
+TEST(ScaleLog, DescriptionThatContradictsItselfIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run", file = path + "/results.jsonl";
+  { ScaleLog log(path, madeUpExperiment()); }
+  const std::string head = readText(file);
+  for (const auto& [part, by] : {std::pair<std::string, std::string>{R"("lights":[1,100])", R"("lights":[])"},
+                                 {R"("values":["tiles"]})", R"("values":[]})"},
+                                 {R"("values":["tiles"]})", R"("values":["tiles","4"]})"}}) {
+    std::string text = head;
+    ASSERT_NE(text.find(part), std::string::npos) << text;
+    writeText(file, text.replace(text.find(part), part.size(), by));
+    EXPECT_THAT(refusal([&] { readScaleLog(path); }), HasSubstr("line 1: expected numbers of lights")) << by;
+  }
+}
+
+TEST(ScaleLog, SaysWhyAFigureIsNull) {
+  const TemporaryFolder folder;
+  ScaleLog log(folder / "run", madeUpExperiment());
+  PointCheck check = madeUpCheck("a", 0.5);
+  log.append("lights=1 culling=none", check);
+  check.reach = HUGE_VAL;
+  log.append("lights=1 culling=tiles", check);
+  const std::string text = readText(folder / "run/results.jsonl");
+  EXPECT_THAT(text, HasSubstr(R"("reasons":{"reach":"a light without a range reaches everywhere"})"));
+  EXPECT_EQ(text.find("reasons"), text.rfind("reasons"));
+}
+
 }  // namespace
 }  // namespace luciole::test

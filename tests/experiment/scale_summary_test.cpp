@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "error.hpp"
 #include "experiment/made_up_experiment.hpp"
 #include "experiment/scale_files.hpp"
 #include "shared_files.hpp"
@@ -50,6 +53,39 @@ TEST(ScaleSummary, FrontComparesPicturesByAsManyLights) {
   EXPECT_TRUE(summary.points[1].front);
   EXPECT_FALSE(summary.points[2].front);
   EXPECT_TRUE(summary.points[3].front);  // beaten by those of fewer lights only
+}
+
+/// Ways to make shadows, each nearer to its truth and faster than the next.
+ScaleResults shadowResults() {
+  ScaleResults results{madeUpExperiment(), {madeUpMachine("one")}, {}};
+  ScaleDescription& description = results.description;
+  description.axes = {{"shadows", {"off", "hard", "pcf", "exact"}}};
+  description.points.clear();
+  for (const std::uint64_t lights : description.lights)
+    for (std::size_t i = 0; i < 4; ++i) {
+      description.points.push_back({lights, {description.axes[0].values[i]}});
+      PointRecord& record = results.records[pointName(description, description.points.back())];
+      record.check = madeUpCheck(std::to_string(i), 1e-8 * std::pow(10, double(i)));
+      record.runs[0] = record.runs[1] = madeUpRun(1, 1 + double(i));
+    }
+  return results;
+}
+
+TEST(ScaleSummary, NoFrontIsDrawnAcrossTruths) {
+  const ScaleSummary summary = summarizeScale(shadowResults());
+  ASSERT_EQ(summary.points.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    // Without shadows the picture is fast and near to a truth without any, which says nothing of the others.
+    EXPECT_EQ(summary.points[i].truth, i % 4 == 0 ? "no shadows" : "shadows by rays");
+    EXPECT_EQ(summary.points[i].front, i % 4 < 2) << i;
+  }
+  const std::string csv = scaleCsv(summary);
+  EXPECT_NE(csv.find(",list_map,truth\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",no shadows\n"), std::string::npos) << csv;
+  const TemporaryFolder folder;
+  const auto json = nlohmann::json::parse(pageData(summary, folder.path().string(), "luciole scale"));
+  EXPECT_EQ(json["points"][0]["truth"], "no shadows");
+  EXPECT_EQ(json["points"][1]["truth"], "shadows by rays");
 }
 
 TEST(ScaleSummary, PointsWithoutCheckOrRunAreIncompleteAndLeftOut) {
@@ -119,6 +155,29 @@ TEST(ScaleFiles, CsvHasALineForEachPointAndQuotesWhatNeedsIt) {
       0u)
       << first;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+}
+
+TEST(ScaleFiles, PageSaysWhyAFigureIsNull) {
+  ScaleResults results = madeUpResults();
+  PointRecord& record = results.records["lights=1 culling=none"];
+  record.check->reach = record.check->max_abs = HUGE_VAL;
+  const TemporaryFolder folder;
+  const std::string page = pageData(summarizeScale(results), folder.path().string(), "luciole scale");
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  const auto json = nlohmann::json::parse(page);
+  EXPECT_TRUE(json["points"][0]["reach"].is_null());
+  EXPECT_EQ(json["points"][0]["reasons"]["reach"], "a light without a range reaches everywhere");
+  EXPECT_TRUE(json["points"][0]["error"]["max_abs"].is_null());
+  EXPECT_EQ(json["points"][0]["reasons"]["max_abs"], "a pixel is not finite");
+  EXPECT_FALSE(json["points"][1].contains("reasons"));
+}
+
+TEST(ScaleFiles, PageDoesNotEmbedWhatALinkOutOfTheFolderNames) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "run/pictures");
+  std::ofstream(folder / "secret.png") << "secret";
+  std::filesystem::create_symlink("../../secret.png", folder / "run/pictures/0.png");
+  EXPECT_THROW(pageData(summarizeScale(madeUpResults()), folder / "run", "luciole scale"), InputError);
 }
 
 TEST(ScaleFiles, PageDataHoldsEachPictureOnceAsItsBytes) {

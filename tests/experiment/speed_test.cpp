@@ -22,6 +22,7 @@ SpeedInput tinyInput() {
           .device_selector = "",
           .scene = nullptr,
           .size = glm::ivec2(64, 36),
+          .shadow_size = {},
           .repeats = 2,
           .program = LUCIOLE_BINARY,
           .on_progress = {},

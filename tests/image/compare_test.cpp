@@ -163,6 +163,14 @@ TEST(Compare, OneSidedNonFiniteValuesAreCountedApartAndNeverPass) {
   EXPECT_EQ(compareImages(plus, minus).nonfinite, 1u);
 }
 
+TEST(Compare, WhereNothingIsFiniteNoMeanIsSmall) {
+  const ImageDifference d = compareImages(grey(2, 2, kNaN), grey(2, 2, 0));
+  EXPECT_EQ(d.nonfinite, 12u);
+  for (const double figure : {d.max_abs, d.mean_abs, d.mean_signed, d.rmse, d.relmse, -d.psnr, d.max_relative,
+                              d.mean_relative, d.p99_abs})
+    EXPECT_EQ(figure, kInf);
+}
+
 TEST(Compare, ChannelsAreMatchedByName) {
   const Image a{1, 1, {"R", "G", "B", "A"}, {1, 2, 3, 1}};
   const Image b{1, 1, {"depth", "B", "G", "R"}, {9, 3, 2, 1}};

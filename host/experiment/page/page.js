@@ -1,12 +1,14 @@
 'use strict';
 // Draws the page from the JSON in #data:
-//   title, scene, command, version: text; machine, settings: {name: text | number | list}, names ending in _bytes in bytes;
-//   axes: [{name, values}], what was varied beside the lights; incomplete: how many points lack some or all of their runs;
-//   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
+//   title, scene, command, version: text; machine, settings: {name: text | number | list}, names ending in
+//   _bytes in bytes; axes: [{name, values}], what was varied beside the lights; incomplete: how many points
+//   lack some or all of their runs; points: [{lights, values: {axis: value}, runs, reach (of the light that
+//   reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
 //     pairs_evaluated, pairs_in_range, pixels_lit, list_entries, device_bytes, peak_bytes,
-//     error: {mean_abs, max_abs, rmse, pixels}, front, picture, error_map, tile_map}]: low and high are quartiles, front
-//     says that no point of as many lights beats this one in both time and mean error;
-//     all but lights and milliseconds may be absent or null, and the last three are indices into
+//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, reasons: {name:
+//     why it is null}}]: low and high are quartiles, truth says what the errors are from, front that no point
+//     of as many lights and the same truth beats this one in both time and mean error; all but lights and
+//     milliseconds may be absent or null, and picture, error_map and tile_map are indices into
 //   pictures: [data URL];
 //   growth: [{values, stage, a, b, c, c_low, c_high}]: milliseconds ≈ a + b lights^c, 95 % confidence.
 const data = JSON.parse(document.getElementById('data').textContent);
@@ -86,6 +88,11 @@ const mainVariant = variants.reduce((best, variant) => {
   return isBetter ? variant : best;
 }, variants[0]);
 const lightCounts = [...new Set(points.map(point => point.lights))];
+// What points are held against: pictures of different truths are meant to differ, so their errors don't
+// compare.
+const truthOf = point => point.truth || '';
+const truths = [...new Set(points.map(truthOf))];
+const isOneTruth = truths.length < 2;
 const stageNames = [...new Set(points.flatMap(point => (point.stages || []).map(stage => stage.name)))];
 
 const shapes = ['circle', 'rect', 'triangle', 'rectRot'];
@@ -404,15 +411,32 @@ function fillConditions(box, values) {
     [element('dt', null, readable(name.replace(/_bytes$/, ''))), element('dd', null, readableValue(name, value))]));
 }
 
-// What the experiment says, in a sentence.
+// What the experiment says, in a sentence for each truth: variants of two don't make the same picture, one
+// faster than the other.
 function summary() {
   if (!points.length) return 'No point has been measured yet.';
-  const most = lightCounts[lightCounts.length - 1];
-  const measured = points.filter(point => point.lights === most).sort((a, b) => a.milliseconds.median - b.milliseconds.median);
-  const best = measured[0], worst = measured[measured.length - 1], first = mainVariant.points[0];
+  const told = isOneTruth ? truths : truths.slice(0, 4);
+  const sentences = told.map(
+      truth => (isOneTruth ? '' : `${readable(truth || 'the rest')}: `) +
+          sentenceOn(points.filter(point => truthOf(point) === truth)));
+  const more = truths.length - told.length;
+  return [
+    ...sentences, ...(more ? [`${more} more ${more === 1 ? 'picture is' : 'pictures are'} below.`] : [])
+  ].join(' ');
+}
+
+// Of points of one truth.
+function sentenceOn(rivals) {
+  const most = rivals[rivals.length - 1].lights;
+  const measured = rivals.filter(point => point.lights === most)
+                       .sort((a, b) => a.milliseconds.median - b.milliseconds.median);
+  const best = measured[0], worst = measured[measured.length - 1], name = variantName(best.values);
+  const first = rivals.find(point => variantName(point.values) === name);
   const parts = [`${lightsText(most)} take${most === 1 ? 's' : ''} ${formatTime(best.milliseconds.median)}`];
-  if (measured.length > 1) parts[0] = `With ${mainVariant.name}, the fastest of ${measured.length} variants, ${parts[0]}`;
-  if (first.lights < most)
+  if (measured.length > 1)
+    parts[0] =
+        `${isOneTruth ? 'With' : 'with'} ${name}, the fastest of ${measured.length} variants, ${parts[0]}`;
+  if (first.lights < most && first.milliseconds.median > 0)
     parts.push(`${formatPlain(best.milliseconds.median / first.milliseconds.median)} times as long as ${lightsText(first.lights)}`);
   if (isNumber(errorOf(best, 'mean_abs')))
     parts.push(best.error.mean_abs === 0 ? 'without error' : `with a mean error of ${formatError(best.error.mean_abs)}`);
@@ -425,6 +449,12 @@ function fillHeader() {
   byId('title').textContent = data.title;
   byId('version').textContent = data.version || '';
   byId('summary').textContent = summary();
+  byId('truths').hidden = isOneTruth;
+  byId('truths').textContent =
+      `The variants are meant to make ${truths.length} different pictures, and each is held against a ` +
+      `reference of its own: ${truths.slice(0, 8).map(truth => truth || 'the rest').join('; ')}${
+          truths.length > 8 ? ' …' : ''}. Errors compare, ` +
+      'and fronts are drawn, only between points held against the same one.';
   byId('incomplete').hidden = !data.incomplete;
   byId('incomplete').textContent = data.incomplete === 1 ? 'One point has not been measured in full.' :
     `${formatCount(data.incomplete || 0)} points have not been measured in full.`;
@@ -604,16 +634,29 @@ function errorLabel(point, isOneCount) {
   return isOneCount ? name : `${formatShort(point.lights)}, ${name}`;
 }
 
-// The front's line for each number of lights: pictures of different lights don't compete.
+// The front's line for each number of lights and each truth: different pictures don't compete.
 function frontLines(measured, place) {
-  return lightCounts.map(count => ({name: `front at ${lightsText(count)}`, look: {dash: 0, shape: 0}, bare: true,
-    values: measured.filter(point => point.front && point.lights === count).map(place).sort((a, b) => a.x - b.x)}))
-    .filter(({values}) => values.length > 1);
+  const pictures = lightCounts.flatMap(count => truths.map(truth => ({count, truth})));
+  return pictures
+      .map(({count, truth}) => ({
+             name: `front at ${lightsText(count)}${isOneTruth ? '' : `, ${truth}`}`,
+             look: {dash: 0, shape: 0},
+             bare: true,
+             values:
+                 measured.filter(point => point.front && point.lights === count && truthOf(point) === truth)
+                     .map(place)
+                     .sort((a, b) => a.x - b.x)
+           }))
+      .filter(({values}) => values.length > 1);
 }
 
 function describeError() {
-  const kind = byId('error_kind').value || 'mean_abs', count = byId('error_lights').value;
-  const measured = points.filter(point => isNumber(errorOf(point, kind)) && isShown(point.values) && (count === '' || point.lights === Number(count)));
+  const kind = byId('error_kind').value || 'mean_abs', count = byId('error_lights').value,
+        truth = truths[byId('error_truth').value];
+  const measured = points.filter(
+      point => isNumber(errorOf(point, kind)) && isShown(point.values) &&
+          (count === '' || point.lights === Number(count)) &&
+          (truth === undefined || truthOf(point) === truth));
   const place = point => ({x: point.milliseconds.median, y: errorOf(point, kind)});
   const series = shownVariants().map(variant => ({name: variant.name || 'points', look: lookOfVariant(variant), line: false,
     values: variant.points.filter(point => measured.includes(point)).map(point => ({...place(point),
@@ -622,12 +665,23 @@ function describeError() {
   // The front is one of time and mean error.
   const lines = kind === 'mean_abs' ? frontLines(measured, place) : [];
   return {
-    title: 'Error against time', titleX: 'time', titleY: errorNames[kind], formatX: formatTime, formatY: formatError,
+    title: isOneTruth || truth === undefined ? 'Error against time' :
+                                               `Error against time: ${truth || 'the rest'}`,
+    titleX: 'time',
+    titleY: errorNames[kind],
+    formatX: formatTime,
+    formatY: formatError,
     series: [...series, ...lines],
     table: {
-      columns: [lightsColumn, ...axisColumns, {name: 'Time', unit: 'ms', format: formatTime}, {name: readable(errorNames[kind]), format: formatError},
-        {name: 'Front', text: true}],
-      rows: measured.map(point => [point.lights, ...axisCells(point.values), point.milliseconds.median, errorOf(point, kind), point.front ? 'yes' : 'no']),
+      columns: [
+        lightsColumn, ...axisColumns, {name: 'Time', unit: 'ms', format: formatTime},
+        {name: readable(errorNames[kind]), format: formatError},
+        ...(isOneTruth ? [] : [{name: 'Held against', text: true}]), {name: 'Front', text: true}
+      ],
+      rows: measured.map(
+          point =>
+              [point.lights, ...axisCells(point.values), point.milliseconds.median, errorOf(point, kind),
+               ...(isOneTruth ? [] : [truthOf(point)]), point.front ? 'yes' : 'no']),
     },
   };
 }
@@ -642,8 +696,17 @@ function addError() {
   const counts = [...new Set(measured.map(point => point.lights))];
   fillSelect(byId('error_lights'), [['', 'all'], ...counts.map(count => [count, formatCount(count)])]);
   if (variants.length > 1) byId('error_lights').value = counts[counts.length - 1];
+  // Only points of one truth share a plot, unless that is asked for: at first the truth that most points
+  // have.
+  fillSelect(
+      byId('error_truth'),
+      [...truths.map((truth, i) => [i, truth || 'the rest']), ['', 'each its own, all in one plot']]);
+  const pointsOf = truth => measured.filter(point => truthOf(point) === truth).length;
+  byId('error_truth').value =
+      truths.reduce((best, truth, i) => pointsOf(truth) > pointsOf(truths[best]) ? i : best, 0);
+  byId('error_truth').closest('label').hidden = isOneTruth;
   addPlot(byId('error_plot'), describeError);
-  for (const id of ['error_kind', 'error_lights']) byId(id).addEventListener('change', redraw);
+  for (const id of ['error_kind', 'error_lights', 'error_truth']) byId(id).addEventListener('change', redraw);
 }
 
 // -------------------------------------------------------------------------------------------------------- pictures
@@ -728,7 +791,12 @@ const pointColumns = [
   {name: 'Time', unit: 'ms', format: formatTime, of: point => point.milliseconds.median},
   {name: 'Lower quartile', unit: 'ms', format: formatTime, of: point => point.milliseconds.low},
   {name: 'Upper quartile', unit: 'ms', format: formatTime, of: point => point.milliseconds.high},
-  ...stageNames.map(name => ({name: readable(name), unit: 'ms', format: formatTime, of: point => (stageOf(point, name) || {}).y})),
+  ...stageNames.map(name => ({
+                      name: readable(name),
+                      unit: 'ms',
+                      format: formatTime,
+                      of: point => (stageOf(point, name) || {}).y
+                    })),
   {name: 'Pairs evaluated', format: formatCount, of: point => point.pairs_evaluated},
   {name: 'Pairs in range', format: formatCount, of: point => point.pairs_in_range},
   {name: 'Evaluated per in range', format: formatPlain, of: pairRatio},
@@ -739,7 +807,12 @@ const pointColumns = [
   {name: 'Mean error', format: formatError, of: point => errorOf(point, 'mean_abs')},
   {name: 'Largest error', format: formatError, of: point => errorOf(point, 'max_abs')},
   {name: 'RMS error', format: formatError, of: point => errorOf(point, 'rmse')},
-  {name: 'Front', text: true, of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null},
+  {name: 'Held against', text: true, of: point => isOneTruth ? null : truthOf(point)},
+  {
+    name: 'Front',
+    text: true,
+    of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null
+  },
 ].filter(column => points.some(point => (column.of(point) ?? '') !== ''));
 
 const order = {column: 0, sign: 1};
@@ -752,6 +825,13 @@ function compareCells(a, b) {
 function pointsTable() {
   const rows = points.filter(point => isShown(point.values)).map(point => pointColumns.map(column => column.of(point)));
   return {columns: pointColumns, rows: rows.sort((a, b) => order.sign * compareCells(a[order.column], b[order.column]))};
+}
+
+// Why some of the table's cells are dashes.
+function reasons() {
+  const found = new Set(points.flatMap(point => Object.values(point.reasons || {})));
+  if (points.some(point => point.pairs_in_range === 0)) found.add('no light is in range of a pixel');
+  return found.size ? `–: ${[...found].join('; ')}.` : '';
 }
 
 function drawPointsTable() {
@@ -772,7 +852,10 @@ function drawPointsTable() {
     kept.replaceWith(made);
     made.scrollLeft = kept.scrollLeft;
   } else {
-    box.append(made, element('div', {class: 'under'}, csvButton(() => ({title: 'Points', table: pointsTable()}))));
+    const why = reasons();
+    box.append(
+        made, ...(why ? [element('p', null, why)] : []),
+        element('div', {class: 'under'}, csvButton(() => ({title: 'Points', table: pointsTable()}))));
   }
 }
 
