@@ -199,7 +199,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   std::vector<FeatureSet> passes{prepared.features};
   if (gouraud) passes.push_back(vertexFeatures(features));
   std::future<double> compiling = startCompiling(device, passes, shade);
-  prepared.objects = objectsInSight(scene, view, settings.exposure);
+  prepared.objects = objectsInSight(scene, view, settings.exposure, settings.shade.model);
   prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats);
   awaitKernels(compiling, device, stats);
   if (gouraud)
@@ -247,7 +247,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   requireMemory(double(kGBufferBytesPerPixel) * view.crop_size.x * view.crop_size.y,
                 fmt::format("a G-buffer of {}x{} pixels", view.crop_size.x, view.crop_size.y));
-  const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure);
+  const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure, settings.shade.model);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
