@@ -87,7 +87,7 @@ INLINE uint bits_of(intL mask) {
 
 // bits: kPairWords words for each entry of the lists: first the pixels of the tile that are lit, then those that are unsure.
 __kernel void classify(uint plane_stride, __global const float *position, __global const float *normal,
-                       __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
+                       __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
                        __global const ListEntry *list, __global const ShadowMap *shadow_maps,
                        __global const ShadowFace *shadow_faces, __global const BoundTexel *texels, uint texel_count,
                        __global uint *bits) {
@@ -115,7 +115,12 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
       intL asked = may_light(light, &p, n);
       if (!any_lane(asked)) continue;
+#if LIFT
+      // Off the map nothing is sure.
+      MapPoint point = lifted_point(map, shadow_faces, p, n, n, load_lanes(lift + first));
+#else
       MapPoint point = map_point(map, shadow_faces, p, n);
+#endif
       Verdict verdict = classify_points(map, shadow_faces, texels, texel_count, point, p);
       lit[row / 32] |= bits_of(asked & verdict.lit) << row % 32;
       unsure[row / 32] |= bits_of(asked & !(verdict.lit | verdict.dark)) << row % 32;

@@ -36,7 +36,7 @@ INLINE void add_needed(__global const ShadowFace *face, int reach, __global uint
 
 // needed: one a bin, by ShadowFace::first_bin; kNotNeeded before the first tile.
 __kernel void find_needed(uint plane_stride, __global const float *position, __global const float *normal,
-                          __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
+                          __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
                           __global const ListEntry *list, __global const ShadowMap *shadow_maps,
                           __global const ShadowFace *shadow_faces, __global uint *needed) {
 #if SHADOWS
@@ -62,8 +62,8 @@ __kernel void find_needed(uint plane_stride, __global const float *position, __g
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
       intL asked = may_light(light, &p, n);
       if (!any_lane(asked)) continue;
-      // The place does not depend on the normal.
-      MapPoint point = map_point(map, shadow_faces, p, n);
+      // The place does not depend on the facet.
+      MapPoint point = receiver_point(map, shadow_faces, p, n, n, LIFT ? load_lanes(lift + first) : (floatL)(0.0f));
       asked &= point.inside;
       point.face -= (int)map->first_face;
       for (uint face = 0; face < map->face_count; ++face) {

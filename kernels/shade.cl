@@ -30,6 +30,7 @@ typedef struct {
   vec3L position, normal;
 #if SHADOWS
   vec3L facet;  // the triangle's own normal
+  floatL lift;  // metres along the normal to where shadow tests start
 #endif
   vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
@@ -123,7 +124,8 @@ INLINE void cast_shadow(Pair *pair, Pixels *pixels, __global const ShadeLight *l
   uint word = shadows->pair_bits[entry * kPairWords + pixels->place / 32] >> pixels->place % 32;
   floatL visibility = convert_floatL(((intL)((int)word) >> LANE_NUMBERS) & 1);
 #else
-  MapPoint point = map_point(shadows->maps + light->shadow, shadows->faces, pixels->position, pixels->facet);
+  MapPoint point = receiver_point(shadows->maps + light->shadow, shadows->faces, pixels->position, pixels->normal,
+                                  pixels->facet, pixels->lift);
   floatL visibility = map_lookup(shadows->maps + light->shadow, shadows->faces, shadows->texels, shadows->texel_count, point);
 #endif
 #if OUTPUT_SHADOW
@@ -248,7 +250,8 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
 
 // What a row of pixels starts from. Uncovered lanes compute along on a point ahead of the eye and are dropped at the end.
 INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global const float *position,
-                      __global const float *normal, __global const float *specular, __global const uint *facet, bool long_sums) {
+                      __global const float *normal, __global const float *specular, __global const uint *facet,
+                      __global const float *lift, bool long_sums) {
   uint stride = frame.plane_stride;
   pixels->position = load_vec3(position + first, stride);
   pixels->covered = pixels->position.z > -INFINITY;
@@ -282,6 +285,7 @@ INLINE void start_row(Pixels *pixels, ShadeFrame frame, uint first, __global con
   pixels->normal = load_vec3(normal + first, stride);
 #if SHADOWS
   pixels->facet = unpack_normal(*(__global const intL *)(facet + first));
+  pixels->lift = LIFT ? load_lanes(lift + first) : (floatL)(0.0f);
 #endif
 #if SPECULAR
   pixels->shininess = load_lanes(specular + first + 3 * stride);
@@ -363,11 +367,11 @@ INLINE vec3L finish_row(Pixels *pixels, ShadeFrame frame, uint first, __global c
 #define QUEUE (LANES == 1 ? 1 : 128)
 
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
-// facet: by packNormal(), read only if SHADOWS. list_starts, list: see cull.cl; an entry of the list indexes `lights`.
+// facet: by packNormal(), read only if SHADOWS; lift: metres, only with LIFT too. list_starts, list: see cull.cl; an entry of the list indexes `lights`.
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
-                    __global const float *emission, __global const uint *facet, __global const ShadeLight *lights,
-                    __global const uint *list_starts, __global const ListEntry *list, __global const ShadowMap *shadow_maps,
+                    __global const float *emission, __global const uint *facet, __global const float *lift,
+                    __global const ShadeLight *lights, __global const uint *list_starts, __global const ListEntry *list, __global const ShadowMap *shadow_maps,
                     __global const ShadowFace *shadow_faces, __global const ShadowTexel *shadow_texels,
                     __global const uint *pair_bits, __global float *image) {
 #if LIT
@@ -387,7 +391,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
   uint square[ROWS];  // of each row, as a bit; none for background
   EACH_ROW(row) {
     uint pixel = first + row * LANES;
-    start_row(rows + row, frame, pixel, position, normal, specular, facet, long_sums);
+    start_row(rows + row, frame, pixel, position, normal, specular, facet, lift, long_sums);
     square[row] = any_lane(rows[row].covered) ? 1u << SQUARE_OF_PIXEL(pixel) : 0;
   }
   // While the lights are summed, memory brings what comes next.
@@ -399,6 +403,9 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
     prefetch_lanes(diffuse + next, stride, 3, ROWS);
 #if SHADOWS
     prefetch_lanes((__global const float *)facet + next, stride, 1, ROWS);
+#if LIFT
+    prefetch_lanes(lift + next, stride, 1, ROWS);
+#endif
 #endif
 #if SPECULAR
     prefetch_lanes(specular + next, stride, 4, ROWS);

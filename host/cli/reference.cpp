@@ -158,6 +158,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
   stats.counts.emplace_back("gbuffer_pixels_unexplained", check.unexplained);
   stats.errors.emplace_back("gbuffer_position", check.position_error);
   stats.errors.emplace_back("gbuffer_normal", check.normal_error);
+  stats.errors.emplace_back("gbuffer_lift", check.lift_error);
   if (options.quiet) return;
   fmt::print(stderr,
              "G-buffer against rays: position within {:.1e}, normal within {:.1e} rad; of {} pixels {} show "
@@ -179,7 +180,7 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
 
   const std::vector<glm::ivec2> pixels = choosePixels(view.crop_size, options.pixels, options.seed);
   const GBufferCheck check = timed(stats, "check G-buffer", [&] {
-    const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kPhong, {});
+    const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kPhong, {.lift = true});
     return checkGBuffer(scene, view, gbuffer, pixels);
   });
   const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {

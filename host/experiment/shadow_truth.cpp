@@ -30,10 +30,6 @@ glm::dvec3 viewPosition(const GBuffer& gbuffer, std::size_t place) {
   return triple(gbuffer.position, gbuffer.pixels(), place);
 }
 
-glm::dvec3 worldPosition(const GBuffer& gbuffer, std::size_t place) {
-  return glm::dvec3(gbuffer.camera.camera_to_world * glm::dvec4(viewPosition(gbuffer, place), 1));
-}
-
 bool hasPlace(const Light& light) { return light.kind != LightKind::kDirectional; }
 
 /// A light with a shadow, in view space.
@@ -173,7 +169,7 @@ TracedShadows traceTruth(const Scene& scene, const RayScene& rays, const GBuffer
   forBlocks(pairs.size(), kBlock, [&](std::size_t first, std::size_t end) {
     std::array<ShadowRay, kBlock> block;
     for (std::size_t i = first; i < end; ++i)
-      block[i - first] = shadowRay(scene.lights[pairs[i].light], worldPosition(gbuffer, pairs[i].pixel));
+      block[i - first] = shadowRay(scene.lights[pairs[i].light], shadowStart(gbuffer, pairs[i].pixel));
     const auto lit = std::span(result.lit).subspan(first, end - first);
     areBlocked(rays, std::span(block).first(end - first), lit);
     for (std::uint8_t& value : lit) value = 1 - value;
@@ -196,9 +192,10 @@ std::vector<std::uint8_t> nearEdges(const Scene& scene, const RayScene& rays, co
     for (std::size_t i = 0; i < count; ++i) {
       const auto [pixel, index] = pairs[first + i];
       const Light& light = scene.lights[index];
-      const glm::dvec3 point = worldPosition(gbuffer, pixel);
-      const glm::dvec3 normal =
-          glm::normalize(to_world * triple(flat_normals.normal, flat_normals.pixels(), pixel));
+      const glm::dvec3 point = shadowStart(gbuffer, pixel);
+      const bool lifted = !gbuffer.lift.empty() && gbuffer.lift[pixel] > 0;
+      const Plane& normals = lifted ? gbuffer.normal : flat_normals.normal;
+      const glm::dvec3 normal = glm::normalize(to_world * triple(normals, gbuffer.pixels(), pixel));
       const Around points = around(light, point, normal, texel_side(index, point));
       for (std::size_t k = 0; k < kDirections; ++k)
         block[k * count + i] = shadowRay(light, point + points.shift(k));

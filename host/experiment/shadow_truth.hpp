@@ -47,8 +47,8 @@ inline constexpr double kLongestWayBack = 20;
 
 /// One a pair, 1: the truth changes within a texel of it, so that a map can't be held to it. Eight points
 /// around it are asked: one texel away across the light's rays, and from there along them back into the plane
-/// of the pixel's triangle, or kLongestWayBack texels towards it where that is less. They may lie beyond the
-/// triangle's rim.
+/// of the pixel's triangle, or of the smooth surface above it where shadow tests start there, or
+/// kLongestWayBack texels towards it where that is less. They may lie beyond the triangle's rim.
 /// `flat_normals`: a G-buffer of the same view by Shading::kFlat. `lit`: what traceTruth says of the pairs.
 std::vector<std::uint8_t> nearEdges(const Scene& scene, const RayScene& rays, const GBuffer& gbuffer,
                                     const GBuffer& flat_normals, std::span<const LightPair> pairs,

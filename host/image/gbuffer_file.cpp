@@ -56,6 +56,7 @@ std::vector<std::string> channelNames(const GBuffer& gbuffer) {
   if (!gbuffer.ambient.empty()) addChannels(names, "ambient", "RGB");
   if (!gbuffer.emission.empty()) addChannels(names, "emission", "RGB");
   if (!gbuffer.facet.empty()) addChannels(names, "Ng", "XYZ");
+  if (!gbuffer.lift.empty()) names.push_back("lift");
   return names;
 }
 
@@ -94,8 +95,8 @@ struct Pixels {
     return {value(pixel, places[0]), value(pixel, places[1]), value(pixel, places[2])};
   }
 
-  /// A reflectance, radiance or exponent: below 0, as filters with negative lobes leave it, is 0. Not finite:
-  /// InputError.
+  /// A reflectance, radiance, exponent or lift: below 0, as filters with negative lobes leave it, is 0. Not
+  /// finite: InputError.
   float coefficient(std::size_t pixel, int place) const {
     const float v = value(pixel, place);
     if (!std::isfinite(v)) {
@@ -211,7 +212,7 @@ class Surface {
   glm::ivec2 first_pixel_{0};
 };
 
-/// All groups but facets, showing nothing.
+/// All groups but facets and lifts, showing nothing.
 GBuffer emptyGBuffer(const OIIO::ImageSpec& spec) {
   GBuffer gbuffer;
   gbuffer.width = spec.width;
@@ -255,6 +256,7 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
       const bool shows = normal != glm::vec3(0.0f);
       add(shows ? glm::vec3(glm::dmat3(to_world) * unpackNormal(gbuffer.facet[at])) : glm::vec3(0.0f));
     }
+    if (!gbuffer.lift.empty()) values.push_back(gbuffer.lift[at]);
   }
 }
 
@@ -290,7 +292,7 @@ GBuffer readGBuffer(const std::string& path) {
   const auto input = openPicture(path, path);
   const OIIO::ImageSpec spec = input->spec();
   Pixels file{path, spec.width, std::size_t(spec.width) * spec.height, spec.channelnames, {}};
-  constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1;
+  constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1 + 1;
   requireMemory(double(file.count) * (spec.nchannels + kGroupChannels) * sizeof(float), path);
   file.values = std::make_unique_for_overwrite<float[]>(file.count * spec.nchannels);
   readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
@@ -299,9 +301,10 @@ GBuffer readGBuffer(const std::string& path) {
   const Surface surface(file, spec, gbuffer);
   const auto diffuse = file.findThree("diffuse", "RGB"), specular = file.findThree("specular", "RGB");
   const auto ambient = file.findThree("ambient", "RGB"), emission = file.findThree("emission", "RGB");
-  const int shininess = file.find("shininess");
+  const int shininess = file.find("shininess"), lift = file.find("lift");
   const std::size_t stride = gbuffer.pixels();
   if (surface.hasFacets()) gbuffer.facet.resize(stride);
+  if (lift >= 0) gbuffer.lift.resize(stride);
   for (std::size_t p = 0; p < file.count; ++p) {
     glm::vec3 position, normal;
     if (!surface.at(p, position, normal)) continue;
@@ -315,6 +318,7 @@ GBuffer readGBuffer(const std::string& path) {
     store(gbuffer.ambient, at, stride, file.color(p, ambient, reflectance));
     store(gbuffer.emission, at, stride, file.color(p, emission, glm::vec3(0.0f)));
     if (surface.hasFacets()) gbuffer.facet[at] = surface.facetAt(p, normal);
+    if (lift >= 0) gbuffer.lift[at] = file.coefficient(p, lift);
   }
   return gbuffer;
 }

@@ -48,6 +48,7 @@ struct GBuffer {
   Plane ambient;               ///< r g b; optional
   Plane emission;              ///< r g b; optional
   PackedNormals facet;         ///< the triangle's own, on the side that `normal` was turned to; optional
+  Plane lift;  ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
   Camera camera;               ///< whose view space this is
   bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop

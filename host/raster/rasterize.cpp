@@ -58,7 +58,7 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   GBuffer gbuffer = emptyGBuffer(view, planes);
   const ViewPlane plane = viewPlane(view);
   const HoleTest holes{scene, geometry.objects, plane};
-  const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors};
+  const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors, planes.lift};
   RasterCounts own_counts;
   if (!counts) counts = &own_counts;
   counts->covering.resize(geometry.triangle_count);

@@ -25,6 +25,7 @@ struct PlaneSet {
   bool ambient = false;
   bool emission = false;
   bool facet = false;
+  bool lift = false;
 };
 
 /// Triangles on their way: every one is counted once in `submitted`, and in one of the others at most. The

@@ -16,6 +16,7 @@ struct ResolveInput {
   const ViewPlane& plane;
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
+  bool lifts;                                ///< fill in GBuffer::lift
 
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };

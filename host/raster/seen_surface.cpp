@@ -19,6 +19,13 @@ Interpolant<glm::dvec3> normals(const Surface& surface, const glm::dvec3& facing
   return {to_view * in_object.first, to_view * in_object.to_second, to_view * in_object.to_third};
 }
 
+/// Of the side that is seen.
+Lift liftOf(const Surface& surface, const Interpolant<glm::dvec3>& normal) {
+  const glm::bvec3 bent = bentCorners(*surface.object->mesh, surface.corners);
+  return makeLift(bent, {normal.first, normal.first + normal.to_second, normal.first + normal.to_third},
+                  surface.edge1, surface.edge2);
+}
+
 }  // namespace
 
 SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
@@ -29,6 +36,7 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   seen.facing_normal = surface.front_facing ? surface.normal : -surface.normal;
   seen.facet = packNormal(seen.facing_normal);
   seen.normal = normals(surface, seen.facing_normal, input.shading);
+  if (input.lifts && input.shading != Shading::kFlat) seen.lift = liftOf(surface, seen.normal);
   const bool mapped =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   if (mapped && !mesh.uvs.empty()) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "raster/lift.hpp"
 #include "raster/resolve.hpp"
 #include "raster/surface.hpp"
 
@@ -23,6 +24,7 @@ struct SeenSurface {
   glm::dvec3 facing_normal{0.0};   ///< its own, on the viewer's side
   std::uint32_t facet = 0;         ///< that, by packNormal()
   Interpolant<glm::dvec3> normal;  ///< on the viewer's side, of any length
+  Lift lift;                       ///< where asked for
   Interpolant<glm::dvec2> uv;      ///< zero where no map needs them
   bool glows_apart = false;        ///< the emission map is looked up elsewhere:
   Interpolant<glm::dvec2> emission_uv;

@@ -90,6 +90,31 @@ void normalize(const Lanes3<double>& v, const glm::dvec3& otherwise, Lanes3<floa
   }
 }
 
+/// See lift.hpp; `normal`: the sum of the corners', of any length.
+void setLift(const SeenSurface& seen, const SquareWeights& weights, const Lanes3<double>& normal,
+             Lanes<float>& out) {
+  const Lift& lift = seen.lift;
+  if (!lift.any) {
+    out.fill(0.0f);
+    return;
+  }
+  const glm::dvec3 edge1 = seen.surface.edge1, edge2 = seen.surface.edge2;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const double second = weights.second[i], third = weights.third[i], first = 1.0 - second - third;
+    const double planes = first * std::max(second * lift.rise[0][0] + third * lift.rise[0][1], 0.0) +
+                          second * std::max(third * lift.rise[1][0] + first * lift.rise[1][1], 0.0) +
+                          third * std::max(first * lift.rise[2][0] + second * lift.rise[2][1], 0.0);
+    const double x = normal[0][i], y = normal[1][i], z = normal[2][i];
+    const double to_second = edge1.x * x + edge1.y * y + edge1.z * z,
+                 to_third = edge2.x * x + edge2.y * y + edge2.z * z;
+    const double own = std::max(std::max(to_second, to_third), 0.0) - (second * to_second + third * to_third);
+    const double length2 = x * x + y * y + z * z;
+    const double height = std::min(std::max(own, 0.5 * planes), planes) / std::sqrt(length2);
+    // Normals that cancel have no direction to rise in.
+    out[i] = length2 > 0.0 && height > 0.0 ? float(std::min(height, lift.most)) : 0.0f;
+  }
+}
+
 /// A pair of steps is used only where both are finite.
 void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
   constexpr float kLargest = std::numeric_limits<float>::max();
@@ -210,9 +235,10 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   // From the first corner, so that the edges' digits count, not the distance's.
   for (int c = 0; c < 3; ++c)
     values.position[c] = rounded(interpolate(surface.corner[c], surface.edge1[c], surface.edge2[c], weights));
-  normalize({interpolate(seen.normal, 0, weights), interpolate(seen.normal, 1, weights),
-             interpolate(seen.normal, 2, weights)},
-            seen.facing_normal, values.normal);
+  const Lanes3<double> normal{interpolate(seen.normal, 0, weights), interpolate(seen.normal, 1, weights),
+                              interpolate(seen.normal, 2, weights)};
+  normalize(normal, seen.facing_normal, values.normal);
+  setLift(seen, weights, normal, values.lift);
   values.facet.fill(seen.facet);
   setMaterial(input, seen, weights, values);
   setFootprints(surface, seen.uv, input.plane, meeting, weights, values.footprints);
@@ -230,6 +256,7 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.ambient, sees_it, out.ambient);
   put(values.emission, sees_it, out.emission);
   put(values.facet, sees_it, out.facet);
+  put(values.lift, sees_it, out.lift);
   put(values.reflection_map, sees_it, out.reflection_map);
   put(values.emission_map, sees_it, out.emission_map);
   put(values.footprints, sees_it, out.footprints);

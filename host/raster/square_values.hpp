@@ -17,6 +17,7 @@ struct SquareValues {
   Lanes3<float> ambient;
   Lanes3<float> emission;
   Lanes<std::uint32_t> facet;
+  Lanes<float> lift;
   /// The maps that are still to be multiplied in.
   Lanes<const TextureUse*> reflection_map;  ///< into diffuse and ambient; null: none
   Lanes<const TextureUse*> emission_map;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "raster/geometry.hpp"
+#include "raster/lift.hpp"
 #include "raster/opacity.hpp"
 #include "scene/ray_cast.hpp"
 
@@ -39,6 +40,7 @@ struct Meeting {
   std::uint32_t triangle;
   glm::dvec3 position;
   glm::dvec3 normal;  ///< as shaded: interpolated, on the side of the eye
+  double lift;        ///< to where shadow tests start
   double depth;       ///< metres along the view axis
 };
 
@@ -75,6 +77,40 @@ std::array<glm::dvec3, 3> cornersOf(const Geometry& geometry, std::uint32_t tria
   return {positions[corners[0]], positions[corners[1]], positions[corners[2]]};
 }
 
+/// Whether each corner's normal leans from its triangle's, by less than a right angle.
+glm::bvec3 leaningCorners(const Mesh& mesh, const glm::uvec3& corners) {
+  const std::array<glm::dvec3, 3> p{mesh.positions[corners.x], mesh.positions[corners.y],
+                                    mesh.positions[corners.z]};
+  const glm::dvec3 own = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
+  glm::bvec3 leans;
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 normal(mesh.normals[corners[i]]);
+    const double cosine = glm::dot(normal, own);
+    leans[i] = cosine > 0 && glm::length(normal - cosine * own) / cosine > kFlatAngle;
+  }
+  return leans;
+}
+
+/// How far the smooth surface is taken to lie above a point of a facet (raster/lift.hpp). The point's
+/// projections onto the tangent planes of the corners that lie above it (Hanika 2021) are on average `up`
+/// higher; half of that, or as much of it as brings all corners behind the plane on the shading normal.
+/// `normals`: of the corners, on the side of the eye and of one length in the mesh's space; their average is
+/// `sum`. A corner that doesn't lean has the facet's own plane.
+double liftAt(const glm::dvec3& point, const glm::dvec3& shares, const std::array<glm::dvec3, 3>& corners,
+              const glm::dmat3& normals, const glm::dvec3& sum, const glm::bvec3& leans) {
+  const double length = glm::length(sum);
+  if (length == 0) return 0;
+  double up = 0, in_front = 0, longest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double weight = glm::length(normals[i]);
+    const double below = leans[i] ? -glm::dot(point - corners[i], normals[i] / weight) : 0.0;
+    up += shares[i] * std::max(below, 0.0) * weight / length;
+    in_front = std::max(in_front, glm::dot(corners[i] - point, sum / length));
+    longest = std::max(longest, glm::distance(corners[i], corners[(i + 1) % 3]));
+  }
+  return std::min(std::clamp(in_front, up / 2, up), longest / 2);
+}
+
 /// Where the ray meets the triangle's plane; nothing for a triangle that the picture leaves out: turned away
 /// and single-sided, a hole at this pixel, or not between the near and the far plane.
 std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
@@ -103,12 +139,15 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
     return std::nullopt;
   const glm::uvec3 corners = object.mesh->triangles[in_mesh];
   const std::vector<glm::vec3>& normals = object.mesh->normals;
-  const glm::dvec3 sum = object.normal_to_view *
-                         ((1 - second - third) * glm::dvec3(normals[corners.x]) +
-                          second * glm::dvec3(normals[corners.y]) + third * glm::dvec3(normals[corners.z]));
+  const double side = front ? 1.0 : -1.0;
+  const glm::dmat3 of_corners =
+      side * object.normal_to_view * glm::dmat3(normals[corners.x], normals[corners.y], normals[corners.z]);
+  const glm::dvec3 shares(1 - second - third, second, third), sum = of_corners * shares;
   const double length = glm::length(sum);
-  const glm::dvec3 own = glm::normalize(glm::cross(edge1, edge2)) * (object.mirrored ? -1.0 : 1.0);
-  meeting.normal = (length > 0 ? sum / length : own) * (front ? 1.0 : -1.0);
+  const glm::dvec3 own = glm::normalize(glm::cross(edge1, edge2)) * (object.mirrored ? -side : side);
+  meeting.normal = length > 0 ? sum / length : own;
+  meeting.lift =
+      liftAt(meeting.position, shares, {a, b, c}, of_corners, sum, leaningCorners(*object.mesh, corners));
   return meeting;
 }
 
@@ -163,13 +202,15 @@ struct Shown {
   glm::dvec3 position;
   glm::dvec3 normal;
   bool surface;
+  std::optional<double> lift;
 };
 
 Shown shownAt(const GBuffer& gbuffer, const glm::ivec2& pixel) {
   const std::size_t n = gbuffer.pixels(), i = gbuffer.index(pixel.x, pixel.y);
   return {{gbuffer.position[i], gbuffer.position[i + n], gbuffer.position[i + 2 * n]},
           {gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]},
-          std::isfinite(gbuffer.position[i + 2 * n])};
+          std::isfinite(gbuffer.position[i + 2 * n]),
+          gbuffer.lift.empty() ? std::nullopt : std::optional<double>(gbuffer.lift[i])};
 }
 
 double positionError(const Shown& shown, const Meeting& meeting) {
@@ -258,6 +299,9 @@ void checkPixel(const Tracer& tracer, const GBuffer& gbuffer, const glm::ivec2& 
     if (error > check.position_error && check.unexplained == 0) check.worst_pixel = pixel;
     check.position_error = std::max(check.position_error, error);
     check.normal_error = std::max(check.normal_error, normalError(shown, meeting));
+    if (shown.lift)
+      check.lift_error =
+          std::max(check.lift_error, std::abs(*shown.lift - meeting.lift) / glm::length(meeting.position));
     return;
   }
   if (isBesideEdge(tracer, shown, meetings, at, pixel)) {
@@ -279,6 +323,7 @@ GBufferCheck sum(const GBufferCheck& a, const GBufferCheck& b) {
   if (b_is_worse) both.worst_pixel = b.worst_pixel;
   both.position_error = std::max(a.position_error, b.position_error);
   both.normal_error = std::max(a.normal_error, b.normal_error);
+  both.lift_error = std::max(a.lift_error, b.lift_error);
   return both;
 }
 

@@ -19,6 +19,7 @@ struct GBufferCheck {
   /// Largest, farther than kEdgePixels from the triangle's edges, of pixels that show what the ray meets: as
   /// a share of the distance from the eye, and in radians.
   double position_error = 0, normal_error = 0;
+  double lift_error = 0;  ///< likewise, as a share of the distance, where the G-buffer has lifts
   /// Pixels whose G-buffer shows another surface than the ray, or none where it meets one, and the other way
   /// round.
   std::uint64_t beside_edges = 0;  ///< within kEdgePixels of an edge of one of the two: snapping explains it

@@ -109,9 +109,12 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
   point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
   const std::uint32_t seed = pixelSeed(pixel + gbuffer.crop_origin);
   Visibility visibility;
+  // Onto the surface that the smooth normals tell of (Hanika 2021, see raster/lift.hpp).
+  glm::dvec3 start = point.position;
+  if (!gbuffer.lift.empty()) start += double(gbuffer.lift[place]) * unitOrZero(point.normal);
   if (settings.shadow_rays)
     visibility = [&](const Light& light) {
-      return lightVisibility(*settings.shadow_rays, light, point.position, settings.shadow_samples, seed);
+      return lightVisibility(*settings.shadow_rays, light, start, settings.shadow_samples, seed);
     };
   const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, settings.model, visibility);
   return settings.fog ? referenceFog(scene.fog, gbuffer.camera, point.position, radiance) : radiance;

@@ -29,8 +29,9 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
     sample_view.sample = samplePoint(sample, samples);
-    const GBuffer gbuffer =
-        rasterize(scene, objects, sample_view, shading, {true, true, true}, vertex_colors);
+    const PlaneSet planes{
+        .specular = true, .ambient = true, .emission = true, .lift = settings.shadow_rays != nullptr};
+    const GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
     ReferenceSettings of_sample = settings;
     if (settings.on_progress)
       of_sample.on_progress = [&](std::size_t done, std::size_t count) {

@@ -22,13 +22,10 @@ void traceEntry(const RayScene& rays, const GBuffer& gbuffer, const Light& light
   std::array<ShadowRay, kTilePixels> block;
   std::array<std::uint8_t, kTilePixels> blocked, pixels;
   std::size_t count = 0;
-  const std::size_t stride = gbuffer.pixels();
   for (std::size_t word = 0; word < kHalf; ++word) {
     for (cl_uint left = words[kHalf + word]; left != 0; left &= left - 1) {
       const std::size_t pixel = word * 32 + std::size_t(std::countr_zero(left));
-      const float* position = gbuffer.position.data() + tile * kTilePixels + pixel;
-      const glm::dvec4 place(position[0], position[stride], position[2 * stride], 1);
-      block[count] = shadowRay(light, glm::dvec3(gbuffer.camera.camera_to_world * place));
+      block[count] = shadowRay(light, shadowStart(gbuffer, tile * kTilePixels + pixel));
       pixels[count++] = std::uint8_t(pixel);
     }
   }
@@ -53,15 +50,16 @@ PairBits classify(Device& device, const std::string& defines, const ClassifyArgu
   kernel.setArg(0, static_cast<cl_uint>(arguments.plane_stride));
   kernel.setArg(1, arguments.position);
   kernel.setArg(2, arguments.normal);
-  kernel.setArg(3, arguments.lights);
-  kernel.setArg(4, static_cast<cl_uint>(arguments.light_count));
-  kernel.setArg(5, arguments.lists.starts);
-  kernel.setArg(6, arguments.lists.list);
-  kernel.setArg(7, arguments.shadow_maps);
-  kernel.setArg(8, arguments.shadow_faces);
-  kernel.setArg(9, arguments.bounds);
-  kernel.setArg(10, static_cast<cl_uint>(arguments.texel_count));
-  kernel.setArg(11, result);
+  kernel.setArg(3, arguments.lift);
+  kernel.setArg(4, arguments.lights);
+  kernel.setArg(5, static_cast<cl_uint>(arguments.light_count));
+  kernel.setArg(6, arguments.lists.starts);
+  kernel.setArg(7, arguments.lists.list);
+  kernel.setArg(8, arguments.shadow_maps);
+  kernel.setArg(9, arguments.shadow_faces);
+  kernel.setArg(10, arguments.bounds);
+  kernel.setArg(11, static_cast<cl_uint>(arguments.texel_count));
+  kernel.setArg(12, result);
   launch(device, kernel, tiles, 1);
   readBuffer(device, result, bits.data(), bits.size() * sizeof(cl_uint));
   return bits;

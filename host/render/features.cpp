@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/shared.h"
+#include "raster/lift.hpp"
 
 namespace luciole {
 
@@ -31,6 +33,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"PCF", "PCF", "filtered shadow lookups"},
     {"SOFT", "soft shadows", "shadow lookups as wide as the light's size makes them"},
     {"EXACT", "exact shadows", "shadows known for each pixel and light beforehand"},
+    {"LIFT", "lifted shadows", "shadow tests that start on the smooth surface above a facet"},
     {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
     {"FOG_EXP", "exp fog", "exp(-density z)"},
     {"FOG_EXP2", "exp2 fog", "exp(-(density z)^2)"},
@@ -48,6 +51,9 @@ SurfaceTraits materialTraits(const Scene& scene) {
     traits.specular |= material.specular != glm::vec3(0.0f);
     traits.emission |= material.emission != glm::vec3(0.0f);
   }
+  const bool shadows =
+      std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; });
+  traits.smooth = shadows && hasBentCorners(scene);
   return traits;
 }
 
@@ -119,6 +125,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
       features.set(Feature::kOutputShadow, settings.shadow_layer);
     }
   }
+  features.set(Feature::kLift, surfaces.smooth && features.shadows());
   features.set(Feature::kSpotCone, any_cone);
   // Beside cones, an exponent of 0 must be told apart from a cone at run time.
   if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
@@ -134,7 +141,8 @@ PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular),
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
-          .facet = features.shadows()};
+          .facet = features.shadows(),
+          .lift = features.has(Feature::kLift)};
 }
 
 std::string featureDefines(const FeatureSet& features) {

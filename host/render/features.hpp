@@ -35,6 +35,7 @@ enum class Feature : unsigned {
   kPcf,
   kSoft,
   kExact,
+  kLift,
   kFogLinear,
   kFogExp,
   kFogExp2,
@@ -73,7 +74,9 @@ class FeatureSet {
 struct SurfaceTraits {
   bool specular = false;
   bool emission = false;
+  bool smooth = false;  ///< shadow tests start above facets (raster/lift.hpp)
 };
+/// `smooth` only where lights cast shadows.
 SurfaceTraits materialTraits(const Scene& scene);
 
 enum class Culling : std::uint8_t { kNone, kTiles };

@@ -13,6 +13,7 @@ struct FindNeededArguments {
   std::size_t plane_stride;    ///< floats
   const cl::Buffer& position;  ///< G-buffer planes x, y, z
   const cl::Buffer& normal;    ///< likewise
+  const cl::Buffer& lift;      ///< one plane, with Feature::kLift only
   const cl::Buffer& lights;    ///< ShadeLight[light_count]
   std::size_t light_count;
   const LightLists& lists;         ///< with Feature::kLightLists only

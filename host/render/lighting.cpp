@@ -85,15 +85,17 @@ PackedNormals packNormals(const GBuffer& gbuffer) {
   return packed;
 }
 
-/// `facet`: must outlive the buffers.
-GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet, bool unlit) {
+/// `facet`, `lift`: must outlive the buffers.
+GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet,
+                             const Plane& lift, bool unlit) {
   return {inputBuffer(device, gbuffer.position),
           inputBuffer(device, gbuffer.normal),
           inputBuffer(device, gbuffer.diffuse),
           inputBuffer(device, gbuffer.specular),
           inputBuffer(device, unlit ? gbuffer.diffuse : gbuffer.ambient),
           inputBuffer(device, gbuffer.emission),
-          inputBuffer(device, facet)};
+          inputBuffer(device, facet),
+          inputBuffer(device, lift)};
 }
 
 LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
@@ -119,6 +121,7 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
                       {.plane_stride = pixels,
                        .position = buffers.position,
                        .normal = buffers.normal,
+                       .lift = buffers.lift,
                        .lights = lighting.lights,
                        .light_count = lighting.frame.light_count,
                        .lists = lists,
@@ -140,6 +143,7 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
                     {.plane_stride = gbuffer.pixels(),
                      .position = buffers.position,
                      .normal = buffers.normal,
+                     .lift = buffers.lift,
                      .lights = lighting.lights,
                      .light_count = lighting.frame.light_count,
                      .lists = lists,
@@ -207,7 +211,10 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   PackedNormals packed;
   if (features.shadows() && gbuffer.facet.empty()) packed = packNormals(gbuffer);
   const PackedNormals& facet = packed.empty() ? gbuffer.facet : packed;
-  const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, facet, lighting.unlit);
+  Plane level;  // for a G-buffer that lies on its facets
+  if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
+  const Plane& lift = level.empty() ? gbuffer.lift : level;
+  const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, facet, lift, lighting.unlit);
   LitPlanes lit;
   LightLists lists;
   const bool culled = features.has(Feature::kLightLists);
@@ -254,7 +261,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   }
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             facet.size() + lit.color.size();
+                             facet.size() + lift.size() + lit.color.size();
   stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
                                                         shadows.texels.size() * sizeof(ShadowTexel) +
                                                         shadows.bounds.size() * sizeof(BoundTexel) +

@@ -15,8 +15,8 @@ namespace luciole {
 inline constexpr std::size_t kBandBytes = std::size_t(512) << 20;
 
 /// A pixel of a G-buffer with all groups: position, normal, diffuse, specular and shininess, ambient,
-/// emission, facet.
-inline constexpr std::size_t kGBufferBytesPerPixel = (3 + 3 + 3 + 4 + 3 + 3 + 1) * sizeof(float);
+/// emission, facet, lift.
+inline constexpr std::size_t kGBufferBytesPerPixel = (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1) * sizeof(float);
 
 /// A light: as the scene has it, as the kernels take it, and its share of the tree over the lights, 7 floats
 /// a node and a node above for every kTreeArity.

@@ -17,33 +17,39 @@ std::vector<float> pairVisibility(Device& device, const std::string& defines, co
     i = end;
   }
   const std::size_t slots = first_of_row.size() * lanes, stride = gbuffer.pixels();
-  Plane points(3 * slots), seen(slots);
+  Plane points(3 * slots), normals(3 * slots), lifts(slots), seen(slots);
   PackedNormals facets(slots);
   std::vector<cl_uint> map_of_row;
   for (std::size_t row = 0; row < first_of_row.size(); ++row) {
     map_of_row.push_back(pairs[first_of_row[row]].map);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t pixel = pairs[std::min(first_of_row[row] + lane, rows_end[row] - 1)].pixel;
-      for (std::size_t c = 0; c < 3; ++c)
-        points[c * slots + row * lanes + lane] = gbuffer.position[c * stride + pixel];
-      facets[row * lanes + lane] = gbuffer.facet[pixel];
+      const std::size_t slot = row * lanes + lane;
+      for (std::size_t c = 0; c < 3; ++c) {
+        points[c * slots + slot] = gbuffer.position[c * stride + pixel];
+        normals[c * slots + slot] = gbuffer.normal[c * stride + pixel];
+      }
+      facets[slot] = gbuffer.facet[pixel];
+      if (!gbuffer.lift.empty()) lifts[slot] = gbuffer.lift[pixel];
     }
   }
-  const cl::Buffer position = inputBuffer(device, points);
-  const cl::Buffer facet = inputBuffer(device, facets);
+  const cl::Buffer position = inputBuffer(device, points), normal = inputBuffer(device, normals);
+  const cl::Buffer facet = inputBuffer(device, facets), lift = inputBuffer(device, lifts);
   const cl::Buffer result = outputBuffer(device, seen.data(), slots * sizeof(float));
   const cl::Buffer map_buffer = inputBuffer(device, map_of_row), maps = inputBuffer(device, shadows.maps),
                    faces = inputBuffer(device, shadows.faces), texels = inputBuffer(device, shadows.texels);
   cl::Kernel kernel = makeKernel(device, "pair_visibility.cl", "pair_visibility", defines);
   kernel.setArg(0, static_cast<cl_uint>(slots));
   kernel.setArg(1, position);
-  kernel.setArg(2, facet);
-  kernel.setArg(3, map_buffer);
-  kernel.setArg(4, maps);
-  kernel.setArg(5, faces);
-  kernel.setArg(6, texels);
-  kernel.setArg(7, static_cast<cl_uint>(std::max<std::size_t>(shadows.texels.size(), 1)));
-  kernel.setArg(8, result);
+  kernel.setArg(2, normal);
+  kernel.setArg(3, facet);
+  kernel.setArg(4, lift);
+  kernel.setArg(5, map_buffer);
+  kernel.setArg(6, maps);
+  kernel.setArg(7, faces);
+  kernel.setArg(8, texels);
+  kernel.setArg(9, static_cast<cl_uint>(std::max<std::size_t>(shadows.texels.size(), 1)));
+  kernel.setArg(10, result);
   launch(device, kernel, first_of_row.size(), 1);
   readBuffer(device, result, seen.data(), slots * sizeof(float));
   std::vector<float> visibility;

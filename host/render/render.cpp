@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "machine_memory.hpp"
+#include "raster/lift.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
 #include "render/fog_cull.hpp"
@@ -31,6 +32,8 @@ constexpr Feature kFogFeatures[] = {Feature::kFogLinear, Feature::kFogExp, Featu
 FeatureSet vertexFeatures(FeatureSet features) {
   for (const Feature fog : kFogFeatures) features.set(fog, false);
   features.set(Feature::kOutputShadow, false);
+  // A vertex lies on the smooth surface.
+  features.set(Feature::kLift, false);
   return features;
 }
 
@@ -192,7 +195,9 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
                  Stats& stats) {
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const ShadeSettings shade = shadeSettings(settings);
-  const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), shade);
+  SurfaceTraits surfaces = materialTraits(scene);
+  surfaces.smooth &= settings.shading != Shading::kFlat;
+  const FeatureSet features = neededFeatures(scene, settings.camera, surfaces, shade);
   const bool gouraud = settings.shading == Shading::kGouraud;
   Prepared prepared;
   prepared.features = gouraud ? fogOnly(features) : features;
@@ -206,7 +211,8 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
   prepared.planes = neededPlanes(prepared.features);
   if (!scene.lighting) prepared.planes.ambient = false;  // diffuse takes its place
-  if (wants(settings, Aov::kMaterial)) prepared.planes = {true, true, true, prepared.planes.facet};
+  if (wants(settings, Aov::kMaterial))
+    prepared.planes.specular = prepared.planes.ambient = prepared.planes.emission = true;
 
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
@@ -260,7 +266,8 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   }
   RasterCounts triangles;
   GBuffer gbuffer = timed(stats, "rasterize", [&] {
-    return rasterize(scene, objects, view, settings.shading, {true, true, true, true}, vertex_colors,
+    const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
+    return rasterize(scene, objects, view, settings.shading, {true, true, true, true, smooth}, vertex_colors,
                      &triangles);
   });
   gbuffer.camera = settings.camera;
@@ -273,7 +280,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats) {
   const ShadeSettings shade = shadeSettings(settings);
-  const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty()};
+  const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);
   std::future<double> compiling = startCompiling(device, {features}, shade);
   Lighting lighting;

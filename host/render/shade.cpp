@@ -20,14 +20,15 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
   kernel.setArg(5, arguments.gbuffer.ambient);
   kernel.setArg(6, arguments.gbuffer.emission);
   kernel.setArg(7, arguments.gbuffer.facet);
-  kernel.setArg(8, arguments.lights);
-  kernel.setArg(9, arguments.lists.starts);
-  kernel.setArg(10, arguments.lists.list);
-  kernel.setArg(11, arguments.shadow_maps);
-  kernel.setArg(12, arguments.shadow_faces);
-  kernel.setArg(13, arguments.shadow_texels);
-  kernel.setArg(14, arguments.pair_bits);
-  kernel.setArg(15, arguments.image);
+  kernel.setArg(8, arguments.gbuffer.lift);
+  kernel.setArg(9, arguments.lights);
+  kernel.setArg(10, arguments.lists.starts);
+  kernel.setArg(11, arguments.lists.list);
+  kernel.setArg(12, arguments.shadow_maps);
+  kernel.setArg(13, arguments.shadow_faces);
+  kernel.setArg(14, arguments.shadow_texels);
+  kernel.setArg(15, arguments.pair_bits);
+  kernel.setArg(16, arguments.image);
   const std::size_t rows = ROWS_PER_ITEM(device.description.lanes, arguments.lists.tiles > 0);
   launch(device, kernel, arguments.frame.plane_stride / device.description.lanes / rows,
          rowsPerTile(device) / rows);

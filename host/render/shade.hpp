@@ -10,7 +10,7 @@ namespace luciole {
 
 /// A G-buffer's groups on the device. Absent groups are small dummies.
 struct GBufferBuffers {
-  cl::Buffer position, normal, diffuse, specular, ambient, emission, facet;
+  cl::Buffer position, normal, diffuse, specular, ambient, emission, facet, lift;
 };
 
 struct ShadeArguments {

@@ -55,6 +55,16 @@ RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
                        [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
 }
 
+glm::dvec3 shadowStart(const GBuffer& gbuffer, std::size_t place) {
+  const std::size_t stride = gbuffer.pixels();
+  const auto triple = [&](const Plane& group) {
+    return glm::dvec3(group[place], group[place + stride], group[place + 2 * stride]);
+  };
+  glm::dvec3 start = triple(gbuffer.position);
+  if (!gbuffer.lift.empty()) start += double(gbuffer.lift[place]) * triple(gbuffer.normal);
+  return glm::dvec3(gbuffer.camera.camera_to_world * glm::dvec4(start, 1));
+}
+
 ShadowRay shadowRay(const Light& light, const glm::dvec3& point) {
   const bool directional = light.kind == LightKind::kDirectional;
   const glm::dvec3 way = directional ? -light.direction : light.position - point;

@@ -58,6 +58,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
     plane->assign(3 * stride, 0.0f);
   g.specular.assign(4 * stride, 0.0f);
   g.facet.assign(stride, 0);
+  g.lift.assign(stride, 0.0f);
   std::fill(g.position.begin() + std::ptrdiff_t(2 * stride), g.position.end(), -kInf);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -70,6 +71,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
       setThree(g.position, at, stride, glm::vec3(screen.x * half, screen.y * half, -depth));
       setThree(g.normal, at, stride, glm::normalize(glm::vec3(0.1f * float(i % 7), 0.3f, 1.0f)));
       g.facet[at] = packNormal(glm::dvec3(i % 5 - 2, i % 3 - 0.3, 0.1 * (i % 101)));
+      g.lift[at] = i % 4 == 0 ? 0.0f : 1e-3f * float(i % 97);
       setThree(g.diffuse, at, stride, glm::vec3(0.1f, 0.01f * float(i % 90), 0.7f));
       setThree(g.specular, at, stride, glm::vec3(0.3f, 0.2f, 0.1f * float(i % 5)));
       g.specular[at + 3 * stride] = float(i % 64);
@@ -139,6 +141,7 @@ TEST(GBufferFile, EveryPlaneSurvivesBitForBit) {
     EXPECT_TRUE(sameBits(read.ambient, written.ambient));
     EXPECT_TRUE(sameBits(read.emission, written.emission));
     EXPECT_EQ(read.facet, written.facet);
+    EXPECT_TRUE(sameBits(read.lift, written.lift));
   }
 }
 
@@ -160,6 +163,27 @@ TEST(GBufferFile, FacetsAreOptional) {
   EXPECT_EQ(unpackNormal(g.facet[g.index(0, 0)]), glm::dvec3(0, 1, 0));
   EXPECT_EQ(unpackNormal(g.facet[g.index(1, 0)]), glm::dvec3(0, 0, 1));
   EXPECT_EQ(unpackNormal(g.facet[g.index(2, 0)]), glm::dvec3(0, 0, 1));
+}
+
+TEST(GBufferFile, LiftsAreOptionalAndNeverNegative) {
+  const TemporaryFolder folder;
+  GBuffer without = somePicture(3, 2, someCamera());
+  without.lift.clear();
+  writeGBuffer(without, folder / "g.exr", {});
+  EXPECT_TRUE(readGBuffer(folder / "g.exr").lift.empty());
+
+  const std::vector<std::string> channels{"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "lift"};
+  writeForeign(folder / "g.exr", 2, 1, channels, [](int x, int, int c) {
+    const float values[] = {0, 0, -4, 0, 0, 2, x == 0 ? 0.5f : -0.5f};
+    return values[c];
+  });
+  const GBuffer g = readGBuffer(folder / "g.exr");
+  ASSERT_EQ(g.lift.size(), g.pixels());
+  EXPECT_EQ(g.lift[g.index(0, 0)], 0.5f);
+  EXPECT_EQ(g.lift[g.index(1, 0)], 0.0f);
+  writeForeign(folder / "g.exr", 2, 1, channels,
+               [](int, int, int c) { return c == 6 ? kInf : float(c) - 2.0f; });
+  EXPECT_THAT(errorOf(folder / "g.exr"), HasSubstr("channel lift: pixel 0,0 is inf"));
 }
 
 TEST(GBufferFile, CameraAndCropSurviveExactly) {

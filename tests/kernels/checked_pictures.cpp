@@ -35,9 +35,9 @@ void addObjects(const Camera& camera, Scene& scene) {
   }
 }
 
-/// Fifteen in a row have every fog with rows of 1, 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for
-/// unwritten where a function is called with it), every shadow method with each of them, and either choice of
-/// all else.
+/// Those of odd numbers have shadows that start above facets. Fifteen in a row have every fog with rows of 1,
+/// 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for unwritten where a function is called with it),
+/// every shadow method with each of them, and either choice of all else.
 ///
 /// One a process: where a buffer takes the place of a smaller one that was freed, Oclgrind 21.10 takes its
 /// end for unwritten. That is also why nothing is rendered here, which lights more than one G-buffer.
@@ -59,9 +59,11 @@ void lightPicture(unsigned number) {
   settings.model = kAllModels[(number + number / 4) % 4];
   settings.culling = number % 4 == 1 ? Culling::kNone : Culling::kTiles;
 
-  const GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  if (number % 2 == 1) gbuffer.lift.resize(gbuffer.pixels(), 0.25f);
   const View view = cameraView(camera, {kWidth, kHeight});
-  const FeatureSet features = neededFeatures(scene, camera, {.specular = true, .emission = true}, settings);
+  const FeatureSet features = neededFeatures(
+      scene, camera, {.specular = true, .emission = true, .smooth = !gbuffer.lift.empty()}, settings);
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);

@@ -39,6 +39,7 @@ const std::vector<Needs>& needs() {
       {kPcf, {kParallelShadows, kPerspectiveShadows, kCubeShadows}},
       {kSoft, {kPerspectiveShadows, kCubeShadows, kParallelShadows}},
       {kExact, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
+      {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows}},
       {kOutputShadow, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
       {kParallelShadows, {kDirectionalLights}},
       {kPerspectiveShadows, {kSpotLights}},
@@ -234,6 +235,10 @@ void expectSamePicture(const FeatureSet& features) {
   const Scene scene = sceneWith(features, camera, random);
   GBuffer gbuffer = randomGBuffer(camera, 39, 20, 0.1, random);
   if (!features.has(Feature::kEmission)) std::fill(gbuffer.emission.begin(), gbuffer.emission.end(), 0.0f);
+  if (features.has(Feature::kLift)) {
+    gbuffer.lift.resize(gbuffer.pixels());
+    for (float& lift : gbuffer.lift) lift = random.chance(0.5) ? 0.0f : float(random.between(0, 0.5));
+  }
   std::vector<Model> models;
   for (const Model model : kAllModels)
     if (features.has(featureOf(model))) models.push_back(model);

@@ -19,7 +19,7 @@ struct Seen {
 
 Seen see(const Scene& scene, glm::ivec2 size) {
   Seen seen{scene, cameraView(scene.cameras.front(), size), {}};
-  seen.gbuffer = rasterize(seen.scene, allObjects(seen.scene), seen.view, Shading::kPhong, {});
+  seen.gbuffer = rasterize(seen.scene, allObjects(seen.scene), seen.view, Shading::kPhong, {.lift = true});
   return seen;
 }
 
@@ -39,6 +39,8 @@ void expectRight(const std::string& path) {
   EXPECT_EQ(result.pixels, 480u * 270u);
   EXPECT_LE(result.position_error, 1e-7);
   EXPECT_LE(result.normal_error, 2e-7);
+  // A lift is shorter than the way from the eye, and rounded once, too.
+  EXPECT_LE(result.lift_error, 1e-7);
   EXPECT_EQ(result.unexplained, 0u) << "such as at " << result.worst_pixel.x << ", " << result.worst_pixel.y;
 }
 
@@ -74,6 +76,8 @@ TEST(GBufferCheck, KnowsWhatAPictureLeavesOut) {
     EXPECT_LT(result.beside_edges, 160u) << kind;
     EXPECT_LE(result.position_error, 1e-7) << kind;
     EXPECT_GT(result.position_error, 0) << kind;
+    EXPECT_LE(result.lift_error, 1e-7) << kind;
+    EXPECT_GT(result.lift_error, 0) << kind;
   }
 }
 

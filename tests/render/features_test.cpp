@@ -79,6 +79,21 @@ TEST(Features, SwitchedOffShadowsAndCullingCostNothing) {
   EXPECT_EQ(featuresOf(scene, off), setOf({Feature::kPointLights, Feature::kPhong}));
 }
 
+TEST(Features, ShadowsStartAboveFacetsOnlyWhereAMeshIsSmooth) {
+  const auto lifts = [](const char* primitive, const char* shadow, const ShadeSettings& settings) {
+    return featuresOf(fmt::format(
+                          R"({{"objects": [{{"primitive": "box"}}, {{"primitive": "{}"}}],
+                              "lights": [{{"type": "point", "position": [0, 1, 0], "shadow": {}}}]}})",
+                          primitive, shadow),
+                      settings)
+        .has(Feature::kLift);
+  };
+  EXPECT_TRUE(lifts("sphere", "true", {}));
+  EXPECT_FALSE(lifts("plane", "true", {}));
+  EXPECT_FALSE(lifts("sphere", "false", {}));
+  EXPECT_FALSE(lifts("sphere", "true", {.shadows = ShadowMethod::kOff}));
+}
+
 TEST(Features, FogNeedsItsModeAndChannelsOnly) {
   const auto fog = [](const std::string& text) {
     return featuresOf(R"({"objects": [{"primitive": "box"}], "fog": )" + text + "}");
@@ -100,13 +115,14 @@ TEST(Features, TableNamesEveryFeatureOnce) {
 
 TEST(Features, GBufferGroupsFollowTheFeatures) {
   const PlaneSet none = neededPlanes(FeatureSet());
-  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.facet);
+  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.facet || none.lift);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kSpecular})).specular);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kAmbient})).ambient);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kEmission})).emission);
   for (const Feature shadows :
        {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows})
     EXPECT_TRUE(neededPlanes(setOf({shadows})).facet);
+  EXPECT_TRUE(neededPlanes(setOf({Feature::kLift})).lift);
 }
 
 }  // namespace

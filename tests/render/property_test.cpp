@@ -151,9 +151,10 @@ TEST(Property, UnusedFeaturesChangeNothing) {
        [](const SceneJson& json) -> Failure {
          const Case made = caseOf(json, ShadowMethod::kPcf);
          const RenderSettings& settings = made.settings;
-         const FeatureSet needed =
-             neededFeatures(made.scene, settings.camera, materialTraits(made.scene), settings.shade);
          const GBuffer gbuffer = gbufferOf(made);
+         SurfaceTraits surfaces = materialTraits(made.scene);
+         surfaces.smooth = !gbuffer.lift.empty();
+         const FeatureSet needed = neededFeatures(made.scene, settings.camera, surfaces, settings.shade);
          Lighting lighting;
          Stats stats;
          prepareLighting(testDevice(), made.scene, settings.camera,
