@@ -9,7 +9,6 @@
 #include "error.hpp"
 #include "experiment/bench.hpp"
 #include "experiment/bench_scene.hpp"
-#include "experiment/gnuplot.hpp"
 #include "experiment/plot.hpp"
 #include "experiment/report.hpp"
 #include "image/write_file.hpp"
@@ -46,7 +45,6 @@ void bench(const BenchOptions& options) {
       throw InputError(fmt::format(
           "--plot {}: shows shading, shadows and samples, of which --only names none", options.plot));
     checkPlace(options.plot);
-    requireGnuplot();
   }
   const Scene scene = options.scene.empty() ? makeBenchScene() : loadScene(options.scene);
   BenchSettings settings;
@@ -84,7 +82,7 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
       ->check(CLI::IsMember(benchNames()));
   command->add_option("--json", options->json,
                       "write all figures as JSON (- : standard output, without the table)");
-  command->add_option("--plot", options->plot, "write speed against error as an SVG picture (by gnuplot)");
+  command->add_option("--plot", options->plot, "write speed against error as an SVG picture");
   command->add_option("--size", options->picture.size,
                       "WxH pixels of every picture (default: each one's own)");
   command->add_option("--repeats", options->repeats, "timed runs of each row")
