@@ -10,7 +10,6 @@
 #include "error.hpp"
 #include "experiment/bench.hpp"
 #include "experiment/bench_scene.hpp"
-#include "experiment/gnuplot.hpp"
 #include "experiment/plot.hpp"
 #include "experiment/report.hpp"
 #include "image/write_file.hpp"
@@ -47,7 +46,6 @@ void bench(const BenchOptions& options) {
       throw InputError(fmt::format(
           "--plot {}: shows shading, shadows and samples, of which --only names none", options.plot));
     checkPlace(options.plot);
-    requireGnuplot();
   }
   const Scene scene = options.scene.empty() ? makeBenchScene() : openScene(options.scene, 1, options.picture);
   BenchSettings settings;
@@ -86,7 +84,7 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
       ->check(CLI::IsMember(benchNames()));
   command->add_option("--json", options->json,
                       "write all figures as JSON (- : standard output, without the table)");
-  command->add_option("--plot", options->plot, "write speed against error as an SVG picture (by gnuplot)");
+  command->add_option("--plot", options->plot, "write speed against error as an SVG picture");
   command->add_option("--size", options->picture.size,
                       "WxH pixels of every picture (default: each one's own)");
   command

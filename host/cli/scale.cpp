@@ -8,12 +8,12 @@
 #include "cli/scale_plan.hpp"
 #include "cli/shard.hpp"
 #include "error.hpp"
-#include "experiment/gnuplot.hpp"
 #include "experiment/page.hpp"
 #include "experiment/scale.hpp"
 #include "experiment/scale_files.hpp"
 #include "experiment/scale_log.hpp"
 #include "experiment/scale_plot.hpp"
+#include "experiment/scale_table.hpp"
 #include "image/write_file.hpp"
 
 namespace luciole {
@@ -42,7 +42,6 @@ void checkDrawing(const std::string& plot) {
   if (plot.empty()) return;
   if (!plot.ends_with(".svg")) throw InputError(fmt::format("--plot {}: expected a .svg file", plot));
   checkPlace(plot);
-  requireGnuplot();
 }
 
 /// Everything that is made from a log.
@@ -53,7 +52,7 @@ void writeResults(const ScaleResults& results, const std::string& folder, const 
   writeTextFile(folder + "/growth.json", growthJson(summary));
   writeTextFile(folder + "/report.html", experimentPage(pageData(summary, folder, command_line)));
   if (!plot.empty() && !summary.points.empty()) writeTextFile(plot, scalePlot(summary));
-  if (!quiet) fmt::print("{}", growthTable(summary));
+  if (!quiet) fmt::print("{}", scaleTable(summary));
   if (summary.incomplete > 0)
     fmt::print(stderr, "{}: {} of {} points are not complete\n", folder, summary.incomplete,
                summary.description.points.size());
@@ -107,8 +106,7 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   command->add_option(
       "-o,--output", options->output,
       "folder for results and report.html; what it holds of this experiment isn't done again");
-  command->add_option("--plot", options->plot,
-                      "also write time against lights as an SVG picture (by gnuplot)");
+  command->add_option("--plot", options->plot, "also write time against lights as an SVG picture");
   command
       ->add_option("--check-pixels", options->check_pixels,
                    "about how many pixels are held against the reference")

@@ -1,8 +1,10 @@
 #include "experiment/growth.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 namespace luciole {
 namespace {
@@ -104,42 +106,40 @@ double findMinimum(double low, double high, Function&& value) {
 }  // namespace
 
 Growth fitGrowth(const std::vector<double>& lights, const std::vector<double>& milliseconds) {
-  const auto error = [&](double c) { return fitExponent(lights, milliseconds, c).error; };
-  const double constant = error(0);
-  const auto flat = [&] {
-    Growth growth;
-    growth.a = fitExponent(lights, milliseconds, 0).a;
-    return growth;
-  };
   const std::size_t points = lights.size();
-  if (points <= 3) return flat();
-
-  double best = 0, least = constant;
+  if (points < std::size_t(kFewestCounts))
+    return {{}, fmt::format("too few numbers of lights: {} of {}", points, kFewestCounts)};
+  const auto error = [&](double c) { return fitExponent(lights, milliseconds, c).error; };
+  double best = 0, least = error(0);
   for (double c = kStep; c <= kSteepest; c += kStep)
     if (const double e = error(c); e < least) {
       best = c;
       least = e;
     }
   if (best > 0) best = findMinimum(std::max(best - kStep, 0.0), std::min(best + kStep, kSteepest), error);
-  least = error(best);
+  least = std::max(error(best), kRounding * double(points));
   const std::size_t freedom = points - 3;
-  const double t = studentQuantile(freedom);
-  const double limit = std::max(least, kRounding * double(points)) * (1 + t * t / double(freedom));
-  const auto inside = [&](double c) { return error(c) <= limit; };
-  if (inside(0)) return flat();
-  Growth growth;
+  const double t = studentQuantile(freedom), variance = least / double(freedom);
+  const auto inside = [&](double c) { return error(c) <= least + t * t * variance; };
+
   const LinearFit fit = fitExponent(lights, milliseconds, best);
-  growth.a = fit.a;
-  growth.b = fit.b;
-  growth.c = best;
+  const double last = fit.a + fit.b * std::pow(lights.back(), best);
+  const double rise = fit.b * (std::pow(lights.back(), best) - std::pow(lights.front(), best));
+  // The difference of two measurements has twice the variance of one.
+  if (inside(0) || rise < t * std::sqrt(2 * variance) * last) return {{}, "no growth beyond noise"};
+
   // From the best one outwards, to where it first fits worse.
   double low = best, high = best;
   while (low > 0 && inside(low)) low -= kStep;
   while (high < kSteepest && inside(high)) high += kStep;
-  growth.c_low = findEdge(best, std::max(low, 0.0), inside);
-  growth.c_high =
-      high < kSteepest || !inside(kSteepest) ? findEdge(best, std::min(high, kSteepest), inside) : kSteepest;
-  return growth;
+  const double c_low = findEdge(best, std::max(low, 0.0), inside);
+  const bool is_bounded = high < kSteepest || !inside(kSteepest);
+  const double c_high = is_bounded ? findEdge(best, std::min(high, kSteepest), inside) : kSteepest;
+  if (!is_bounded || c_high - c_low > kWidestInterval)
+    return {{},
+            fmt::format("exponent anywhere from {:.2f} to {:.2f}{}", c_low, c_high,
+                        is_bounded ? "" : " or more")};
+  return {GrowthFit{fit.a, fit.b, best, c_low, c_high}, ""};
 }
 
 }  // namespace luciole

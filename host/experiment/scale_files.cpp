@@ -11,8 +11,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "experiment/text_table.hpp"
-
 namespace luciole {
 namespace {
 
@@ -103,21 +101,21 @@ Json quartilesJson(const Quartiles& time) {
   return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
 }
 
-Json optionalJson(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-
 /// JSON has no infinity.
 Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
+/// A fit's numbers, null where there is none, and then the reason.
 Json growthRows(const ScaleSummary& summary) {
   Json rows = Json::array();
-  for (const StageGrowth& row : summary.growth)
-    rows.push_back({{"values", valuesJson(summary.description, row.values)},
-                    {"stage", row.stage},
-                    {"a", row.growth.a},
-                    {"b", row.growth.b},
-                    {"c", optionalJson(row.growth.c)},
-                    {"c_low", optionalJson(row.growth.c_low)},
-                    {"c_high", optionalJson(row.growth.c_high)}});
+  for (const StageGrowth& row : summary.growth) {
+    Json json{{"values", valuesJson(summary.description, row.values)}, {"stage", row.stage}};
+    for (const char* name : {"a", "b", "c", "c_low", "c_high"}) json[name] = nullptr;
+    if (const auto& fit = row.growth.fit)
+      json.update(
+          {{"a", fit->a}, {"b", fit->b}, {"c", fit->c}, {"c_low", fit->c_low}, {"c_high", fit->c_high}});
+    json["reason"] = row.growth.fit ? Json(nullptr) : Json(row.growth.reason);
+    rows.push_back(json);
+  }
   return rows;
 }
 
@@ -167,7 +165,7 @@ Json pointJson(const ScaleDescription& description, const PointSummary& point) {
 
 std::string withCommas(std::uint64_t number) {
   std::string text = fmt::format("{}", number);
-  for (int i = int(text.size()) - 3; i > 0; i -= 3) text.insert(std::size_t(i), ",");
+  for (int i = int(text.size()) - 3; i > 0; i -= 3) text.insert(std::size_t(i), 1, ',');
   return text;
 }
 
@@ -228,27 +226,9 @@ std::string growthJson(const ScaleSummary& summary) {
   json["settings"] = settingsJson(summary.description);
   json["machines"] = Json::array();
   for (const Machine& machine : summary.machines) json["machines"].push_back(machineJson(machine));
-  json["model"] = "milliseconds = a + b * lights^c; c_low to c_high: 95 % confidence";
+  json["model"] = "milliseconds = a + b * lights^c; c_low to c_high: 95 % confidence; null: see reason";
   json["growth"] = growthRows(summary);
   return json.dump(2) + "\n";
-}
-
-std::string growthTable(const ScaleSummary& summary) {
-  std::vector<std::string> head;
-  for (const ScaleAxis& axis : summary.description.axes) head.push_back(axis.name);
-  for (const char* name : {"stage", "a, ms", "b, ms", "c", "95 %"}) head.push_back(name);
-  std::vector<std::vector<std::string>> lines{head};
-  for (const StageGrowth& row : summary.growth) {
-    std::vector<std::string> cells = row.values;
-    const Growth& growth = row.growth;
-    cells.push_back(row.stage);
-    cells.push_back(fmt::format("{:.3g}", growth.a));
-    cells.push_back(growth.c ? fmt::format("{:.2g}", growth.b) : "-");
-    cells.push_back(growth.c ? fmt::format("{:.2f}", *growth.c) : "-");
-    cells.push_back(growth.c ? fmt::format("{:.2f} to {:.2f}", *growth.c_low, *growth.c_high) : "-");
-    lines.push_back(cells);
-  }
-  return textTable(lines);
 }
 
 std::string pageData(const ScaleSummary& summary, const std::string& folder, const std::string& command) {

@@ -10,11 +10,9 @@ namespace luciole {
 /// pairs, memory, errors.
 std::string scaleCsv(const ScaleSummary& summary);
 
-/// The machines, and a, b and c of each stage of each variant with c's confidence interval, as JSON.
+/// The machines, and a, b and c of each stage of each variant with c's confidence interval, or why there are
+/// none, as JSON.
 std::string growthJson(const ScaleSummary& summary);
-
-/// Exponents, as a table to read.
-std::string growthTable(const ScaleSummary& summary);
 
 /// What the page shows (see page.js), as JSON, with the pictures in `folder` inside it. `command`: how the
 /// experiment was asked for.

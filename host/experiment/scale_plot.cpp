@@ -3,37 +3,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 
-#include "experiment/gnuplot.hpp"
+#include "experiment/log_axis.hpp"
+#include "experiment/svg_plot.hpp"
 
 namespace luciole {
 namespace {
 
-/// M. Okabe and K. Ito, "Color Universal Design", 2008: told apart by every kind of colour vision.
-constexpr const char* kColors[] = {"#000000", "#0072b2", "#d55e00", "#009e73",
-                                   "#cc79a7", "#e69f00", "#56b4e9"};
-
-struct Place {
-  double lights = 0;
-  Quartiles milliseconds;
-};
-
-struct Line {
-  std::string name;
-  std::vector<Place> places;
-
-  double highest() const {
-    double most = 0;
-    for (const Place& place : places) most = std::max(most, place.milliseconds.median);
-    return most;
-  }
-};
-
-Line& lineNamed(std::vector<Line>& lines, const std::string& name) {
+PlotSeries& seriesNamed(std::vector<PlotSeries>& all, const std::string& name) {
   const auto known =
-      std::find_if(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; });
-  if (known != lines.end()) return *known;
-  return lines.emplace_back(Line{name, {}});
+      std::find_if(all.begin(), all.end(), [&](const PlotSeries& series) { return series.name == name; });
+  if (known != all.end()) return *known;
+  return all.emplace_back(PlotSeries{name});
+}
+
+PlotPoint pointOf(std::uint64_t lights, const Quartiles& time) {
+  const double x = double(lights);
+  return {{x, time.median}, {x, time.low}, {x, time.high}};
+}
+
+double highest(const PlotSeries& series) {
+  double most = 0;
+  for (const PlotPoint& point : series.points) most = std::max(most, point.at.y);
+  return most;
 }
 
 /// The variant that is fastest with the most lights that any was done with.
@@ -48,73 +42,55 @@ const std::vector<std::string>& bestVariant(const ScaleSummary& summary) {
   return best->point.values;
 }
 
-std::vector<Line> stageLines(const ScaleSummary& summary, const std::vector<std::string>& variant) {
-  std::vector<Line> lines;
+std::vector<PlotSeries> stageSeries(const ScaleSummary& summary, const std::vector<std::string>& variant) {
+  std::vector<PlotSeries> all;
   for (const PointSummary& point : summary.points) {
     if (point.point.values != variant) continue;
-    lineNamed(lines, "total").places.push_back({double(point.point.lights), point.milliseconds});
+    seriesNamed(all, kWhole).points.push_back(pointOf(point.point.lights, point.milliseconds));
     for (const StageSummary& stage : point.stages)
-      lineNamed(lines, stage.name).places.push_back({double(point.point.lights), stage.milliseconds});
+      seriesNamed(all, stage.name).points.push_back(pointOf(point.point.lights, stage.milliseconds));
   }
-  const double least = 0.01 * lines.front().highest();
-  std::erase_if(lines, [&](const Line& line) { return line.highest() < least; });
-  return lines;
+  const double least = 0.01 * highest(all.front());
+  std::erase_if(all, [&](const PlotSeries& series) { return highest(series) < least; });
+  return all;
 }
 
-std::string variantName(const ScaleSummary& summary, const std::vector<std::string>& values) {
-  std::string name;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] == kNotThis) continue;
-    name += fmt::format("{}{} {}", name.empty() ? "" : ", ", summary.description.axes[i].name, values[i]);
-  }
-  return name;
-}
-
-std::vector<Line> variantLines(const ScaleSummary& summary) {
-  std::vector<Line> lines;
+std::vector<PlotSeries> variantSeries(const ScaleSummary& summary) {
+  std::vector<PlotSeries> all;
   for (const PointSummary& point : summary.points)
-    lineNamed(lines, variantName(summary, point.point.values))
-        .places.push_back({double(point.point.lights), point.milliseconds});
-  return lines;
+    seriesNamed(all, variantName(summary.description, point.point.values))
+        .points.push_back(pointOf(point.point.lights, point.milliseconds));
+  return all;
 }
 
-/// A panel's commands; `first`: the number of its first data block.
-std::string panel(const std::string& title, const std::vector<Line>& lines, std::size_t first) {
-  std::string blocks, plots;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    blocks += fmt::format("$line{} << EOD\n", first + i);
-    for (const Place& place : lines[i].places) {
-      const Quartiles& time = place.milliseconds;
-      // A logarithmic axis has no zero.
-      if (time.low > 0)
-        blocks += fmt::format("{} {} {} {}\n", place.lights, time.median, time.low, time.high);
-    }
-    blocks += "NaN NaN NaN NaN\nEOD\n";  // gnuplot refuses a block without points
-    plots +=
-        fmt::format("{}$line{} with yerrorlines lw 1.6 pt {} ps 0.6 lc rgb '{}' title {}", i ? ", " : "plot ",
-                    first + i, 4 + i % 10, kColors[i % std::size(kColors)], gnuplotString(lines[i].name));
+/// The legend names the lines from the highest to the lowest at their right ends. Neighbours differ in colour
+/// and marker, so that neither is needed alone.
+PlotPanel panelOf(const std::string& title, std::vector<PlotSeries> series) {
+  static constexpr PlotMarker kMarkers[] = {PlotMarker::kDot, PlotMarker::kSquare, PlotMarker::kTriangle,
+                                            PlotMarker::kDiamond, PlotMarker::kCircle};
+  static constexpr const char* kDashes[] = {"", "7 4", "2 3", "10 3 2 3"};
+  std::stable_sort(series.begin(), series.end(), [](const PlotSeries& a, const PlotSeries& b) {
+    return a.points.back().at.y > b.points.back().at.y;
+  });
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    series[i].color = kPlotColors[i % std::size(kPlotColors)];
+    series[i].marker = kMarkers[i % std::size(kMarkers)];
+    series[i].line = PlotLine::kStraight;
+    series[i].dash = kDashes[i / std::size(kPlotColors) % std::size(kDashes)];
   }
-  return blocks + fmt::format("set title {} font ',14'\n", gnuplotString(title)) + plots + "\n";
+  return {title, {384, 320}, {"lights", countTick}, {"time, median and quartiles", timeTick}, series};
 }
 
 }  // namespace
 
 std::string scalePlot(const ScaleSummary& summary) {
-  const std::vector<Line> variants = variantLines(summary);
-  const bool two = variants.size() > 1;
-  std::string script = fmt::format(
-      "set terminal svg size {},480 background rgb 'white' font 'sans-serif,13' noenhanced\n"
-      "set encoding utf8\nset multiplot layout 1,{}\nset logscale xy\nset grid lc rgb '#dddddd'\n"
-      "set border lc rgb '#444444'\nset format x '%.0s%c'\nset key bmargin center horizontal samplen 2\n"
-      "set xlabel 'lights'\nset ylabel 'milliseconds, median and quartiles' offset 1,0\n"
-      "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
-      two ? 1080 : 640, two ? 2 : 1);
+  const std::vector<PlotSeries> variants = variantSeries(summary);
   const std::vector<std::string>& best = bestVariant(summary);
-  const std::string name = two ? variantName(summary, best) : summary.description.scene;
-  const std::vector<Line> stages = stageLines(summary, best);
-  script += panel(name + ", by stage", stages, 0);
-  if (two) script += panel("the whole picture, by variant", variants, stages.size());
-  return runGnuplot(script + "unset multiplot\n");
+  const std::string name = variantName(summary.description, best);
+  Plot plot{"Time against lights: " + summary.description.scene, {{}}};
+  plot.rows[0].push_back(panelOf((name.empty() ? "" : name + ", ") + "by stage", stageSeries(summary, best)));
+  if (variants.size() > 1) plot.rows[0].push_back(panelOf("the whole picture, by variant", variants));
+  return svgPlot(plot);
 }
 
 }  // namespace luciole

@@ -1,5 +1,7 @@
 #include "experiment/scale_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -81,11 +83,11 @@ std::vector<StageGrowth> fitAll(const std::vector<PointSummary>& points) {
     if (std::find(variants.begin(), variants.end(), point.point.values) == variants.end())
       variants.push_back(point.point.values);
   for (const auto& values : variants) {
-    std::vector<std::string> names{"total"};
+    std::vector<std::string> names{kWhole};
     std::map<std::string, Curve> curves;
     for (const PointSummary& point : points) {
       if (point.point.values != values) continue;
-      curves["total"].add(point.point.lights, point.milliseconds.median);
+      curves[kWhole].add(point.point.lights, point.milliseconds.median);
       for (const StageSummary& stage : point.stages) {
         if (std::find(names.begin(), names.end(), stage.name) == names.end()) names.push_back(stage.name);
         curves[stage.name].add(point.point.lights, stage.milliseconds.median);
@@ -99,6 +101,15 @@ std::vector<StageGrowth> fitAll(const std::vector<PointSummary>& points) {
 }
 
 }  // namespace
+
+std::string variantName(const ScaleDescription& description, const std::vector<std::string>& values) {
+  std::string name;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == kNotThis) continue;
+    name += fmt::format("{}{} {}", name.empty() ? "" : ", ", description.axes[i].name, values[i]);
+  }
+  return name;
+}
 
 ScaleSummary summarizeScale(const ScaleResults& results) {
   ScaleSummary summary;

@@ -27,10 +27,13 @@ struct PointSummary {
   bool front = false;
 };
 
+/// The name of all stages together.
+inline constexpr const char* kWhole = "total";
+
 /// How a stage's time grows with the lights, other things being equal.
 struct StageGrowth {
   std::vector<std::string> values;  ///< of the axes
-  std::string stage;                ///< "total" for all together
+  std::string stage;                ///< or kWhole
   Growth growth;
 };
 
@@ -41,6 +44,9 @@ struct ScaleSummary {
   std::vector<StageGrowth> growth;
   std::size_t incomplete = 0;  ///< points that lack their check or one of their runs
 };
+
+/// The axes' values in one line, for people: "culling tiles, tile 4"; empty where there are no axes.
+std::string variantName(const ScaleDescription& description, const std::vector<std::string>& values);
 
 /// What a log's results come to.
 ScaleSummary summarizeScale(const ScaleResults& results);

@@ -5,14 +5,10 @@
 #include <algorithm>
 
 namespace luciole {
-namespace {
 
-/// Characters that a terminal shows of UTF-8 text: all bytes but those that continue one.
 std::size_t shownWidth(const std::string& text) {
   return std::size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
-
-}  // namespace
 
 std::string textTable(const std::vector<std::vector<std::string>>& lines) {
   std::vector<std::size_t> widths(lines.front().size());

@@ -89,7 +89,7 @@ TEST_F(ScaleCommand, MeasuresAndChecksEveryCombinationOnce) {
   const Outcome outcome = scale("--lights 1,10,...,1000 --vary culling,tile=4,16 --repeat 2 -o run");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress line but on a terminal
-  EXPECT_THAT(outcome.out, HasSubstr("shade"));
+  EXPECT_THAT(outcome.out, HasSubstr("mean error"));
   const std::vector<Row> rows = readCsv(folder / "run/results.csv");
   // Without culling there are no tiles, so their size is tried but once.
   ASSERT_EQ(rows.size(), 4u * 3);
@@ -196,6 +196,11 @@ TEST_F(ScaleCommand, MergedShardsEqualOneRun) {
   for (const Row& row : readCsv(folder / "whole/results.csv"))
     EXPECT_EQ(readText(folder / ("all/" + row.at("picture"))),
               readText(folder / ("whole/" + row.at("picture"))));
+  // Not even the plot needs another program.
+  const Outcome plotted =
+      runLine(folder, "PATH=/none luciole scale merge one two -o plotted --plot plot.svg");
+  EXPECT_EQ(plotted.status, 0) << plotted.err;
+  EXPECT_THAT(readText(folder / "plot.svg"), HasSubstr("</svg>"));
   EXPECT_EQ(runLine(folder, "luciole scale merge one one -o twice").status, 2);
   EXPECT_EQ(runLine(folder, "luciole scale merge one two -o all").status, 2);
   EXPECT_FALSE(std::filesystem::exists(folder / "twice"));

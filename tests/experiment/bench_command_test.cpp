@@ -200,7 +200,6 @@ TEST(BenchCommand, EveryModelIsHeldAgainstItself) {
 }
 
 TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
-  LUCIOLE_NEEDS_PROGRAM("gnuplot", "gnuplot-nox");
   const TemporaryFolder folder;
   std::string scene = kScene;
   scene.replace(scene.find("\"shadow\": true"), 14, "\"shadow\": false");
@@ -255,10 +254,6 @@ TEST(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench --repeats 0", 2, "--repeats");
   refuse("luciole bench --shadow-size 15", 2, "--shadow-size");
   refuse("luciole bench --device no-such-device", 2, "no-such-device");
-}
-
-TEST(BenchCommand, AMissingGnuplotIsSaidBeforeAnythingIsMeasured) {
-  refuse("PATH=/none luciole bench --plot out.svg", 3, "apt-get install gnuplot-nox");
 }
 
 }  // namespace

@@ -70,14 +70,30 @@ inline nlohmann::json madeUpVariants() {
                               {"b", 0.01 * (variant + 1)},
                               {"c", 1},
                               {"c_low", 0.95},
-                              {"c_high", 1.05}});
+                              {"c_high", 1.05},
+                              {"reason", nullptr}});
     data["growth"].push_back({{"values", values},
                               {"stage", "rasterize"},
-                              {"a", 2},
-                              {"b", 0},
+                              {"a", nullptr},
+                              {"b", nullptr},
                               {"c", nullptr},
                               {"c_low", nullptr},
-                              {"c_high", nullptr}});
+                              {"c_high", nullptr},
+                              {"reason", "no growth beyond noise"}});
+  }
+  return data;
+}
+
+/// Six variants at one number of lights, from fast and wrong to slow and right: times and errors that the
+/// front joins by a line that falls less and less.
+inline nlohmann::json madeUpFront() {
+  nlohmann::json data = madeUpExperiment();
+  data["axes"] = {{{"name", "way"}, {"values", {0, 1, 2, 3, 4, 5}}}};
+  const double errors[] = {1e-3, 3e-5, 1e-5, 7e-6, 6e-6, 5.9e-6};
+  for (int way = 0; way < 6; ++way) {
+    nlohmann::json point = madeUpPoint(1000, way, {{"way", way}});
+    point["error"]["mean_abs"] = errors[way];
+    data["points"].push_back(point);
   }
   return data;
 }

@@ -153,7 +153,51 @@ TEST(Page, SummarizesInASentenceAndSaysWhatIsMissing) {
   EXPECT_EQ(browser.evaluate("document.querySelector('#machine dl').innerText"),
             "Memory\n8 GiB\nProcessor\nA processor\nThreads\n2");
   EXPECT_EQ(browser.evaluate("document.querySelector('#growth_table tbody tr').innerText.split('\\t')"),
-            json({"culling none", "1.00 (0.95 to 1.05)", "–"}));
+            json({"culling none", "1.00 (0.95 to 1.05)"}));
+}
+
+TEST(Page, SaysWhyThereIsNoGrowth) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser browser;
+  json data = madeUpVariants();
+  data["growth"][0].update({{"c", nullptr}, {"reason", "too few numbers of lights: 3 of 5"}});
+  browser.open(pageOf(data));
+  EXPECT_EQ(browser.evaluate("document.querySelector('#growth_table tbody tr').innerText.split('\\t')"),
+            json({"culling none", "too few numbers of lights: 3 of 5"}));
+  browser.evaluate("document.querySelector('#growth_table details').open = true");
+  browser.settle();
+  EXPECT_EQ(
+      browser.evaluate("document.querySelectorAll('#growth_table tbody')[1].rows[1].innerText.split('\\t')"),
+      json({"none", "rasterize", "–", "–", "–", "–", "–", "no growth beyond noise"}));
+}
+
+TEST(Page, NamesOfTheFrontAreNotStruckThroughByItsLine) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser browser;
+  browser.open(pageOf(madeUpFront()));
+  // What is written on the plot when it is drawn again, and the front between its points.
+  const json struck = browser.evaluate(R"((() => {
+    const chart = )" + chartOf("error_plot") +
+                                       R"(, context = chart.ctx, texts = [];
+    const fillText = context.fillText;
+    context.fillText = (text, x, y) => {
+      texts.push({text, left: x, right: x + context.measureText(text).width, top: y - 5, bottom: y + 5});
+      fillText.call(context, text, x, y);
+    };
+    chart.draw();
+    const names = texts.filter(({text}) => text.startsWith('way '));
+    const struck = new Set();
+    const front = chart.getDatasetMeta(chart.data.datasets.findIndex(({label}) => label.startsWith('front'))).data;
+    for (let i = 1; i < front.length; ++i)
+      for (let share = 0; share <= 1; share += 0.001) {
+        const x = front[i - 1].x + share * (front[i].x - front[i - 1].x), y = front[i - 1].y + share * (front[i].y - front[i - 1].y);
+        for (const name of names) if (x > name.left && x < name.right && y > name.top && y < name.bottom) struck.add(name.text);
+      }
+    return {names: names.length, front: front.length, struck: [...struck]};
+  })())");
+  EXPECT_EQ(struck["front"], 6) << struck;
+  EXPECT_GE(struck["names"], 5) << struck;
+  EXPECT_EQ(struck["struck"], json::array());
 }
 
 TEST(Page, ShowsZeroErrorBelowAllOthersUnderItsOwnName) {
@@ -284,8 +328,8 @@ TEST(Page, GivesEachPlotsNumbersAsCsv) {
             "Lights,What,Value\r\n1,evaluated,2000\r\n100,evaluated,200000\r\n10000,evaluated,20000000\r\n"
             "1,in range,1000\r\n100,in range,100000\r\n10000,in range,10000000\r\n");
   EXPECT_THAT(downloaded("growth_table", "growth.csv"),
-              StartsWith("Culling,Stage,\"a, ms\",\"b, ms\",c,\"c, low\",\"c, high\"\r\n"
-                         "none,total,2,0.01,1,0.95,1.05\r\nnone,rasterize,2,0,,,\r\n"));
+              StartsWith("Culling,Stage,\"a, ms\",\"b, ms\",c,\"c, low\",\"c, high\",Reason\r\n"
+                         "none,total,2,0.01,1,0.95,1.05,\r\nnone,rasterize,,,,,,no growth beyond noise\r\n"));
   EXPECT_THAT(downloaded("points_table", "points.csv"),
               HasSubstr("\r\n1,tiles,2.02,1.92,2.52,2,0.02,2000,1000,2,230400,3,"));
   // The same numbers as a table.

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "experiment/made_up_experiment.hpp"
-#include "shared_files.hpp"
 
 namespace luciole::test {
 namespace {
@@ -12,26 +11,21 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-class ScalePlot : public testing::Test {
- protected:
-  void SetUp() override { LUCIOLE_NEEDS_PROGRAM("gnuplot", "gnuplot-nox"); }
-
-  /// Shading takes 2 ms a light, or 9 without culling, which takes 0.001 ms.
-  ScaleSummary summaryOf(std::size_t variants) {
-    ScaleResults results{madeUpExperiment(), {}, {}};
-    results.description.axes[0].values.resize(variants);
-    std::erase_if(results.description.points,
-                  [&](const ScalePoint& point) { return variants == 1 && point.values[0] != "none"; });
-    for (const ScalePoint& point : results.description.points) {
-      PointRecord& record = results.records[pointName(results.description, point)];
-      record.check = madeUpCheck("a", 0.1);
-      record.runs[0] = madeUpRun(0.001, (point.values[0] == "none" ? 9 : 2) * double(point.lights));
-    }
-    return summarizeScale(results);
+/// Shading takes 2 ms a light, or 9 without culling, which takes 0.001 ms.
+ScaleSummary summaryOf(std::size_t variants) {
+  ScaleResults results{madeUpExperiment(), {}, {}};
+  results.description.axes[0].values.resize(variants);
+  std::erase_if(results.description.points,
+                [&](const ScalePoint& point) { return variants == 1 && point.values[0] != "none"; });
+  for (const ScalePoint& point : results.description.points) {
+    PointRecord& record = results.records[pointName(results.description, point)];
+    record.check = madeUpCheck("a", 0.1);
+    record.runs[0] = madeUpRun(0.001, (point.values[0] == "none" ? 9 : 2) * double(point.lights));
   }
-};
+  return summarizeScale(results);
+}
 
-TEST_F(ScalePlot, ShowsTheFastestVariantsStagesThatMatterAndAllByName) {
+TEST(ScalePlot, ShowsTheFastestVariantsStagesThatMatterAndAllByName) {
   const std::string svg = scalePlot(summaryOf(2));
   EXPECT_THAT(svg, HasSubstr("<svg"));
   for (const char* text :
@@ -40,9 +34,9 @@ TEST_F(ScalePlot, ShowsTheFastestVariantsStagesThatMatterAndAllByName) {
   EXPECT_THAT(svg, Not(HasSubstr(">cull<")));
 }
 
-TEST_F(ScalePlot, OneVariantHasOnePanelNamedForTheScene) {
+TEST(ScalePlot, OneVariantHasOnePanelAndThePictureNamesTheScene) {
   const std::string svg = scalePlot(summaryOf(1));
-  EXPECT_THAT(svg, HasSubstr("halls/a, b.json, by stage"));
+  EXPECT_THAT(svg, HasSubstr("Time against lights: halls/a, b.json"));
   EXPECT_THAT(svg, Not(HasSubstr("by variant")));
 }
 

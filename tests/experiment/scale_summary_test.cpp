@@ -117,16 +117,27 @@ TEST(ScaleSummary, EachStageOfEachVariantHasItsGrowth) {
   EXPECT_EQ(summary.growth[0].stage, "total");
   EXPECT_EQ(summary.growth[1].stage, "cull");
   EXPECT_EQ(summary.growth[4].values, std::vector<std::string>{"tiles"});
-  ASSERT_TRUE(summary.growth[0].growth.c);
-  EXPECT_NEAR(*summary.growth[0].growth.c, 1, 1e-5);
-  EXPECT_NEAR(summary.growth[0].growth.a, 5, 1e-4);
-  EXPECT_FALSE(summary.growth[2].growth.c);  // shade: 5 ms whatever the lights
-  const std::string table = growthTable(summary);
-  EXPECT_NE(table.find("total"), std::string::npos);
-  EXPECT_NE(table.find("1.00 to 1.00"), std::string::npos) << table;
+  ASSERT_TRUE(summary.growth[0].growth.fit);
+  EXPECT_NEAR(summary.growth[0].growth.fit->c, 1, 1e-5);
+  EXPECT_NEAR(summary.growth[0].growth.fit->a, 5, 1e-4);
+  EXPECT_FALSE(summary.growth[2].growth.fit);  // shade: 5 ms whatever the lights
   const auto json = nlohmann::json::parse(growthJson(summary));
   EXPECT_EQ(json["growth"].size(), 6u);
-  EXPECT_TRUE(json["growth"][2]["c"].is_null());
+  EXPECT_TRUE(json["growth"][0]["reason"].is_null());
+  EXPECT_NEAR(json["growth"][0]["c"].get<double>(), 1, 1e-5);
+  for (const char* name : {"a", "b", "c", "c_low", "c_high"})
+    EXPECT_TRUE(json["growth"][2][name].is_null()) << name;
+  EXPECT_EQ(json["growth"][2]["reason"], "no growth beyond noise");
+}
+
+TEST(ScaleFiles, GrowthFromTwoCountsIsAReasonAndNoNumbers) {
+  const ScaleSummary summary = summarizeScale(madeUpResults());
+  const auto growth = nlohmann::json::parse(growthJson(summary))["growth"];
+  EXPECT_EQ(nlohmann::json::parse(pageData(summary, "", ""))["growth"], growth);
+  for (const auto& row : growth) {
+    for (const char* name : {"a", "b", "c", "c_low", "c_high"}) EXPECT_TRUE(row[name].is_null()) << row;
+    EXPECT_EQ(row["reason"], "too few numbers of lights: 2 of 5") << row;
+  }
 }
 
 TEST(ScaleFiles, CsvHasALineForEachPointAndQuotesWhatNeedsIt) {

@@ -10,7 +10,8 @@
 //     of as many lights and the same truth beats this one in both time and mean error; all but lights and
 //     milliseconds may be absent or null, and picture, error_map and tile_map are indices into
 //   pictures: [data URL];
-//   growth: [{values, stage, a, b, c, c_low, c_high}]: milliseconds ≈ a + b lights^c, 95 % confidence.
+//   growth: [{values, stage, a, b, c, c_low, c_high, reason}]: milliseconds ≈ a + b lights^c, 95 % confidence; numbers are
+//     null where there is no fit, and the reason says why.
 const data = JSON.parse(document.getElementById('data').textContent);
 
 // ------------------------------------------------------------------------------------------------ numbers as text
@@ -196,7 +197,17 @@ const zeroLine = {
   },
 };
 
-// Names points that have a label, each at the first place around it where it covers no other label or point.
+// Whether a line between two points goes through a box: its parts between the box's edges, in x and in y, overlap.
+function crosses(box, a, b) {
+  const part = (from, to, low, high) => {
+    if (from === to) return from > low && from < high ? [0, 1] : [1, 0];
+    return [(low - from) / (to - from), (high - from) / (to - from)].sort((s, t) => s - t);
+  };
+  const [x, y] = [part(a.x, b.x, box.left, box.right), part(a.y, b.y, box.top, box.bottom)];
+  return Math.max(x[0], y[0], 0) < Math.min(x[1], y[1], 1);
+}
+
+// Names points that have a label, each at the first place around it where it covers no other label, point or line.
 const pointLabels = {
   id: 'pointLabels',
   afterDatasetsDraw(chart, _, {ink, ground}) {
@@ -204,6 +215,8 @@ const pointLabels = {
     const shown = chart.data.datasets.flatMap((dataset, i) => chart.isDatasetVisible(i)
       ? chart.getDatasetMeta(i).data.map((at, j) => ({x: at.x, y: at.y, label: dataset.data[j].label})) : []);
     const taken = shown.map(({x, y}) => ({left: x - 4, right: x + 4, top: y - 4, bottom: y + 4}));
+    const lines = chart.data.datasets.flatMap((dataset, i) => !dataset.showLine || !chart.isDatasetVisible(i) ? []
+      : chart.getDatasetMeta(i).data.slice(1).map((at, j) => [chart.getDatasetMeta(i).data[j], at]));
     context.save();
     context.font = `12px ${Chart.defaults.font.family}`;
     context.textBaseline = 'middle';
@@ -213,7 +226,8 @@ const pointLabels = {
         [x + 7, y + 13], [x - 7 - width, y - 13], [x - 7 - width, y + 13]];
       const boxes = places.map(([left, middle]) => ({left, right: left + width, top: middle - 7, bottom: middle + 7}));
       const box = boxes.find(b => b.left >= area.left && b.right <= area.right && b.top >= area.top && b.bottom <= area.bottom &&
-        taken.every(t => b.right < t.left || b.left > t.right || b.bottom < t.top || b.top > t.bottom));
+        taken.every(t => b.right < t.left || b.left > t.right || b.bottom < t.top || b.top > t.bottom) &&
+        !lines.some(([from, to]) => crosses(b, from, to)));
       if (!box) continue;
       taken.push(box);
       context.lineWidth = 3;
@@ -590,16 +604,19 @@ function addStages() {
 // ----------------------------------------------------------------------------------------------- growth exponents
 
 const growth = data.growth || [];
-const growthStages = [...new Set(growth.map(fit => fit.stage))];
+// The whole, and stages that grow.
+const growthStages = [...new Set(growth.filter(fit => fit.stage === 'total' || isNumber(fit.c)).map(fit => fit.stage))];
 
 const growthTable = () => ({
   columns: [...axisColumns, {name: 'Stage', text: true}, {name: 'a', unit: 'ms', format: formatPlain}, {name: 'b', unit: 'ms', format: formatPlain},
-    {name: 'c', format: formatFixed}, {name: 'c, low', format: formatFixed}, {name: 'c, high', format: formatFixed}],
-  rows: growth.map(fit => [...axisCells(fit.values), fit.stage, fit.a, fit.b, fit.c, fit.c_low, fit.c_high]),
+    {name: 'c', format: formatFixed}, {name: 'c, low', format: formatFixed}, {name: 'c, high', format: formatFixed},
+    {name: 'Reason', text: true}],
+  rows: growth.map(fit => [...axisCells(fit.values), fit.stage, fit.a, fit.b, fit.c, fit.c_low, fit.c_high, fit.reason]),
 });
 
 function exponentCell(fit) {
-  if (!fit || !isNumber(fit.c)) return '–';
+  if (!fit) return '–';
+  if (!isNumber(fit.c)) return element('span', {class: 'aside'}, fit.reason || '–');
   const interval = isNumber(fit.c_low) && isNumber(fit.c_high) ? ` (${formatFixed(fit.c_low)} to ${formatFixed(fit.c_high)})` : '';
   return element('span', null, formatFixed(fit.c), element('span', {class: 'aside'}, interval));
 }
