@@ -167,7 +167,7 @@ Json pointJson(const ScaleDescription& description, const PointSummary& point) {
 
 std::string withCommas(std::uint64_t number) {
   std::string text = fmt::format("{}", number);
-  for (int i = int(text.size()) - 3; i > 0; i -= 3) text.insert(std::size_t(i), ",");
+  for (int i = int(text.size()) - 3; i > 0; i -= 3) text.insert(std::size_t(i), 1, ',');
   return text;
 }
 
