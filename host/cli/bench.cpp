@@ -88,7 +88,7 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
   command->add_option("--size", options->picture.size,
                       "WxH pixels of every picture (default: each one's own)");
   command
-      ->add_option("--shadow-size", options.shadow_size,
+      ->add_option("--shadow-size", options->shadow_size,
                    "texels a side of shadow maps, as for render (default: several are tried)")
       ->check(CLI::Range(kSmallestFace, kLargestFace));
   command->add_option("--repeats", options->repeats, "timed runs of each row")

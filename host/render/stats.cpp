@@ -40,6 +40,7 @@ std::string statsJson(const Stats& stats) {
   json["cold_start_milliseconds"] = cold_start;
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;
+  if (!compiled) json["reasons"]["kernels_compiled"] = "only PoCL tells";
   json["wall_milliseconds"] = millisecondsSinceStart();
   return json.dump(2) + "\n";
 }

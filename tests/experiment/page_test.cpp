@@ -221,6 +221,70 @@ TEST(Page, ShowsZeroErrorBelowAllOthersUnderItsOwnName) {
   EXPECT_EQ(browser.evaluate(chartOf("error_plot") + ".scales.y.ticks.map(tick => tick.label)"), json({"0"}));
 }
 
+/// Three methods of shadows, the first of them none.
+json madeUpShadows() {
+  json data = madeUpVariants();
+  const std::vector<std::string> methods{"off", "hard", "pcf"};
+  data["axes"] = {{{"name", "shadows"}, {"values", methods}}};
+  for (std::size_t i = 0; i < data["points"].size(); ++i) {
+    json& point = data["points"][i];
+    point["values"] = {{"shadows", methods[i / 3]}};
+    point["truth"] = i / 3 == 0 ? "no shadows" : "shadows by rays";
+  }
+  data["growth"] = json::array();
+  return data;
+}
+
+TEST(Page, PointsOfDifferentTruthsAreKeptApartAndItSaysSo) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser browser;
+  browser.open(pageOf(madeUpShadows()));
+  EXPECT_EQ(
+      browser.evaluate("document.getElementById('truths').innerText"),
+      "The variants are meant to make 2 different pictures, and each is held against a reference of its own: "
+      "no shadows; shadows by rays. Errors compare, and fronts are drawn, only between points held against "
+      "the same one.");
+  EXPECT_EQ(
+      browser.evaluate("document.getElementById('summary').textContent"),
+      "No shadows: 10,000 lights take 102 ms, 50.7 times as long as 1 light, without error. "
+      "Shadows by rays: with shadows hard, the fastest of 2 variants, 10,000 lights take 202 ms, 100 times "
+      "as long as 1 light, with a mean error of 10⁻⁶; shadows pcf, the slowest, takes 302 ms.");
+  const auto shown = [&] {
+    std::vector<std::string> names;
+    const json lines = linesOf(browser, "error_plot");
+    for (const auto& [name, values] : lines.items()) names.push_back(name);
+    return names;
+  };
+  EXPECT_THAT(shown(), ElementsAre("front at 10,000 lights, shadows by rays", "shadows hard", "shadows pcf"));
+  choose(browser, "error_truth", "no shadows");
+  EXPECT_THAT(shown(), ElementsAre("shadows off"));
+  choose(browser, "error_truth", "each its own, all in one plot");
+  EXPECT_THAT(shown(), ElementsAre("front at 10,000 lights, shadows by rays", "shadows hard", "shadows off",
+                                   "shadows pcf"));
+  EXPECT_EQ(browser.evaluate("[...document.querySelectorAll('#points_table th[scope=col]')].some(cell => "
+                             "cell.innerText === 'Held against')"),
+            true);
+  EXPECT_THAT(browser.complaints(), IsEmpty());
+
+  browser.open(pageOf(madeUpVariants()));
+  EXPECT_EQ(browser.evaluate("document.getElementById('truths').checkVisibility()"), false);
+  EXPECT_EQ(browser.evaluate("document.getElementById('error_truth').checkVisibility()"), false);
+}
+
+TEST(Page, SaysUnderItsTableWhyACellIsADash) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser browser;
+  json data = madeUpVariants();
+  data["points"][0]["reach"] = nullptr;
+  data["points"][1]["reach"] = 3;
+  data["points"][0]["reasons"] = {{"reach", "a light without a range reaches everywhere"}};
+  data["points"][2]["pairs_in_range"] = 0;
+  browser.open(pageOf(data));
+  EXPECT_EQ(browser.evaluate("document.querySelector('#points_table p').innerText"),
+            "–: a light without a range reaches everywhere; no light is in range of a pixel.");
+  EXPECT_EQ(browser.evaluate("/NaN|Infinity|undefined/.test(document.body.innerText)"), false);
+}
+
 TEST(Page, ChoicesChangeWhatIsShown) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;

@@ -1,14 +1,13 @@
 'use strict';
 // Draws the page from the JSON in #data:
-//   title, scene, command, version: text; machine, settings: {name: text | number | list}, names ending in
-//   _bytes in bytes; axes: [{name, values}], what was varied beside the lights; incomplete: how many points
-//   lack some or all of their runs; points: [{lights, values: {axis: value}, runs, reach (of the light that
-//   reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
+//   title, scene, command, version: text; machine, settings: {name: text | number | list}, names ending in _bytes in bytes;
+//   axes: [{name, values}], what was varied beside the lights; incomplete: how many points lack some or all of their runs;
+//   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
 //     pairs_evaluated, pairs_in_range, pixels_lit, list_entries, device_bytes, peak_bytes,
-//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, reasons: {name:
-//     why it is null}}]: low and high are quartiles, truth says what the errors are from, front that no point
-//     of as many lights and the same truth beats this one in both time and mean error; all but lights and
-//     milliseconds may be absent or null, and picture, error_map and tile_map are indices into
+//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, reasons: {name: why it is null}}]:
+//     low and high are quartiles, truth says what the errors are from, front that no point of as many lights and the same
+//     truth beats this one in both time and mean error;
+//     all but lights and milliseconds may be absent or null, and picture, error_map and tile_map are indices into
 //   pictures: [data URL];
 //   growth: [{values, stage, a, b, c, c_low, c_high, reason}]: milliseconds ≈ a + b lights^c, 95 % confidence; numbers are
 //     null where there is no fit, and the reason says why.
@@ -89,8 +88,7 @@ const mainVariant = variants.reduce((best, variant) => {
   return isBetter ? variant : best;
 }, variants[0]);
 const lightCounts = [...new Set(points.map(point => point.lights))];
-// What points are held against: pictures of different truths are meant to differ, so their errors don't
-// compare.
+// What points are held against: pictures of different truths are meant to differ, so their errors don't compare.
 const truthOf = point => point.truth || '';
 const truths = [...new Set(points.map(truthOf))];
 const isOneTruth = truths.length < 2;
@@ -425,37 +423,28 @@ function fillConditions(box, values) {
     [element('dt', null, readable(name.replace(/_bytes$/, ''))), element('dd', null, readableValue(name, value))]));
 }
 
-// What the experiment says, in a sentence for each truth: variants of two don't make the same picture, one
-// faster than the other.
+// What the experiment says, in a sentence for each truth: variants of two don't make the same picture, one faster than the other.
 function summary() {
   if (!points.length) return 'No point has been measured yet.';
-  const told = isOneTruth ? truths : truths.slice(0, 4);
-  const sentences = told.map(
-      truth => (isOneTruth ? '' : `${readable(truth || 'the rest')}: `) +
-          sentenceOn(points.filter(point => truthOf(point) === truth)));
-  const more = truths.length - told.length;
-  return [
-    ...sentences, ...(more ? [`${more} more ${more === 1 ? 'picture is' : 'pictures are'} below.`] : [])
-  ].join(' ');
+  const told = truths.slice(0, 4), more = truths.length - told.length;
+  const sentences = told.map(truth => sentenceOn(points.filter(point => truthOf(point) === truth), isOneTruth ? '' : `${readable(truth)}: `));
+  return [...sentences, ...(more ? [`${more} more ${more === 1 ? 'picture is' : 'pictures are'} below.`] : [])].join(' ');
 }
 
-// Of points of one truth.
-function sentenceOn(rivals) {
+// Of points of one truth, after its name.
+function sentenceOn(rivals, name) {
   const most = rivals[rivals.length - 1].lights;
-  const measured = rivals.filter(point => point.lights === most)
-                       .sort((a, b) => a.milliseconds.median - b.milliseconds.median);
-  const best = measured[0], worst = measured[measured.length - 1], name = variantName(best.values);
-  const first = rivals.find(point => variantName(point.values) === name);
+  const measured = rivals.filter(point => point.lights === most).sort((a, b) => a.milliseconds.median - b.milliseconds.median);
+  const best = measured[0], worst = measured[measured.length - 1], fastest = variantName(best.values);
+  const first = rivals.find(point => variantName(point.values) === fastest);
   const parts = [`${lightsText(most)} take${most === 1 ? 's' : ''} ${formatTime(best.milliseconds.median)}`];
-  if (measured.length > 1)
-    parts[0] =
-        `${isOneTruth ? 'With' : 'with'} ${name}, the fastest of ${measured.length} variants, ${parts[0]}`;
+  if (measured.length > 1) parts[0] = `${name ? 'with' : 'With'} ${fastest}, the fastest of ${measured.length} variants, ${parts[0]}`;
   if (first.lights < most && first.milliseconds.median > 0)
     parts.push(`${formatPlain(best.milliseconds.median / first.milliseconds.median)} times as long as ${lightsText(first.lights)}`);
   if (isNumber(errorOf(best, 'mean_abs')))
     parts.push(best.error.mean_abs === 0 ? 'without error' : `with a mean error of ${formatError(best.error.mean_abs)}`);
   const contrast = measured.length > 1 ? `; ${variantName(worst.values)}, the slowest, takes ${formatTime(worst.milliseconds.median)}` : '';
-  return parts.join(', ') + contrast + '.';
+  return name + parts.join(', ') + contrast + '.';
 }
 
 function fillHeader() {
@@ -464,11 +453,9 @@ function fillHeader() {
   byId('version').textContent = data.version || '';
   byId('summary').textContent = summary();
   byId('truths').hidden = isOneTruth;
-  byId('truths').textContent =
-      `The variants are meant to make ${truths.length} different pictures, and each is held against a ` +
-      `reference of its own: ${truths.slice(0, 8).map(truth => truth || 'the rest').join('; ')}${
-          truths.length > 8 ? ' …' : ''}. Errors compare, ` +
-      'and fronts are drawn, only between points held against the same one.';
+  byId('truths').textContent = `The variants are meant to make ${truths.length} different pictures, and each is held against a ` +
+    `reference of its own: ${truths.slice(0, 8).join('; ')}${truths.length > 8 ? ' …' : ''}. Errors compare, and fronts are drawn, ` +
+    'only between points held against the same one.';
   byId('incomplete').hidden = !data.incomplete;
   byId('incomplete').textContent = data.incomplete === 1 ? 'One point has not been measured in full.' :
     `${formatCount(data.incomplete || 0)} points have not been measured in full.`;
@@ -654,26 +641,15 @@ function errorLabel(point, isOneCount) {
 // The front's line for each number of lights and each truth: different pictures don't compete.
 function frontLines(measured, place) {
   const pictures = lightCounts.flatMap(count => truths.map(truth => ({count, truth})));
-  return pictures
-      .map(({count, truth}) => ({
-             name: `front at ${lightsText(count)}${isOneTruth ? '' : `, ${truth}`}`,
-             look: {dash: 0, shape: 0},
-             bare: true,
-             values:
-                 measured.filter(point => point.front && point.lights === count && truthOf(point) === truth)
-                     .map(place)
-                     .sort((a, b) => a.x - b.x)
-           }))
-      .filter(({values}) => values.length > 1);
+  return pictures.map(({count, truth}) => ({name: `front at ${lightsText(count)}${isOneTruth ? '' : `, ${truth}`}`, look: {dash: 0, shape: 0}, bare: true,
+    values: measured.filter(point => point.front && point.lights === count && truthOf(point) === truth).map(place).sort((a, b) => a.x - b.x)}))
+    .filter(({values}) => values.length > 1);
 }
 
 function describeError() {
-  const kind = byId('error_kind').value || 'mean_abs', count = byId('error_lights').value,
-        truth = truths[byId('error_truth').value];
-  const measured = points.filter(
-      point => isNumber(errorOf(point, kind)) && isShown(point.values) &&
-          (count === '' || point.lights === Number(count)) &&
-          (truth === undefined || truthOf(point) === truth));
+  const kind = byId('error_kind').value || 'mean_abs', count = byId('error_lights').value, truth = byId('error_truth').value;
+  const isChosen = point => (count === '' || point.lights === Number(count)) && (truth === '' || truthOf(point) === truths[truth]);
+  const measured = points.filter(point => isNumber(errorOf(point, kind)) && isShown(point.values) && isChosen(point));
   const place = point => ({x: point.milliseconds.median, y: errorOf(point, kind)});
   const series = shownVariants().map(variant => ({name: variant.name || 'points', look: lookOfVariant(variant), line: false,
     values: variant.points.filter(point => measured.includes(point)).map(point => ({...place(point),
@@ -681,24 +657,15 @@ function describeError() {
     .filter(({values}) => values.length);
   // The front is one of time and mean error.
   const lines = kind === 'mean_abs' ? frontLines(measured, place) : [];
+  const truthColumn = isOneTruth ? [] : [{name: 'Held against', text: true}], truthCell = point => isOneTruth ? [] : [truthOf(point)];
   return {
-    title: isOneTruth || truth === undefined ? 'Error against time' :
-                                               `Error against time: ${truth || 'the rest'}`,
-    titleX: 'time',
-    titleY: errorNames[kind],
-    formatX: formatTime,
-    formatY: formatError,
+    title: isOneTruth || truth === '' ? 'Error against time' : `Error against time: ${truths[truth]}`, titleX: 'time', titleY: errorNames[kind], formatX: formatTime, formatY: formatError,
     series: [...series, ...lines],
     table: {
-      columns: [
-        lightsColumn, ...axisColumns, {name: 'Time', unit: 'ms', format: formatTime},
-        {name: readable(errorNames[kind]), format: formatError},
-        ...(isOneTruth ? [] : [{name: 'Held against', text: true}]), {name: 'Front', text: true}
-      ],
-      rows: measured.map(
-          point =>
-              [point.lights, ...axisCells(point.values), point.milliseconds.median, errorOf(point, kind),
-               ...(isOneTruth ? [] : [truthOf(point)]), point.front ? 'yes' : 'no']),
+      columns: [lightsColumn, ...axisColumns, {name: 'Time', unit: 'ms', format: formatTime}, {name: readable(errorNames[kind]), format: formatError},
+        ...truthColumn, {name: 'Front', text: true}],
+      rows: measured.map(point => [point.lights, ...axisCells(point.values), point.milliseconds.median, errorOf(point, kind), ...truthCell(point),
+        point.front ? 'yes' : 'no']),
     },
   };
 }
@@ -713,14 +680,10 @@ function addError() {
   const counts = [...new Set(measured.map(point => point.lights))];
   fillSelect(byId('error_lights'), [['', 'all'], ...counts.map(count => [count, formatCount(count)])]);
   if (variants.length > 1) byId('error_lights').value = counts[counts.length - 1];
-  // Only points of one truth share a plot, unless that is asked for: at first the truth that most points
-  // have.
-  fillSelect(
-      byId('error_truth'),
-      [...truths.map((truth, i) => [i, truth || 'the rest']), ['', 'each its own, all in one plot']]);
-  const pointsOf = truth => measured.filter(point => truthOf(point) === truth).length;
-  byId('error_truth').value =
-      truths.reduce((best, truth, i) => pointsOf(truth) > pointsOf(truths[best]) ? i : best, 0);
+  // Only points of one truth share a plot, unless that is asked for; at first those of the truth that most have.
+  fillSelect(byId('error_truth'), [...truths.map((truth, i) => [i, truth]), ['', 'each its own, all in one plot']]);
+  const countOf = truth => measured.filter(point => truthOf(point) === truth).length;
+  byId('error_truth').value = truths.reduce((best, truth, i) => countOf(truth) > countOf(truths[best]) ? i : best, 0);
   byId('error_truth').closest('label').hidden = isOneTruth;
   addPlot(byId('error_plot'), describeError);
   for (const id of ['error_kind', 'error_lights', 'error_truth']) byId(id).addEventListener('change', redraw);
@@ -808,12 +771,7 @@ const pointColumns = [
   {name: 'Time', unit: 'ms', format: formatTime, of: point => point.milliseconds.median},
   {name: 'Lower quartile', unit: 'ms', format: formatTime, of: point => point.milliseconds.low},
   {name: 'Upper quartile', unit: 'ms', format: formatTime, of: point => point.milliseconds.high},
-  ...stageNames.map(name => ({
-                      name: readable(name),
-                      unit: 'ms',
-                      format: formatTime,
-                      of: point => (stageOf(point, name) || {}).y
-                    })),
+  ...stageNames.map(name => ({name: readable(name), unit: 'ms', format: formatTime, of: point => (stageOf(point, name) || {}).y})),
   {name: 'Pairs evaluated', format: formatCount, of: point => point.pairs_evaluated},
   {name: 'Pairs in range', format: formatCount, of: point => point.pairs_in_range},
   {name: 'Evaluated per in range', format: formatPlain, of: pairRatio},
@@ -825,11 +783,7 @@ const pointColumns = [
   {name: 'Largest error', format: formatError, of: point => errorOf(point, 'max_abs')},
   {name: 'RMS error', format: formatError, of: point => errorOf(point, 'rmse')},
   {name: 'Held against', text: true, of: point => isOneTruth ? null : truthOf(point)},
-  {
-    name: 'Front',
-    text: true,
-    of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null
-  },
+  {name: 'Front', text: true, of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null},
 ].filter(column => points.some(point => (column.of(point) ?? '') !== ''));
 
 const order = {column: 0, sign: 1};
@@ -869,10 +823,7 @@ function drawPointsTable() {
     kept.replaceWith(made);
     made.scrollLeft = kept.scrollLeft;
   } else {
-    const why = reasons();
-    box.append(
-        made, ...(why ? [element('p', null, why)] : []),
-        element('div', {class: 'under'}, csvButton(() => ({title: 'Points', table: pointsTable()}))));
+    box.append(made, element('p', {hidden: !reasons()}, reasons()), element('div', {class: 'under'}, csvButton(() => ({title: 'Points', table: pointsTable()}))));
   }
 }
 
