@@ -13,7 +13,6 @@
 #include "experiment/plot.hpp"
 #include "experiment/report.hpp"
 #include "image/write_file.hpp"
-#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -48,7 +47,7 @@ void bench(const BenchOptions& options) {
     checkPlace(options.plot);
     requireGnuplot();
   }
-  const Scene scene = options.scene.empty() ? makeBenchScene() : loadScene(options.scene);
+  const Scene scene = options.scene.empty() ? makeBenchScene() : openScene(options.scene, 1, options.picture);
   BenchSettings settings;
   settings.picture = renderSettings(options.picture, scene);
   settings.device = options.picture.device;

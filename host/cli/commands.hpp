@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace luciole {
 
@@ -19,6 +20,9 @@ struct CommandContext {
 /// To be called where an exception was caught: says on standard error, after `where` unless it is empty, what
 /// is wrong, and returns the status that the exception means.
 int tellFailure(const std::string& where);
+
+/// Says on standard error, a line each, what was found while something went on.
+void tellWarnings(const std::vector<std::string>& warnings);
 
 // Each adds one command to the program; its work runs when the command line names it. They throw InputError
 // and MachineError.

@@ -146,6 +146,7 @@ void generateLights(const LightsOptions& options) {
   std::vector<glm::dvec3> seen;
   if (!options.scene.empty()) {
     scene = loadScene(options.scene);
+    tellWarnings(scene.warnings);
     scene.lights.clear();
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
                          kSeenPoints, 0);

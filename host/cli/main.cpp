@@ -45,6 +45,10 @@ int luciole::tellFailure(const std::string& where) {
   }
 }
 
+void luciole::tellWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "luciole: warning: {}\n", warning);
+}
+
 int main(int argument_count, char** arguments) {
   CommandContext context{joinedArguments(argument_count, arguments)};
   CLI::App app{"Luciole lights scenes with as many lights as there are fireflies, deferred, on OpenCL."};

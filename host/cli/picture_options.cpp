@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/commands.hpp"
 #include "cli/frames.hpp"
 #include "error.hpp"
 #include "image/write_file.hpp"
 #include "scene/json_scene.hpp"
+#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -149,6 +151,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (is_one_picture)
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
+}
+
+Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
+  Scene scene = loadScene(path, frame);
+  if (!options.quiet) tellWarnings(scene.warnings);
+  return scene;
 }
 
 Model modelOf(const PictureOptions& options) {

@@ -43,6 +43,9 @@ enum OptionGroup : unsigned {
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
 
+/// Loads the scene at a frame (see loadScene) and tells its warnings, unless --quiet.
+Scene openScene(const std::string& path, double frame, const PictureOptions& options);
+
 /// What --model says.
 Model modelOf(const PictureOptions& options);
 

@@ -14,7 +14,6 @@
 #include "image/gbuffer_file.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
-#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -169,7 +168,8 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 
 /// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
 void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.scene, options.frame); });
+  const Scene scene =
+      timed(stats, "load scene", [&] { return openScene(options.scene, options.frame, options); });
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
@@ -205,7 +205,8 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
 
 /// Shades a G-buffer from a file.
 void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene = timed(stats, "load scene", [&] { return loadScene(options.lights, options.frame); });
+  const Scene scene =
+      timed(stats, "load scene", [&] { return openScene(options.lights, options.frame, options); });
   const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(options.gbuffer); });
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);

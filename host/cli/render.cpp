@@ -15,7 +15,6 @@
 #include "error.hpp"
 #include "image/gbuffer_file.hpp"
 #include "render/render.hpp"
-#include "scene/load_scene.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
@@ -174,8 +173,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    Scene scene = timed(stats, "load scene",
-                        [&] { return loadScene(options->scene, range.is_range ? 1 : range.first); });
+    Scene scene = timed(stats, "load scene", [&] {
+      return openScene(options->scene, range.is_range ? 1 : range.first, *options);
+    });
     if (range.is_range) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
@@ -201,7 +201,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     checkOutput(*options);
     Stats stats;
     stats.command = context.command_line;
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path, frame); });
+    const Scene scene = timed(stats, "load scene", [&] { return openScene(*scene_path, frame, *options); });
     const RenderSettings settings = renderSettings(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;
@@ -235,7 +235,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    const Scene scene = timed(stats, "load scene", [&] { return loadScene(*scene_path, frame); });
+    const Scene scene = timed(stats, "load scene", [&] { return openScene(*scene_path, frame, *options); });
     const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);

@@ -15,7 +15,6 @@
 #include "experiment/scale_log.hpp"
 #include "experiment/scale_plot.hpp"
 #include "image/write_file.hpp"
-#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -67,7 +66,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   checkDrawing(options.plot);
   if (options.shard.empty() && shard.count > 1 && !options.picture.quiet)
     fmt::print(stderr, "shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count);
-  Scene scene = loadScene(options.scene);
+  Scene scene = openScene(options.scene, 1, options.picture);
   ScaleExperiment experiment = planExperiment(command, options, scene);
   Device device;
   openDevice(options.picture.device, device);

@@ -182,6 +182,7 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
   stats.triangles = 0;
   for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
   stats.lights = scene.lights.size();
+  stats.warnings = scene.warnings;
   stats.features.clear();
   for (std::size_t i = 0; i < kFeatureCount; ++i)
     if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);

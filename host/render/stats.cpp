@@ -25,6 +25,7 @@ std::string statsJson(const Stats& stats) {
                     {"driver", stats.device.version},
                     {"lanes", stats.device.lanes}};
   json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
+  json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();

@@ -17,6 +17,7 @@ struct Stats {
   std::uint64_t triangles = 0;
   std::uint64_t lights = 0;
   std::vector<std::string> features;
+  std::vector<std::string> warnings;  ///< see Scene::warnings
   int width = 0, height = 0, samples = 1;
   std::vector<std::pair<std::string, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use

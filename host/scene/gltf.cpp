@@ -252,6 +252,8 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
 
 void loadGltf(const std::string& path, Scene& scene) {
   const GltfModel model = readGltfModel(path);
+  const std::vector<std::string> ignored = ignoredExtensions(model);
+  scene.warnings.insert(scene.warnings.end(), ignored.begin(), ignored.end());
   const std::vector<PlacedNode> nodes = placedNodes(model, scene.animation);
   const std::size_t before = scene.objects.size() + scene.cameras.size() + scene.lights.size();
   addObjects(model, nodes, scene);

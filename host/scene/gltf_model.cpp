@@ -25,6 +25,11 @@ namespace {
 constexpr std::string_view kSupportedExtensions[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
                                                      "KHR_materials_unlit", "KHR_mesh_quantization"};
 
+bool isSupported(const std::string& extension) {
+  const auto end = std::end(kSupportedExtensions);
+  return std::find(std::begin(kSupportedExtensions), end, extension) != end;
+}
+
 /// Keeps a picture's bytes as they are. A picture in a buffer view is left alone: tinygltf has not checked
 /// that the view lies inside its buffer.
 bool keepBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
@@ -62,9 +67,10 @@ std::string_view jsonOf(std::string_view bytes, bool is_binary) {
 
 void checkRequiredExtensions(const GltfModel& model) {
   for (const std::string& extension : model.file.extensionsRequired) {
-    const auto end = std::end(kSupportedExtensions);
-    if (std::find(std::begin(kSupportedExtensions), end, extension) != end) continue;
-    failGltf(model, "extensionsRequired", fmt::format("'{}' is not supported", forMessage(extension)));
+    if (isSupported(extension)) continue;
+    failGltf(model, "extensionsRequired",
+             fmt::format("'{}' is not supported; known are {}", forMessage(extension),
+                         fmt::join(kSupportedExtensions, ", ")));
   }
 }
 
@@ -135,6 +141,17 @@ std::span<const std::byte> imageBytes(const GltfModel& model, int image) {
   if (entry.image.empty())
     failGltf(model, place, fmt::format("there is no picture '{}'", forMessage(entry.uri)));
   return std::as_bytes(std::span(entry.image));
+}
+
+std::vector<std::string> ignoredExtensions(const GltfModel& model) {
+  std::vector<std::string> warnings;
+  const std::vector<std::string>& used = model.file.extensionsUsed;
+  for (auto extension = used.begin(); extension != used.end(); ++extension) {
+    if (isSupported(*extension) || std::find(used.begin(), extension, *extension) != extension) continue;
+    warnings.push_back(fmt::format("{}: extensionsUsed: '{}' is not supported and left out", model.path,
+                                   forMessage(*extension)));
+  }
+  return warnings;
 }
 
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,

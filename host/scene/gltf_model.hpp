@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace luciole {
 
@@ -18,6 +19,9 @@ struct GltfModel {
 /// Parses a .gltf or .glb with its buffers and pictures. Throws InputError: among others for a glTF other
 /// than 2.x, a missing buffer, and a required extension that is not supported.
 GltfModel readGltfModel(const std::string& path);
+
+/// A line for each extension in use that is not supported and that the file doesn't require.
+std::vector<std::string> ignoredExtensions(const GltfModel& model);
 
 /// `list[index]`, or an InputError: "`place` refers to `what` `index`, but the file has only …".
 template <typename T>

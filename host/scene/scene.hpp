@@ -123,6 +123,9 @@ struct Camera {
 /// Indices are checked by the loaders; every number is finite unless its comment says otherwise.
 struct Scene {
   std::string name;  ///< the file, for messages and metadata
+  /// What a file asks for and the picture won't show, a line each that begins with the file. Loaders print
+  /// nothing: the command line does.
+  std::vector<std::string> warnings;
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

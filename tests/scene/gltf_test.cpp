@@ -23,7 +23,10 @@ namespace luciole {
 namespace {
 
 using namespace test;
+using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 /// Five vertices on a square's rim and centre, for strips, fans and indices.
 GltfFile vertexFile() {
@@ -430,10 +433,24 @@ TEST_F(GltfLoader, AlphaModesBecomeCutoffs) {
   EXPECT_EQ(glass.alpha, 0.75f);
 }
 
-TEST_F(GltfLoader, UnsupportedRequirementsAreNamed) {
+TEST_F(GltfLoader, EachUnknownExtensionInUseIsWarnedOfOnce) {
+  GltfFile file = triangleFile();
+  file.root["extensionsUsed"] = {"KHR_materials_transmission", "KHR_lights_punctual",
+                                 "KHR_materials_transmission", "EXT_mesh_gpu_instancing"};
+  const Scene scene = load(file);
+  const auto about = [&](const char* extension) {
+    return AllOf(StartsWith(folder / "a.gltf: "), HasSubstr(extension), HasSubstr("not supported"));
+  };
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(about("KHR_materials_transmission"), about("EXT_mesh_gpu_instancing")));
+}
+
+TEST_F(GltfLoader, UnsupportedRequirementsAreNamedWithWhatIsKnown) {
   GltfFile file = triangleFile();
   file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  EXPECT_THAT(error(file), HasSubstr("extensionsRequired: 'KHR_draco_mesh_compression' is not supported"));
+  EXPECT_THAT(error(file),
+              AllOf(HasSubstr("extensionsRequired: 'KHR_draco_mesh_compression' is not supported"),
+                    HasSubstr("KHR_lights_punctual"), HasSubstr("KHR_texture_transform")));
   file.root.erase("extensionsRequired");
   file.root["asset"]["version"] = "1.0";
   EXPECT_THAT(error(file), HasSubstr("version is '1.0'"));

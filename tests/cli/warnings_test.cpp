@@ -1,0 +1,78 @@
+// What the program says of a scene that it draws, but not as its file asks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/run_program.hpp"
+
+namespace luciole::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// One triangle in the xy plane.
+constexpr const char* kTriangle = R"({
+  "asset": {"version": "2.0"}, "extensionsUsed": ["KHR_materials_transmission"],
+  "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}],
+  "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]
+})";
+
+constexpr const char* kWarning =
+    "luciole: warning: triangle.gltf: extensionsUsed: 'KHR_materials_transmission' is not supported";
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+class Warnings : public testing::Test {
+ protected:
+  Warnings() {
+    writeText(folder / "triangle.gltf", kTriangle);
+    writeText(folder / "scene.json", R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
+        "objects": [{"mesh": "triangle.gltf"}, {"mesh": "triangle.gltf", "translate": [1, 0, 0]}],
+        "lights": [{"type": "directional", "direction": [0, 0, -1]}]})");
+  }
+  /// What a line that succeeds says on standard error.
+  std::string told(const std::string& line) {
+    const Outcome outcome = runLine(folder, line);
+    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
+    return outcome.err;
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(Warnings, AreToldOnceByEveryCommandThatLoadsAScene) {
+  for (const char* line :
+       {"luciole render triangle.gltf --size 16x9 -o a.png", "luciole render scene.json --size 16x9 -o a.png",
+        "luciole render triangle.gltf --size 16x9 --frames 1-3 -o '#.png'",
+        "luciole gbuffer triangle.gltf --size 16x9 -o g.exr",
+        "luciole shade g.exr --scene triangle.gltf -o b.png",
+        "luciole reference triangle.gltf --size 16x9 -o r.exr",
+        "luciole generate lights triangle.gltf --count 3 --range 1 -o lights.json"})
+    EXPECT_EQ(countOf(told(line), kWarning), 1u) << line;
+}
+
+TEST_F(Warnings, AreSilencedByQuietAndStandInTheStatistics) {
+  EXPECT_EQ(told("luciole render triangle.gltf --size 16x9 --quiet --stats s.json -o a.png"), "");
+  const auto stats = nlohmann::json::parse(readText(folder / "s.json"));
+  ASSERT_EQ(stats["warnings"].size(), 1u);
+  EXPECT_THAT(stats["warnings"][0].get<std::string>(), HasSubstr("'KHR_materials_transmission'"));
+}
+
+TEST_F(Warnings, AreNoneWhereThereIsNothingToSay) {
+  writeText(folder / "plain.json", kSmallScene);
+  EXPECT_THAT(told("luciole render plain.json --size 16x9 --stats s.json -o a.png"),
+              Not(HasSubstr("warning")));
+  EXPECT_EQ(nlohmann::json::parse(readText(folder / "s.json"))["warnings"], nlohmann::json::array());
+}
+
+}  // namespace
+}  // namespace luciole::test
