@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "scene/frame.hpp"
 #include "scene/json_fields.hpp"
 #include "scene/json_keys.hpp"
 #include "scene/json_light.hpp"
@@ -210,6 +211,8 @@ Scene loadJsonScene(const std::string& path) {
   if (const auto n = find(top, "light_fields")) fields = readLightFields(*n, folder, scene.lights.size());
   readObjects(top, folder, scene);
   if (!fields.empty()) poseScene(scene, 1);  // the surfaces that lights lie on
+  // Lights that are spread at random say nothing of where to stand.
+  if (!fields.empty() && scene.cameras.empty()) scene.cameras.push_back(frameScene(scene).camera);
   for (const LightField& field : fields) expandLightField(field, scene);
   return scene;
 }
