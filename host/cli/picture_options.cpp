@@ -6,12 +6,15 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "cli/commands.hpp"
 #include "cli/frames.hpp"
+#include "cli/suggest.hpp"
 #include "error.hpp"
 #include "image/write_file.hpp"
+#include "render/coarse_triangles.hpp"
 #include "scene/json_scene.hpp"
 #include "scene/load_scene.hpp"
 
@@ -28,11 +31,14 @@ std::vector<Aov> parseAovs(const std::string& text) {
   if (text.empty()) return aovs;
   for (const std::string& name : split(text, ',')) {
     const auto found = kAovs.find(name);
-    if (found == kAovs.end())
+    if (found == kAovs.end()) {
+      std::vector<std::string> names;
+      for (const auto& [known, aov] : kAovs) names.push_back(known);
       throw InputError(
           fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
-                      "list_length, shadow",
-                      name));
+                      "list_length, shadow{}",
+                      name, didYouMean(name, names)));
+    }
     if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
   }
   return aovs;
@@ -52,6 +58,20 @@ const Camera& findCamera(const Scene& scene, const std::string& wanted) {
       fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
                   scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
                   names.empty() ? "unnamed" : names));
+}
+
+/// What --size says: "WxH", or "W" for a picture of the same shape as the scene's own.
+glm::ivec2 typedSize(const std::string& text, const glm::ivec2& scene_size) {
+  const bool has_height = text.find('x') != std::string::npos;
+  const std::vector<int> sides =
+      parseInts(text, 'x', has_height ? 2 : 1, "--size", "WxH or W, such as 1280x720 or 1280");
+  glm::ivec2 size(sides.front(), sides.back());
+  if (!has_height) {
+    const double height = std::round(double(size.x) * scene_size.y / scene_size.x);
+    size.y = int(std::clamp(height, 1.0, double(std::numeric_limits<int>::max())));
+  }
+  checkPictureSize(size, "--size");
+  return size;
 }
 
 }  // namespace
@@ -87,13 +107,15 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option("-o,--output", options.output, "the file to write (- : PNG on standard output)")
         ->required();
   if (groups & kViewOptions) {
-    command.add_option("--size", options.size, "WxH pixels (default: the scene's, or 1280x720)");
+    command.add_option("--size", options.size,
+                       "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or "
+                       "1280x720)");
     command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
                     "what is interpolated over a triangle: nothing, colours, normals")
-        ->check(CLI::IsMember({"flat", "gouraud", "phong"}))
+        ->check(oneOf({"flat", "gouraud", "phong"}))
         ->capture_default_str();
   }
   if (groups & kSampleOption)
@@ -106,7 +128,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             "--model", options.model,
             "how surfaces reflect light: with highlights of (R.V)^n, of (N.H)^n, in flat steps, or as "
             "rough ones do")
-        ->check(CLI::IsMember(std::vector<std::string>(kModelNames.begin(), kModelNames.end())))
+        ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
         ->capture_default_str();
     command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
   }
@@ -114,7 +136,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command
         .add_option("--culling", options.culling,
                     "which lights a pixel goes through; never changes the picture")
-        ->check(CLI::IsMember({"none", "tiles", "auto"}))
+        ->check(oneOf({"none", "tiles", "auto"}))
         ->capture_default_str();
     command
         .add_option("--tile", options.tile,
@@ -126,7 +148,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "how shadow maps are looked up: hard (the texel that the point falls into), pcf (the "
                     "nearest texels, weighted), soft (edges as wide as the light's size makes them) or exact "
                     "(as rays to the light's middle)")
-        ->check(CLI::IsMember({"off", "hard", "pcf", "soft", "exact"}))
+        ->check(oneOf({"off", "hard", "pcf", "soft", "exact"}))
         ->capture_default_str();
     command.add_option("--pcf-width", options.pcf_width, "texels a side that pcf weighs: 2 is the sharpest")
         ->check(CLI::Range(2, 6))
@@ -159,6 +181,18 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
   return scene;
 }
 
+Scene openLitScene(const std::string& path, double frame, const PictureOptions& options) {
+  Scene scene = openScene(path, frame, options);
+  const double width = options.shading == "gouraud" ? coarseTriangleWidth(scene) : 0;
+  if (width == 0) return scene;
+  scene.warnings.push_back(
+      fmt::format("{}: --shading gouraud lights the corners of triangles, and some, up to {:.3g} m wide, are "
+                  "much larger than what lights shine on between them; divide them, or take --shading phong",
+                  scene.name, width));
+  if (!options.quiet) tellWarnings({scene.warnings.back()});
+  return scene;
+}
+
 Model modelOf(const PictureOptions& options) {
   return *std::find_if(std::begin(kAllModels), std::end(kAllModels),
                        [&](Model model) { return options.model == modelName(model); });
@@ -166,13 +200,8 @@ Model modelOf(const PictureOptions& options) {
 
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene) {
   RenderSettings settings;
-  if (!options.size.empty()) {
-    const std::vector<int> size = parseInts(options.size, 'x', 2, "--size", "WxH, such as 1280x720");
-    settings.size = {size[0], size[1]};
-    checkPictureSize(settings.size, "--size");
-  } else if (scene.size) {
-    settings.size = *scene.size;
-  }
+  if (scene.size) settings.size = *scene.size;
+  if (!options.size.empty()) settings.size = typedSize(options.size, settings.size);
   settings.camera = findCamera(scene, options.camera);
   if (!options.crop.empty()) {
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");

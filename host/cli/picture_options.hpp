@@ -46,6 +46,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
 /// Loads the scene at a frame (see loadScene) and tells its warnings, unless --quiet.
 Scene openScene(const std::string& path, double frame, const PictureOptions& options);
 
+/// The same for a command that shows the scene by its own lights: tells as well where --shading doesn't suit
+/// it.
+Scene openLitScene(const std::string& path, double frame, const PictureOptions& options);
+
 /// What --model says.
 Model modelOf(const PictureOptions& options);
 
