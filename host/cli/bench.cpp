@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -7,6 +6,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/progress.hpp"
+#include "cli/suggest.hpp"
 #include "error.hpp"
 #include "experiment/bench.hpp"
 #include "experiment/bench_scene.hpp"
@@ -24,12 +25,6 @@ struct BenchOptions {
   std::optional<int> shadow_size;
   int repeats = 9;
 };
-
-/// One line that is rewritten whenever its number changes, on a terminal only.
-void showProgress(const std::string& what, std::size_t percent) {
-  fmt::print(stderr, "\r\x1b[K{} {} %", what, percent);
-  std::fflush(stderr);
-}
 
 bool isPlotted(const std::string& name) {
   return name == "shading" || name == "shadows" || name == "samples";
@@ -52,21 +47,19 @@ void bench(const BenchOptions& options) {
   settings.picture = renderSettings(options.picture, scene);
   settings.device = options.picture.device;
   settings.repeats = options.repeats;
-  const bool progress = !options.picture.quiet && isatty(STDERR_FILENO);
-  std::size_t shown = 101;
-  if (progress)
-    settings.on_progress = [&](const std::string& what, std::size_t done, std::size_t total) {
-      const std::size_t percent = 100 * done / total;
-      if (percent != shown) showProgress(what, percent);
-      shown = percent;
-    };
+  std::optional<ProgressLine> progress;
+  std::string shown;
+  settings.on_progress = [&](const std::string& what, std::size_t done, std::size_t total) {
+    if (!progress || what != shown) progress.emplace(options.picture.quiet);
+    progress->show(shown = what, done, total);
+  };
   BenchChoice choice{.only = options.only,
                      .named_scene = !options.scene.empty(),
                      .program = std::filesystem::read_symlink("/proc/self/exe")};
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
   const BenchResult result = runBench(scene, settings, choice);
-  if (progress) fmt::print(stderr, "\r\x1b[K");
+  if (progress) progress->clear();
   if (!options.json.empty()) writeTextFile(options.json, benchJson(result));
   if (!options.plot.empty()) writeTextFile(options.plot, benchPlot(result));
   if (options.json != "-") writeTextFile("-", benchTable(result));
@@ -81,12 +74,12 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
   command->add_option("SCENE", options->scene,
                       "what speed against error and the rasterizer draw (default: built-in scenes)");
   command->add_option("--only", options->only, "measure this alone (repeatable): " + joinedNames())
-      ->check(CLI::IsMember(benchNames()));
+      ->check(oneOf(benchNames()));
   command->add_option("--json", options->json,
                       "write all figures as JSON (- : standard output, without the table)");
   command->add_option("--plot", options->plot, "write speed against error as an SVG picture");
   command->add_option("--size", options->picture.size,
-                      "WxH pixels of every picture (default: each one's own)");
+                      "WxH pixels of every picture, or W (default: each one's own)");
   command
       ->add_option("--shadow-size", options->shadow_size,
                    "texels a side of shadow maps, as for render (default: several are tried)")

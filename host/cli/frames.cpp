@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstddef>
 #include <optional>
 #include <string_view>
+#include <vector>
 
+#include "cli/picture_options.hpp"
 #include "error.hpp"
 
 namespace luciole {
@@ -21,44 +24,112 @@ std::optional<int> frameNumber(std::string_view text) {
   return number;
 }
 
+/// One part of the list: every `step`th from `first` to `last`.
+struct FrameRange {
+  int first, last, step;
+};
+
+std::optional<FrameRange> frameRange(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  const std::optional<int> first = frameNumber(text.substr(0, dash));
+  if (!first || dash == std::string_view::npos)
+    return first ? std::optional(FrameRange{*first, *first, 1}) : std::nullopt;
+  const std::string_view rest = text.substr(dash + 1);
+  const std::size_t x = rest.find('x');
+  const std::optional<int> last = frameNumber(rest.substr(0, x));
+  const std::optional<int> step = x == std::string_view::npos ? 1 : frameNumber(rest.substr(x + 1));
+  if (!last || !step || *first > *last || *step < 1) return std::nullopt;
+  return FrameRange{*first, *last, *step};
+}
+
+/// What stands before the frame's number in a file's name, and after it.
+struct NamePattern {
+  std::string before, after;
+  int digits = 0;  ///< 0: there is no place for the number, and the name is `before`
+};
+
+/// How many characters a frame's number in the style of C's printf takes at the start of `text`: "%d" or
+/// "%04d"; 0 where there is none.
+std::size_t percentLength(std::string_view text) {
+  if (text.starts_with("%d")) return 2;
+  const bool is_padded =
+      text.size() >= 4 && text.starts_with("%0") && text[2] >= '1' && text[2] <= '9' && text[3] == 'd';
+  return is_padded ? 4 : 0;
+}
+
+NamePattern parsePattern(const std::string& pattern) {
+  const std::size_t slash = pattern.find_last_of('/');
+  const std::size_t start = slash == std::string::npos ? 0 : slash + 1;
+  const std::string_view text = pattern;
+  NamePattern parsed;
+  parsed.before = text.substr(0, start);
+  for (std::size_t i = start; i < text.size();) {
+    std::string& part = parsed.digits > 0 ? parsed.after : parsed.before;
+    const std::size_t length = percentLength(text.substr(i));
+    if (length > 0 && parsed.digits == 0) {
+      parsed.digits = length == 2 ? 1 : text[i + 2] - '0';
+      i += length;
+    } else if (text[i] != '%') {
+      part += text[i++];
+    } else if (text.substr(i, 2) == "%%") {
+      part += '%';
+      i += 2;
+    } else {
+      throw InputError(
+          fmt::format("{}: '{}': expected %04d once, for the frame's number, and %% for a percent sign",
+                      pattern, text.substr(i, 4)));
+    }
+  }
+  const std::size_t end = parsed.before.find_last_of('#');
+  if (parsed.digits > 0 || end == std::string::npos || end < start) return parsed;
+  const std::size_t other = parsed.before.find_last_not_of('#', end);
+  const std::size_t begin = other == std::string::npos ? 0 : other + 1;
+  parsed.digits = int(end + 1 - begin);
+  parsed.after = parsed.before.substr(end + 1);
+  parsed.before.resize(begin);
+  return parsed;
+}
+
 }  // namespace
 
-FrameRange chosenFrames(const std::string& option) {
+FrameChoice chosenFrames(const std::string& option) {
   if (option.empty()) return {};
-  const std::string_view text = option;
-  const std::size_t dash = text.find('-');
-  const bool is_range = dash != std::string_view::npos;
-  const std::optional<int> first = frameNumber(text.substr(0, dash));
-  const std::optional<int> last = is_range ? frameNumber(text.substr(dash + 1)) : first;
-  if (!first || !last || *first > *last)
-    throw InputError(
-        fmt::format("--frames {}: expected a frame, such as 17, or the first and the last, such as 1-120; "
-                    "from 0 to {}",
-                    option, kLastFrame));
-  return {*first, *last, is_range};
+  FrameChoice choice{{}, option.find_first_of(",-") != std::string::npos};
+  std::vector<bool> is_there(kLastFrame + 1);
+  for (const std::string& part : split(option, ',')) {
+    const std::optional<FrameRange> range = frameRange(part);
+    if (!range)
+      throw InputError(
+          fmt::format("--frames {}: expected a frame, such as 17, a first and a last, such as 1-120, each "
+                      "fifth of them, 1-120x5, or several of these, 1,3,10-100x5; from 0 to {}",
+                      option, kLastFrame));
+    for (int frame = range->first; frame <= range->last; frame += range->step) {
+      if (is_there[frame]) continue;
+      is_there[frame] = true;
+      choice.frames.push_back(frame);
+    }
+  }
+  return choice;
 }
 
 int chosenFrame(const std::string& option, const std::string& command) {
-  const FrameRange frames = chosenFrames(option);
-  if (frames.is_range)
+  const FrameChoice choice = chosenFrames(option);
+  if (choice.is_list)
     throw InputError(fmt::format("--frames {}: {} makes one picture, expected one frame", option, command));
-  return frames.first;
+  return choice.frames.front();
 }
 
 std::string frameFile(const std::string& pattern, int frame) {
-  const std::size_t end = pattern.find_last_of('#');
-  const std::size_t slash = pattern.find_last_of('/');
-  if (end == std::string::npos || (slash != std::string::npos && slash > end)) return pattern;
-  const std::size_t before = pattern.find_last_not_of('#', end);
-  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-  return fmt::format("{}{:0{}}{}", pattern.substr(0, begin), frame, end + 1 - begin, pattern.substr(end + 1));
+  const NamePattern name = parsePattern(pattern);
+  if (name.digits == 0) return name.before;
+  return fmt::format("{}{:0{}}{}", name.before, frame, name.digits, name.after);
 }
 
 void checkPattern(const std::string& pattern, const std::string& option) {
-  if (frameFile(pattern, 0) == frameFile(pattern, 1))
+  if (parsePattern(pattern).digits == 0)
     throw InputError(fmt::format(
-        "{} {}: expected a name with #### in the place of the frame's number, such as frame.####.png", option,
-        pattern));
+        "{} {}: expected a name with #### or %04d in the place of the frame's number, such as frame.####.png",
+        option, pattern));
 }
 
 }  // namespace luciole

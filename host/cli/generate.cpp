@@ -174,10 +174,14 @@ void generateLights(const LightsOptions& options) {
   // Paths in a scene file are relative to it.
   const std::string folder =
       options.output == "-" ? "." : std::filesystem::absolute(options.output).parent_path().string();
-  const bool is_mesh = options.scene.empty() || isMeshFile(options.scene);
-  const std::string mesh = options.scene.empty() ? "" : pathFrom(folder, options.scene);
-  writeTextFile(options.output, is_mesh ? lightsScene(mesh, scene.lights)
-                                        : sceneWithLights(options.scene, folder, scene.lights));
+  if (options.scene.empty()) {
+    writeTextFile(options.output, lightsScene(scene.lights));
+    return;
+  }
+  const Camera& camera = scene.cameras.front();
+  writeTextFile(options.output, isMeshFile(options.scene)
+                                    ? meshWithLights(pathFrom(folder, options.scene), camera, scene.lights)
+                                    : sceneWithLights(options.scene, folder, camera, scene.lights));
 }
 
 /// What CLI11 can't say by itself.

@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/suggest.hpp"
 #include "error.hpp"
 
 namespace {
@@ -17,10 +21,15 @@ std::string joinedArguments(int count, char** arguments) {
 }
 
 const CLI::App& findCommand(CLI::App& app, const std::string& name) {
+  const std::vector<CLI::App*> all = app.get_subcommands([](const CLI::App*) { return true; });
   const auto named =
-      app.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
-  if (named.empty()) throw InputError(fmt::format("{}: no such command (see luciole help)", name));
-  return *named.front();
+      std::find_if(all.begin(), all.end(), [&](const CLI::App* one) { return one->get_name() == name; });
+  if (named != all.end()) return **named;
+  std::vector<std::string> names{"test"};  // the launcher's
+  for (const CLI::App* command : all) names.push_back(command->get_name());
+  const std::string suggestion = didYouMean(name, names);
+  throw InputError(
+      fmt::format("no command {}{}", name, suggestion.empty() ? " (see luciole help)" : suggestion));
 }
 
 }  // namespace
@@ -85,6 +94,11 @@ int main(int argument_count, char** arguments) {
     return context.status;
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help and --version
+  } catch (const CLI::ParseError&) {
+    const std::string unexpected = describeUnexpected(app);
+    if (unexpected.empty()) return tellFailure("");
+    fmt::print(stderr, "luciole{}\n", unexpected);
+    return kWrongInput;
   } catch (const std::exception&) {
     return tellFailure("");
   }

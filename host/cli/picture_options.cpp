@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "cli/commands.hpp"
 #include "cli/frames.hpp"
+#include "cli/suggest.hpp"
 #include "error.hpp"
 #include "image/file_format.hpp"
 #include "image/write_file.hpp"
+#include "render/coarse_triangles.hpp"
 #include "scene/json_scene.hpp"
+#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -27,11 +31,14 @@ std::vector<Aov> parseAovs(const std::string& text) {
   if (text.empty()) return aovs;
   for (const std::string& name : split(text, ',')) {
     const auto found = kAovs.find(name);
-    if (found == kAovs.end())
+    if (found == kAovs.end()) {
+      std::vector<std::string> names;
+      for (const auto& [known, aov] : kAovs) names.push_back(known);
       throw InputError(
           fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
-                      "list_length, shadow",
-                      name));
+                      "list_length, shadow{}",
+                      name, didYouMean(name, names)));
+    }
     if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
   }
   return aovs;
@@ -63,6 +70,20 @@ void castShadows(const PictureOptions& options, Scene& scene) {
   if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
     scene.warnings.push_back(
         fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows));
+}
+
+/// What --size says: "WxH", or "W" for a picture of the same shape as the scene's own.
+glm::ivec2 typedSize(const std::string& text, const glm::ivec2& scene_size) {
+  const bool has_height = text.find('x') != std::string::npos;
+  const std::vector<int> sides =
+      parseInts(text, 'x', has_height ? 2 : 1, "--size", "WxH or W, such as 1280x720 or 1280");
+  glm::ivec2 size(sides.front(), sides.back());
+  if (!has_height) {
+    const double height = std::round(double(size.x) * scene_size.y / scene_size.x);
+    size.y = int(std::clamp(height, 1.0, double(std::numeric_limits<int>::max())));
+  }
+  checkPictureSize(size, "--size");
+  return size;
 }
 
 }  // namespace
@@ -101,13 +122,15 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option("--format", options.format,
                        "png, exr ...: what to write, whatever the name says (default: its extension)");
   if (groups & kViewOptions) {
-    command.add_option("--size", options.size, "WxH pixels (default: the scene's, or 1280x720)");
+    command.add_option("--size", options.size,
+                       "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or "
+                       "1280x720)");
     command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
                     "what is interpolated over a triangle: nothing, colours, normals")
-        ->check(CLI::IsMember({"flat", "gouraud", "phong"}))
+        ->check(oneOf({"flat", "gouraud", "phong"}))
         ->capture_default_str();
   }
   if (groups & kSampleOption)
@@ -120,21 +143,21 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             "--model", options.model,
             "how surfaces reflect light: with highlights of (R.V)^n, of (N.H)^n, in flat steps, or as "
             "rough ones do")
-        ->check(CLI::IsMember(std::vector<std::string>(kModelNames.begin(), kModelNames.end())))
+        ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
         ->capture_default_str();
     command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
     if (is_one_picture)
       command
           .add_option("--dither", options.dither,
                       "of integer formats (png, jpg ...): a grain of half a step in place of bands")
-          ->check(CLI::IsMember({"on", "off"}))
+          ->check(oneOf({"on", "off"}))
           ->capture_default_str();
   }
   if (groups & kShadeOptions) {
     command
         .add_option("--culling", options.culling,
                     "which lights a pixel goes through; never changes the picture")
-        ->check(CLI::IsMember({"none", "tiles", "auto"}))
+        ->check(oneOf({"none", "tiles", "auto"}))
         ->capture_default_str();
     command
         .add_option("--tile", options.tile,
@@ -183,7 +206,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values) {
   return command.add_option("--shadows", options.shadows, help)
-      ->check(CLI::IsMember(values))
+      ->check(oneOf(values))
       ->each([&options](const std::string&) { options.shadows_given = true; })
       ->capture_default_str();
 }
@@ -194,7 +217,7 @@ void addCastShadowsOption(CLI::App& command, PictureOptions& options) {
           "--cast-shadows", options.cast_shadows,
           "which lights cast shadows: all, none, or those that the scene's file marks (default: marked, "
           "but all where none is marked and --shadows is given)")
-      ->check(CLI::IsMember({"all", "marked", "none"}));
+      ->check(oneOf({"all", "marked", "none"}));
 }
 
 void addMissingTexturesOption(CLI::App& command, std::string& value) {
@@ -202,7 +225,7 @@ void addMissingTexturesOption(CLI::App& command, std::string& value) {
       .add_option("--missing-textures", value,
                   "a picture that the scene names and that isn't there is an error, or a warning and its "
                   "materials are drawn without it")
-      ->check(CLI::IsMember({"error", "warn"}))
+      ->check(oneOf({"error", "warn"}))
       ->capture_default_str();
 }
 
@@ -217,6 +240,18 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
   return scene;
 }
 
+Scene openLitScene(const std::string& path, double frame, const PictureOptions& options) {
+  Scene scene = openScene(path, frame, options);
+  const double width = options.shading == "gouraud" ? coarseTriangleWidth(scene) : 0;
+  if (width == 0) return scene;
+  scene.warnings.push_back(
+      fmt::format("{}: --shading gouraud lights the corners of triangles, and some, up to {:.3g} m wide, are "
+                  "much larger than what lights shine on between them; divide them, or take --shading phong",
+                  scene.name, width));
+  if (!options.quiet) tellWarnings({scene.warnings.back()});
+  return scene;
+}
+
 Model modelOf(const PictureOptions& options) {
   return *std::find_if(std::begin(kAllModels), std::end(kAllModels),
                        [&](Model model) { return options.model == modelName(model); });
@@ -224,13 +259,8 @@ Model modelOf(const PictureOptions& options) {
 
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene) {
   RenderSettings settings;
-  if (!options.size.empty()) {
-    const std::vector<int> size = parseInts(options.size, 'x', 2, "--size", "WxH, such as 1280x720");
-    settings.size = {size[0], size[1]};
-    checkPictureSize(settings.size, "--size");
-  } else if (scene.size) {
-    settings.size = *scene.size;
-  }
+  if (scene.size) settings.size = *scene.size;
+  if (!options.size.empty()) settings.size = typedSize(options.size, settings.size);
   settings.camera = findCamera(scene, options.camera);
   if (!options.crop.empty()) {
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");

@@ -64,6 +64,10 @@ MissingTextures missingTexturesOf(const std::string& value);
 /// those that it marks, or else all where --shadows asks for shadows, and tells its warnings, unless --quiet.
 Scene openScene(const std::string& path, double frame, const PictureOptions& options);
 
+/// The same for a command that shows the scene by its own lights: tells as well where --shading doesn't suit
+/// it.
+Scene openLitScene(const std::string& path, double frame, const PictureOptions& options);
+
 /// What --model says.
 Model modelOf(const PictureOptions& options);
 

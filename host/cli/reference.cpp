@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/progress.hpp"
+#include "cli/suggest.hpp"
 #include "error.hpp"
 #include "image/file_format.hpp"
 #include "image/gbuffer_file.hpp"
@@ -39,22 +40,16 @@ struct Piece {
   Crop window;
 };
 
-void showProgress(std::size_t done, std::size_t pixels) {
-  static int shown = -1;
-  const int percent = int(100 * done / pixels);
-  if (percent == shown) return;
-  shown = percent;
-  fmt::print(stderr, "\r{} % of the reference{}", percent, done == pixels ? "\r\x1b[K" : "");
-  std::fflush(stderr);
-}
-
-/// rays: of the scene, if shadows are asked for.
-ReferenceSettings referenceSettings(const ReferenceOptions& options, const std::optional<RayScene>& rays) {
+/// rays: of the scene, if shadows are asked for. `progress` outlives the settings.
+ReferenceSettings referenceSettings(const ReferenceOptions& options, const std::optional<RayScene>& rays,
+                                    ProgressLine& progress) {
   ReferenceSettings settings;
   settings.model = modelOf(options);
   settings.shadow_rays = rays ? &*rays : nullptr;
   settings.shadow_samples = options.shadow_samples;
-  if (!options.quiet && isatty(STDERR_FILENO)) settings.on_progress = showProgress;
+  settings.on_progress = [&](std::size_t done, std::size_t pixels) {
+    progress.show(std::filesystem::path(options.output).filename(), done, pixels);
+  };
   return settings;
 }
 
@@ -170,7 +165,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 /// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
 void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   const Scene scene =
-      timed(stats, "load scene", [&] { return openScene(options.scene, options.frame, options); });
+      timed(stats, "load scene", [&] { return openLitScene(options.scene, options.frame, options); });
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
@@ -185,8 +180,11 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   });
   const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
     const auto rays = shadowRays(options, scene, settings.camera);
-    return referencePicture(scene, view, settings.shading, settings.samples, pixels,
-                            referenceSettings(options, rays));
+    ProgressLine progress(options.quiet);
+    auto shaded = referencePicture(scene, view, settings.shading, settings.samples, pixels,
+                                   referenceSettings(options, rays, progress));
+    progress.clear();
+    return shaded;
   });
   Piece piece{makePicture(view.crop_size, pixels, colors, settings.exposure), window};
   if (earlier) piece = joinPieces(*earlier, piece);
@@ -216,7 +214,10 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
   const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
     const auto rays = shadowRays(options, scene, gbuffer.camera);
-    return referencePixels(scene, gbuffer, pixels, referenceSettings(options, rays));
+    ProgressLine progress(options.quiet);
+    auto shaded = referencePixels(scene, gbuffer, pixels, referenceSettings(options, rays, progress));
+    progress.clear();
+    return shaded;
   });
   timed(stats, "write", [&] {
     writeImage(makePicture(size, pixels, colors, options.exposure), options.output,

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -12,6 +10,7 @@
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "error.hpp"
 #include "image/gbuffer_file.hpp"
@@ -20,13 +19,6 @@
 
 namespace luciole {
 namespace {
-
-/// One line that is rewritten pass by pass, on a terminal only.
-void showProgress(int done, int passes) {
-  fmt::print(stderr, "\r{} % of the picture{}", std::int64_t(100) * done / passes,
-             done == passes ? "\r\x1b[K" : "");
-  std::fflush(stderr);
-}
 
 struct RenderOptions : PictureOptions {
   std::string scene;
@@ -73,28 +65,19 @@ bool isDone(const std::string& path) {
   return std::filesystem::is_regular_file(path, none) && std::filesystem::file_size(path, none) > 0;
 }
 
-/// The frames of the range that are this run's to make.
-std::vector<int> framesToMake(const RenderOptions& options, const FrameRange& range, const Shard& shard) {
+/// Those of all the frames that are this run's to make.
+std::vector<int> framesToMake(const RenderOptions& options, const std::vector<int>& all, const Shard& shard) {
   if (options.shard.empty() && shard.count > 1 && !options.quiet)
     fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count);
   std::vector<int> frames, done;
-  for (int frame = range.first; frame <= range.last; ++frame) {
-    if (!isMine(shard, static_cast<std::size_t>(frame - range.first))) continue;
-    const bool is_done = options.resume && isDone(frameFile(options.output, frame));
-    (is_done ? done : frames).push_back(frame);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!isMine(shard, i)) continue;
+    const bool is_done = options.resume && isDone(frameFile(options.output, all[i]));
+    (is_done ? done : frames).push_back(all[i]);
   }
   if (!done.empty() && !options.quiet)
     fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
   return frames;
-}
-
-/// One line that is rewritten frame by frame, on a terminal only.
-void showFrames(std::size_t done, std::size_t count, std::chrono::steady_clock::time_point start) {
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-  std::string left;
-  if (done > 0) left = fmt::format(", {:.0f} s left", passed.count() / done * (count - done));
-  fmt::print(stderr, "frame {} of {}{}", done + 1, count, left);
-  std::fflush(stderr);
 }
 
 /// Renders frame after frame, of which one that fails is told and left out. `claims`: of a run that others
@@ -102,14 +85,17 @@ void showFrames(std::size_t done, std::size_t count, std::chrono::steady_clock::
 /// Returns the first failure's status; throws InputError for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
                  FrameClaims* claims, Stats started) {
-  const bool on_terminal = !options.quiet && isatty(STDERR_FILENO);
-  const auto start = std::chrono::steady_clock::now();
+  ProgressLine progress(options.quiet);
   const std::string command = started.command;
   int status = kDone;
   std::vector<int> failed;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (claims) claims->claim(frames[i]);
-    if (on_terminal) showFrames(i, frames.size(), start);
+    const auto showPass = [&](int done, int passes) {
+      progress.show(fmt::format("frame {}, {} of {}", frames[i], i + 1, frames.size()),
+                    i * passes + std::size_t(done), frames.size() * passes);
+    };
+    showPass(0, 1);
     PictureOptions one = options;
     one.output = frameFile(options.output, frames[i]);
     one.stats = frameFile(options.stats, frames[i]);
@@ -118,11 +104,11 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     try {
       checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);
-      renderPicture(device, scene, one, {}, stats);
-      if (on_terminal) fmt::print(stderr, "\r\x1b[K");
+      renderPicture(device, scene, one, showPass, stats);
+      progress.clear();
       reportStats(one, stats);
     } catch (const std::exception&) {
-      if (on_terminal) fmt::print(stderr, "\r\x1b[K");
+      progress.clear();
       const int why = tellFailure(fmt::format("frame {}", frames[i]));
       if (status == kDone) status = why;
       failed.push_back(frames[i]);
@@ -134,9 +120,9 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
   return status;
 }
 
-void checkOptions(const RenderOptions& options, const FrameRange& range) {
+void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
   checkOutput(options);
-  if (range.is_range) {
+  if (choice.is_list) {
     checkPattern(options.output, "-o");
     if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
   } else if (options.resume || !options.shard.empty()) {
@@ -157,21 +143,23 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kDeviceOption);
   command->add_option(
       "--frames", options->frames,
-      "frame A or frames A-B of a scene that moves (default: 1); #### in the output's name (and "
-      "that of --stats) becomes the number; a frame that fails is told and the others are made");
+      "frame A, frames A-B, each Nth of them, A-BxN, or a list of these, 1,3,10-100x5, of a scene that moves "
+      "(default: 1); #### or %04d in the output's name (and that of --stats) becomes the number; a frame "
+      "that "
+      "fails is told and the others are made");
   command->add_flag("--resume", options->resume, "leave frames alone whose file is there");
   command->add_option("--shard", options->shard,
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
                       "tasks share them)");
   command->callback([&context, options] {
-    const FrameRange range = chosenFrames(options->frames);
-    if (!range.is_range) useFrame(*options, "render");
-    checkOptions(*options, range);
+    const FrameChoice choice = chosenFrames(options->frames);
+    if (!choice.is_list) useFrame(*options, "render");
+    checkOptions(*options, choice);
     std::vector<int> frames;
     std::optional<FrameClaims> claims;
-    if (range.is_range) {
+    if (choice.is_list) {
       const Shard shard = chosenShard(options->shard);
-      frames = framesToMake(*options, range, shard);
+      frames = framesToMake(*options, choice.frames, shard);
       if (frames.empty()) return;
       if (shard.is_chosen) claims.emplace(options->output).claim(frames.front());  // before any work is done
     }
@@ -180,17 +168,22 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     Device device;
     startDevice(options->device, device);
     Scene scene = timed(stats, "load scene", [&] {
-      return openScene(options->scene, range.is_range ? 1 : range.first, *options);
+      return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
-    if (range.is_range) {
+    if (choice.is_list) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
       context.status =
           renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
       return;
     }
-    const bool shows_progress = !options->quiet && isatty(STDERR_FILENO);
-    renderPicture(device, scene, *options, shows_progress ? showProgress : nullptr, stats);
+    ProgressLine progress(options->quiet);
+    const auto showPass = [&](int done, int passes) {
+      progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
+                    std::size_t(passes));
+    };
+    renderPicture(device, scene, *options, showPass, stats);
+    progress.clear();
     reportStats(*options, stats);
   });
 }
@@ -208,7 +201,8 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     checkOutput(*options);
     Stats stats;
     stats.command = context.command_line;
-    const Scene scene = timed(stats, "load scene", [&] { return openScene(*scene_path, frame, *options); });
+    const Scene scene =
+        timed(stats, "load scene", [&] { return openLitScene(*scene_path, frame, *options); });
     const RenderSettings settings = renderSettings(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <memory>
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/progress.hpp"
 #include "cli/scale_plan.hpp"
 #include "cli/shard.hpp"
 #include "error.hpp"
@@ -23,18 +23,6 @@ struct MergeOptions {
   std::vector<std::string> folders;
   std::string output, plot;
 };
-
-std::string duration(double seconds) {
-  const int whole = int(seconds + 0.5);
-  return whole < 3600 ? fmt::format("{}:{:02}", whole / 60, whole % 60)
-                      : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
-/// One line that is rewritten, on a terminal only.
-void showProgress(const std::string& what, std::size_t done, std::size_t total) {
-  fmt::print(stderr, "\r\x1b[K{}, {} left", what, duration(double(total - done) / 1000));
-  std::fflush(stderr);
-}
 
 /// Throws, before any work is done, what writing the page and the plot would meet.
 void checkDrawing(const std::string& plot) {
@@ -75,10 +63,13 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   std::vector<std::size_t> mine;
   for (std::size_t i = 0; i < experiment.tasks.size(); ++i)
     if (isMine(shard, i)) mine.push_back(i);
-  const bool progress = !options.picture.quiet && isatty(STDERR_FILENO);
+  ProgressLine progress(options.picture.quiet);
   const std::vector<ScaleFailure> failures =
-      runScale(device, scene, experiment, mine, log, progress ? OnProgress(showProgress) : OnProgress());
-  if (progress) fmt::print(stderr, "\r\x1b[K");
+      runScale(device, scene, experiment, mine, log,
+               [&](const std::string& what, std::size_t done, std::size_t total) {
+                 progress.show(what, done, total);
+               });
+  progress.clear();
   for (const ScaleFailure& failure : failures)
     fmt::print(stderr, "luciole: {}: {}\n", failure.point, failure.reason);
   writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet);
@@ -142,7 +133,7 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   addPictureOptions(
       *command, options->picture,
       kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption | kManyPictures);
-  command->get_option("--size")->description("WxH pixels (default: 640x360)");
+  command->get_option("--size")->description("WxH pixels, or W (default: 640x360)");
 
   CLI::App* merge = command->add_subcommand("merge", "put the results of shards together");
   auto merging = std::make_shared<MergeOptions>();

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 
+#include "cli/suggest.hpp"
 #include "error.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/light_list.hpp"
@@ -88,7 +89,7 @@ std::vector<ScaleAxis> parseAxes(const std::vector<std::string>& vary) {
         if (!takes_values) {
           std::vector<std::string> names;
           for (const ScaleAxis& axis : kAxes) names.push_back(axis.name);
-          refuse(part, fmt::format("expected one of {}", fmt::join(names, ", ")));
+          refuse(part, fmt::format("expected one of {}{}", fmt::join(names, ", "), didYouMean(part, names)));
         }
         axes.back().values.push_back(part);
         continue;

@@ -54,7 +54,7 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
 
 GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                        PlaneSet planes) {
-  const std::vector<PlacedObject> placed = placeObjects(scene, objects, view.world_to_view);
+  const std::vector<PlacedObject> placed = placeObjects(scene, objects, view.world_to_view, true);
   const std::size_t vertices =
       placed.empty() ? 0 : placed.back().first_vertex + placed.back().mesh->positions.size();
   GBuffer gbuffer;

@@ -49,14 +49,15 @@ std::uint16_t transformVertex(const glm::dvec3& position, const View& view, cons
 }
 
 std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
-                                       const glm::dmat4& world_to_view) {
+                                       const glm::dmat4& world_to_view, bool lit_vertices) {
   std::vector<PlacedObject> placed;
   placed.reserve(objects.size());
   std::size_t vertices = 0;
   std::uint64_t triangles = 0;
   for (const std::uint32_t index : objects) {
     const Object& object = scene.objects[index];
-    const Mesh& mesh = scene.meshes[object.mesh];
+    const Mesh& plain = scene.meshes[object.mesh];
+    const Mesh& mesh = lit_vertices && plain.divided ? *plain.divided : plain;
     PlacedObject& place = placed.emplace_back();
     place.mesh = &mesh;
     place.material = object.material;
@@ -77,9 +78,10 @@ std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::
   return placed;
 }
 
-Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view) {
+Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                          bool lit_vertices) {
   Geometry geometry;
-  geometry.objects = placeObjects(scene, objects, view.world_to_view);
+  geometry.objects = placeObjects(scene, objects, view.world_to_view, lit_vertices);
   std::size_t vertices = 0;
   if (!geometry.objects.empty()) {
     const PlacedObject& last = geometry.objects.back();

@@ -25,9 +25,10 @@ struct PlacedObject {
 /// In the place of a triangle's number: none.
 constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
-/// Throws InputError where triangles are more than a 32-bit number can tell apart.
+/// `lit_vertices`: for colours that are lit at vertices, by meshes' divided forms (Mesh::divided). Throws
+/// InputError where triangles are more than a 32-bit number can tell apart.
 std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
-                                       const glm::dmat4& world_to_view);
+                                       const glm::dmat4& world_to_view, bool lit_vertices = false);
 
 /// A vertex on the picture: pixels from the sample of the whole picture's pixel (0,0), x right, y down;
 /// reversed depth.
@@ -66,7 +67,9 @@ ScreenVertex toScreen(const glm::dvec4& clip, const View& view);
 std::uint16_t transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume,
                               ScreenVertex& screen);
 
-Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view);
+/// `lit_vertices`: as in placeObjects.
+Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                          bool lit_vertices = false);
 
 /// The object that a triangle belongs to, by the triangle's number among all.
 const PlacedObject& objectOfTriangle(const std::vector<PlacedObject>& objects, std::uint32_t triangle);

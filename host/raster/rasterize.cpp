@@ -49,11 +49,11 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors,
                   RasterCounts* counts) {
   checkView(view);
-  const Geometry geometry = transformObjects(scene, objects, view);
+  const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
+  const Geometry geometry = transformObjects(scene, objects, view, lit_vertices);
   const RasterSetup setup = setupTriangles(scene, geometry, view, FaceCulling::kBackFaces);
   const Bins bins = binTriangles(setup.triangles, view);
 
-  const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
   planes.emission |= lit_vertices;
   GBuffer gbuffer = emptyGBuffer(view, planes);
   const ViewPlane plane = viewPlane(view);

@@ -43,8 +43,8 @@ struct RasterCounts {
 /// or on the crop.
 ///
 /// `vertex_colors`: empty, or for Shading::kGouraud the lit colours of all vertices of all the given objects,
-/// in order (see gatherVertices). Then the interpolated colour × the diffuse map goes into `emission`, and
-/// diffuse, specular and ambient are zero.
+/// in order (see gatherVertices). Then meshes are drawn in their divided form, the interpolated colour × the
+/// diffuse map goes into `emission`, and diffuse, specular and ambient are zero.
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
                   RasterCounts* counts = nullptr);
@@ -59,9 +59,9 @@ void rasterizeDepth(const Scene& scene, const TriangleRuns& runs, std::span<cons
                     const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels);
 
 /// The vertices of the given objects as a G-buffer of their own, for Gouraud shading by the same kernels that
-/// shade pixels: vertex i of all (objects in order, each mesh's vertices in order) lies at index i of every
-/// plane. Its material is that of the first triangle that uses it; textures are left out. Normals of
-/// double-sided materials are turned towards the viewer.
+/// shade pixels: vertex i of all (objects in order, the vertices of each mesh's divided form in order) lies
+/// at index i of every plane. Its material is that of the first triangle that uses it; textures are left out.
+/// Normals of double-sided materials are turned towards the viewer.
 GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                        PlaneSet planes);
 

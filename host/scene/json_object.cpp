@@ -94,6 +94,10 @@ Primitive readPrimitive(const JsonNode& object) {
   const bool is_box = primitive.kind == PrimitiveKind::kBox;
   if (is_box) refuseKeys(object, {"segments"}, "for a box");
   if (!is_plane && !is_box) primitive.segments = 64;
+  // What is flat needs no more triangles than it has sides, but where colours are lit at vertices. A box's
+  // side goes a quarter of the way around.
+  if (is_plane && !find(object, "segments")) primitive.lit_segments = 64;
+  if (is_box) primitive.lit_segments = 16;
   if (const auto n = find(object, "segments")) {
     primitive.segments = static_cast<int>(readCount(*n, kMostSegments));
     const int fewest = is_plane ? 1 : 3;

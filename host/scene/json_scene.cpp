@@ -13,6 +13,7 @@
 
 #include "error.hpp"
 #include "picture_size.hpp"
+#include "scene/frame.hpp"
 #include "scene/json_fields.hpp"
 #include "scene/json_keys.hpp"
 #include "scene/json_light.hpp"
@@ -219,6 +220,8 @@ Scene loadJsonScene(const std::string& path) {
   readObjects(top, folder, scene);
   scene.says_light = saysLight(top);
   if (!fields.empty()) poseScene(scene, 1);  // the surfaces that lights lie on
+  // Lights that are spread at random say nothing of where to stand.
+  if (!fields.empty() && scene.cameras.empty()) scene.cameras.push_back(frameScene(scene).camera);
   for (const LightField& field : fields) expandLightField(field, scene);
   return scene;
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 namespace luciole {
 namespace {
@@ -55,17 +57,17 @@ void addRectangle(Mesh& mesh, const glm::dvec3& top_left, const glm::dvec3& righ
   }
 }
 
-void addBox(Mesh& mesh) {
+void addBox(Mesh& mesh, int n) {
   const glm::dvec3 x{1, 0, 0};
   const glm::dvec3 y{0, 1, 0};
   const glm::dvec3 z{0, 0, 1};
   const glm::dvec3 c{0.5};
-  addRectangle(mesh, -c + y + z, x, -y, 1);       // +z
-  addRectangle(mesh, -c + x + y, -x, -y, 1);      // −z
-  addRectangle(mesh, -c + x + y + z, -z, -y, 1);  // +x
-  addRectangle(mesh, -c + y, z, -y, 1);           // −x
-  addRectangle(mesh, -c + y, x, z, 1);            // +y
-  addRectangle(mesh, -c + z, x, -z, 1);           // −y
+  addRectangle(mesh, -c + y + z, x, -y, n);       // +z
+  addRectangle(mesh, -c + x + y, -x, -y, n);      // −z
+  addRectangle(mesh, -c + x + y + z, -z, -y, n);  // +x
+  addRectangle(mesh, -c + y, z, -y, n);           // −x
+  addRectangle(mesh, -c + y, x, z, n);            // +y
+  addRectangle(mesh, -c + z, x, -z, n);           // −y
 }
 
 void addSphere(Mesh& mesh, int around) {
@@ -173,7 +175,7 @@ Mesh makePrimitive(const Primitive& primitive, std::uint32_t material) {
       break;
     case PrimitiveKind::kBox:
       mesh.name = "box";
-      addBox(mesh);
+      addBox(mesh, primitive.segments);
       break;
     case PrimitiveKind::kSphere:
       mesh.name = "sphere";
@@ -194,6 +196,11 @@ Mesh makePrimitive(const Primitive& primitive, std::uint32_t material) {
   }
   for (glm::vec2& uv : mesh.uvs) uv *= primitive.uv_scale;
   mesh.triangle_materials.assign(mesh.triangles.size(), material);
+  if (primitive.lit_segments > 0) {
+    Primitive divided = primitive;
+    divided.segments = std::exchange(divided.lit_segments, 0);
+    mesh.divided = std::make_shared<const Mesh>(makePrimitive(divided, material));
+  }
   return mesh;
 }
 

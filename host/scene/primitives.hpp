@@ -20,17 +20,19 @@ enum class PrimitiveKind : std::uint8_t { kPlane, kBox, kSphere, kCylinder, kCon
 /// outside it isn't mirrored.
 struct Primitive {
   PrimitiveKind kind = PrimitiveKind::kPlane;
-  /// Plane: squares a side, 1 or more. Round shapes: sides around, 3 or more (sphere and torus have half as
-  /// many the other way). Box: unused. At most kMostSegments.
+  /// Plane, and each side of a box: squares a side, 1 or more. Round shapes: sides around, 3 or more (sphere
+  /// and torus have half as many the other way). At most kMostSegments.
   int segments = 1;
   float minor_radius = 0.25f;  ///< torus only; 0 < minor_radius < 1
   float uv_scale = 1.0f;       ///< how often a texture repeats along u and v
+  int lit_segments = 0;        ///< unless 0: those of Mesh::divided
   auto operator<=>(const Primitive&) const = default;
 };
 inline constexpr int kMostSegments = 4096;
 
-/// The shape's mesh, every triangle of `material`. Normals are smooth where the surface is and split at sharp
-/// edges; vertices that are split there or at the texture's seam lie at exactly the same place.
+/// The shape's mesh, every triangle of `material`, and where `lit_segments` asks for it, its divided form.
+/// Normals are smooth where the surface is and split at sharp edges; vertices that are split there or at the
+/// texture's seam lie at exactly the same place.
 Mesh makePrimitive(const Primitive& primitive, std::uint32_t material);
 
 }  // namespace luciole

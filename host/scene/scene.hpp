@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -51,6 +52,9 @@ struct Mesh {
   std::vector<glm::vec4> colors;   ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
+  /// The same surface in smaller triangles, which takes its place where colours are lit at vertices (Gouraud
+  /// shading). Null: the mesh itself.
+  std::shared_ptr<const Mesh> divided;
 };
 
 /// A mesh placed in the world.
@@ -136,7 +140,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
   std::vector<Light> lights;
-  std::vector<Camera> cameras;     ///< empty after a loader; never empty after completeScene()
+  std::vector<Camera> cameras;     ///< may be empty after a loader; never after completeScene()
   std::optional<glm::ivec2> size;  ///< the picture's size that the file asks for
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light

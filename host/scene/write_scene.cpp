@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -20,6 +21,21 @@ std::string quoted(const std::string& text) {
   } catch (const nlohmann::json::type_error&) {
     throw InputError(text + ": the path isn't UTF-8, so a scene file can't hold it");
   }
+}
+
+std::string vectorText(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string cameraLine(const Camera& camera) {
+  const glm::dmat4& place = camera.camera_to_world;
+  const glm::dvec3 eye = place[3];
+  // As far away as the eye is from the origin, so that rounding turns the view by 2^-53 or so at any place.
+  const double away = std::max({1.0, std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)});
+  const glm::dvec3 target = eye - away * glm::dvec3(place[2]);
+  const std::string lens = camera.orthographic ? fmt::format("\"orthographic\": {}", camera.half_height)
+                                               : fmt::format("\"fov_y\": {}", glm::degrees(camera.fov_y));
+  return fmt::format(
+      "  \"camera\": {{\"eye\": {}, \"target\": {}, \"up\": {}, {}, \"near\": {}, \"far\": {}}},\n",
+      vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near, camera.far);
 }
 
 /// The end of a scene's file.
@@ -44,14 +60,21 @@ void appendLights(const std::vector<Light>& lights, std::string& text) {
 
 }  // namespace
 
-std::string lightsScene(const std::string& mesh_path, const std::vector<Light>& lights) {
+std::string lightsScene(const std::vector<Light>& lights) {
   std::string text = "{\n";
-  if (!mesh_path.empty()) text += fmt::format("  \"objects\": [{{\"mesh\": {}}}],\n", quoted(mesh_path));
   appendLights(lights, text);
   return text;
 }
 
-std::string sceneWithLights(const std::string& scene_path, const std::string& folder,
+std::string meshWithLights(const std::string& mesh_path, const Camera& camera,
+                           const std::vector<Light>& lights) {
+  std::string text = "{\n" + cameraLine(camera);
+  text += fmt::format("  \"objects\": [{{\"mesh\": {}}}],\n", quoted(mesh_path));
+  appendLights(lights, text);
+  return text;
+}
+
+std::string sceneWithLights(const std::string& scene_path, const std::string& folder, const Camera& camera,
                             const std::vector<Light>& lights) {
   // Ordered, because the first of several cameras is what is seen.
   using OrderedJson = nlohmann::ordered_json;
@@ -72,6 +95,7 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
     for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
 
   std::string text = "{\n";
+  if (!scene.contains("camera") && !scene.contains("cameras")) text += cameraLine(camera);
   for (const auto& [key, value] : scene.items()) {
     text += fmt::format("  {}: ", quoted(key));
     if (key == "objects") {

@@ -144,6 +144,53 @@ TEST_F(Frames, ARangeOfOneIsARangeToo) {
   EXPECT_EQ(files("f."), Names{"f.0007.png"});
 }
 
+TEST_F(Frames, ListsNameFramesRangesAndSteps) {
+  succeed("luciole render scene.json --size 8x8 --frames 1,3,10-30x5,12-13,3 -o f.##.png");
+  EXPECT_EQ(files("f."), (Names{"f.01.png", "f.03.png", "f.10.png", "f.12.png", "f.13.png", "f.15.png",
+                                "f.20.png", "f.25.png", "f.30.png"}));
+  succeed("rm f.*");
+  succeed("luciole render scene.json --size 8x8 --frames 10-14x3 -o f.#.png");
+  EXPECT_EQ(files("f."), (Names{"f.10.png", "f.13.png"})) << "the last need not be one of them";
+  succeed(
+      "luciole render scene.json --frames 5,3 -o f.#.exr && luciole render scene.json --frames 3 -o a.exr");
+  expectEqual("f.3.exr", "a.exr");
+}
+
+TEST_F(Frames, ListsAreResumedAndSharedByTheirOrder) {
+  const std::string line = "luciole render scene.json --size 8x8 --frames 9,1,4-8x2 -o f.#.png ";
+  succeed(line + "--shard 1/2");
+  EXPECT_EQ(files("f."), (Names{"f.4.png", "f.8.png", "f.9.png"}));
+  EXPECT_THAT(succeed(line + "--resume"), StartsWith("there already: 3 of 5 frames\n"));
+  EXPECT_EQ(files("f.").size(), 5u);
+}
+
+TEST_F(Frames, NamesMayHoldThePlaceAsPrintfDoes) {
+  succeed("luciole render scene.json --size 8x8 --frames 7,12 -o f.%03d.png --stats f.%d.json");
+  EXPECT_EQ(files("f."), (Names{"f.007.png", "f.012.png", "f.12.json", "f.7.json"}));
+  succeed("rm f.* && luciole render scene.json --size 8x8 --frames 3 -o 'f.50%%.#.png'");
+  EXPECT_EQ(files("f."), Names{"f.50%.3.png"});
+  succeed("rm f.* && luciole render scene.json --size 8x8 --frames 3 -o 'f.#5.%02d.png'");
+  EXPECT_EQ(files("f."), Names{"f.#5.03.png"}) << "beside % a mark is a mark";
+  succeed("rm f.* && luciole render scene.json --size 8x8 -o 'f.%04d%s.png'");
+  EXPECT_EQ(files("f."), Names{"f.%04d%s.png"}) << "without --frames a name is a name";
+  succeed("rm f.* && mkdir '%s' && luciole render scene.json --size 8x8 --frames 3 -o '%s/f.%d.png'");
+  succeed("mv '%s/f.3.png' f.png");
+  for (const char* command : {"gbuffer scene.json", "reference scene.json"})
+    succeed(fmt::format("luciole {} --size 8x8 --frames 4 -o g.%02d.exr && mv g.04.exr g.exr", command));
+  succeed(
+      "luciole gbuffer scene.json --size 8x8 --frames 4 -o g.exr && "
+      "luciole shade g.exr --scene scene.json --frames 4 -o h.%02d.exr && mv h.04.exr h.exr");
+}
+
+TEST_F(Frames, OtherPercentSignsAreRefused) {
+  for (const char* name : {"f.%s.png", "f.%4d.png", "f.%00d.png", "f.%04x.png", "f.%d.%d.png", "f.%.png",
+                           "f.50%.#.png", "f.%10d.png"}) {
+    for (const char* frames : {"1-2", "1"})
+      refuse(fmt::format("luciole render scene.json --frames {} -o '{}'", frames, name),
+             "expected %04d once, for the frame's number, and %% for a percent sign");
+  }
+}
+
 TEST_F(Frames, OneThatFailsIsToldAndTheOthersAreMade) {
   // Frame 2's file is a folder; at frame 5 the camera is above its target.
   writeText(folder / "scene.json", R"({"camera": {"eye": [0, 9, 4], "target": [0, 0, 0], "keys": [
@@ -230,9 +277,10 @@ TEST_F(Frames, StatisticsAreOneFileAFrame) {
 }
 
 TEST_F(Frames, WhatCannotBeMeantIsRefused) {
-  for (const char* frames : {"a", "", "1-", "-3", "5-4", "1-2-3", "1.5", "1-99999999999", "10000000"})
+  for (const char* frames : {"a", "", "1-", "-3", "5-4", "1-2-3", "1.5", "1-99999999999", "10000000", "1,",
+                             ",1", "1,,2", "1-9x0", "1-9x", "1x2", "1-9x-1", "1-9x2x2", "9-1x2", "1, 2"})
     if (*frames)
-      refuse(fmt::format("luciole render scene.json -o f.#.png --frames={}", frames), "expected a frame");
+      refuse(fmt::format("luciole render scene.json -o f.#.png --frames='{}'", frames), "expected a frame");
   const std::string render = "luciole render scene.json ";
   refuse(render + "--frames 1-2 -o f.png", "-o f.png: expected a name with ####");
   refuse(render + "--frames 1-2 -o -", "-o -: expected a name with ####");

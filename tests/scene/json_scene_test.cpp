@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "scene/frame.hpp"
 #include "scene/light_field.hpp"
 #include "scene/load_scene.hpp"
 #include "scene/write_scene.hpp"
@@ -361,7 +362,7 @@ TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
     "light_fields": [{"count": 3, "shape": "surface"}], "size": [7, 5]})");
   std::vector<Light> lights(2);
   lights[1].position = {1, 2, 3};
-  write("copies/lit.json", sceneWithLights(folder_ / "scene.json", folder_ / "copies", lights));
+  write("copies/lit.json", sceneWithLights(folder_ / "scene.json", folder_ / "copies", {}, lights));
   const Scene scene = loadScene(folder_ / "scene.json");
   const Scene copy = loadScene(folder_ / "copies/lit.json");
   ASSERT_EQ(copy.lights.size(), 2u);
@@ -375,7 +376,7 @@ TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
   EXPECT_EQ(copy.textures.size(), scene.textures.size());
   EXPECT_EQ(copy.size, scene.size);
   write("bare.json", "{}");
-  write("copies/bare.json", sceneWithLights(folder_ / "bare.json", folder_ / "copies", {}));
+  write("copies/bare.json", sceneWithLights(folder_ / "bare.json", folder_ / "copies", {}, {}));
   EXPECT_TRUE(loadScene(folder_ / "copies/bare.json").lights.empty());
 }
 
@@ -418,6 +419,31 @@ TEST_F(JsonScene, LightsAreNotAddedToWhatAFileSays) {
   EXPECT_EQ(scene.ambient, glm::vec3(0));
 }
 
+TEST_F(JsonScene, WrittenCamerasReadBackWithinTheirRounding) {
+  write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const double away : {0.0, 1e-3, 7.0, 1e7}) {
+    for (const bool orthographic : {false, true}) {
+      Camera camera;
+      camera.camera_to_world = cameraToWorld(glm::dvec3(away, -2 * away, 3), {1, 2, 0.1}, {0.1, 1, 0.2});
+      camera.orthographic = orthographic;
+      camera.fov_y = 0.7;
+      camera.half_height = 3.3;
+      camera.near = 0.123;
+      camera.far = 4.56e7;
+      const Camera read = load(meshWithLights("t.obj", camera, {})).cameras.front();
+      EXPECT_EQ(read.camera_to_world[3], camera.camera_to_world[3]);
+      // Each axis is made again from rounded numbers, of the size of the others: some 10 operations of 2^-53.
+      for (int i = 0; i < 3; ++i)
+        EXPECT_LT(glm::distance(read.camera_to_world[i], camera.camera_to_world[i]), 20 * 0x1p-53) << away;
+      EXPECT_EQ(read.orthographic, orthographic);
+      EXPECT_NEAR(read.fov_y, orthographic ? Camera{}.fov_y : 0.7, 4 * 0x1p-53);
+      EXPECT_EQ(read.half_height, orthographic ? 3.3 : Camera{}.half_height);
+      EXPECT_EQ(read.near, 0.123);
+      EXPECT_EQ(read.far, 4.56e7);
+    }
+  }
+}
+
 TEST_F(JsonScene, WrittenLightsReadBackToTheBit) {
   LightField field;
   field.count = 1000;
@@ -435,7 +461,7 @@ TEST_F(JsonScene, WrittenLightsReadBackToTheBit) {
   expandLightField(field, written);
   const std::vector<Light>& lights = written.lights;
   write("t \"é\".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const Scene scene = load(lightsScene("t \"é\".obj", lights));
+  const Scene scene = load(meshWithLights("t \"é\".obj", {}, lights));
   EXPECT_EQ(scene.objects.size(), 1u);
   ASSERT_EQ(scene.lights.size(), lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -446,7 +472,7 @@ TEST_F(JsonScene, WrittenLightsReadBackToTheBit) {
     ASSERT_EQ(scene.lights[i].range, lights[i].range);
     ASSERT_EQ(scene.lights[i].shadow, lights[i].shadow);
   }
-  EXPECT_TRUE(load(lightsScene("", {})).lights.empty());
+  EXPECT_TRUE(load(lightsScene({})).lights.empty());
 }
 
 }  // namespace

@@ -1,0 +1,105 @@
+#include "cli/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace luciole {
+namespace {
+
+std::string_view withoutDashes(std::string_view name) {
+  name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
+  return name;
+}
+
+bool isOption(const std::string& argument) { return argument.size() > 1 && argument[0] == '-'; }
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> commandNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* inner :
+       command.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); }))
+    names.push_back(inner->get_name());
+  return names;
+}
+
+/// The command and those in it that were typed, outermost first.
+std::vector<const CLI::App*> typedCommands(const CLI::App& app) {
+  std::vector<const CLI::App*> commands{&app};
+  while (!commands.back()->get_subcommands().empty())
+    commands.push_back(commands.back()->get_subcommands().back());
+  return commands;
+}
+
+}  // namespace
+
+std::size_t editDistance(std::string_view a, std::string_view b) {
+  // Row i holds the distances of a's first i letters to each beginning of b.
+  std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before = std::exchange(last, row);
+  }
+  return last[b.size()];
+}
+
+std::string didYouMean(std::string_view typed, const std::vector<std::string>& known) {
+  const std::string_view word = withoutDashes(typed);
+  std::optional<std::pair<std::size_t, std::string>> nearest;
+  for (const std::string& name : known) {
+    const std::string_view right = withoutDashes(name);
+    const bool begins = word.size() > 1 && right.starts_with(word);
+    const std::size_t distance = begins ? 1 : editDistance(word, right);
+    if (distance > std::max(word.size() / 3, std::size_t{1}) || distance >= right.size()) continue;
+    if (!nearest || distance < nearest->first) nearest.emplace(distance, name);
+  }
+  return nearest ? fmt::format("; did you mean {}?", nearest->second) : "";
+}
+
+CLI::Validator oneOf(const std::vector<std::string>& names) {
+  return {[names](std::string& typed) -> std::string {
+            if (std::find(names.begin(), names.end(), typed) != names.end()) return "";
+            return fmt::format("'{}' is none of {}{}", typed, fmt::join(names, ", "),
+                               didYouMean(typed, names));
+          },
+          fmt::format("{{{}}}", fmt::join(names, ","))};
+}
+
+std::string describeUnexpected(const CLI::App& app) {
+  const std::vector<const CLI::App*> commands = typedCommands(app);
+  std::string path;
+  for (const CLI::App* command : commands) {
+    if (command != &app) path += " " + command->get_name();
+    const std::vector<std::string> left = command->remaining();
+    if (left.empty()) continue;
+    const std::string help = fmt::format(" (see luciole help{})", path);
+    const auto option = std::find_if(left.begin(), left.end(), isOption);
+    if (option != left.end()) {
+      const std::string name = option->substr(0, option->find('='));
+      const std::string suggestion = didYouMean(name, optionNames(*command));
+      return fmt::format("{}: no option {}{}", path, name, suggestion.empty() ? help : suggestion);
+    }
+    const std::vector<std::string> inner = commandNames(*command);
+    if (inner.empty() || command->get_require_subcommand_min() == 0)
+      return fmt::format("{}: '{}' is more than it takes{}", path, left.front(), help);
+    const std::string suggestion = didYouMean(left.front(), inner);
+    return fmt::format("{}: no command {}{}", path, left.front(), suggestion.empty() ? help : suggestion);
+  }
+  return "";
+}
+
+}  // namespace luciole

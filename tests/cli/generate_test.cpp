@@ -1,0 +1,150 @@
+// luciole generate lights: the density that it promises, of every shape, and the camera that it is promised
+// for.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/run_program.hpp"
+#include "image/image.hpp"
+#include "scene/load_scene.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// A quadrangle seen from its front, corners counter-clockwise.
+void addQuad(const std::string& a, const std::string& b, const std::string& c, const std::string& d,
+             std::string& obj) {
+  for (const std::string& corner : {a, b, c, d}) obj += "v " + corner + "\n";
+  obj += "f -4 -3 -2 -1\n";
+}
+
+/// The box from low to high, its sides seen from inside or from outside.
+void addBox(const glm::vec3& low, const glm::vec3& high, bool inside, std::string& obj) {
+  const auto corner = [&](int i) {
+    return fmt::format("{} {} {}", i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+  };
+  constexpr int kSides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& s : kSides)
+    inside ? addQuad(corner(s[3]), corner(s[2]), corner(s[1]), corner(s[0]), obj)
+           : addQuad(corner(s[0]), corner(s[1]), corner(s[2]), corner(s[3]), obj);
+}
+
+/// A hall of 40 × 10 × 16 m whose columns stand at odd places, so that each place in it shows something else.
+std::string hallObj() {
+  std::string obj;
+  addBox({0, 0, 0}, {40, 10, 16}, true, obj);
+  for (int i = 0; i < 9; ++i) {
+    const float x = 3.0f + 4.1f * float(i), z = 2.0f + float((7 * i) % 12);
+    addBox({x, 0, z}, {x + 0.4f + 0.1f * float(i % 3), 10, z + 0.5f}, false, obj);
+  }
+  return obj;
+}
+
+/// A landscape of boxes, looked at from outside, without a camera of its own.
+constexpr const char* kBoxes = R"({"objects": [{"primitive": "plane", "scale": [12, 1, 9]},
+  {"primitive": "box", "translate": [2, 0.5, 1]}, {"primitive": "box", "scale": [1, 3, 1], "translate": [-3, 1.5, -2]},
+  {"primitive": "sphere", "translate": [-1, 1, 2]}], "size": [320, 180],
+  "lights": [{"type": "point", "position": [0, 5, 0]}]})";
+
+class Generate : public testing::Test {
+ protected:
+  Generate() {
+    writeText(folder / "hall.obj", hallObj());
+    writeText(folder / "small.json", kSmallScene);
+    writeText(folder / "boxes.json", kBoxes);
+    std::string csv;
+    for (int i = 0; i < 500; ++i)
+      csv +=
+          fmt::format("{},{},{},1,1,1,2\n", (37 * i) % 400 * 0.1, (11 * i) % 90 * 0.1, (23 * i) % 160 * 0.1);
+    writeText(folder / "lamps.csv", csv);
+  }
+
+  std::string succeed(const std::string& line) {
+    const Outcome outcome = runLine(folder, line);
+    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
+    return outcome.out;
+  }
+
+  /// Of the lights in range of each pixel that shows something.
+  struct Count {
+    double mean, deviation;
+  };
+  Count lightsInRange(const std::string& scene) {
+    succeed("luciole render " + scene + " --quiet --aov depth,light_count -o counted.exr");
+    const Image image = readImage(folder / "counted.exr");
+    const auto channel = [&](const char* name) {
+      return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) -
+                         image.channels.begin());
+    };
+    const std::size_t depth = channel("Z"), lights = channel("light_count"), step = image.channels.size();
+    double pixels = 0, sum = 0, squares = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += step) {
+      if (std::isinf(image.pixels[i + depth])) continue;
+      const double count = image.pixels[i + lights];
+      pixels += 1;
+      sum += count;
+      squares += count * count;
+    }
+    const double mean = sum / pixels;
+    return {mean, std::sqrt(std::max(squares / pixels - mean * mean, 0.0))};
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(Generate, EveryShapeHasItsDensityInThePictureOfAMeshAndOfAScene) {
+  for (const char* scene : {"hall.obj", "small.json", "boxes.json"}) {
+    for (const char* shape : {"--shape box", "--shape ball", "--shape sphere", "--shape surface",
+                              "--shape clusters", "--shape curve", "--csv lamps.csv"}) {
+      const bool is_list = std::string(shape).starts_with("--csv");
+      succeed(fmt::format("luciole generate lights {} {} {} --density 8 --seed 2 -o lit.json", scene, shape,
+                          is_list ? "" : "--count 2000"));
+      const Count count = lightsInRange("lit.json");
+      // It was set at 1000 of these pixels: five standard errors of their mean, and the last of 8000 pairs.
+      EXPECT_NEAR(count.mean, 8, 5 * count.deviation / std::sqrt(1000) + 1e-3) << scene << " " << shape;
+    }
+  }
+}
+
+TEST_F(Generate, TheFileHasTheCameraThatTheLightsWereMadeFor) {
+  for (const char* file : {"hall.obj", "boxes.json"}) {
+    const Camera seen = loadScene(folder / file).cameras.front();
+    for (const char* shape : {"box", "clusters", "surface"}) {
+      succeed(fmt::format(
+          "mkdir -p sub && luciole generate lights {} --shape {} --count 3000 -o sub/lit.json", file, shape));
+      ASSERT_TRUE(nlohmann::json::parse(readText(folder / "sub/lit.json")).contains("camera")) << file;
+      const Camera written = loadScene(folder / "sub/lit.json").cameras.front();
+      // The direction and two axes are made again from rounded numbers: each some 10 operations of 2^-53.
+      for (int i = 0; i < 3; ++i)
+        EXPECT_LT(glm::distance(written.camera_to_world[i], seen.camera_to_world[i]), 20 * 0x1p-53) << file;
+      EXPECT_EQ(written.camera_to_world[3], seen.camera_to_world[3]) << file;
+      EXPECT_NEAR(written.fov_y, seen.fov_y, 4 * 0x1p-53 * seen.fov_y) << file;
+      EXPECT_EQ(written.near, seen.near) << file;
+      EXPECT_EQ(written.far, seen.far) << file;
+    }
+  }
+}
+
+TEST_F(Generate, CamerasOfTheSceneStay) {
+  succeed("luciole generate lights small.json --count 10 -o lit.json");
+  EXPECT_EQ(loadScene(folder / "lit.json").cameras.front().camera_to_world,
+            loadScene(folder / "small.json").cameras.front().camera_to_world);
+}
+
+TEST_F(Generate, LightFieldsOverAMeshDoNotMoveItsCamera) {
+  writeText(folder / "bare.json", R"({"objects": [{"mesh": "hall.obj"}]})");
+  writeText(folder / "field.json", R"({"objects": [{"mesh": "hall.obj"}],
+      "light_fields": [{"count": 3000, "seed": 1, "min": [0, 0, 0], "max": [40, 10, 16], "range": 1}]})");
+  const glm::dmat4 seen = loadScene(folder / "hall.obj").cameras.front().camera_to_world;
+  EXPECT_EQ(loadScene(folder / "bare.json").cameras.front().camera_to_world, seen);
+  EXPECT_EQ(loadScene(folder / "field.json").cameras.front().camera_to_world, seen);
+}
+
+}  // namespace
+}  // namespace luciole::test
