@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
+#include <system_error>
 
 #include "cli/commands.hpp"
 #include "error.hpp"
@@ -40,12 +43,32 @@ int luciole::tellFailure(const std::string& where) {
     return fail(error.what(), kMachineFailed);
   } catch (const std::bad_alloc&) {
     return fail("out of memory", kMachineFailed);
+  } catch (const std::system_error& error) {  // no more threads, for example
+    return fail(fmt::format("the system refuses: {}", error.what()), kMachineFailed);
   } catch (const std::exception& error) {
     return fail(fmt::format("internal error: {}", error.what()), kMachineFailed);
   }
 }
 
+namespace {
+
+/// Memory may run out where nobody can catch it: in a thread of a library's, or in its functions that mustn't
+/// throw.
+[[noreturn]] void endUncaught() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    std::fputs("luciole: out of memory\n", stderr);
+    std::_Exit(kMachineFailed);
+  } catch (...) {
+  }
+  std::abort();
+}
+
+}  // namespace
+
 int main(int argument_count, char** arguments) {
+  std::set_terminate(endUncaught);
   CommandContext context{joinedArguments(argument_count, arguments)};
   CLI::App app{"Luciole lights scenes with as many lights as there are fireflies, deferred, on OpenCL."};
   app.set_version_flag("--version", "luciole " LUCIOLE_VERSION);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
@@ -114,6 +115,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     one.stats = frameFile(options.stats, frames[i]);
     Stats stats = std::exchange(started, Stats{});
     stats.command = command;
+    if (i > 0) stats.began = millisecondsSinceStart();
     try {
       checkWritable(one.output);
       poseScene(scene, frames[i]);

@@ -4,6 +4,7 @@
 
 #include "cl/device.hpp"
 #include "kernels/shared.h"
+#include "raster/gbuffer.hpp"
 #include "render/cull.hpp"
 
 namespace luciole {
@@ -12,6 +13,10 @@ namespace luciole {
 struct GBufferBuffers {
   cl::Buffer position, normal, diffuse, specular, ambient, emission, facet;
 };
+
+/// Brings a G-buffer and its triangles' normals to the device; where that shares the host's memory, both must
+/// outlive the result. unlit: the diffuse colour takes the place of ambient.
+GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet, bool unlit);
 
 struct ShadeArguments {
   const ShadeFrame& frame;

@@ -60,7 +60,7 @@ inline std::vector<Column> probe(Device& device, const std::string& file, const 
   }
   const cl::Buffer input = inputBuffer(device, columns),
                    output = deviceBuffer(device, outputs * stride * sizeof(float));
-  cl::Kernel kernel = makeKernelFromSource(device, probeSource(file), name, defines);
+  Kernel kernel = makeKernelFromSource(device, probeSource(file), name, defines);
   kernel.setArg(0, input);
   kernel.setArg(1, output);
   kernel.setArg(2, static_cast<cl_uint>(stride));
