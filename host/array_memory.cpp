@@ -4,10 +4,12 @@
 
 #include <new>
 
+#include "machine_memory.hpp"
+
 namespace luciole {
 namespace {
 
-constexpr std::size_t kCacheLine = 128, kLargePage = std::size_t(2) << 20;
+constexpr std::size_t kCacheLine = 128, kLargePage = std::size_t(2) << 20, kAskedFor = std::size_t(32) << 20;
 
 struct Block {
   std::size_t bytes;
@@ -25,6 +27,9 @@ Block blockFor(std::size_t bytes) {
 void* allocateArray(std::size_t bytes) {
   const Block block = blockFor(bytes);
   if (block.bytes < bytes) throw std::bad_alloc();  // rounding up went beyond the largest size
+  // What the system hands out may be more than it can keep. Memory this large takes longer to fill than
+  // asking.
+  if (bytes >= kAskedFor) requireMemory(double(bytes), "an array");
   void* memory = ::operator new(block.bytes, block.alignment);
 #ifdef MADV_HUGEPAGE
   // A hint: where the system doesn't take it, pages are small.

@@ -8,7 +8,8 @@ namespace luciole {
 
 /// Memory for arrays of so many bytes, on whole cache lines, so that a row of up to 16 float lanes is one
 /// aligned load and OpenCL can use the memory in place. Where it is much, it comes in the system's larger
-/// kind of pages, which take a tenth of the time to hand out. Throws std::bad_alloc.
+/// kind of pages, which take a tenth of the time to hand out. Throws std::bad_alloc, and MachineError
+/// where so much is more than this process may take.
 void* allocateArray(std::size_t bytes);
 
 /// Frees what allocateArray(bytes) gave.

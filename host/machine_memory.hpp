@@ -1,22 +1,33 @@
 #pragma once
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <string>
-
-#include "error.hpp"
 
 namespace luciole {
 
 /// Bytes of memory that the machine has.
-inline double machineMemory() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE)); }
+double machineMemory();
 
-/// Throws MachineError where `bytes` are more than the machine has to give; `what` is what takes them.
-inline void requireMemory(double bytes, const std::string& what) {
-  if (bytes > 0.9 * machineMemory())
-    throw MachineError(fmt::format("{} takes about {:.0f} GiB of memory, and the machine has {:.0f}", what,
-                                   bytes / (1 << 30), machineMemory() / (1 << 30)));
-}
+/// What this process may still take.
+struct MemoryRoom {
+  double bytes;            ///< ≥ 0
+  std::string limited_by;  ///< "the machine", "the control group /a/b", "ulimit -v" or "ulimit -d"
+};
+
+/// Beside what it has: the least of what nine tenths of the machine's memory, its control groups and its
+/// resource limits leave.
+MemoryRoom memoryRoom();
+
+/// What the control groups that a process is in leave, by the text of its /proc/PID/cgroup and the folder
+/// where their hierarchies are mounted: a group's limit less what the group has in use, files that the kernel
+/// can drop left out. Version 1 (`memory/…/memory.limit_in_bytes`) and 2 (`…/memory.max`); a group above
+/// counts as well. Infinite where nothing limits it. A container sees its own group as the topmost, under
+/// another path than the text says; groups that aren't there are passed over.
+MemoryRoom controlGroupRoom(const std::string& groups, const std::string& mount);
+
+/// Throws MachineError where `bytes` are more than this process may still take; `what` is what needs them.
+void requireMemory(double bytes, const std::string& what);
+
+/// The same for addresses, which `ulimit -v` limits and which programs map more of than they ever touch.
+void requireAddresses(double bytes, const std::string& what);
 
 }  // namespace luciole

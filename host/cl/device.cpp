@@ -1,6 +1,7 @@
 #include "cl/device.hpp"
 
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <cctype>
@@ -9,10 +10,12 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <thread>
 
 #include "array_memory.hpp"
 #include "cl/kernel_source.hpp"
 #include "error.hpp"
+#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -38,7 +41,23 @@ int nativeLanes(const cl::Device& device) {
   return width >= 16 ? 16 : width >= 8 ? 8 : width >= 4 ? 4 : 1;
 }
 
+/// What platforms take at the least, with a compiler among them (PoCL's is LLVM): memory, a part of it when
+/// the first kernels are compiled; and addresses, most of them for code, beside the stacks of a thread a
+/// core, and of another for the threads of ours. Without them platforms end the process as they please.
+constexpr double kPlatformBytes = 256 << 20, kCompilerBytes = 128 << 20, kPlatformAddresses = 512 << 20;
+
+double stackBytes() {
+  pthread_attr_t attributes;
+  std::size_t bytes = 0;
+  if (pthread_attr_init(&attributes) != 0) return 0;
+  pthread_attr_getstacksize(&attributes, &bytes);
+  pthread_attr_destroy(&attributes);
+  return double(bytes);
+}
+
 std::vector<FoundDevice> findDevices() {
+  requireMemory(kPlatformBytes, "OpenCL");
+  requireAddresses(kPlatformAddresses + 2 * std::thread::hardware_concurrency() * stackBytes(), "OpenCL");
   std::vector<FoundDevice> found;
   std::vector<cl::Platform> platforms;
   try {
@@ -87,11 +106,64 @@ struct HostArray {
 
 void CL_CALLBACK freeHostArray(cl_mem, void* array) { delete static_cast<HostArray*>(array); }
 
+/// An error's name in the standard, or its number where it isn't one of OpenCL 1.2's.
+std::string errorName(cl_int error) {
+#define NAMED(name) \
+  case name:        \
+    return #name
+  switch (error) {
+    NAMED(CL_DEVICE_NOT_FOUND);
+    NAMED(CL_DEVICE_NOT_AVAILABLE);
+    NAMED(CL_COMPILER_NOT_AVAILABLE);
+    NAMED(CL_MEM_OBJECT_ALLOCATION_FAILURE);
+    NAMED(CL_OUT_OF_RESOURCES);
+    NAMED(CL_OUT_OF_HOST_MEMORY);
+    NAMED(CL_MEM_COPY_OVERLAP);
+    NAMED(CL_BUILD_PROGRAM_FAILURE);
+    NAMED(CL_MAP_FAILURE);
+    NAMED(CL_MISALIGNED_SUB_BUFFER_OFFSET);
+    NAMED(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST);
+    NAMED(CL_KERNEL_ARG_INFO_NOT_AVAILABLE);
+    NAMED(CL_INVALID_VALUE);
+    NAMED(CL_INVALID_PLATFORM);
+    NAMED(CL_INVALID_DEVICE);
+    NAMED(CL_INVALID_CONTEXT);
+    NAMED(CL_INVALID_QUEUE_PROPERTIES);
+    NAMED(CL_INVALID_COMMAND_QUEUE);
+    NAMED(CL_INVALID_HOST_PTR);
+    NAMED(CL_INVALID_MEM_OBJECT);
+    NAMED(CL_INVALID_BINARY);
+    NAMED(CL_INVALID_BUILD_OPTIONS);
+    NAMED(CL_INVALID_PROGRAM);
+    NAMED(CL_INVALID_PROGRAM_EXECUTABLE);
+    NAMED(CL_INVALID_KERNEL_NAME);
+    NAMED(CL_INVALID_KERNEL_DEFINITION);
+    NAMED(CL_INVALID_KERNEL);
+    NAMED(CL_INVALID_ARG_INDEX);
+    NAMED(CL_INVALID_ARG_VALUE);
+    NAMED(CL_INVALID_ARG_SIZE);
+    NAMED(CL_INVALID_KERNEL_ARGS);
+    NAMED(CL_INVALID_WORK_DIMENSION);
+    NAMED(CL_INVALID_WORK_GROUP_SIZE);
+    NAMED(CL_INVALID_WORK_ITEM_SIZE);
+    NAMED(CL_INVALID_GLOBAL_OFFSET);
+    NAMED(CL_INVALID_EVENT_WAIT_LIST);
+    NAMED(CL_INVALID_EVENT);
+    NAMED(CL_INVALID_OPERATION);
+    NAMED(CL_INVALID_BUFFER_SIZE);
+    NAMED(CL_INVALID_GLOBAL_WORK_SIZE);
+    NAMED(CL_INVALID_PROPERTY);
+  }
+#undef NAMED
+  return fmt::format("OpenCL error {}", error);
+}
+
 MachineError deviceError(const cl::Error& error, const std::string& device) {
   if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_HOST_MEMORY ||
       error.err() == CL_OUT_OF_RESOURCES || error.err() == CL_INVALID_BUFFER_SIZE)
-    return MachineError(fmt::format("{}: out of memory ({})", device, error.what()));
-  return MachineError(fmt::format("{}: {} failed with OpenCL error {}", device, error.what(), error.err()));
+    return MachineError(
+        fmt::format("{}: out of memory ({}: {})", device, error.what(), errorName(error.err())));
+  return MachineError(fmt::format("{}: {} failed: {}", device, error.what(), errorName(error.err())));
 }
 
 }  // namespace
@@ -162,19 +234,20 @@ namespace {
 /// The kernel `name` of the program known by `key`, which is built from the source that source() gives where
 /// it isn't there yet.
 template <class Source>
-cl::Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
-                        Source&& source) {
+Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
+                    Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
     const std::string options = fmt::format("-cl-std=CL1.2 -cl-mad-enable -cl-denorms-are-zero -DLANES={} {}",
                                             device.description.lanes, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {
+      requireMemory(kCompilerBytes, "compiling kernels");
       cl::Program program(device.context, source());
       program.build({device.device}, options.c_str());
       place = device.programs.emplace(options + key, std::move(program)).first;
     }
-    return cl::Kernel(place->second, name);
+    return {cl::Kernel(place->second, name), name, device.description.name};
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [where, text] : error.getBuildLog()) log += text;
@@ -188,12 +261,17 @@ cl::Kernel makeKernelOf(Device& device, const std::string& key, const char* name
 
 }  // namespace
 
-cl::Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
+void Kernel::refuseArgument(cl_uint number, const cl::Error& error) const {
+  throw MachineError(fmt::format("{}: kernel '{}', argument {}: {} failed: {}", device_name, name, number,
+                                 error.what(), errorName(error.err())));
+}
+
+Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
   return makeKernelOf(device, file, name, defines, [&] { return kernelSource(file); });
 }
 
-cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
-                                const std::string& defines) {
+Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+                            const std::string& defines) {
   return makeKernelOf(device, source, name, defines, [&] { return source; });
 }
 
@@ -258,12 +336,16 @@ void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_
   }
 }
 
-void launch(Device& device, cl::Kernel& kernel, std::size_t items, std::size_t group) {
+void launch(Device& device, Kernel& kernel, std::size_t items, std::size_t group) {
   if (items == 0) return;
   try {
-    device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
+    const std::size_t most =
+        std::min(kernel.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device),
+                 device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
+    while (group > std::max<std::size_t>(most, 1)) group /= 2;
+    device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
   } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
+    throw deviceError(error, fmt::format("{}: kernel '{}'", device.description.name, kernel.name));
   }
 }
 

@@ -31,9 +31,29 @@ struct Device {
   std::map<std::string, cl::Program> programs;
   std::mutex programs_mutex;
 
+  double milliseconds_to_open = 0;  ///< 0 again once a picture's statistics have told it
+
   /// The thread of startDevice. Last, so that it has ended before anything it works on goes.
   std::shared_future<void> opening;
-  double milliseconds_to_open = 0;  ///< 0 again once a picture's statistics have told it
+};
+
+/// A kernel, which knows what it and its device are called.
+struct Kernel {
+  cl::Kernel kernel;
+  std::string name, device_name;
+
+  /// Throws MachineError where the device refuses the value, naming the kernel and the argument's number.
+  template <class Value>
+  void setArg(cl_uint number, const Value& value) {
+    try {
+      kernel.setArg(number, value);
+    } catch (const cl::Error& error) {
+      refuseArgument(number, error);
+    }
+  }
+
+ private:
+  [[noreturn]] void refuseArgument(cl_uint number, const cl::Error& error) const;
 };
 
 /// All OpenCL devices of all platforms, in the order the runtime names them. Empty where there is none.
@@ -58,11 +78,11 @@ void awaitDevice(const Device& device);
 
 /// The kernel `name` of kernels/`file`, compiled for the device with LANES and the given -D options. A
 /// program is built once a device. Throws MachineError with the compiler's first message.
-cl::Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines);
+Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines);
 
 /// The same for any source text whose includes are in place (see expandKernelSource).
-cl::Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
-                                const std::string& defines);
+Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+                            const std::string& defines);
 
 /// A buffer with these bytes to read from; shared in place where device and host share memory, so the bytes
 /// must outlive it. Empty input makes a small buffer, as OpenCL has no empty ones.
@@ -86,8 +106,9 @@ cl::Buffer updateBuffer(Device& device, void* data, std::size_t bytes);
 void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes,
                 std::size_t offset = 0);
 
-/// Queues `items` work-items in groups of `group` (which divides them).
-void launch(Device& device, cl::Kernel& kernel, std::size_t items, std::size_t group);
+/// Queues `items` work-items in groups of `group`, a power of two that divides them, or as many of them as
+/// the device takes in a group for this kernel. Groups must mean nothing to the kernel.
+void launch(Device& device, Kernel& kernel, std::size_t items, std::size_t group);
 
 /// Waits until everything queued is done.
 void finish(Device& device);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -49,6 +52,8 @@ int luciole::tellFailure(const std::string& where) {
     return fail(error.what(), kMachineFailed);
   } catch (const std::bad_alloc&) {
     return fail("out of memory", kMachineFailed);
+  } catch (const std::system_error& error) {  // no more threads, for example
+    return fail(fmt::format("the system refuses: {}", error.what()), kMachineFailed);
   } catch (const std::exception& error) {
     return fail(fmt::format("internal error: {}", error.what()), kMachineFailed);
   }
@@ -58,7 +63,25 @@ void luciole::tellWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "luciole: warning: {}\n", warning);
 }
 
+namespace {
+
+/// Memory may run out where nobody can catch it: in a thread of a library's, or in its functions that mustn't
+/// throw.
+[[noreturn]] void endUncaught() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    std::fputs("luciole: out of memory\n", stderr);
+    std::_Exit(kMachineFailed);
+  } catch (...) {
+  }
+  std::abort();
+}
+
+}  // namespace
+
 int main(int argument_count, char** arguments) {
+  std::set_terminate(endUncaught);
   CommandContext context{joinedArguments(argument_count, arguments)};
   CLI::App app{"Luciole lights scenes with as many lights as there are fireflies, deferred, on OpenCL."};
   app.set_version_flag("--version", "luciole " LUCIOLE_VERSION);

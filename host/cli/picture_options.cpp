@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 
@@ -332,15 +333,15 @@ Metadata pictureMetadata(const std::string& command_line, const Device* device) 
 void reportStats(const PictureOptions& options, const Stats& stats) {
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
   if (options.quiet) return;
+  // Whole milliseconds that are over, so that the stages' add up to no more than the picture's.
+  const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };
   std::string stages;
-  double total = 0;
-  for (const auto& [name, milliseconds] : stats.stages) {
-    total += milliseconds;
-    if (milliseconds >= 0.5)
-      stages += fmt::format("{}{} {:.0f}", stages.empty() ? "" : ", ", name, milliseconds);
-  }
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {:.0f} ms ({})\n", options.output, stats.width,
-             stats.height, stats.triangles, stats.lights, total, stages);
+  for (const auto& stage : stats.stages)
+    if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
+      stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stage.first, share);
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {} ms{}{}\n", options.output, stats.width,
+             stats.height, stats.triangles, stats.lights, whole(pictureMilliseconds(stats)), stages,
+             stages.empty() ? "" : ")");
 }
 
 }  // namespace luciole

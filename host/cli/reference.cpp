@@ -14,8 +14,11 @@
 #include "error.hpp"
 #include "image/file_format.hpp"
 #include "image/gbuffer_file.hpp"
+#include "machine_memory.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
+#include "render/memory.hpp"
+#include "scene/scene_digest.hpp"
 
 namespace luciole {
 namespace {
@@ -33,6 +36,10 @@ struct ReferenceOptions : PictureOptions {
 /// Attributes by which a later run knows what a file holds.
 constexpr const char* kRequest = "luciole:reference";
 constexpr const char* kWindow = "luciole:window";
+
+/// Of a pixel: the G-buffer's, its place, a sample's colour and the sum of all, and the picture's.
+constexpr double kBytesPerPixel =
+    kGBufferBytesPerPixel + sizeof(glm::ivec2) + 2 * sizeof(glm::dvec3) + 3 * sizeof(float);
 
 /// A picture of part of a bigger one.
 struct Piece {
@@ -85,11 +92,12 @@ Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
 }
 
 /// What must be equal for two crops to be parts of one picture.
-std::string requestText(const ReferenceOptions& options, const RenderSettings& settings) {
-  return fmt::format("{} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
-                     options.scene, options.frame, settings.size.x, settings.size.y, settings.camera.name,
-                     settings.samples, options.shading, options.model, options.shadows,
-                     options.shadow_samples, options.exposure);
+std::string requestText(const ReferenceOptions& options, const Scene& scene, const RenderSettings& settings) {
+  return fmt::format(
+      "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
+      options.scene, sceneDigest(scene), options.frame, settings.size.x, settings.size.y,
+      settings.camera.name, settings.samples, options.shading, options.model, options.shadows,
+      options.shadow_samples, options.exposure);
 }
 
 /// The rectangle that two make together, if they make one.
@@ -115,16 +123,14 @@ void paste(const Piece& from, Piece& to) {
   }
 }
 
-/// The part of the same picture that the output file already holds, if it was made after the scene file's
-/// last change: a long reference grows crop by crop. Throws InputError where the two don't make a rectangle.
+/// The part of the same picture, of the same scene to the last texel, that the output file already holds: a
+/// long reference grows crop by crop. Throws InputError where the two don't make a rectangle.
 std::optional<Piece> findEarlierPiece(const ReferenceOptions& options, const std::string& request,
                                       const Crop& crop) {
   namespace fs = std::filesystem;
   std::error_code none;
-  if (options.pixels > 0 || options.scene == "-" || !fs::is_regular_file(options.output, none))
-    return std::nullopt;
+  if (options.pixels > 0 || !fs::is_regular_file(options.output, none)) return std::nullopt;
   if (readAttribute(options.output, kRequest) != request) return std::nullopt;
-  if (fs::last_write_time(options.output) < fs::last_write_time(options.scene)) return std::nullopt;
   const std::vector<int> window =
       parseInts(readAttribute(options.output, kWindow), ',', 4, options.output, "a window X,Y,W,H");
   Piece piece{readImage(options.output), {window[0], window[1], window[2], window[3]}};
@@ -169,10 +175,12 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
-  const std::string request = requestText(options, settings);
+  const std::string request = requestText(options, scene, settings);
   std::optional<Piece> earlier;
   if (settings.crop) earlier = findEarlierPiece(options, request, window);
 
+  requireMemory(kBytesPerPixel * view.crop_size.x * view.crop_size.y,
+                fmt::format("a reference of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<glm::ivec2> pixels = choosePixels(view.crop_size, options.pixels, options.seed);
   const GBufferCheck check = timed(stats, "check G-buffer", [&] {
     const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kPhong, {.lift = true});

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
@@ -101,6 +102,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     one.stats = frameFile(options.stats, frames[i]);
     Stats stats = std::exchange(started, Stats{});
     stats.command = command;
+    if (i > 0) stats.began = millisecondsSinceStart();
     try {
       checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);

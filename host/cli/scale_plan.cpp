@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/light_list.hpp"
+#include "scene/scene_digest.hpp"
 
 namespace luciole {
 namespace {

@@ -278,16 +278,6 @@ Work remainingWork(const ScaleDescription& description, const std::vector<std::s
   return work;
 }
 
-void hash(std::uint64_t& digest, const void* data, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i)
-    digest = (digest ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3u;
-}
-
-template <class Value>
-void hash(std::uint64_t& digest, const std::vector<Value>& values) {
-  hash(digest, values.data(), values.size() * sizeof(Value));
-}
-
 }  // namespace
 
 std::string pointName(const ScaleDescription& description, const ScalePoint& point) {
@@ -304,34 +294,6 @@ std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck
        {std::pair("mean_abs", check.mean_abs), {"max_abs", check.max_abs}, {"rmse", check.rmse}})
     if (!std::isfinite(error)) reasons.emplace_back(name, "a pixel is not finite");
   return reasons;
-}
-
-// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo), over numbers that have no padding between them.
-std::uint64_t sceneDigest(const Scene& scene) {
-  std::uint64_t digest = 0xcbf29ce484222325u;
-  for (const Mesh& mesh : scene.meshes) {
-    hash(digest, mesh.positions);
-    hash(digest, mesh.triangles);
-    hash(digest, mesh.triangle_materials);
-  }
-  for (const Object& object : scene.objects) {
-    hash(digest, &object.mesh, sizeof object.mesh);
-    hash(digest, &object.object_to_world, sizeof object.object_to_world);
-    hash(digest, &object.material, sizeof object.material);
-  }
-  for (const Material& material : scene.materials)
-    for (const glm::vec3& color : {material.ambient, material.diffuse, material.specular, material.emission,
-                                   glm::vec3(material.shininess, material.alpha, 0)})
-      hash(digest, &color, sizeof color);
-  for (const Camera& camera : scene.cameras) {
-    hash(digest, &camera.camera_to_world, sizeof camera.camera_to_world);
-    for (const double number : {camera.fov_y, camera.half_height, camera.near, camera.far})
-      hash(digest, &number, sizeof number);
-  }
-  for (const glm::vec3& color : {scene.background, scene.ambient, scene.fog.color, scene.fog.density,
-                                 glm::vec3(scene.fog.start, scene.fog.end, float(scene.fog.mode))})
-    hash(digest, &color, sizeof color);
-  return digest;
 }
 
 std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExperiment& experiment,

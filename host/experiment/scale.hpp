@@ -96,10 +96,6 @@ struct PointRecord {
 /// The point in one line, and its key in the log: "lights=1000 culling=tiles tile=4".
 std::string pointName(const ScaleDescription& description, const ScalePoint& point);
 
-/// A number that changes with the scene's triangles, materials, cameras, fog and ambient light, so that
-/// results of two scenes in one file, before and after a change, aren't taken for one's.
-std::uint64_t sceneDigest(const Scene& scene);
-
 class ScaleLog;
 
 /// A point that the machine can't do, and why.

@@ -38,7 +38,7 @@ std::vector<ShadeLight> shadeLights(const Scene& scene) {
   return lights;
 }
 
-double launchMilliseconds(Device& device, cl::Kernel& kernel, std::size_t items, std::size_t group) {
+double launchMilliseconds(Device& device, Kernel& kernel, std::size_t items, std::size_t group) {
   Stats stats;
   timed(stats, "launch", [&] {
     launch(device, kernel, items, group);
@@ -90,7 +90,7 @@ struct Plain {
   std::vector<ShadeLight> lights;
   std::vector<std::vector<float4>> groups;
   std::vector<cl::Buffer> buffers;
-  cl::Kernel kernel;
+  Kernel kernel;
 };
 
 /// tests/kernels/roof.cl and its arguments: as many pairs.
@@ -121,7 +121,7 @@ struct Roof {
   std::size_t rows;
   std::vector<ShadeLight> lights;
   cl::Buffer light_buffer, image;
-  cl::Kernel kernel;
+  Kernel kernel;
 };
 
 double shadeMilliseconds(Device& device, const AllPairs& pairs) {

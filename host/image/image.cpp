@@ -13,6 +13,7 @@
 #include "image/picture_file.hpp"
 #include "image/row_file.hpp"
 #include "image/srgb.hpp"
+#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -52,6 +53,8 @@ Image readImage(const std::string& path) {
   image.height = spec.height;
   image.channels = spec.channelnames;
   const std::size_t channels = image.channels.size();
+  // Codes of 16 bits may stand beside the floats.
+  requireMemory(double(spec.width) * spec.height * channels * (sizeof(float) + sizeof(std::uint16_t)), path);
   image.pixels.resize(std::size_t(spec.width) * spec.height * channels);
   if (spec.format.is_floating_point()) {
     readValues(*input, path, OIIO::TypeDesc::FLOAT, image.pixels.data());

@@ -11,6 +11,7 @@
 #include "image/build_mips.hpp"
 #include "image/oiio.hpp"
 #include "image/srgb.hpp"
+#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -75,6 +76,9 @@ Texture read(const std::string& path, const std::string& name) {
   const OIIO::ImageSpec& spec = input->spec();
   const std::array<int, 4> places = channelPlaces(spec, name);
   const bool linear = isLinear(spec);
+  // The file's values, its texels, and a third more for the mip chain.
+  requireMemory(double(spec.width) * spec.height * (spec.nchannels * sizeof(float) + 4 * sizeof(float)),
+                name);
   MipLevel finest{spec.width, spec.height, {}};
   finest.texels = linear ? texelsOfLinear(*input, name, places) : texelsOfCodes(*input, name, places);
   Texture texture{name, {}};

@@ -10,7 +10,7 @@ constexpr const char* kFile = "cull.cl";
 cl_uint asUint(std::size_t value) { return static_cast<cl_uint>(value); }
 
 /// Sets what counting and filling have in common; returns the number of the argument that follows.
-cl_uint setCommonArguments(cl::Kernel& kernel, const CullArguments& arguments) {
+cl_uint setCommonArguments(Kernel& kernel, const CullArguments& arguments) {
   cl_uint i = 0;
   kernel.setArg(i++, arguments.position);
   kernel.setArg(i++, arguments.normal);
@@ -33,13 +33,13 @@ LightLists cull(Device& device, const CullArguments& arguments) {
   const cl::Buffer found = deviceBuffer(device, found_bytes);
   lists.starts = deviceBuffer(device, (lists.tiles + 1) * sizeof(cl_uint));
 
-  cl::Kernel count_lights = makeKernel(device, kFile, "count_lights", "");
+  Kernel count_lights = makeKernel(device, kFile, "count_lights", "");
   cl_uint i = setCommonArguments(count_lights, arguments);
   count_lights.setArg(i++, found);
   count_lights.setArg(i++, lists.starts);
   launch(device, count_lights, lists.tiles, 1);
 
-  cl::Kernel scan_lists = makeKernel(device, kFile, "scan_lists", "");
+  Kernel scan_lists = makeKernel(device, kFile, "scan_lists", "");
   scan_lists.setArg(0, asUint(lists.tiles));
   scan_lists.setArg(1, lists.starts);
   launch(device, scan_lists, 1, 1);
@@ -53,7 +53,7 @@ LightLists cull(Device& device, const CullArguments& arguments) {
   lists.list = deviceBuffer(device, lists.entries * sizeof(ListEntry));
   lists.bytes = found_bytes + (lists.tiles + 1) * sizeof(cl_uint) + lists.entries * sizeof(ListEntry);
 
-  cl::Kernel fill_lists = makeKernel(device, kFile, "fill_lists", "");
+  Kernel fill_lists = makeKernel(device, kFile, "fill_lists", "");
   i = setCommonArguments(fill_lists, arguments);
   fill_lists.setArg(i++, found);
   fill_lists.setArg(i++, lists.starts);

@@ -46,7 +46,7 @@ PairBits classify(Device& device, const std::string& defines, const ClassifyArgu
         "exact shadows of more than 2^28 pairs of a tile and a light: use fewer lights or a smaller picture");
   PairBits bits(std::max<std::size_t>(entries, 1) * kPairWords);
   const cl::Buffer result = outputBuffer(device, bits.data(), bits.size() * sizeof(cl_uint));
-  cl::Kernel kernel = makeKernel(device, "classify.cl", "classify", defines);
+  Kernel kernel = makeKernel(device, "classify.cl", "classify", defines);
   kernel.setArg(0, static_cast<cl_uint>(arguments.plane_stride));
   kernel.setArg(1, arguments.position);
   kernel.setArg(2, arguments.normal);

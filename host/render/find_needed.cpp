@@ -7,7 +7,7 @@ std::vector<std::uint32_t> findNeeded(Device& device, const std::string& defines
   std::vector<std::uint32_t> needed(arguments.bin_count, kNotNeeded);
   const std::size_t bytes = needed.size() * sizeof(cl_uint);
   const cl::Buffer result = updateBuffer(device, needed.data(), bytes);
-  cl::Kernel kernel = makeKernel(device, "find_needed.cl", "find_needed", defines);
+  Kernel kernel = makeKernel(device, "find_needed.cl", "find_needed", defines);
   kernel.setArg(0, static_cast<cl_uint>(arguments.plane_stride));
   kernel.setArg(1, arguments.position);
   kernel.setArg(2, arguments.normal);

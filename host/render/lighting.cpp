@@ -85,19 +85,6 @@ PackedNormals packNormals(const GBuffer& gbuffer) {
   return packed;
 }
 
-/// `facet`, `lift`: must outlive the buffers.
-GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet,
-                             const Plane& lift, bool unlit) {
-  return {inputBuffer(device, gbuffer.position),
-          inputBuffer(device, gbuffer.normal),
-          inputBuffer(device, gbuffer.diffuse),
-          inputBuffer(device, gbuffer.specular),
-          inputBuffer(device, unlit ? gbuffer.diffuse : gbuffer.ambient),
-          inputBuffer(device, gbuffer.emission),
-          inputBuffer(device, facet),
-          inputBuffer(device, lift)};
-}
-
 LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
                       std::size_t pixels, unsigned tests) {
   return cull(device, {.position = buffers.position,
@@ -159,8 +146,8 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
 }
 
 /// How many lights have each pixel in their range.
-Plane countLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
-                  std::size_t pixels) {
+Plane lightsInRange(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
+                    std::size_t pixels) {
   const LightLists lists = cullLights(device, lighting, buffers, pixels, kByRange);
   Plane result(pixels);
   const cl::Buffer counts = outputBuffer(device, result.data(), pixels * sizeof(float));
@@ -171,6 +158,21 @@ Plane countLights(Device& device, const Lighting& lighting, const GBufferBuffers
                         .counts = counts});
   readBuffer(device, counts, result.data(), pixels * sizeof(float));
   return result;
+}
+
+/// Fills in those of the counts that are asked for. lists: that the pixels went through, null where they went
+/// through all lights.
+void countLights(Device& device, const Lighting& lighting, const LightLists* lists, const GBuffer& gbuffer,
+                 const GBufferBuffers& buffers, const PixelCounts& counts, LitPlanes& lit) {
+  const std::size_t pixels = gbuffer.pixels();
+  if (counts.in_range) lit.light_count = lightsInRange(device, lighting, buffers, pixels);
+  if (!counts.evaluated && !counts.list_length) return;
+  const std::vector<std::uint32_t> square_lengths =
+      squareLengths(device, lists, pixels / kTilePixels, lighting.frame.light_count);
+  if (counts.evaluated) lit.evaluated = evaluatedPairs(gbuffer, square_lengths, device.description.lanes);
+  if (!counts.list_length) return;
+  lit.list_length.resize(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
 }
 
 }  // namespace
@@ -251,14 +253,9 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   });
   timed(stats, "read back",
         [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
-  if (counts.in_range) lit.light_count = countLights(device, lighting, buffers, pixels);
-  const std::vector<std::uint32_t> square_lengths =
-      squareLengths(device, culled ? &lists : nullptr, pixels / kTilePixels, frame.light_count);
-  lit.evaluated = evaluatedPairs(gbuffer, square_lengths, device.description.lanes);
-  if (counts.list_length) {
-    lit.list_length.resize(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
-  }
+  if (counts.in_range || counts.evaluated || counts.list_length)
+    timed(stats, "count lights",
+          [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, counts, lit); });
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              facet.size() + lift.size() + lit.color.size();

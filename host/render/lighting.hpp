@@ -54,11 +54,12 @@ struct LitPlanes {
   LightLists lists;             ///< that it was lit by, with Feature::kLightLists
   PairBits pair_bits;           ///< of their entries, with Feature::kExact
   std::uint64_t traced = 0;     ///< pixel-light pairs whose exact shadow took a ray
-  std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through
+  std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
 };
 
 /// What lightGBuffer is to count beside.
 struct PixelCounts {
+  bool evaluated = false;    ///< LitPlanes::evaluated
   bool in_range = false;     ///< LitPlanes::light_count
   bool list_length = false;  ///< LitPlanes::list_length
 };

@@ -40,7 +40,7 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
 }
 
 int bandHeight(glm::ivec2 size, std::size_t bytes_per_pixel) {
-  const double budget = std::min(double(kBandBytes), machineMemory() / 4);
+  const double budget = std::min(double(kBandBytes), memoryRoom().bytes / 4);
   const std::size_t row = roundUp(std::size_t(size.x), kTileSize) * bytes_per_pixel;
   const std::size_t rows = std::max<std::size_t>(std::size_t(budget) / row / kBinSize, 1) * kBinSize;
   const std::size_t bands = (std::size_t(size.y) + rows - 1) / rows;

@@ -33,7 +33,7 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
                           const Scene& scene);
 
 /// The height of bands, a multiple of kBinSize: all about the same, and as few as fit kBandBytes and a
-/// quarter of the machine's memory.
+/// quarter of what memory this process may still take.
 int bandHeight(glm::ivec2 size, std::size_t bytes_per_pixel);
 
 }  // namespace luciole

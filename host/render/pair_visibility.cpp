@@ -38,7 +38,7 @@ std::vector<float> pairVisibility(Device& device, const std::string& defines, co
   const cl::Buffer result = outputBuffer(device, seen.data(), slots * sizeof(float));
   const cl::Buffer map_buffer = inputBuffer(device, map_of_row), maps = inputBuffer(device, shadows.maps),
                    faces = inputBuffer(device, shadows.faces), texels = inputBuffer(device, shadows.texels);
-  cl::Kernel kernel = makeKernel(device, "pair_visibility.cl", "pair_visibility", defines);
+  Kernel kernel = makeKernel(device, "pair_visibility.cl", "pair_visibility", defines);
   kernel.setArg(0, static_cast<cl_uint>(slots));
   kernel.setArg(1, position);
   kernel.setArg(2, normal);

@@ -75,9 +75,10 @@ void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
   stats.counts.emplace_back(name, count);
 }
 
-void countPass(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
+/// counted: whether the pairs were.
+void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
-  addCount(stats, "pixel_lights_evaluated", lit.evaluated);
+  if (counted) addCount(stats, "pixel_lights_evaluated", lit.evaluated);
   addCount(stats, "list_entries", lit.list_entries);
   if (lit.traced > 0) addCount(stats, "shadow_rays", lit.traced);
   if (lit.light_count.empty()) return;
@@ -119,12 +120,14 @@ void awaitKernels(std::future<double>& compiling, Device& device, Stats& stats) 
   const double milliseconds = timed(stats, "wait for kernels", [&] { return compiling.get(); });
   addStage(stats, "compile kernels", milliseconds);
   addStage(stats, "open device", std::exchange(device.milliseconds_to_open, 0));
+  stats.beside = {"compile kernels", "open device"};
   stats.device = device.description;
 }
 
 /// Layers are the first sample's, statistics all samples'.
 PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
-  return {.in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
+  return {.evaluated = settings.count_lights,
+          .in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
           .list_length = sample == 0 && wants(settings, Aov::kListLength)};
 }
 
@@ -163,7 +166,7 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
     gbuffer.camera = settings.camera;
     LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
                                  wantedCounts(settings, sample), stats);
-    countPass(gbuffer, lit, stats);
+    countPass(gbuffer, lit, settings.count_lights, stats);
     timed(stats, "resolve", [&] {
       if (sample == 0) {
         picture = startPicture(gbuffer, lit, settings);
@@ -218,10 +221,12 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
   stats.samples = settings.samples;
+  const std::size_t pixel_bytes = bytesPerPixel(settings, prepared.planes, prepared.features, scene);
   const int height =
-      settings.band_height > 0
-          ? settings.band_height
-          : bandHeight(view.crop_size, bytesPerPixel(settings, prepared.planes, prepared.features, scene));
+      settings.band_height > 0 ? settings.band_height : bandHeight(view.crop_size, pixel_bytes);
+  const int tallest = std::min(height, view.crop_size.y);
+  requireMemory(double(pixel_bytes) * view.crop_size.x * tallest,
+                fmt::format("a band of {}x{} pixels", view.crop_size.x, tallest));
   Progress progress{settings.on_pass, (view.crop_size.y + height - 1) / height * settings.samples};
   RasterCounts triangles;
   View band = view;
@@ -253,7 +258,8 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   requireMemory(double(kGBufferBytesPerPixel) * view.crop_size.x * view.crop_size.y,
                 fmt::format("a G-buffer of {}x{} pixels", view.crop_size.x, view.crop_size.y));
-  const std::vector<std::uint32_t> objects = objectsInSight(scene, view, settings.exposure, settings.shade.model);
+  const std::vector<std::uint32_t> objects =
+      objectsInSight(scene, view, settings.exposure, settings.shade.model);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
@@ -292,7 +298,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   stats.height = gbuffer.height;
   const LitPlanes lit =
       lightGBuffer(device, scene, lighting, features, gbuffer, wantedCounts(settings, 0), stats);
-  countPass(gbuffer, lit, stats);
+  countPass(gbuffer, lit, settings.count_lights, stats);
   countShadows(lighting.host_shadows, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;

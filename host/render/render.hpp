@@ -37,7 +37,8 @@ struct RenderSettings {
   ShadeSettings shade;
   std::vector<Aov> aovs;      ///< of the first sample
   float exposure = 0;         ///< stops: colours are multiplied by 2^exposure
-  bool count_lights = false;  ///< also count the lights in range of every pixel, for the statistics
+  /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
+  bool count_lights = false;
   /// Rows that are rendered at a time; 0: as bandHeight() says. The picture is the same.
   int band_height = 0;
   std::function<void(int done, int passes)> on_pass;  ///< called after each sample of each band, if set

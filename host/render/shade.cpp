@@ -10,8 +10,22 @@ std::size_t rowsPerTile(const Device& device) {
 
 }  // namespace
 
+GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet,
+                            const Plane& lift, bool unlit) {
+  // One buffer for both: what two do to the same host memory, OpenCL leaves undefined.
+  const cl::Buffer diffuse = inputBuffer(device, gbuffer.diffuse);
+  return {inputBuffer(device, gbuffer.position),
+          inputBuffer(device, gbuffer.normal),
+          diffuse,
+          inputBuffer(device, gbuffer.specular),
+          unlit ? diffuse : inputBuffer(device, gbuffer.ambient),
+          inputBuffer(device, gbuffer.emission),
+          inputBuffer(device, facet),
+          inputBuffer(device, lift)};
+}
+
 void shade(Device& device, const std::string& defines, const ShadeArguments& arguments) {
-  cl::Kernel kernel = makeKernel(device, "shade.cl", "shade", defines);
+  Kernel kernel = makeKernel(device, "shade.cl", "shade", defines);
   kernel.setArg(0, arguments.frame);
   kernel.setArg(1, arguments.gbuffer.position);
   kernel.setArg(2, arguments.gbuffer.normal);
@@ -36,7 +50,7 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
 }
 
 void countInRange(Device& device, const CountInRangeArguments& arguments) {
-  cl::Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", "");
+  Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", "");
   kernel.setArg(0, arguments.position);
   kernel.setArg(1, static_cast<cl_uint>(arguments.plane_stride));
   kernel.setArg(2, arguments.lights);

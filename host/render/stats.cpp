@@ -1,5 +1,6 @@
 #include "render/stats.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cl/kernel_cache.hpp"
@@ -16,6 +17,14 @@ void addStage(Stats& stats, const std::string& name, double milliseconds) {
   stats.stages.emplace_back(name, milliseconds);
 }
 
+double ownShare(const Stats& stats, const std::pair<std::string, double>& stage) {
+  const bool is_beside =
+      std::find(stats.beside.begin(), stats.beside.end(), stage.first) != stats.beside.end();
+  return is_beside ? 0 : stage.second;
+}
+
+double pictureMilliseconds(const Stats& stats) { return millisecondsSinceStart() - stats.began; }
+
 std::string statsJson(const Stats& stats) {
   nlohmann::ordered_json json;
   json["version"] = LUCIOLE_VERSION;
@@ -29,8 +38,10 @@ std::string statsJson(const Stats& stats) {
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();
-  for (const auto& [name, milliseconds] : stats.stages) {
-    json["stages"].push_back({{"name", name}, {"milliseconds", milliseconds}});
+  for (const auto& stage : stats.stages) {
+    const auto& [name, milliseconds] = stage;
+    json["stages"].push_back(
+        {{"name", name}, {"milliseconds", milliseconds}, {"wall_milliseconds", ownShare(stats, stage)}});
     if (name == "open device" || name == "compile kernels") cold_start += milliseconds;
   }
   json["counts"] = nlohmann::ordered_json::object();
@@ -41,6 +52,7 @@ std::string statsJson(const Stats& stats) {
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;
   if (!compiled) json["reasons"]["kernels_compiled"] = "only PoCL tells";
+  json["picture_milliseconds"] = pictureMilliseconds(stats);
   json["wall_milliseconds"] = millisecondsSinceStart();
   return json.dump(2) + "\n";
 }

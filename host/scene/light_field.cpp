@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "machine_memory.hpp"
 #include "scene/light_places.hpp"
 #include "scene/light_range.hpp"
 #include "scene/random.hpp"
@@ -86,6 +87,9 @@ void expandLightField(const LightField& field, Scene& scene) {
     throw InputError(fmt::format("light field: {} lights and {} more; a scene may have {} at most",
                                  lights.size(), field.count, kMostLights));
   }
+  // A light and its place.
+  requireMemory(double(field.count) * (sizeof(Light) + sizeof(glm::dvec3)),
+                fmt::format("a light field of {} lights", field.count));
   try {
     lights.reserve(lights.size() + field.count);
     appendLights(field, lightPlaces(field, scene), lights);

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "error.hpp"
+#include "machine_memory.hpp"
 
 namespace luciole {
 
@@ -20,7 +21,10 @@ std::string readFile(const std::string& path) {
   std::string bytes;
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);  // pipes have none
-  if (!no_size) bytes.reserve(size);
+  if (!no_size) {
+    requireMemory(double(size), path);
+    bytes.reserve(size);
+  }
   char block[1 << 16];
   while (file.read(block, sizeof block) || file.gcount() > 0) bytes.append(block, file.gcount());
   if (file.bad()) throw InputError(path + ": can't be read to its end");

@@ -1,7 +1,13 @@
 #include "cl/device.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <bit>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cl/kernel_source.hpp"
 #include "error.hpp"
@@ -144,6 +150,48 @@ TEST(MakeKernel, ProgramsAreBuiltOnceADevice) {
   EXPECT_EQ(device.programs.size(), 1u);
   makeKernelFromSource(device, source, "probe", "-DVALUE=2");
   EXPECT_EQ(device.programs.size(), 2u);
+}
+
+TEST(MakeKernel, ARefusedArgumentIsToldWithKernelNumberAndTheErrorsName) {
+  Device device;
+  openDevice("", device);
+  Kernel kernel = makeKernelFromSource(
+      device, "__kernel void probe(__global float *out, uint count) { *out = count; }\n", "probe", "");
+  kernel.setArg(1, cl_uint(3));
+  for (const auto& [number, error] :
+       {std::pair(cl_uint(2), "CL_INVALID_ARG_INDEX"), {1, "CL_INVALID_ARG_SIZE"}}) {
+    const std::string message = messageOf<MachineError>([&] { kernel.setArg(number, cl_double(3)); });
+    EXPECT_THAT(message, HasSubstr(fmt::format("kernel 'probe', argument {}: clSetKernelArg", number)));
+    EXPECT_THAT(message, HasSubstr(error));
+    EXPECT_THAT(message, HasSubstr(device.description.name));
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(Launch, WhatTheDeviceRefusesIsToldWithTheKernel) {
+  Device device;
+  openDevice("", device);
+  Kernel kernel =
+      makeKernelFromSource(device, "__kernel void probe(__global float *out) { *out = 1; }\n", "probe", "");
+  // Without its argument.
+  EXPECT_THAT(messageOf<MachineError>([&] { launch(device, kernel, 1, 1); }),
+              testing::AllOf(HasSubstr("kernel 'probe'"), HasSubstr("CL_INVALID_KERNEL_ARGS")));
+}
+
+TEST(Launch, GroupsGetNoLargerThanTheDeviceTakes) {
+  Device device;
+  openDevice("", device);
+  const std::string text =
+      "__kernel void probe(__global uint *out) { out[get_global_id(0)] = get_local_size(0); }\n";
+  Kernel kernel = makeKernelFromSource(device, text, "probe", "");
+  const std::size_t most = device.device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>(),
+                    items = std::bit_ceil(8 * most);
+  const cl::Buffer sizes = deviceBuffer(device, items * sizeof(cl_uint));
+  kernel.setArg(0, sizes);
+  launch(device, kernel, items, items);
+  std::vector<cl_uint> back(items);
+  readBuffer(device, sizes, back.data(), items * sizeof(cl_uint));
+  EXPECT_EQ(back, std::vector<cl_uint>(items, cl_uint(std::bit_floor(most))));
 }
 
 TEST(KernelSource, IncludesAppearOnceAndLinesKeepTheirNumbers) {

@@ -37,6 +37,9 @@ __kernel void report_shadow_map(__global uint *out) {
   *out++ = OFFSET(kind);
   *out++ = OFFSET(first_face);
   *out++ = OFFSET(face_count);
+  *out++ = OFFSET(spread);
+  *out++ = OFFSET(reach);
+  *out++ = OFFSET(pad);
 }
 
 __kernel void report_shadow_face(__global uint *out) {
@@ -51,6 +54,9 @@ __kernel void report_shadow_face(__global uint *out) {
   *out++ = OFFSET(width);
   *out++ = OFFSET(first_bin);
   *out++ = OFFSET(bins);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+  *out++ = OFFSET(pad2);
 }
 
 __kernel void report_shadow_texel(__global uint *out) {

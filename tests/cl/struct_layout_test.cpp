@@ -20,7 +20,7 @@ std::vector<cl_uint> report(const char* kernel_name, std::size_t count, const Ar
   text << file.rdbuf();
   Device device;
   openDevice("", device);
-  cl::Kernel kernel =
+  Kernel kernel =
       makeKernelFromSource(device, expandKernelSource("struct_layout.cl", text.str()), kernel_name, "");
   const cl::Buffer out = deviceBuffer(device, count * sizeof(cl_uint));
   kernel.setArg(0, out);
@@ -55,7 +55,8 @@ TEST(StructLayout, ShadowMap) {
       "report_shadow_map",
       {sizeof(ShadowMap), offsetof(ShadowMap, to_map_x), offsetof(ShadowMap, to_map_y),
        offsetof(ShadowMap, to_map_z), offsetof(ShadowMap, depth_scale), offsetof(ShadowMap, depth_offset),
-       offsetof(ShadowMap, kind), offsetof(ShadowMap, first_face), offsetof(ShadowMap, face_count)});
+       offsetof(ShadowMap, kind), offsetof(ShadowMap, first_face), offsetof(ShadowMap, face_count),
+       offsetof(ShadowMap, spread), offsetof(ShadowMap, reach), offsetof(ShadowMap, pad)});
 }
 
 TEST(StructLayout, ShadowFace) {
@@ -63,7 +64,8 @@ TEST(StructLayout, ShadowFace) {
                {sizeof(ShadowFace), offsetof(ShadowFace, scale), offsetof(ShadowFace, middle_x),
                 offsetof(ShadowFace, middle_y), offsetof(ShadowFace, low), offsetof(ShadowFace, high),
                 offsetof(ShadowFace, first), offsetof(ShadowFace, width), offsetof(ShadowFace, first_bin),
-                offsetof(ShadowFace, bins)});
+                offsetof(ShadowFace, bins), offsetof(ShadowFace, pad0), offsetof(ShadowFace, pad1),
+                offsetof(ShadowFace, pad2)});
 }
 
 TEST(StructLayout, ShadowTexel) {

@@ -4,8 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 
 #include "cli/run_program.hpp"
 #include "image/image.hpp"
@@ -69,6 +73,19 @@ TEST_F(CommandLine, CullingNeverChangesThePicture) {
     succeed(fmt::format(
         "luciole render scene.json --tile {} -o a.exr && luciole compare a.exr none.exr --max-abs 0", tile));
   EXPECT_EQ(runLine(folder, "luciole render scene.json --tile 5 -o b.exr").status, 2);
+}
+
+TEST_F(CommandLine, ADeviceOfSmallWorkGroupsMakesTheSamePicture) {
+  // A lane a pixel wants groups of 256, PoCL takes 4096 unless it is told to take fewer.
+  for (const char* lanes : {"1", "4", "16"}) {
+    const std::string render =
+        fmt::format("render scene.json --device ,lanes={} --stats stats.json -o ", lanes);
+    succeed("luciole " + render + "usual.exr");
+    for (const char* most : {"64", "1"})
+      succeed(fmt::format("POCL_MAX_WORK_GROUP_SIZE={} '" LUCIOLE_BINARY
+                          "' {} small.exr && luciole compare usual.exr small.exr --max-abs 0",
+                          most, render));
+  }
 }
 
 TEST_F(CommandLine, ShadingAGBufferFileEqualsRenderingBitForBit) {
@@ -170,6 +187,56 @@ TEST_F(CommandLine, StatsNameEveryStageAndCount) {
   EXPECT_GE(counts["pixel_lights_in_range"], 2 * counts["pixels_lit"].get<int>());
   EXPECT_GT(counts["list_entries"], 0);
   EXPECT_GT(stats["memory"]["peak_bytes"], 0);
+}
+
+/// What the line about a finished picture says of time: "… lights, 123 ms (load scene 4, shade 56)".
+struct PrintedTime {
+  double picture = -1, stages = 0;
+};
+
+PrintedTime printedTime(const std::string& line) {
+  PrintedTime time;
+  const std::size_t unit = line.find(" ms");
+  if (unit == std::string::npos) return time;
+  time.picture = std::stod(line.substr(line.rfind(", ", unit) + 2));
+  std::string stages = line.substr(unit + 3);
+  std::replace_if(
+      stages.begin(), stages.end(), [](char c) { return c == ',' || c == ')'; }, ' ');
+  std::istringstream words(stages);
+  for (std::string word; words >> word;)
+    if (std::isdigit(static_cast<unsigned char>(word[0]))) time.stages += std::stod(word);
+  return time;
+}
+
+TEST_F(CommandLine, PrintedTimeIsTheClocksAndNoLessThanItsStagesShares) {
+  // Kernels are compiled in a thread of their own, and the cache has none of these: that takes most of the
+  // time.
+  for (const std::string options : {"", "--shading gouraud --samples 2"}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome =
+        runLine(folder, "POCL_CACHE_DIR=cache" + std::to_string(options.size()) +
+                            " '" LUCIOLE_BINARY "' render scene.json -o a.png --stats stats.json " + options);
+    const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - start;
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const PrintedTime time = printedTime(outcome.err);
+    EXPECT_GT(time.stages, 0) << outcome.err;
+    EXPECT_LE(time.stages, time.picture) << outcome.err;
+    // The system tells when a process started in steps of 10 ms.
+    EXPECT_LE(time.picture, passed.count() + 10) << outcome.err;
+
+    const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
+    double shares = 0, all = 0;
+    for (const auto& stage : stats["stages"]) {
+      EXPECT_TRUE(stage["name"].is_string());
+      EXPECT_LE(stage["wall_milliseconds"], stage["milliseconds"]);
+      shares += stage["wall_milliseconds"].get<double>();
+      all += stage["milliseconds"].get<double>();
+    }
+    EXPECT_LE(shares, stats["picture_milliseconds"]);
+    EXPECT_LT(shares, all) << "compiling, which ran beside others, is a stage as well";
+    EXPECT_LE(stats["picture_milliseconds"], stats["wall_milliseconds"]);
+    EXPECT_LE(stats["wall_milliseconds"], passed.count() + 10);
+  }
 }
 
 TEST_F(CommandLine, ObjectsBehindTheFogAreCountedAndLeftOut) {

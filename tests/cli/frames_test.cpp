@@ -276,6 +276,21 @@ TEST_F(Frames, StatisticsAreOneFileAFrame) {
   }
 }
 
+TEST_F(Frames, StatisticsTellEachFramesOwnTime) {
+  succeed("luciole render scene.json --frames 1-3 -o f.#.png --stats cost.#.json");
+  double frames = 0;
+  for (const char* name : {"cost.1.json", "cost.2.json", "cost.3.json"}) {
+    const nlohmann::json stats = nlohmann::json::parse(readText(folder / name));
+    double shares = 0;
+    for (const auto& stage : stats["stages"]) shares += stage["wall_milliseconds"].get<double>();
+    const double frame = stats["picture_milliseconds"];
+    EXPECT_LE(shares, frame) << name;
+    // The first frame's time begins with the process, and each other's where the one before has ended.
+    frames += frame;
+    EXPECT_LE(frames, stats["wall_milliseconds"]) << name;
+  }
+}
+
 TEST_F(Frames, WhatCannotBeMeantIsRefused) {
   for (const char* frames : {"a", "", "1-", "-3", "5-4", "1-2-3", "1.5", "1-99999999999", "10000000", "1,",
                              ",1", "1,,2", "1-9x0", "1-9x", "1x2", "1-9x-1", "1-9x2x2", "9-1x2", "1, 2"})

@@ -1,4 +1,5 @@
 // `luciole reference`, as a person would type it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -72,6 +73,38 @@ TEST_F(ReferenceCommand, GrowsCropByCrop) {
   // A part of another picture is not added to this one, but replaces it.
   expectDone("luciole reference scene.json --model blinn-phong --crop 0,0,96,10 -o parts.exr");
   EXPECT_EQ(readImage(folder / "parts.exr").height, 10);
+}
+
+TEST_F(ReferenceCommand, APartOfAnotherStateOfATextureOrMeshIsNotGrownButReplaced) {
+  const auto writeTexture = [&](float red) {
+    writeImage({2, 2, {"R", "G", "B"}, {red, 0, 0, 0, red, 0, 0, 0, red, red, red, red}}, folder / "map.png",
+               {});
+  };
+  const auto writeMesh = [&](double height) {
+    writeText(folder / "roof.obj",
+              fmt::format("v -1 0 0\nv 1 0 0\nv 0 {} 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n", height));
+  };
+  writeTexture(1);
+  writeMesh(1);
+  writeText(folder / "parts.json",
+            R"({"camera": {"eye": [0, 0.5, 3], "target": [0, 0.5, 0]}, "size": [32, 20],
+    "materials": {"m": {"diffuse_map": "map.png"}}, "objects": [{"mesh": "roof.obj", "material": "m"}],
+    "lights": [{"type": "directional", "direction": [0, 0, -1]}]})");
+  const auto heightAfter = [&](const std::string& crop) {
+    expectDone("luciole reference parts.json --crop " + crop + " -o parts.exr");
+    return readImage(folder / "parts.exr").height;
+  };
+  EXPECT_EQ(heightAfter("0,0,32,5"), 5);
+  EXPECT_EQ(heightAfter("0,5,32,5"), 10);
+  writeTexture(0.5);
+  EXPECT_EQ(heightAfter("0,10,32,5"), 5) << "the rest shows another texture";
+  EXPECT_EQ(heightAfter("0,5,32,5"), 10);
+  writeMesh(1.5);
+  EXPECT_EQ(heightAfter("0,0,32,5"), 5) << "the rest shows another mesh";
+  // What was written again and is the same is the same.
+  writeMesh(1.5);
+  writeTexture(0.5);
+  EXPECT_EQ(heightAfter("0,5,32,5"), 10);
 }
 
 TEST_F(ReferenceCommand, SomePixelsAreThoseOfTheWhole) {

@@ -254,8 +254,8 @@ Crowd crowd(int count, bool equal) {
 }
 
 // Added one by one, N equal lights round N times at the size of the sum so far: up to N/2 units, and as all
-// round alike, really so: a million of these come out 1.3 % too dark. In blocks of 64 whose sums are added
-// without error the growth ends: see finish_sum in kernels/long_sum.clh.
+// round alike, really so: a million of these come out 1.3 % too dark. In blocks of kSumBlock whose sums are
+// added without error the growth ends: see finish_sum in kernels/long_sum.clh.
 TEST(HardLights, MillionLightsAddUpLikeOneAMillionTimesAsBright) {
   std::vector<SurfaceSeen> points;
   for (const SurfaceSeen& seen : bumpyWall())

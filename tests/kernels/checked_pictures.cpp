@@ -81,7 +81,7 @@ void lightPicture(unsigned number) {
 void makeMistake(const char* mistake) {
   Device device;
   openChecked(1, device);
-  cl::Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), mistake, "");
+  Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), mistake, "");
   const cl::Buffer values = deviceBuffer(device, 16 * sizeof(float));
   kernel.setArg(0, values);
   launch(device, kernel, 16, 16);

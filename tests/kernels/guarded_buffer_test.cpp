@@ -16,7 +16,7 @@ namespace {
 bool intactAfterWriteAt(int place) {
   Device& device = deviceWithLanes(1);
   const GuardedBuffer values(device, 16 * sizeof(float));
-  cl::Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "write_at", "");
+  Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "write_at", "");
   kernel.setArg(0, values.buffer());
   kernel.setArg(1, cl_int(place));
   launch(device, kernel, 1, 1);
@@ -34,7 +34,7 @@ TEST(GuardedBuffer, ReadsPastTheEndAreNaN) {
   const GuardedBuffer values(device, bytesOf(ones));
   std::vector<float> found(1);
   const GuardedBuffer output(device, sizeof(float));
-  cl::Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "read_at", "");
+  Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "read_at", "");
   for (const int place : {-1, 0, 15, 16}) {
     kernel.setArg(0, values.buffer());
     kernel.setArg(1, output.buffer());

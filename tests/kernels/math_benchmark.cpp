@@ -27,7 +27,7 @@ void timeKernel(benchmark::State& state, const char* kernel_name, const std::vec
     for (std::size_t i = 0; i < kBlock; ++i) block.push_back(column[i * column.size() / kBlock]);
   const cl::Buffer input = inputBuffer(device(), block),
                    sums = deviceBuffer(device(), kItems * device().description.lanes * sizeof(float));
-  cl::Kernel kernel = makeKernelFromSource(device(), probeSource("math_benchmark.cl"), kernel_name, defines);
+  Kernel kernel = makeKernelFromSource(device(), probeSource("math_benchmark.cl"), kernel_name, defines);
   kernel.setArg(0, input);
   kernel.setArg(1, sums);
   kernel.setArg(2, static_cast<cl_uint>(kBlock));

@@ -77,7 +77,7 @@ inline std::vector<Column> probe(Device& device, const std::string& file, const 
   buffers.emplace_back(device, bytesOf(columns));
   const GuardedBuffer& output = buffers.emplace_back(device, output_bytes);
   for (const std::span<const std::byte> bytes : more) buffers.emplace_back(device, bytes);
-  cl::Kernel kernel = makeKernelFromSource(device, probeSource(file), name, defines);
+  Kernel kernel = makeKernelFromSource(device, probeSource(file), name, defines);
   kernel.setArg(0, buffers[0].buffer());
   kernel.setArg(1, output.buffer());
   kernel.setArg(2, static_cast<cl_uint>(stride));

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
 
 #include "error.hpp"
 #include "reference/reference.hpp"
@@ -58,6 +61,30 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
   }
 }
 
+/// A count of the statistics; empty where nobody counted.
+std::optional<std::uint64_t> countNamed(const Stats& stats, const std::string& name) {
+  for (const auto& [known, count] : stats.counts)
+    if (known == name) return count;
+  return std::nullopt;
+}
+
+TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {
+  const Scene scene = sceneFromJson(kScene);
+  RenderSettings settings;
+  settings.size = {64, 48};
+  settings.camera = scene.cameras.front();
+  for (const bool asked : {false, true}) {
+    settings.count_lights = asked;
+    Stats stats;
+    renderScene(testDevice(), scene, settings, stats);
+    EXPECT_EQ(countNamed(stats, "pixel_lights_evaluated").has_value(), asked);
+    EXPECT_EQ(countNamed(stats, "pixel_lights_in_range").has_value(), asked);
+    EXPECT_EQ(std::any_of(stats.stages.begin(), stats.stages.end(),
+                          [](const auto& stage) { return stage.first == "count lights"; }),
+              asked);
+  }
+}
+
 TEST(Render, ListLengthLayerHoldsWhatIsEvaluatedAndAtLeastWhatIsInRange) {
   const Scene scene = sceneFromJson(R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
     "objects": [{"primitive": "plane", "rotate": [90, 0, 0], "scale": 20}],
@@ -70,6 +97,7 @@ TEST(Render, ListLengthLayerHoldsWhatIsEvaluatedAndAtLeastWhatIsInRange) {
       settings.aovs = {Aov::kLightCount, Aov::kListLength};
       settings.shade.culling = culling;
       settings.shade.tile_size = tile;
+      settings.count_lights = true;
       Stats stats;
       const Image image = renderScene(testDevice(), scene, settings, stats);
       double evaluated = 0, largest = 0;
@@ -79,9 +107,7 @@ TEST(Render, ListLengthLayerHoldsWhatIsEvaluatedAndAtLeastWhatIsInRange) {
         evaluated += length;
         largest = std::max<double>(largest, length);
       }
-      for (const auto& [name, count] : stats.counts) {
-        if (name == "pixel_lights_evaluated") EXPECT_EQ(double(count), evaluated);
-      }
+      EXPECT_EQ(countNamed(stats, "pixel_lights_evaluated"), evaluated);
       if (culling == Culling::kNone) {
         EXPECT_EQ(evaluated, 60.0 * 64 * 48);
       } else {

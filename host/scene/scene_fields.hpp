@@ -1,0 +1,111 @@
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "scene/scene.hpp"
+
+// What walks a scene field by field. Each function below names all members of one plain struct by a
+// structured binding, so a struct that gets a member doesn't compile here until it is named too.
+namespace luciole {
+
+template <class T, class Struct>
+concept Is = std::same_as<std::remove_const_t<T>, Struct>;
+
+/// Calls `visit` once, with all members of a struct that a scene is made of.
+template <Is<TextureUse> T, class Visit>
+void withFields(T& use, Visit&& visit) {
+  auto& [texture, wrap_u, wrap_v] = use;
+  visit(texture, wrap_u, wrap_v);
+}
+template <Is<Material> T, class Visit>
+void withFields(T& material, Visit&& visit) {
+  auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
+         alpha_cutoff, double_sided, colored_emission] = material;
+  visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
+        alpha_cutoff, double_sided, colored_emission);
+}
+template <Is<Mesh> T, class Visit>
+void withFields(T& mesh, Visit&& visit) {
+  auto& [name, positions, normals, uvs, emission_uvs, colors, triangles, triangle_materials, divided] = mesh;
+  visit(name, positions, normals, uvs, emission_uvs, colors, triangles, triangle_materials, divided);
+}
+template <Is<Object> T, class Visit>
+void withFields(T& object, Visit&& visit) {
+  auto& [mesh, object_to_world, material] = object;
+  visit(mesh, object_to_world, material);
+}
+template <Is<Light> T, class Visit>
+void withFields(T& light, Visit&& visit) {
+  auto& [kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
+         inner_cone, exponent, shadow, radius, half_angle] = light;
+  visit(kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
+        inner_cone, exponent, shadow, radius, half_angle);
+}
+template <Is<Fog> T, class Visit>
+void withFields(T& fog, Visit&& visit) {
+  auto& [mode, radial, density, start, end, color] = fog;
+  visit(mode, radial, density, start, end, color);
+}
+template <Is<Camera> T, class Visit>
+void withFields(T& camera, Visit&& visit) {
+  auto& [name, camera_to_world, orthographic, fov_y, half_height, near, far] = camera;
+  visit(name, camera_to_world, orthographic, fov_y, half_height, near, far);
+}
+template <Is<MipLevel> T, class Visit>
+void withFields(T& level, Visit&& visit) {
+  auto& [width, height, texels] = level;
+  visit(width, height, texels);
+}
+template <Is<Texture> T, class Visit>
+void withFields(T& texture, Visit&& visit) {
+  auto& [name, levels, alpha_varies] = texture;
+  visit(name, levels, alpha_varies);
+}
+template <Is<CurveKey> T, class Visit>
+void withFields(T& key, Visit&& visit) {
+  auto& [frame, value, slope_in, slope_out] = key;
+  visit(frame, value, slope_in, slope_out);
+}
+template <Is<Curve> T, class Visit>
+void withFields(T& curve, Visit&& visit) {
+  auto& [interpolation, keys] = curve;
+  visit(interpolation, keys);
+}
+template <Is<MovingNode> T, class Visit>
+void withFields(T& node, Visit&& visit) {
+  auto& [parent, before, translate, rotate, quaternion, scale] = node;
+  visit(parent, before, translate, rotate, quaternion, scale);
+}
+template <Is<Hanging> T, class Visit>
+void withFields(T& hanging, Visit&& visit) {
+  auto& [index, node, after, mesh] = hanging;
+  visit(index, node, after, mesh);
+}
+template <Is<CameraMotion> T, class Visit>
+void withFields(T& motion, Visit&& visit) {
+  auto& [camera, orbits, eye, target, up, fov_y] = motion;
+  visit(camera, orbits, eye, target, up, fov_y);
+}
+template <Is<LightMotion> T, class Visit>
+void withFields(T& motion, Visit&& visit) {
+  auto& [light, position, direction, target, color, intensity, range, ambient, diffuse, specular,
+         own_intensity] = motion;
+  visit(light, position, direction, target, color, intensity, range, ambient, diffuse, specular,
+        own_intensity);
+}
+template <Is<Animation> T, class Visit>
+void withFields(T& animation, Visit&& visit) {
+  auto& [frame_rate, curves, nodes, objects, hanging_cameras, hanging_lights, cameras, lights, no_mesh] =
+      animation;
+  visit(frame_rate, curves, nodes, objects, hanging_cameras, hanging_lights, cameras, lights, no_mesh);
+}
+template <Is<Scene> T, class Visit>
+void withFields(T& scene, Visit&& visit) {
+  auto& [name, warnings, missing_textures, textures, materials, meshes, objects, lights, cameras, size, background,
+         ambient, fog, says_light, lighting, animation] = scene;
+  visit(name, warnings, missing_textures, textures, materials, meshes, objects, lights, cameras, size, background,
+        ambient, fog, says_light, lighting, animation);
+}
+
+}  // namespace luciole

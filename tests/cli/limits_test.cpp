@@ -1,0 +1,166 @@
+// The program where memory is limited, by ulimit or a control group: it does its work or says in one line
+// what it needs, and ends with status 3.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "cli/run_program.hpp"
+
+namespace luciole::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+/// The sanitizers' own memory, terabytes of addresses, can't be limited.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kCanLimit = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool kCanLimit = false;
+#else
+constexpr bool kCanLimit = true;
+#endif
+#else
+constexpr bool kCanLimit = true;
+#endif
+
+class Limits : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!kCanLimit) GTEST_SKIP() << "sanitizers take more addresses than any limit leaves";
+    writeText(folder / "scene.json", kSmallScene);
+  }
+
+  /// Runs the line, and expects success without a word, or status 3 and one line. Returns the status.
+  int expectDoneOrRefused(const std::string& line) {
+    const Outcome outcome = runLine(folder, line);
+    EXPECT_THAT(outcome.status, AnyOf(0, 3)) << line << "\n" << outcome.err;
+    if (outcome.status == 0) {
+      EXPECT_EQ(outcome.err, "") << line;
+    } else {
+      EXPECT_TRUE(isOneLine(outcome.err)) << line << "\n" << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr("memory")) << line;
+      for (const auto& entry : fs::directory_iterator(folder.path()))
+        EXPECT_THAT(entry.path().filename().string(), Not(testing::StartsWith("out"))) << line;
+    }
+    fs::remove(folder / "out.png");
+    fs::remove(folder / "out.exr");
+    return outcome.status;
+  }
+
+  TemporaryFolder folder;
+};
+
+/// MiB from too little to enough; below the first the system can't even start the program.
+constexpr int kSteps[] = {160, 240, 320, 400, 480, 540, 600, 660, 720, 800, 900, 1100, 1400};
+
+TEST_F(Limits, OfAddressesLetTheProgramWorkOrEndInOneLine) {
+  for (const char* command :
+       {"render scene.json --quiet -o out.png", "reference scene.json --quiet -o out.exr"})
+    for (const int mebibytes : kSteps)
+      expectDoneOrRefused(fmt::format("ulimit -v {} && luciole {}", mebibytes * 1024, command));
+}
+
+TEST_F(Limits, OfDataLetTheProgramWorkOrEndInOneLine) {
+  for (const int mebibytes : {8, 32, 64, 128, 192, 256, 320, 400, 600})
+    expectDoneOrRefused(
+        fmt::format("ulimit -d {} && luciole render scene.json --quiet -o out.png", mebibytes * 1024));
+}
+
+/// MiB of addresses with which the program starts, and a little more for its work.
+int enoughAddresses() { return 1000 + 16 * int(std::thread::hardware_concurrency()); }
+
+TEST_F(Limits, WhatIsNeededAndWhatMayBeUsedIsTold) {
+  const std::string limit = fmt::format("ulimit -v {} && ", enoughAddresses() * 1024);
+  for (const char* command :
+       {"luciole gbuffer scene.json --size 8192x8192 -o out.exr",
+        "luciole reference scene.json --size 8192x8192 -o out.exr",
+        "luciole render scene.json --size 65536x64 --samples 2 --aov "
+        "position,normal,depth,diffuse,material,light_count,shadow -o out.exr",
+        "luciole generate lights --count 9000000 --min 0,0,0 --max 1,1,1 -o out.json"}) {
+    const Outcome outcome = runLine(folder, limit + command);
+    EXPECT_EQ(outcome.status, 3) << command << outcome.err;
+    EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(" needs "), HasSubstr("may use "), HasSubstr("ulimit -v")))
+        << command;
+  }
+}
+
+TEST_F(Limits, WithLittleMemoryBandsAreSmallerAndThePictureIsTheSame) {
+  const std::string picture = "render scene.json --size 1600x1200 --quiet";
+  ASSERT_EQ(runLine(folder, "luciole " + picture + " -o usual.exr").status, 0);
+  const Outcome outcome = runLine(
+      folder, fmt::format("ulimit -v {} && luciole {} -o little.exr", enoughAddresses() * 1024, picture));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(runLine(folder, "luciole compare usual.exr little.exr --max-abs 0").status, 0);
+}
+
+/// A control group of this test's own with a limit of memory, gone at its end.
+class ControlGroup {
+ public:
+  explicit ControlGroup(long mebibytes) {
+    std::error_code none;
+    for (const auto& [mount, limit] : {std::pair("/sys/fs/cgroup/memory", "memory.limit_in_bytes"),
+                                       std::pair("/sys/fs/cgroup", "memory.max")}) {
+      const fs::path group = fs::path(mount) / fmt::format("luciole-test-{}-{}", getpid(), mebibytes);
+      if (!fs::create_directory(group, none)) continue;
+      std::ofstream limit_file(group / limit);
+      limit_file << (mebibytes << 20) << std::flush;
+      if (limit_file.good()) {
+        path_ = group;
+        return;
+      }
+      fs::remove(group, none);
+    }
+  }
+  ~ControlGroup() {
+    // A group goes when its last process is gone for good.
+    std::error_code none;
+    for (int tries = 0; tries < 100 && !path_.empty() && !fs::remove(path_, none); ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ControlGroup(const ControlGroup&) = delete;
+  ControlGroup& operator=(const ControlGroup&) = delete;
+
+  bool isThere() const { return !path_.empty(); }
+  /// The line, in the group.
+  std::string within(const std::string& line) const {
+    return fmt::format("echo $$ > {}/cgroup.procs && {}", path_.string(), line);
+  }
+
+ private:
+  fs::path path_;
+};
+
+TEST_F(Limits, OfAControlGroupLetTheProgramWorkOrEndInOneLine) {
+  bool was_done = false, was_refused = false;
+  for (const long mebibytes : {48, 96, 160, 256, 320, 400, 640}) {
+    const ControlGroup group(mebibytes);
+    if (!group.isThere())
+      GTEST_SKIP()
+          << "no control group can be made: that takes root, and a hierarchy mounted at /sys/fs/cgroup";
+    for (const char* command :
+         {"render scene.json --quiet -o out.png", "render scene.json --size 3000x2000 --quiet -o out.png",
+          "reference scene.json --size 800x600 --shadows off --quiet -o out.exr"}) {
+      const int status = expectDoneOrRefused(group.within(fmt::format("luciole {}", command)));
+      was_done |= status == 0;
+      was_refused |= status == 3;
+    }
+  }
+  EXPECT_TRUE(was_done && was_refused) << "the limits tried are too small or too large to tell";
+}
+
+}  // namespace
+}  // namespace luciole::test
