@@ -1,5 +1,6 @@
 #include "render/features.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "render_json.hpp"

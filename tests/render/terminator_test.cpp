@@ -22,15 +22,12 @@ constexpr glm::ivec2 kSize(160, 120);
 /// that a pixel shows.
 constexpr double kGrazing = 0.002;
 
-constexpr const char *kSun =
-    R"({"type": "directional", "direction": [-1, -0.4, 0.1], "shadow": true})";
-constexpr const char *kLamp =
-    R"({"type": "point", "position": [2.5, 1.5, -0.4], "shadow": true})";
-constexpr double kLampDistance = 2.94; // from the ball's middle
+constexpr const char* kSun = R"({"type": "directional", "direction": [-1, -0.4, 0.1], "shadow": true})";
+constexpr const char* kLamp = R"({"type": "point", "position": [2.5, 1.5, -0.4], "shadow": true})";
+constexpr double kLampDistance = 2.94;  // from the ball's middle
 
 /// A ball of 16 segments and radius 1 in front of the camera.
-std::string ballScene(const std::string &light,
-                      const std::string &placed = R"("primitive": "sphere")") {
+std::string ballScene(const std::string& light, const std::string& placed = R"("primitive": "sphere")") {
   return fmt::format(
       R"({{"camera": {{"eye": [0, 0.5, 6], "target": [0, 0, 0], "fov_y": 25, "near": 0.1, "far": 50}},
       "materials": {{"m": {{"diffuse": 0.8, "double_sided": true}}}},
@@ -52,39 +49,29 @@ double highestStart() {
 /// The smallest cosine, of the angle between the shading normal and the way to
 /// the light, from which on the light is seen: a lamp lies above the tangent
 /// plane at the start point only if it is as far above the facet.
-double leastCosine(bool lamp) {
-  return lamp ? kGrazing + highestStart() / (kLampDistance - 1) : kGrazing;
-}
+double leastCosine(bool lamp) { return lamp ? kGrazing + highestStart() / (kLampDistance - 1) : kGrazing; }
 
-glm::dvec3 wayToLight(const Light &light, const glm::dvec3 &point) {
-  return glm::normalize(light.kind == LightKind::kDirectional
-                            ? -light.direction
-                            : light.position - point);
+glm::dvec3 wayToLight(const Light& light, const glm::dvec3& point) {
+  return glm::normalize(light.kind == LightKind::kDirectional ? -light.direction : light.position - point);
 }
 
 struct Terminator {
-  int facing = 0, grazing = 0; ///< pixels that the light is to reach; of those
-                               ///< that it does at a low angle
-  int dark = 0; ///< of the former, that are darker than without shadows
+  int facing = 0, grazing = 0;  ///< pixels that the light is to reach; of those
+                                ///< that it does at a low angle
+  int dark = 0;                 ///< of the former, that are darker than without shadows
 };
 
-Terminator compareWithUnshadowed(const Scene &scene, const Image &shadowed,
-                                 const Image &plain, bool lamp) {
+Terminator compareWithUnshadowed(const Scene& scene, const Image& shadowed, const Image& plain, bool lamp) {
   Terminator found;
-  const std::size_t channels = plain.channels.size(),
-                    at = channelIndex(plain, "P.X"),
+  const std::size_t channels = plain.channels.size(), at = channelIndex(plain, "P.X"),
                     facing = channelIndex(plain, "N.X");
   for (std::size_t i = 0; i < plain.pixels.size(); i += channels) {
-    const float *pixel = plain.pixels.data() + i;
+    const float* pixel = plain.pixels.data() + i;
     const glm::dvec3 position(pixel[at], pixel[at + 1], pixel[at + 2]);
-    const glm::dvec3 normal(pixel[facing], pixel[facing + 1],
-                            pixel[facing + 2]);
-    if (normal == glm::dvec3(0))
-      continue;
-    const double cosine =
-        glm::dot(normal, wayToLight(scene.lights.front(), position));
-    if (cosine < leastCosine(lamp))
-      continue;
+    const glm::dvec3 normal(pixel[facing], pixel[facing + 1], pixel[facing + 2]);
+    if (normal == glm::dvec3(0)) continue;
+    const double cosine = glm::dot(normal, wayToLight(scene.lights.front(), position));
+    if (cosine < leastCosine(lamp)) continue;
     ++found.facing;
     found.grazing += cosine < leastCosine(lamp) + 0.2;
     // The texels' weights add up to 1 within some roundings.
@@ -93,7 +80,7 @@ Terminator compareWithUnshadowed(const Scene &scene, const Image &shadowed,
   return found;
 }
 
-RenderSettings settingsFor(const Scene &scene, ShadowMethod method) {
+RenderSettings settingsFor(const Scene& scene, ShadowMethod method) {
   RenderSettings settings;
   settings.size = kSize;
   settings.camera = scene.cameras.front();
@@ -102,12 +89,12 @@ RenderSettings settingsFor(const Scene &scene, ShadowMethod method) {
   return settings;
 }
 
-Image picture(const Scene &scene, const RenderSettings &settings) {
+Image picture(const Scene& scene, const RenderSettings& settings) {
   Stats stats;
   return renderScene(testDevice(), scene, settings, stats);
 }
 
-void expectSmooth(const std::string &json, ShadowMethod method, bool lamp) {
+void expectSmooth(const std::string& json, ShadowMethod method, bool lamp) {
   const Scene scene = sceneFromJson(json);
   const Image plain = picture(scene, settingsFor(scene, ShadowMethod::kOff));
   const Image shadowed = picture(scene, settingsFor(scene, method));
@@ -130,10 +117,8 @@ TEST_P(TerminatorOf, ABallOfSixteenSegmentsIsSmoothByALamp) {
 // The ball touches the walls from within, and start points beyond them would be
 // lit from outside.
 TEST_P(TerminatorOf, NoLightLeaksThroughAThinWallThatABallTouches) {
-  for (
-      const char *light :
-      {R"({"type": "point", "position": [4, 0.3, 0.2], "shadow": true})",
-       R"({"type": "directional", "direction": [0.1, 1, -0.1], "shadow": true})"}) {
+  for (const char* light : {R"({"type": "point", "position": [4, 0.3, 0.2], "shadow": true})",
+                            R"({"type": "directional", "direction": [0.1, 1, -0.1], "shadow": true})"}) {
     SCOPED_TRACE(light);
     const Scene scene = sceneFromJson(fmt::format(
         R"({{"camera": {{"eye": [0.95, 0.9, 0.92], "target": [0, 0, 0], "fov_y": 60, "near": 0.01, "far": 50}},
@@ -145,8 +130,7 @@ TEST_P(TerminatorOf, NoLightLeaksThroughAThinWallThatABallTouches) {
     const auto lit = [&] {
       const Image image = picture(scene, settings);
       int count = 0;
-      for (std::size_t i = 0; i < image.pixels.size();
-           i += image.channels.size())
+      for (std::size_t i = 0; i < image.pixels.size(); i += image.channels.size())
         count += image.pixels[i] > 0;
       return count;
     };
@@ -158,8 +142,7 @@ TEST_P(TerminatorOf, NoLightLeaksThroughAThinWallThatABallTouches) {
 
 // A G-buffer whose facets aren't smooth says so by a lift of 0, or by none.
 TEST_P(TerminatorOf, FlatShadingHasTheBitsThatItHasWithoutLifts) {
-  const Scene scene =
-      sceneFromJson(ballScene(std::string(kSun) + ", " + kLamp));
+  const Scene scene = sceneFromJson(ballScene(std::string(kSun) + ", " + kLamp));
   RenderSettings settings = settingsFor(scene, GetParam());
   settings.aovs = {Aov::kShadow};
   settings.shading = Shading::kFlat;
@@ -167,21 +150,16 @@ TEST_P(TerminatorOf, FlatShadingHasTheBitsThatItHasWithoutLifts) {
   GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
   EXPECT_TRUE(gbuffer.lift.empty());
   const Image rendered = picture(scene, settings);
-  EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels,
-            rendered.pixels);
+  EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels, rendered.pixels);
   gbuffer.lift.assign(gbuffer.pixels(), 0.0f);
-  EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels,
-            rendered.pixels);
+  EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels, rendered.pixels);
 }
 
 // The shading normals are the ellipsoid's, which a mirror and scales make of
 // the ball.
 TEST_P(TerminatorOf, AMirroredEllipsoidIsSmooth) {
-  expectSmooth(
-      ballScene(
-          kSun,
-          R"("primitive": "sphere", "scale": [-0.6, 1.1, 1.4], "rotate": [20, 50, 0])"),
-      GetParam(), false);
+  expectSmooth(ballScene(kSun, R"("primitive": "sphere", "scale": [-0.6, 1.1, 1.4], "rotate": [20, 50, 0])"),
+               GetParam(), false);
 }
 
 TEST_P(TerminatorOf, FlatFacetsHaveTheirOwnShadows) {
@@ -191,21 +169,18 @@ TEST_P(TerminatorOf, FlatFacetsHaveTheirOwnShadows) {
   settings.shading = Shading::kFlat;
   const Image plain = picture(scene, settings);
   settings.shade.shadows = GetParam();
-  const Terminator found =
-      compareWithUnshadowed(scene, picture(scene, settings), plain, false);
+  const Terminator found = compareWithUnshadowed(scene, picture(scene, settings), plain, false);
   EXPECT_GT(found.facing, 2000);
   EXPECT_EQ(found.dark, 0);
 }
 
-std::string nameOf(const testing::TestParamInfo<ShadowMethod> &test) {
-  constexpr const char *kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact"};
+std::string nameOf(const testing::TestParamInfo<ShadowMethod>& test) {
+  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact"};
   return kNames[int(test.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TerminatorOf,
-                         testing::Values(ShadowMethod::kHard,
-                                         ShadowMethod::kPcf,
-                                         ShadowMethod::kSoft,
+                         testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
                                          ShadowMethod::kExact),
                          nameOf);
 
@@ -216,13 +191,10 @@ TEST(TerminatorByRays, ReferenceIsSmooth) {
     const RenderSettings settings = settingsFor(scene, ShadowMethod::kOff);
     const Image plain = picture(scene, settings);
     const View view = cameraView(settings.camera, kSize);
-    const RayScene rays =
-        buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3]));
+    const RayScene rays = buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3]));
     const std::vector<glm::ivec2> pixels = allPixels(kSize);
-    const auto clear =
-        referencePicture(scene, view, Shading::kPhong, 1, pixels, {});
-    const auto shadowed = referencePicture(scene, view, Shading::kPhong, 1,
-                                           pixels, {.shadow_rays = &rays});
+    const auto clear = referencePicture(scene, view, Shading::kPhong, 1, pixels, {});
+    const auto shadowed = referencePicture(scene, view, Shading::kPhong, 1, pixels, {.shadow_rays = &rays});
     const std::size_t channels = plain.channels.size();
     Image by_rays = plain, without = plain;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -233,5 +205,5 @@ TEST(TerminatorByRays, ReferenceIsSmooth) {
   }
 }
 
-} // namespace
-} // namespace luciole::test
+}  // namespace
+}  // namespace luciole::test
