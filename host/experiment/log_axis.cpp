@@ -36,15 +36,15 @@ double LogAxis::place(double value) const {
   return std::log(drawn / low) / std::log(high / low);
 }
 
-LogAxis axisAround(const std::vector<double>& values) {
+LogAxis axisAround(const std::vector<double>& values, double room) {
   std::vector<double> positive;
   std::copy_if(values.begin(), values.end(), std::back_inserter(positive), [](double v) { return v > 0; });
   if (positive.empty()) return {0.5, 2, values.empty() ? std::optional<double>() : 1.0};
   const auto [least, most] = std::minmax_element(positive.begin(), positive.end());
-  const double ratio = *most / *least, room = std::max(std::pow(ratio, 0.12), 1.15);
-  if (positive.size() == values.size()) return {*least / room, *most * room, {}};
+  const double ratio = *most / *least, factor = std::max(std::pow(ratio, room), 1.15);
+  if (positive.size() == values.size()) return {*least / factor, *most * factor, {}};
   const double floor = *least / std::max(std::pow(ratio, 0.2), 2.0);
-  return {floor / room, *most * room, floor};
+  return {floor / factor, *most * factor, floor};
 }
 
 std::vector<double> logTicks(double low, double high, int most) {

@@ -15,8 +15,9 @@ struct LogAxis {
   double place(double value) const;
 };
 
-/// An axis with some room around the values, ≥ 0.
-LogAxis axisAround(const std::vector<double>& values);
+/// An axis with some room around the values, ≥ 0: this share of their distance at each end, a little at
+/// least.
+LogAxis axisAround(const std::vector<double>& values, double room = 0.05);
 
 /// Round numbers in [low, high], 0 < low < high, for a logarithmic axis: powers of ten where the range holds
 /// three of them or more, every second or third of them where that would be more than `most`; else as many of

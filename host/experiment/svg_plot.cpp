@@ -16,7 +16,7 @@ namespace {
 // Pixels.
 constexpr double kFont = 12, kTitleFont = 14, kHeadFont = 17;
 constexpr double kMargin = 16, kHead = 32;                          ///< around the picture; its title
-constexpr double kLeft = 72, kRight = 12, kOver = 28, kUnder = 46;  ///< of a panel, around its area
+constexpr double kLeft = 78, kRight = 12, kOver = 28, kUnder = 46;  ///< of a panel, around its area
 constexpr double kSwatch = 30, kSwatchGap = 8, kEntry = 20, kLegendGap = 16;
 constexpr double kTickGap = 48;  ///< between labelled ticks, at least
 constexpr const char *kInk = "#222222", *kMuted = "#555555", *kGrid = "#d9d9d9", *kFineGrid = "#f0f0f0";
@@ -119,17 +119,19 @@ struct Frame {
   }
 };
 
-/// A bar's end that isn't above zero reaches the axis.
+/// A bar's end that isn't above zero reaches the axis. Names take room.
 LogAxis axisOf(const PlotPanel& panel, int axis) {
   std::vector<double> values;
+  bool has_labels = false;
   for (const PlotSeries& series : panel.series) {
     for (const PlotPoint& point : series.points) {
       values.push_back(point.at[axis]);
+      has_labels |= !point.label.empty();
       for (const double end : {point.low[axis], point.high[axis]})
         if (end > 0) values.push_back(end);
     }
   }
-  return axisAround(values);
+  return axisAround(values, has_labels ? 0.12 : 0.05);
 }
 
 std::vector<double> ticksOf(const LogAxis& axis, double length) {
