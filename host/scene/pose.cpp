@@ -27,6 +27,12 @@ std::string cameraName(const Scene& scene, std::size_t index) {
   return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", name);
 }
 
+/// Neither so short nor so long that its square is no number above 0.
+bool hasDirection(const glm::dvec3& vector) {
+  const double length = glm::length(vector);
+  return length > 0 && std::isfinite(length);
+}
+
 glm::dvec4 valueOf(const Animation& animation, int curve, double frame, const glm::dvec4& otherwise) {
   return curve < 0 ? otherwise : valueAt(animation.curves[static_cast<std::size_t>(curve)], frame);
 }
@@ -170,7 +176,7 @@ glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& 
 std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera) {
   const glm::dvec3 back(node_to_world[2]), up(node_to_world[1]);
   const glm::dvec3 right = glm::cross(up, back);
-  if (!(glm::length(right) > 0)) return "its scale leaves a camera no direction";
+  if (!hasDirection(right) || !hasDirection(back)) return "its scale leaves a camera no direction";
   const glm::dvec3 x = glm::normalize(right), z = glm::normalize(back);
   camera.camera_to_world = {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0),
                             node_to_world[3]};
@@ -181,7 +187,7 @@ std::string hangLight(const glm::dmat4& node_to_world, Light& light) {
   light.position = glm::dvec3(node_to_world[3]);
   if (light.kind == LightKind::kPoint) return "";
   const glm::dvec3 back(node_to_world[2]);
-  if (!(glm::length(back) > 0)) return "its scale leaves a light no direction";
+  if (!hasDirection(back)) return "its scale leaves a light no direction";
   light.direction = -glm::normalize(back);
   return "";
 }

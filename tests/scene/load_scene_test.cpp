@@ -75,6 +75,9 @@ TEST_F(LoadScene, ASceneThatNothingLightsIsWarnedOf) {
     EXPECT_THAT(scene.lights, IsEmpty()) << members;
     EXPECT_THAT(scene.warnings, ElementsAre(EndsWith("scene.json: nothing lights this scene"))) << members;
   }
+  const Scene empty = loadScene(write("scene.json", R"({"fog": {"mode": "exp"}})"));
+  EXPECT_THAT(empty.lights, IsEmpty()) << "there is nothing to frame, but a G-buffer may be lit by it";
+  EXPECT_THAT(empty.warnings, ElementsAre(EndsWith("scene.json: nothing lights this scene")));
 }
 
 TEST_F(LoadScene, AMissingTextureIsAnErrorOrAWarning) {
