@@ -32,11 +32,6 @@ bool isSupported(const std::string& extension) {
   return std::find(std::begin(kSupportedExtensions), end, extension) != end;
 }
 
-bool isSupported(const std::string& extension) {
-  const auto end = std::end(kSupportedExtensions);
-  return std::find(std::begin(kSupportedExtensions), end, extension) != end;
-}
-
 /// Keeps a picture's bytes as they are. A picture in a buffer view is left alone: tinygltf has not checked
 /// that the view lies inside its buffer.
 bool keepBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
