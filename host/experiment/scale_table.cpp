@@ -33,6 +33,11 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
   for (const std::string& name : axisNames(summary.description)) head.push_back(name);
   for (const char* name : {"ms", "spread", "mean error", "largest", "memory, MiB", "front"})
     head.push_back(name);
+  // Errors compare, and fronts are drawn, among points that are held against the same truth.
+  const bool truths_differ = std::any_of(points.begin(), points.end(), [&](const PointSummary& point) {
+    return point.truth != points.front().truth;
+  });
+  if (truths_differ) head.push_back("truth");
   std::vector<Cells> lines{head};
   for (const PointSummary& point : points) {
     const Quartiles& time = point.milliseconds;
@@ -45,6 +50,7 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
     cells.push_back(errorText(point.check.max_abs));
     cells.push_back(fmt::format("{:.0f}", double(point.peak_bytes) / (1 << 20)));
     cells.push_back(point.front ? "*" : "");
+    if (truths_differ) cells.push_back(point.truth);
     lines.push_back(cells);
   }
   return textTable(lines);

@@ -52,6 +52,16 @@ TEST(ScaleTable, LeadsWithTimeErrorAndMemoryOfEachVariantAgainstLights) {
   EXPECT_EQ(lines[11], "| 10000  |   way 1 |  510.0 |  ± 0 % |    2.5e-01 | 5.0e-01 |           0 |     * |");
 }
 
+TEST(ScaleTable, NamesTheTruthWhereErrorsAreOfDifferentOnes) {
+  ScaleSummary summary = summaryOf({1, 10}, 2, 0.5);
+  summary.points[0].truth = summary.points[2].truth = "no shadows";
+  summary.points[1].truth = summary.points[3].truth = "shadows by rays";
+  const std::vector<std::string> lines = linesOf(scaleTable(summary));
+  EXPECT_THAT(lines[0], HasSubstr("| front |           truth |"));
+  EXPECT_THAT(lines[2], HasSubstr("|      no shadows |"));
+  EXPECT_THAT(lines[3], HasSubstr("| shadows by rays |"));
+}
+
 TEST(ScaleTable, TellsTheGrowthOfTheWholeAndOfStagesThatMatterAlone) {
   const std::string text = scaleTable(summaryOf({1, 10, 100, 1000, 10000}, 2, 0.5));
   EXPECT_THAT(text, HasSubstr("| way 0   |   1.00 (1.00 to 1.00) | shade 1.00 (1.00 to 1.00) |"));

@@ -32,11 +32,12 @@ TEST(UploadGBuffer, NoTwoBuffersShareHostMemory) {
     group->assign(3 * kTilePixels, 1.0f);
   gbuffer.specular.assign(4 * kTilePixels, 1.0f);
   const PackedNormals facet(kTilePixels);
+  const Plane lift(kTilePixels);
   for (const bool unlit : {false, true}) {
-    const GBufferBuffers buffers = uploadGBuffer(testDevice(), gbuffer, facet, unlit);
-    const std::array<const cl::Buffer*, 7> all{&buffers.position, &buffers.normal,  &buffers.diffuse,
+    const GBufferBuffers buffers = uploadGBuffer(testDevice(), gbuffer, facet, lift, unlit);
+    const std::array<const cl::Buffer*, 8> all{&buffers.position, &buffers.normal,  &buffers.diffuse,
                                                &buffers.specular, &buffers.ambient, &buffers.emission,
-                                               &buffers.facet};
+                                               &buffers.facet,    &buffers.lift};
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) EXPECT_TRUE(areApart(*all[i], *all[k])) << k << " and " << i;
     EXPECT_EQ(buffers.ambient() == buffers.diffuse(), unlit);
