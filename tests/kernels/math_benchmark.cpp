@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include "kernels/math_functions.hpp"
+#include "raster/gbuffer.hpp"
 
 namespace luciole::test {
 namespace {

@@ -412,7 +412,7 @@ TEST_F(JsonScene, MissingFileAndFolderAreRefused) {
 }
 
 TEST_F(JsonScene, LightsAreNotAddedToWhatAFileSays) {
-  write("scene.json", R"({"objects": [{"primitive": "box"}]})");
+  write("scene.json", R"({"objects": [{"primitive": "box"}], "lights": []})");
   const Scene scene = loadScene(folder_ / "scene.json");
   EXPECT_EQ(scene.cameras.size(), 1u);
   EXPECT_TRUE(scene.lights.empty());
