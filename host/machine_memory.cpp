@@ -1,10 +1,12 @@
 #include "machine_memory.hpp"
 
 #include <fmt/format.h>
+#include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -73,6 +75,16 @@ void narrow(MemoryRoom& room, __rlimit_resource_t resource, const char* used, co
   if (left < room.bytes) room = {left, name};
 }
 
+/// Of a new thread.
+double stackBytes() {
+  pthread_attr_t attributes;
+  std::size_t bytes = 0;
+  if (pthread_attr_init(&attributes) != 0) return 0;
+  pthread_attr_getstacksize(&attributes, &bytes);
+  pthread_attr_destroy(&attributes);
+  return double(bytes);
+}
+
 std::string inWords(double bytes) {
   return bytes < double(1 << 30) ? fmt::format("{:.0f} MiB", bytes / (1 << 20))
                                  : fmt::format("{:.1f} GiB", bytes / (1 << 30));
@@ -124,10 +136,13 @@ MemoryRoom memoryRoom() {
 
 void requireMemory(double bytes, const std::string& what) { require(bytes, memoryRoom(), what); }
 
-void requireAddresses(double bytes, const std::string& what) {
-  MemoryRoom room{kUnlimited, ""};
-  narrow(room, RLIMIT_AS, "VmSize:", "ulimit -v");
-  require(bytes, room, what);
+void requireMappings(double addresses, double writable, unsigned threads, const std::string& what) {
+  const double stacks = threads * stackBytes();
+  MemoryRoom mapped{kUnlimited, ""}, data{kUnlimited, ""};
+  narrow(mapped, RLIMIT_AS, "VmSize:", "ulimit -v");
+  narrow(data, RLIMIT_DATA, "VmData:", "ulimit -d");
+  require(addresses + stacks, mapped, what);
+  require(writable + stacks, data, what);
 }
 
 }  // namespace luciole

@@ -27,7 +27,8 @@ MemoryRoom controlGroupRoom(const std::string& groups, const std::string& mount)
 /// Throws MachineError where `bytes` are more than this process may still take; `what` is what needs them.
 void requireMemory(double bytes, const std::string& what);
 
-/// The same for addresses, which `ulimit -v` limits and which programs map more of than they ever touch.
-void requireAddresses(double bytes, const std::string& what);
+/// The same for what libraries map and hardly touch: addresses, which `ulimit -v` limits, and those of them
+/// that may be written, which `ulimit -d` does. Comes on top: the stacks of `threads` threads.
+void requireMappings(double addresses, double writable, unsigned threads, const std::string& what);
 
 }  // namespace luciole

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <thread>
 
 #include "error.hpp"
+#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -19,7 +21,14 @@ std::string modulePath() {
   return !std::filesystem::exists(beside) && std::filesystem::exists(above) ? above : beside;
 }
 
+/// What OpenImageIO and the libraries that it brings take at the least: under `ulimit -v` of 440 MiB they
+/// hung, under 480 to 540 they weren't loaded, well under 580, of which this program took 80.
+constexpr double kModuleBytes = 32 << 20, kModuleAddresses = 500 << 20, kModuleData = 64 << 20;
+
 const ImageFunctions& load() {
+  constexpr const char* kWhat = "reading and writing pictures";
+  requireMemory(kModuleBytes, kWhat);
+  requireMappings(kModuleAddresses, kModuleData, std::thread::hardware_concurrency(), kWhat);
   void* module = dlopen(modulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
   void* functions = module ? dlsym(module, "luciole_image_functions") : nullptr;
   if (!functions)
