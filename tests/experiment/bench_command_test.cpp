@@ -245,7 +245,7 @@ TEST(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench --plot out.png", 2, "out.png: expected a .svg file");
   refuse("luciole bench --plot out.svg --only start", 2, "--plot out.svg: shows shading");
   refuse("luciole bench --only everything", 2, "--only");
-  refuse("luciole bench --size 64", 2, "--size");
+  refuse("luciole bench --size 64y", 2, "--size");
   refuse("luciole bench --repeats 0", 2, "--repeats");
   refuse("luciole bench --shadow-size 15", 2, "--shadow-size");
   refuse("luciole bench --device no-such-device", 2, "no-such-device");

@@ -24,7 +24,7 @@ std::string withLight(const std::string& light, const std::string& more = "") {
 }
 
 TEST(Features, EmptySceneNeedsNone) {
-  EXPECT_EQ(featuresOf(R"({"objects": [{"primitive": "box"}]})"), FeatureSet());
+  EXPECT_EQ(featuresOf(withLight("")), FeatureSet());
 }
 
 TEST(Features, PlainLightsNeedOnlyTheirKind) {
@@ -67,7 +67,7 @@ TEST(Features, OfTheModelsOnlyTheChosenOneWhereSomethingIsLit) {
     const FeatureSet lit =
         featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})"), {.model = model});
     EXPECT_EQ(lit, setOf({Feature::kPointLights, featureOf(model), Feature::kLightLists}));
-    EXPECT_EQ(featuresOf(R"({"objects": [{"primitive": "box"}]})", {.model = model}), FeatureSet());
+    EXPECT_EQ(featuresOf(withLight(""), {.model = model}), FeatureSet());
   }
 }
 
@@ -97,7 +97,7 @@ TEST(Features, ShadowsStartAboveFacetsOnlyWhereAMeshIsSmooth) {
 
 TEST(Features, FogNeedsItsModeAndChannelsOnly) {
   const auto fog = [](const std::string& text) {
-    return featuresOf(R"({"objects": [{"primitive": "box"}], "fog": )" + text + "}");
+    return featuresOf(withLight("", R"(, "fog": )" + text));
   };
   EXPECT_EQ(fog(R"({"mode": "exp", "density": 0.1})"), setOf({Feature::kFogExp}));
   EXPECT_EQ(fog(R"({"mode": "exp2", "density": [0.1, 0.2, 0.3]})"),
