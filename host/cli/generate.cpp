@@ -4,6 +4,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
@@ -148,6 +150,7 @@ void generateLights(const LightsOptions& options) {
   std::vector<glm::dvec3> seen;
   if (!options.scene.empty()) {
     scene = loadScene(options.scene, 1, missingTexturesOf(options.missing_textures));
+    std::erase(scene.warnings, nothingLights(scene));
     tellWarnings(scene.warnings);
     scene.lights.clear();
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),

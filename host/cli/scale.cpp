@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
@@ -54,6 +56,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   if (options.shard.empty() && shard.count > 1 && !options.picture.quiet)
     fmt::print(stderr, "shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count);
   Scene scene = loadScene(options.scene, 1, missingTexturesOf(options.picture.missing_textures));
+  std::erase(scene.warnings, nothingLights(scene));
   if (!options.picture.quiet) tellWarnings(scene.warnings);
   ScaleExperiment experiment = planExperiment(command, options, scene);
   Device device;

@@ -80,10 +80,12 @@ Scene loadScene(const std::string& path, double frame, MissingTextures missing) 
   return scene;
 }
 
+std::string nothingLights(const Scene& scene) { return scene.name + ": nothing lights this scene"; }
+
 void completeScene(Scene& scene, bool is_mesh_file) {
   const bool is_bare = is_mesh_file || !scene.objects.empty();
   const bool needs_lights = is_bare && !scene.says_light && scene.lights.empty();
-  if (!needs_lights && isDark(scene)) scene.warnings.push_back(scene.name + ": nothing lights this scene");
+  if (!needs_lights && isDark(scene)) scene.warnings.push_back(nothingLights(scene));
   if (!scene.cameras.empty() && !needs_lights) return;
   const Framing framing = frameScene(scene);
   if (scene.cameras.empty()) scene.cameras.push_back(framing.camera);

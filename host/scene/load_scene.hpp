@@ -34,4 +34,8 @@ struct Bounds {
 Bounds objectBounds(const Scene& scene, const Object& object);
 Bounds sceneBounds(const Scene& scene);
 
+/// The warning of a scene that nothing lights, for commands that put lights of their own in place of its
+/// lights to leave out.
+std::string nothingLights(const Scene& scene);
+
 }  // namespace luciole

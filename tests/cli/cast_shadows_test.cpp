@@ -28,8 +28,10 @@ class CastShadows : public testing::Test {
     file.root["nodes"] = {
         {{"mesh", 0}, {"scale", {4, 1, 4}}},
         {{"mesh", 0}, {"translation", {0, 1, 0}}},
+        // All its corners lie in the shadow, which Gouraud shading sees by them alone.
+        {{"mesh", 0}, {"scale", {0.5, 1, 0.5}}, {"translation", {0, 0.5, 0}}},
         {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"rotation", {-half, 0, 0, half}}}};
-    file.root["scenes"][0]["nodes"] = {0, 1, 2};
+    file.root["scenes"][0]["nodes"] = {0, 1, 2, 3};
     file.root["buffers"] = {{{"byteLength", file.data.size()}, {"uri", "data.bin"}}};
     writeText(folder / "data.bin", file.data);
     writeText(folder / "lamp.gltf", file.root.dump());

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "experiment/made_up_result.hpp"
+#include "experiment/text_table.hpp"
 
 namespace luciole::test {
 namespace {
@@ -37,11 +38,8 @@ TEST(BenchTable, ARowSaysTimeSpreadErrorsAndFront) {
 
 TEST(BenchTable, ColumnsStandUnderOneAnother) {
   std::vector<std::size_t> widths;
-  for (std::string line : linesWith(benchTable(madeUpResult()), "|")) {
-    // ± is two bytes and one column wide.
-    if (const std::size_t sign = line.find("±"); sign != std::string::npos) line.erase(sign, 1);
-    widths.push_back(line.size());
-  }
+  for (const std::string& line : linesWith(benchTable(madeUpResult()), "|"))
+    widths.push_back(shownWidth(line));
   ASSERT_EQ(widths.size(), 13u);  // three heads of two lines, and rows
   for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(widths[i], widths[0]) << i;
   for (std::size_t i = 6; i < 9; ++i) EXPECT_EQ(widths[i], widths[5]) << i;
