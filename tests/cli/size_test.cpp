@@ -15,7 +15,7 @@ class Size : public testing::Test {
  protected:
   void writeScene(const std::string& size) {
     writeText(folder / "scene.json", R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]}, )" + size +
-                                         R"("objects": [{"primitive": "box"}], "lights": []})");
+                                         R"("objects": [{"primitive": "box"}], "lights": [], "ambient": 1})");
   }
   TemporaryFolder folder;
 };
