@@ -27,6 +27,8 @@ checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 shared=$(realpath "${LUCIOLE_SHARED:-$checkout/../shared}")
 
 root=$(mktemp -d "${TMPDIR:-/var/tmp}/luciole-root-XXXXXX")
+# Services that are installed there run as users of their own: a root that is root's alone keeps them from their files.
+chmod 755 "$root"
 # shellcheck disable=SC2317  # the trap calls it
 cleanUp() {
   # The last mounted first; /dev and its like must be gone before anything is removed.

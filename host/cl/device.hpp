@@ -1,6 +1,5 @@
 #pragma once
 
-#define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
 #include <future>
 #include <map>

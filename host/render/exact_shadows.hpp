@@ -31,8 +31,7 @@ struct ClassifyArguments {
 using PairBits = std::vector<cl_uint, ArrayAllocator<cl_uint>>;
 
 /// Launches kernels/classify.cl: kPairWords words for each entry of the lists, or of all tiles times all
-/// lights without lists. defines: the program's features (featureDefines). Throws MachineError where they
-/// don't fit into memory.
+/// lights without lists. defines: of lookupFeatures(). Throws MachineError where they don't fit into memory.
 PairBits classify(Device& device, const std::string& defines, const ClassifyArguments& arguments);
 
 /// Decides the pairs that are unsure by rays (see buildShadowRays): the bits of those that are lit are set

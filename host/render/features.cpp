@@ -137,6 +137,14 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   return features;
 }
 
+FeatureSet lookupFeatures(const FeatureSet& features) {
+  FeatureSet lookups;
+  for (const Feature feature : {Feature::kParallelShadows, Feature::kPerspectiveShadows,
+                                Feature::kCubeShadows, Feature::kLift, Feature::kLightLists})
+    lookups.set(feature, features.has(feature));
+  return lookups;
+}
+
 PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular),
           .ambient = features.has(Feature::kAmbient),

@@ -101,6 +101,11 @@ struct ShadeSettings {
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings);
 
+/// Those of the features that decide where shadow lookups go, not what they see: all that
+/// kernels/find_needed.cl and kernels/classify.cl depend on, so that scenes that differ in others share these
+/// programs.
+FeatureSet lookupFeatures(const FeatureSet& features);
+
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);
 

@@ -23,8 +23,7 @@ struct FindNeededArguments {
 };
 
 /// Launches kernels/find_needed.cl: for each bin the reversed depth of the farthest point of the G-buffer
-/// that may look at it in shading, as a float's bits, or kNotNeeded. defines: the program's features
-/// (featureDefines).
+/// that may look at it in shading, as a float's bits, or kNotNeeded. defines: of lookupFeatures().
 std::vector<std::uint32_t> findNeeded(Device& device, const std::string& defines,
                                       const FindNeededArguments& arguments);
 

@@ -210,6 +210,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
                        const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats) {
   const std::size_t pixels = gbuffer.pixels();
   const std::string defines = featureDefines(features) + lighting.math_defines;
+  const std::string lookup_defines = featureDefines(lookupFeatures(features));
   PackedNormals packed;
   if (features.shadows() && gbuffer.facet.empty()) packed = packNormals(gbuffer);
   const PackedNormals& facet = packed.empty() ? gbuffer.facet : packed;
@@ -226,13 +227,13 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
     lit.list_entries = lists.entries;
   }
   if (features.shadows() && !lighting.host_shadows.maps.empty())
-    drawShadowMaps(device, scene, lighting, defines, buffers, lists, pixels, stats);
+    drawShadowMaps(device, scene, lighting, lookup_defines, buffers, lists, pixels, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   const cl::Buffer shadow_faces = inputBuffer(device, shadows.faces);
   const cl::Buffer shadow_texels = inputBuffer(device, shadows.texels);
   if (features.has(Feature::kExact))
-    lit.pair_bits = decideShadows(device, scene, lighting, defines, gbuffer, buffers, lists, shadow_faces,
-                                  lit.traced, stats);
+    lit.pair_bits = decideShadows(device, scene, lighting, lookup_defines, gbuffer, buffers, lists,
+                                  shadow_faces, lit.traced, stats);
   const cl::Buffer pair_buffer = inputBuffer(device, lit.pair_bits);
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);

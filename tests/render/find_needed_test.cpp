@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/probe.hpp"
@@ -157,6 +158,26 @@ TEST(FindNeeded, NothingThatIsSeenNeedsNothing) {
   prepared.light(device);
   EXPECT_FALSE(prepared.lighting.host_shadows.maps.empty());
   EXPECT_TRUE(prepared.lighting.host_shadows.texels.empty());
+}
+
+// So that a picture with other fog or another model, or filtered otherwise, waits for no compiler a second time.
+TEST(FindNeeded, ScenesThatCastAlikeShareItsProgram) {
+  Random random(7);
+  Scene scene = crowdedScene(false, random);
+  Device& device = deviceWithLanes(4);
+  const auto programs = [&] {
+    return std::count_if(device.programs.begin(), device.programs.end(),
+                         [](const auto& program) { return program.first.ends_with("find_needed.cl"); });
+  };
+  Prepared(device, scene, settingsFor(Culling::kTiles, ShadowMethod::kHard)).light(device);
+  const auto before = programs();
+  EXPECT_GT(before, 0);
+  scene.fog = {.mode = FogMode::kExp, .density = glm::vec3(0.01f)};
+  ShadeSettings others = settingsFor(Culling::kTiles, ShadowMethod::kPcf);
+  others.model = Model::kToon;
+  others.pcf_width = 4;
+  Prepared(device, scene, others).light(device);
+  EXPECT_EQ(programs(), before);
 }
 
 }  // namespace

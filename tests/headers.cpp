@@ -1,0 +1,1 @@
+// Has the headers compiled that the tests share (CMakeLists.txt).
