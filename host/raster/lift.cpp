@@ -12,8 +12,7 @@ namespace luciole {
 Lift makeLift(const glm::bvec3& bent, const std::array<glm::dvec3, 3>& normals, const glm::dvec3& edge1,
               const glm::dvec3& edge2) {
   Lift lift;
-  // From each corner back to the next but one, as its edge of the triangle
-  // leads from there to it, and so on.
+  // Side i leads from corner i to the next one.
   const std::array<glm::dvec3, 3> to_next{edge1, edge2 - edge1, -edge2};
   double longest2 = 0.0;
   for (int i = 0; i < 3; ++i) {

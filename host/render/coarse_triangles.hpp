@@ -10,7 +10,8 @@ namespace luciole {
 /// it, and that place gets more than four times the light of every corner.
 ///
 /// Looks at up to 1024 triangles (of meshes' divided forms), the largest, and at as many lights, evenly
-/// chosen, so that it takes some 50 ms for a million triangles. Shadows between corners go unseen.
+/// chosen: beyond finding the largest it takes no longer for a larger scene. Shadows between corners go
+/// unseen.
 double coarseTriangleWidth(const Scene& scene);
 
 }  // namespace luciole
