@@ -52,8 +52,8 @@ struct Fogged {
 };
 
 /// The most that `model` makes of a specular colour. Phong's and Blinn's lobes and the toon's highlight are at
-/// most 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) (see kernels/cook_torrance.clh)
-/// with facets ≥ α², smith(x) ≥ 2x and smith(x) ≥ α: 1/(2α³), times the larger of F0 and F90.
+/// most 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) with facets ≥ α²,
+/// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/cook_torrance.clh): 1/(2α³), times the larger of F0 and F90.
 glm::dvec3 largestHighlight(const Material& material, Model model) {
   const glm::dvec3 specular(material.specular);
   if (model != Model::kCookTorrance) return specular;
