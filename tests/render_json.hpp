@@ -3,8 +3,8 @@
 #include <fstream>
 #include <string>
 
+#include "load/load_scene.hpp"
 #include "render/render.hpp"
-#include "scene/load_scene.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

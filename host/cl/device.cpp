@@ -11,10 +11,10 @@
 #include <optional>
 #include <thread>
 
-#include "array_memory.hpp"
+#include "base/array_memory.hpp"
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
 #include "cl/kernel_source.hpp"
-#include "error.hpp"
-#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {

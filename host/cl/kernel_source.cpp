@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "embedded_files.hpp"
+#include "base/embedded_files.hpp"
 
 namespace luciole {
 namespace {

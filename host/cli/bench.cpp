@@ -4,16 +4,16 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/error.hpp"
+#include "base/write_file.hpp"
+#include "bench/bench.hpp"
+#include "bench/bench_scene.hpp"
+#include "bench/plot.hpp"
+#include "bench/report.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/suggest.hpp"
-#include "error.hpp"
-#include "experiment/bench.hpp"
-#include "experiment/bench_scene.hpp"
-#include "experiment/plot.hpp"
-#include "experiment/report.hpp"
-#include "image/write_file.hpp"
 
 namespace luciole {
 namespace {

@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/error.hpp"
+#include "base/write_file.hpp"
 #include "cli/commands.hpp"
-#include "error.hpp"
 #include "image/heat_map.hpp"
-#include "image/write_file.hpp"
 
 namespace luciole {
 namespace {

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "error.hpp"
-#include "image/output_file.hpp"
+#include "base/error.hpp"
+#include "base/output_file.hpp"
 
 namespace luciole {
 namespace {
@@ -34,8 +34,8 @@ bool hasName(int descriptor) {
 }  // namespace
 
 FrameClaims::FrameClaims(const std::string& pattern)
-    : path_(fmt::format("{}/.{}.lock", folderOf(pattern),
-                        std::filesystem::path(pattern).filename().string())) {
+    : path_(
+          fmt::format("{}/.{}.lock", folderOf(pattern), std::filesystem::path(pattern).filename().string())) {
   openFile();
 }
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/picture_options.hpp"
-#include "error.hpp"
 
 namespace luciole {
 namespace {

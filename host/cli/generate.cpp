@@ -7,17 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
+#include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
-#include "error.hpp"
-#include "image/write_file.hpp"
+#include "load/load_scene.hpp"
 #include "raster/visible_points.hpp"
-#include "scene/light_field.hpp"
-#include "scene/light_list.hpp"
-#include "scene/light_range.hpp"
-#include "scene/load_scene.hpp"
-#include "scene/mesh_file.hpp"
-#include "scene/write_scene.hpp"
+#include "scene/bounds.hpp"
+#include "scene/json/light_list.hpp"
+#include "scene/json/mesh_file.hpp"
+#include "scene/json/write_scene.hpp"
+#include "scene/lights/light_field.hpp"
+#include "scene/lights/light_range.hpp"
 
 namespace luciole {
 namespace {

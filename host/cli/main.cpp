@@ -9,9 +9,9 @@
 #include <system_error>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/suggest.hpp"
-#include "error.hpp"
 
 namespace {
 

@@ -9,15 +9,16 @@
 #include <limits>
 #include <map>
 
+#include "base/error.hpp"
+#include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/frames.hpp"
 #include "cli/suggest.hpp"
-#include "error.hpp"
+#include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
-#include "image/write_file.hpp"
+#include "load/load_scene.hpp"
 #include "render/coarse_triangles.hpp"
-#include "scene/json_scene.hpp"
-#include "scene/load_scene.hpp"
+#include "scene/json/json_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -312,7 +313,7 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
           .dither = options.dither == "on",
           .picture_size = picture_size,
           .crop_origin = crop_origin,
-          .camera = camera};
+          .exr = camera ? cameraAttributes(*camera, picture_size) : ExrAttributes{}};
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {

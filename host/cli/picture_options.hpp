@@ -6,8 +6,8 @@
 
 #include "cl/device.hpp"
 #include "image/image.hpp"
+#include "load/load_scene.hpp"
 #include "render/render.hpp"
-#include "scene/load_scene.hpp"
 
 namespace luciole {
 

@@ -7,14 +7,14 @@
 #include <optional>
 #include <random>
 
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/suggest.hpp"
-#include "error.hpp"
+#include "gbuffer/gbuffer_file.hpp"
 #include "image/file_format.hpp"
-#include "image/gbuffer_file.hpp"
-#include "machine_memory.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
 #include "render/memory.hpp"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_claims.hpp"
@@ -13,8 +14,7 @@
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
-#include "error.hpp"
-#include "image/gbuffer_file.hpp"
+#include "gbuffer/gbuffer_file.hpp"
 #include "render/render.hpp"
 #include "scene/pose.hpp"
 

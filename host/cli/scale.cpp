@@ -4,19 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
+#include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/scale_plan.hpp"
 #include "cli/shard.hpp"
-#include "error.hpp"
-#include "experiment/page.hpp"
-#include "experiment/scale.hpp"
-#include "experiment/scale_files.hpp"
-#include "experiment/scale_log.hpp"
-#include "experiment/scale_plot.hpp"
-#include "experiment/scale_table.hpp"
-#include "image/write_file.hpp"
+#include "scale/page.hpp"
+#include "scale/scale.hpp"
+#include "scale/scale_files.hpp"
+#include "scale/scale_log.hpp"
+#include "scale/scale_plot.hpp"
+#include "scale/scale_table.hpp"
 
 namespace luciole {
 namespace {

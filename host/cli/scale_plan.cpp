@@ -6,10 +6,11 @@
 #include <charconv>
 #include <map>
 
+#include "base/error.hpp"
 #include "cli/suggest.hpp"
-#include "error.hpp"
 #include "raster/visible_points.hpp"
-#include "scene/light_list.hpp"
+#include "scene/bounds.hpp"
+#include "scene/json/light_list.hpp"
 #include "scene/scene_digest.hpp"
 
 namespace luciole {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/picture_options.hpp"
-#include "experiment/scale.hpp"
+#include "scale/scale.hpp"
 
 namespace luciole {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "error.hpp"
+#include "base/error.hpp"
 
 namespace luciole {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/texture.hpp"
+#include "image/texture.hpp"
 
 namespace luciole {
 

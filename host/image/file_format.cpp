@@ -5,9 +5,9 @@
 #include <cctype>
 #include <filesystem>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "base/write_file.hpp"
 #include "image/image.hpp"
-#include "image/write_file.hpp"
 
 namespace luciole {
 namespace {

@@ -6,17 +6,21 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/gtc/type_ptr.hpp>
+#include <memory>
 
-#include "error.hpp"
-#include "image/camera_header.hpp"
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
+#include "image/layers.hpp"
 #include "image/oiio.hpp"
 #include "image/picture_file.hpp"
 #include "image/row_file.hpp"
 #include "image/srgb.hpp"
-#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {
+
+constexpr OIIO::TypeDesc kMatrix(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44);
 
 OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& channels,
                          const FileFormat& format, const Metadata& metadata, const WriteOptions& options) {
@@ -35,8 +39,13 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
   if (is_byte) spec.attribute("oiio:ColorSpace", "sRGB");
   if (format.extension == "exr") {
     const glm::ivec2 whole = options.picture_size.x > 0 ? options.picture_size : glm::ivec2(width, height);
-    setWindow(options.crop_origin, whole, spec);
-    if (options.camera) writeCamera(*options.camera, whole, spec);
+    spec.x = options.crop_origin.x;
+    spec.y = options.crop_origin.y;
+    spec.full_width = whole.x;
+    spec.full_height = whole.y;
+    for (const auto& [name, text] : options.exr.texts) spec.attribute(name, text);
+    for (const auto& [name, matrix] : options.exr.matrices)
+      spec.attribute(name, kMatrix, glm::value_ptr(matrix));
   }
   // OpenImageIO's own 98 doubles the size for what nobody sees.
   if (format.extension == "jpg" || format.extension == "jpeg") spec.attribute("compression", "jpeg:88");
@@ -69,6 +78,29 @@ Image readImage(const std::string& path) {
     image.pixels[i] = is_color && !is_linear ? linear_of_code[codes[i]] : float(codes[i]) / 65535.0f;
   }
   return image;
+}
+
+LayerFile readLayers(const std::string& path) {
+  const auto input = openPicture(path, path);
+  const OIIO::ImageSpec spec = input->spec();
+  const std::size_t values = std::size_t(spec.width) * spec.height * spec.nchannels;
+  requireMemory(double(values) * sizeof(float), path);
+  LayerFile file{.path = path,
+                 .size = {spec.width, spec.height},
+                 .picture_size = {spec.full_width, spec.full_height},
+                 .crop_origin = {spec.x - spec.full_x, spec.y - spec.full_y},
+                 .channels = spec.channelnames,
+                 .values = std::make_unique_for_overwrite<float[]>(values),
+                 .attributes = {}};
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (value.type() == OIIO::TypeDesc::STRING)
+      file.attributes.texts.emplace_back(name, value.get_string());
+    else if (value.type() == kMatrix)
+      file.attributes.matrices.emplace_back(name, glm::make_mat4(static_cast<const float*>(value.data())));
+  }
+  readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
+  return file;
 }
 
 std::string readAttribute(const std::string& path, const std::string& name) {

@@ -2,12 +2,9 @@
 
 #include <glm/glm.hpp>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "scene/scene.hpp"
 
 namespace luciole {
 
@@ -23,13 +20,19 @@ struct Image {
 /// "ImageDescription" …).
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
+/// What an EXR's header says beside that, and other formats have no place for.
+struct ExrAttributes {
+  Metadata texts;
+  std::vector<std::pair<std::string, glm::mat4>> matrices;
+};
+
 /// How a picture is written.
 struct WriteOptions {
-  std::string format = {};            ///< an extension that stands for the path's own, empty: none does
-  bool dither = false;                ///< integer formats, see dither.hpp
-  glm::ivec2 picture_size{0};         ///< of the whole picture where this is a crop; 0: this is the whole
-  glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
-  std::optional<Camera> camera = {};  ///< for an EXR's header
+  std::string format = {};     ///< an extension that stands for the path's own, empty: none does
+  bool dither = false;         ///< integer formats, see dither.hpp
+  glm::ivec2 picture_size{0};  ///< of the whole picture where this is a crop; 0: this is the whole
+  glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
+  ExrAttributes exr = {};
 };
 
 /// Reads any picture OpenImageIO reads; 8- and 16-bit integer files are taken as sRGB and linearized (alpha

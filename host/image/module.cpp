@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "error.hpp"
-#include "machine_memory.hpp"
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -55,12 +55,7 @@ std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int
   return functions().open_picture_file(path, width, height, channels, format, metadata, options);
 }
 
-void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
-                  const std::string& format) {
-  functions().write_gbuffer(gbuffer, path, metadata, format);
-}
-
-GBuffer readGBuffer(const std::string& path) { return functions().read_gbuffer(path); }
+LayerFile readLayers(const std::string& path) { return functions().read_layers(path); }
 
 Texture readTexture(const std::string& path) { return functions().read_texture(path); }
 

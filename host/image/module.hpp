@@ -3,10 +3,10 @@
 #include <span>
 #include <string>
 
-#include "image/heat_map.hpp"
 #include "image/file_format.hpp"
-#include "image/gbuffer_file.hpp"
+#include "image/heat_map.hpp"
 #include "image/image.hpp"
+#include "image/layers.hpp"
 #include "image/read_texture.hpp"
 #include "image/row_file.hpp"
 
@@ -21,8 +21,7 @@ struct ImageFunctions {
   decltype(&readImage) read_image;
   decltype(&readAttribute) read_attribute;
   decltype(&openPictureFile) open_picture_file;
-  decltype(&writeGBuffer) write_gbuffer;
-  decltype(&readGBuffer) read_gbuffer;
+  decltype(&readLayers) read_layers;
   Texture (*read_texture)(const std::string& path);
   Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);
   decltype(&errorMap) error_map;

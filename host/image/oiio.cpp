@@ -13,11 +13,11 @@
 #include <system_error>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "base/output_file.hpp"
+#include "base/picture_size.hpp"
 #include "image/exr_header.hpp"
-#include "image/output_file.hpp"
 #include "image/png_input.hpp"
-#include "picture_size.hpp"
 
 namespace luciole {
 namespace {

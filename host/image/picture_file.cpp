@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "base/output_file.hpp"
 #include "image/image.hpp"
 #include "image/oiio.hpp"
-#include "image/output_file.hpp"
 
 namespace luciole {
 namespace {

@@ -10,8 +10,8 @@
 #include <span>
 #include <string>
 
-#include "error.hpp"
-#include "image/output_file.hpp"
+#include "base/error.hpp"
+#include "base/output_file.hpp"
 #include "image/row_file.hpp"
 
 namespace luciole {

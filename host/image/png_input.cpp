@@ -11,7 +11,7 @@
 #include <cstring>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "image/oiio.hpp"
 
 namespace luciole {

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
 #include "image/build_mips.hpp"
 #include "image/oiio.hpp"
 #include "image/srgb.hpp"
-#include "machine_memory.hpp"
 
 namespace luciole {
 namespace {

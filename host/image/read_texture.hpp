@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "scene/texture.hpp"
+#include "image/texture.hpp"
 
 namespace luciole {
 

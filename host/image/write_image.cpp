@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "image/dither.hpp"
 #include "image/file_format.hpp"
 #include "image/image.hpp"

@@ -3,7 +3,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "picture_size.hpp"
+#include "base/picture_size.hpp"
 #include "raster/view.hpp"
 
 namespace luciole {

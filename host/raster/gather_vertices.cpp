@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "gbuffer/packed_normal.hpp"
+#include "gbuffer/planes.hpp"
 #include "raster/geometry.hpp"
-#include "raster/packed_normal.hpp"
-#include "raster/planes.hpp"
 #include "raster/rasterize.hpp"
 
 namespace luciole {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "raster/clip.hpp"
 
 namespace luciole {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <tuple>
 
-#include "error.hpp"
-#include "picture_size.hpp"
+#include "base/error.hpp"
+#include "base/picture_size.hpp"
+#include "gbuffer/planes.hpp"
 #include "raster/bins.hpp"
 #include "raster/clip.hpp"
 #include "raster/coverage.hpp"
-#include "raster/planes.hpp"
 #include "raster/resolve.hpp"
 #include "raster/setup.hpp"
 

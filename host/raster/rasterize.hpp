@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
-#include "raster/gbuffer.hpp"
 #include "raster/triangle_runs.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
@@ -17,15 +17,6 @@ enum class Shading : std::uint8_t {
   kFlat,     ///< the triangle's own normal
   kGouraud,  ///< colours lit at the vertices, interpolated
   kPhong,    ///< normals interpolated
-};
-
-/// Which of a G-buffer's optional groups to fill.
-struct PlaneSet {
-  bool specular = false;
-  bool ambient = false;
-  bool emission = false;
-  bool facet = false;
-  bool lift = false;
 };
 
 /// Triangles on their way: every one is counted once in `submitted`, and in one of the others at most. The

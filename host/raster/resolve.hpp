@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "gbuffer/gbuffer.hpp"
 #include "raster/coverage.hpp"
-#include "raster/gbuffer.hpp"
 #include "raster/rasterize.hpp"
 
 namespace luciole {

@@ -1,6 +1,6 @@
 #include "raster/seen_surface.hpp"
 
-#include "raster/packed_normal.hpp"
+#include "gbuffer/packed_normal.hpp"
 
 namespace luciole {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 
 namespace luciole {
 

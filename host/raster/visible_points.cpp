@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.hpp"
 #include "raster/rasterize.hpp"
-#include "scene/random.hpp"
 
 namespace luciole {
 namespace {

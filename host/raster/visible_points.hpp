@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/load_scene.hpp"
+#include "scene/bounds.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {

@@ -14,7 +14,7 @@
 #include "raster/geometry.hpp"
 #include "raster/lift.hpp"
 #include "raster/opacity.hpp"
-#include "scene/ray_cast.hpp"
+#include "rays/ray_cast.hpp"
 
 namespace luciole {
 namespace {

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "raster/gbuffer.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 

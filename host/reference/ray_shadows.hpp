@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "rays/shadow_rays.hpp"
 #include "scene/scene.hpp"
-#include "shadow/shadow_rays.hpp"
 
 namespace luciole {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
-#include "raster/gbuffer.hpp"
 #include "reference/ray_shadows.hpp"
 #include "scene/model.hpp"
 #include "scene/scene.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
-#include "raster/gbuffer.hpp"
 #include "render/lighting.hpp"
 #include "render/render.hpp"
 

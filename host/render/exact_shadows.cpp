@@ -7,9 +7,9 @@
 #include <bit>
 #include <numeric>
 
-#include "error.hpp"
-#include "machine_memory.hpp"
-#include "shadow/shadow_rays.hpp"
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
+#include "rays/shadow_rays.hpp"
 
 namespace luciole {
 namespace {

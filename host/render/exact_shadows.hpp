@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "culling/cull.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
-#include "raster/gbuffer.hpp"
-#include "render/cull.hpp"
-#include "scene/ray_cast.hpp"
+#include "rays/ray_cast.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "culling/cull.hpp"
 #include "kernels/shared.h"
-#include "render/cull.hpp"
 
 namespace luciole {
 

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "raster/packed_normal.hpp"
-#include "render/cull.hpp"
+#include "culling/cull.hpp"
+#include "gbuffer/packed_normal.hpp"
+#include "rays/shadow_rays.hpp"
 #include "render/exact_shadows.hpp"
 #include "render/find_needed.hpp"
 #include "render/shade.hpp"
-#include "shadow/shadow_rays.hpp"
 
 namespace luciole {
 namespace {

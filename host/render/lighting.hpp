@@ -3,15 +3,15 @@
 #include <string>
 
 #include "cl/device.hpp"
-#include "raster/gbuffer.hpp"
+#include "culling/cull.hpp"
+#include "culling/light_tree.hpp"
+#include "culling/shade_lights.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "raster/view.hpp"
-#include "render/cull.hpp"
+#include "rays/ray_cast.hpp"
 #include "render/exact_shadows.hpp"
 #include "render/features.hpp"
-#include "render/light_tree.hpp"
-#include "render/shade_lights.hpp"
 #include "render/stats.hpp"
-#include "scene/ray_cast.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "machine_memory.hpp"
+#include "base/machine_memory.hpp"
 #include "raster/bins.hpp"
 #include "render/assemble.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "raster/gbuffer.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "shadow/shadow_maps.hpp"
 
 namespace luciole {

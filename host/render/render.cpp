@@ -8,11 +8,11 @@
 #include <future>
 #include <utility>
 
-#include "machine_memory.hpp"
+#include "base/machine_memory.hpp"
+#include "culling/fog_cull.hpp"
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
-#include "render/fog_cull.hpp"
 #include "render/lighting.hpp"
 #include "render/memory.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
-#include "raster/gbuffer.hpp"
 #include "raster/rasterize.hpp"
 #include "render/features.hpp"
 #include "render/stats.hpp"
@@ -35,8 +35,8 @@ struct RenderSettings {
   int samples = 1;  ///< per pixel, at the points of a Hammersley set
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  std::vector<Aov> aovs;      ///< of the first sample
-  float exposure = 0;         ///< stops: colours are multiplied by 2^exposure
+  std::vector<Aov> aovs;  ///< of the first sample
+  float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
   /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
   bool count_lights = false;
   /// Rows that are rendered at a time; 0: as bandHeight() says. The picture is the same.

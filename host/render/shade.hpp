@@ -3,9 +3,9 @@
 #include <string>
 
 #include "cl/device.hpp"
+#include "culling/cull.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
-#include "raster/gbuffer.hpp"
-#include "render/cull.hpp"
 
 namespace luciole {
 
@@ -14,10 +14,10 @@ struct GBufferBuffers {
   cl::Buffer position, normal, diffuse, specular, ambient, emission, facet, lift;
 };
 
-/// Brings a G-buffer, its triangles' normals and its lift to the device; where that shares the host's memory, all
-/// must outlive the result. unlit: the diffuse colour takes the place of ambient.
+/// Brings a G-buffer, its triangles' normals and its lift to the device; where that shares the host's memory,
+/// all must outlive the result. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers uploadGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet,
-                            const Plane& lift, bool unlit);
+                             const Plane& lift, bool unlit);
 
 struct ShadeArguments {
   const ShadeFrame& frame;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/peak_memory.hpp"
 #include "cl/kernel_cache.hpp"
-#include "peak_memory.hpp"
 
 namespace luciole {
 void addStage(Stats& stats, const std::string& name, double milliseconds) {

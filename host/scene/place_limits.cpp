@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "scene/json_fields.hpp"
-#include "scene/text_file.hpp"
+#include "base/error.hpp"
+#include "base/text_file.hpp"
 
 namespace luciole {
 namespace {

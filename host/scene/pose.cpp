@@ -6,8 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "error.hpp"
-#include "scene/frame.hpp"
+#include "base/error.hpp"
 #include "scene/place_limits.hpp"
 
 namespace luciole {
@@ -60,6 +59,13 @@ std::vector<glm::dmat4> nodeTransforms(const Scene& scene, double frame) {
 }
 
 }  // namespace
+
+glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+  const glm::dvec3 back = glm::normalize(eye - target);
+  const glm::dvec3 right = glm::normalize(glm::cross(up, back));
+  return {glm::dvec4(right, 0), glm::dvec4(glm::cross(back, right), 0), glm::dvec4(back, 0),
+          glm::dvec4(eye, 1)};
+}
 
 void poseScene(Scene& scene, double frame) {
   const Animation& animation = scene.animation;

@@ -7,6 +7,9 @@
 
 namespace luciole {
 
+/// A camera's placement: at `eye`, looking at `target`, with `up` (any length, not along the view) upwards.
+glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
+
 /// Puts what moves in a scene where it is at a frame, which may lie between two: sets members of cameras,
 /// lights and objects, and nothing of the rest. The result doesn't depend on earlier poses. Objects that a
 /// scale of 0 flattens show an empty mesh. Throws InputError naming the frame where there is no such pose: a

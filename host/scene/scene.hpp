@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "image/texture.hpp"
 #include "scene/animation.hpp"
-#include "scene/texture.hpp"
 
 namespace luciole {
 
@@ -49,7 +49,7 @@ struct Mesh {
   std::vector<glm::vec3> normals;  ///< unit, never missing: loaders make them
   std::vector<glm::vec2> uvs;      ///< optional; v grows downwards: (0,0) is the picture's top left corner
   std::vector<glm::vec2> emission_uvs;  ///< optional; where given, emission maps are looked up here instead
-  std::vector<glm::vec4> colors;   ///< optional; linear RGBA that multiplies the material's
+  std::vector<glm::vec4> colors;        ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
   /// The same surface in smaller triangles, which takes its place where colours are lit at vertices (Gouraud
@@ -147,7 +147,7 @@ struct Scene {
   Fog fog;
   bool says_light = false;  ///< its file says what lights it, be that nothing: see completeScene()
   bool lighting = true;     ///< false: every surface shows its emission + diffuse colour unlit
-  Animation animation;   ///< what moves: poseScene() sets cameras, lights and objects by it
+  Animation animation;      ///< what moves: poseScene() sets cameras, lights and objects by it
 };
 
 /// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.

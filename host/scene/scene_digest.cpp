@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "scene/random.hpp"
+#include "base/random.hpp"
 #include "scene/scene_fields.hpp"
 
 namespace luciole {

@@ -13,12 +13,12 @@
 #include <numeric>
 #include <optional>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "raster/bins.hpp"
 #include "raster/bound_depth.hpp"
 #include "raster/geometry.hpp"
 #include "raster/rasterize.hpp"
-#include "scene/load_scene.hpp"
+#include "scene/bounds.hpp"
 
 namespace luciole {
 namespace {

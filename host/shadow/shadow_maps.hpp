@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "array_memory.hpp"
+#include "base/array_memory.hpp"
 #include "kernels/shared.h"
 #include "raster/triangle_runs.hpp"
 #include "raster/view.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cl/kernel_source.hpp"
-#include "error.hpp"
 
 namespace luciole {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cli/run_program.hpp"
-#include "scene/gltf_file.hpp"
+#include "scene/gltf/gltf_file.hpp"
 
 namespace luciole::test {
 namespace {

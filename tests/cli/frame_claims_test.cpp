@@ -7,8 +7,8 @@
 
 #include <optional>
 
+#include "base/error.hpp"
 #include "cli/run_program.hpp"
-#include "error.hpp"
 
 namespace luciole::test {
 namespace {
@@ -86,8 +86,8 @@ class SharedFrames : public testing::Test {
   SharedFrames() { writeText(folder / "scene.json", kSmallScene); }
 
   Outcome render(const std::string& environment, const std::string& arguments) {
-    return runLine(folder, environment + " luciole render scene.json --size 32x18 --quiet -o f.####.png " +
-                               arguments);
+    return runLine(
+        folder, environment + " luciole render scene.json --size 32x18 --quiet -o f.####.png " + arguments);
   }
   const TemporaryFolder folder;
 };

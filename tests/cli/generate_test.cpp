@@ -11,7 +11,7 @@
 
 #include "cli/run_program.hpp"
 #include "image/image.hpp"
-#include "scene/load_scene.hpp"
+#include "load/load_scene.hpp"
 
 namespace luciole::test {
 namespace {

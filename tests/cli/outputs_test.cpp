@@ -10,10 +10,10 @@
 #include <string>
 
 #include "cli/run_program.hpp"
-#include "image/gbuffer_file.hpp"
+#include "gbuffer/gbuffer_file.hpp"
 #include "image/image.hpp"
 #include "image/srgb.hpp"
-#include "scene/load_scene.hpp"
+#include "load/load_scene.hpp"
 
 namespace luciole::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "error.hpp"
+#include "base/error.hpp"
 
 namespace luciole {
 namespace {

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "error.hpp"
-#include "image/gbuffer_file.hpp"
-#include "scene/load_scene.hpp"
+#include "base/error.hpp"
+#include "gbuffer/gbuffer_file.hpp"
+#include "load/load_scene.hpp"
 #include "scene/pose.hpp"
 #include "scene/scene_fault.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "hard_cases/surfaces_seen.hpp"
 #include "render_json.hpp"
 

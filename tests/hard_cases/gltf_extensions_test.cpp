@@ -8,7 +8,7 @@
 
 #include "hard_cases/shot.hpp"
 #include "image/image.hpp"
-#include "scene/gltf_file.hpp"
+#include "scene/gltf/gltf_file.hpp"
 
 namespace luciole::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "base/error.hpp"
 #include "cli/run_program.hpp"
-#include "error.hpp"
 #include "hard_cases/surfaces_seen.hpp"
 #include "kernels/random_scene.hpp"
 #include "render_json.hpp"

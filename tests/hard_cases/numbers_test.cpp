@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "gbuffer/gbuffer_file.hpp"
 #include "hard_cases/surfaces_seen.hpp"
-#include "image/gbuffer_file.hpp"
 #include "image/image.hpp"
 #include "image/oiio.hpp"
 #include "kernels/random_scene.hpp"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "hard_cases/shot.hpp"
 
 namespace luciole::test {

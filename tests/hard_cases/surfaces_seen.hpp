@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "gbuffer/gbuffer.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/shade_bounds.hpp"
-#include "raster/gbuffer.hpp"
 #include "reference/reference.hpp"
 #include "render/render.hpp"
 

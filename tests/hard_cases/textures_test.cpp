@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "hard_cases/shot.hpp"
 #include "image/image.hpp"
 #include "png_chunk.hpp"

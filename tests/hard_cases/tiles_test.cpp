@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "gbuffer/gbuffer_file.hpp"
 #include "hard_cases/shot.hpp"
-#include "image/gbuffer_file.hpp"
 
 namespace luciole::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 
 namespace luciole {
 namespace {

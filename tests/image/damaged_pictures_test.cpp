@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "base/error.hpp"
 #include "cli/run_program.hpp"
-#include "error.hpp"
 #include "image/image.hpp"
 #include "image/read_texture.hpp"
 #include "shared_files.hpp"

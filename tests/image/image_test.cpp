@@ -18,7 +18,7 @@
 #include <thread>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
 #include "shared_files.hpp"

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "base/error.hpp"
 #include "cli/run_program.hpp"
-#include "error.hpp"
 #include "image/image.hpp"
 #include "image/read_texture.hpp"
 #include "image/srgb.hpp"

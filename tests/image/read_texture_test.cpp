@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "image/image.hpp"
 #include "image/srgb.hpp"
 #include "shared_files.hpp"

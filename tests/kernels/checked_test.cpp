@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
+#include "base/embedded_files.hpp"
 #include "cli/run_program.hpp"
-#include "embedded_files.hpp"
 
 // The kernels under Oclgrind, which interprets them and reports data races between work-items, decisions on
 // values that were never written, and accesses outside a buffer.

@@ -1,4 +1,4 @@
-#include "render/cull.hpp"
+#include "culling/cull.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <glm/glm.hpp>
 #include <limits>
 
+#include "culling/light_tree.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
-#include "render/light_tree.hpp"
 
 namespace luciole::test {
 namespace {

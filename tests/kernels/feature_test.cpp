@@ -6,11 +6,11 @@
 #include <set>
 #include <tuple>
 
-#include "embedded_files.hpp"
+#include "base/embedded_files.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "load/load_scene.hpp"
 #include "render/lighting.hpp"
-#include "scene/load_scene.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

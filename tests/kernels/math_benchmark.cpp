@@ -4,8 +4,8 @@
 //   --benchmark_report_aggregates_only
 #include <benchmark/benchmark.h>
 
+#include "gbuffer/gbuffer.hpp"
 #include "kernels/math_functions.hpp"
-#include "raster/gbuffer.hpp"
 
 namespace luciole::test {
 namespace {

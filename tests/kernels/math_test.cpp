@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "kernels/math_functions.hpp"
 
 namespace luciole::test {

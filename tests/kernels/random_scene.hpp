@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "raster/gbuffer.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "render/features.hpp"
 #include "scene/scene.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
-#include "raster/gbuffer.hpp"
 #include "reference/models.hpp"
 #include "scene/model.hpp"
 #include "scene/scene.hpp"

@@ -6,10 +6,10 @@
 #include <glm/glm.hpp>
 #include <random>
 
+#include "gbuffer/packed_normal.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/shared.h"
 #include "raster/coverage.hpp"
-#include "raster/packed_normal.hpp"
 
 namespace luciole::test {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cstdlib>
 
+#include "load/load_scene.hpp"
 #include "raster/rasterize.hpp"
-#include "scene/load_scene.hpp"
 #include "shadow/shadow_maps.hpp"
 #include "shared_files.hpp"
 

@@ -1,5 +1,5 @@
 #include "raster/sample_texture.hpp"
-#include "raster/gbuffer.hpp"
+#include "gbuffer/gbuffer.hpp"
 
 #include <gtest/gtest.h>
 

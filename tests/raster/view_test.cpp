@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "raster/raster_scenes.hpp"
 
 namespace luciole::test {

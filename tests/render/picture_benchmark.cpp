@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "load/load_scene.hpp"
 #include "reference/reference.hpp"
 #include "render/lighting.hpp"
 #include "render/render.hpp"
-#include "scene/load_scene.hpp"
 
 namespace luciole {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "reference/reference.hpp"
 #include "render_json.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <optional>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "render/shrink.hpp"
 
 namespace luciole::test {

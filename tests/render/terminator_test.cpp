@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "rays/shadow_rays.hpp"
 #include "reference/reference_picture.hpp"
 #include "render_json.hpp"
-#include "shadow/shadow_rays.hpp"
 
 namespace luciole::test {
 namespace {

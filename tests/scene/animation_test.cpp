@@ -9,9 +9,9 @@
 #include <limits>
 #include <string>
 
-#include "error.hpp"
+#include "base/error.hpp"
+#include "load/load_scene.hpp"
 #include "scene/curve.hpp"
-#include "scene/load_scene.hpp"
 #include "scene/pose.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"

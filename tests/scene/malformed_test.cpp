@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "error.hpp"
-#include "scene/gltf.hpp"
-#include "scene/obj.hpp"
+#include "base/error.hpp"
+#include "scene/gltf/gltf.hpp"
+#include "scene/obj/obj.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
-#include "scene/gltf_file.hpp"
-#include "scene/load_scene.hpp"
+#include "load/load_scene.hpp"
+#include "scene/gltf/gltf_file.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {

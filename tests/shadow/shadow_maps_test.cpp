@@ -10,7 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "error.hpp"
+#include "base/error.hpp"
 #include "raster/rasterize.hpp"
 #include "render_json.hpp"
 #include "shadow/texel_place.hpp"

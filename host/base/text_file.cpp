@@ -1,0 +1,51 @@
+#include "base/text_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
+
+namespace luciole {
+
+bool isFile(const std::filesystem::path& path) {
+  std::error_code refused;
+  return std::filesystem::is_regular_file(path, refused);
+}
+
+std::string readFile(const std::string& path) {
+  std::error_code refused;
+  if (std::filesystem::is_directory(path, refused)) throw InputError(path + ": is a folder, expected a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": can't be opened, expected a readable file");
+  std::string bytes;
+  std::error_code no_size;
+  const std::uintmax_t size = std::filesystem::file_size(path, no_size);  // pipes have none
+  if (!no_size) {
+    requireMemory(double(size), path);
+    bytes.reserve(size);
+  }
+  char block[1 << 16];
+  while (file.read(block, sizeof block) || file.gcount() > 0) bytes.append(block, file.gcount());
+  if (file.bad()) throw InputError(path + ": can't be read to its end");
+  return bytes;
+}
+
+std::string forMessage(std::string_view words) {
+  constexpr std::size_t kLongest = 200;
+  std::string line(words.substr(0, kLongest));
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+bool equalIgnoringCase(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace luciole

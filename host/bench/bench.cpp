@@ -1,0 +1,75 @@
+#include "bench/bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "bench/culled_shading.hpp"
+#include "bench/many_lights.hpp"
+#include "bench/memory_use.hpp"
+#include "bench/raster_speed.hpp"
+#include "bench/shading_rate.hpp"
+#include "bench/shadow_errors.hpp"
+#include "bench/start_time.hpp"
+
+namespace luciole {
+namespace {
+
+struct SpeedMeasurement {
+  const char* name;
+  SpeedTable (*measure)(const SpeedInput&);
+};
+constexpr SpeedMeasurement kSpeed[] = {
+    {"shading rate", measureShadingRate},
+    {"culling and shading", measureCulledShading},
+    {"many lights", measureManyLights},
+    {"shadow errors", measureShadowErrors},
+    {"rasterizer", measureRasterizer},
+    {"start", measureStart},
+    {"memory", measureMemory},
+};
+
+}  // namespace
+
+std::vector<std::string> benchNames() {
+  std::vector<std::string> names{"shading", "models", "shadows", "samples"};
+  for (const SpeedMeasurement& one : kSpeed) names.push_back(one.name);
+  return names;
+}
+
+BenchResult runBench(const Scene& scene, const BenchSettings& settings, const BenchChoice& choice) {
+  const auto chosen = [&](const std::string& name) {
+    return choice.only.empty() ||
+           std::find(choice.only.begin(), choice.only.end(), name) != choice.only.end();
+  };
+  Device device;
+  openDevice(settings.device, device);
+  Stats stats;
+  describeScene(scene, {}, stats);
+  BenchResult result{.machine = describeMachine(device),
+                     .scene = scene.name,
+                     .triangles = stats.triangles,
+                     .lights = stats.lights,
+                     .width = settings.picture.size.x,
+                     .height = settings.picture.size.y,
+                     .repeats = settings.repeats};
+  std::vector<VariantGroup> groups = benchVariants(scene, device.description.lanes, choice.shadow_size);
+  std::erase_if(groups, [&](const VariantGroup& group) { return !chosen(group.chosen_by); });
+  if (!groups.empty()) result.groups = measureVariants(scene, groups, settings);
+  const SpeedInput input{.device = device,
+                         .device_selector = settings.device,
+                         .scene = choice.named_scene ? &scene : nullptr,
+                         .size = choice.size,
+                         .shadow_size = choice.shadow_size,
+                         .repeats = settings.repeats,
+                         .program = choice.program,
+                         .on_progress = settings.on_progress};
+  for (const SpeedMeasurement& one : kSpeed)
+    if (chosen(one.name)) result.speed.push_back(one.measure(input));
+  if (result.groups.empty() && result.speed.empty())
+    throw InputError(fmt::format("--only {}: {} has no shadows", choice.only.front(), scene.name));
+  return result;
+}
+
+}  // namespace luciole

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/measure.hpp"
+#include "bench/speed_table.hpp"
+#include "figures/machine.hpp"
+
+namespace luciole {
+
+struct BenchResult {
+  Machine machine;
+  std::string scene;
+  std::uint64_t triangles = 0, lights = 0;
+  int width = 0, height = 0, repeats = 0;
+  std::vector<BenchGroup> groups{};  ///< speed against error
+  std::vector<SpeedTable> speed{};
+};
+
+/// What to measure.
+struct BenchChoice {
+  std::vector<std::string> only{};   ///< of benchNames(); empty: everything
+  bool named_scene = false;          ///< the scene is the user's rather than makeBenchScene()
+  std::optional<glm::ivec2> size{};  ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size{};  ///< of all shadow maps, instead of those that are tried
+  std::string program{};             ///< the path of luciole itself
+};
+
+/// The names of all that can be measured, groups of variants first, in the order in which they are.
+std::vector<std::string> benchNames();
+
+/// Measures what was chosen. Throws InputError, also where nothing of it can be measured, and MachineError.
+BenchResult runBench(const Scene& scene, const BenchSettings& settings, const BenchChoice& choice);
+
+}  // namespace luciole

@@ -1,0 +1,90 @@
+#include "bench/many_lights.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/speed_scenes.hpp"
+#include "figures/stage_figures.hpp"
+#include "render/render.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr glm::ivec2 kSize(1920, 1080);
+
+struct Row {
+  std::string name;
+  Scene scene;
+  const GBuffer* gbuffer = nullptr;
+};
+
+/// The lists' entries and where each list starts.
+double listBytes(const GBuffer& gbuffer, double entries) {
+  return entries * sizeof(ListEntry) + double(gbuffer.pixels() / kTilePixels + 1) * sizeof(cl_uint);
+}
+
+Stats shadeRow(Device& device, const Row& row, bool count_lights) {
+  RenderSettings settings;
+  settings.count_lights = count_lights;
+  Stats stats;
+  shadeGBuffer(device, row.scene, *row.gbuffer, settings, stats);
+  return stats;
+}
+
+}  // namespace
+
+SpeedTable measureManyLights(const SpeedInput& input) {
+  const glm::ivec2 size = input.size.value_or(kSize);
+  std::vector<Row> rows;
+  rows.push_back({"sphere", makeLightSphere(std::min<std::uint64_t>(input.most_lights, 100'000))});
+  for (std::uint64_t lights = 1; lights <= input.most_lights; lights *= 10)
+    rows.push_back({"city", makeCity(lights)});
+  const GBuffer sphere = gbufferOf(rows.front().scene, size), city = gbufferOf(rows.back().scene, size);
+  for (Row& row : rows) row.gbuffer = row.name == "city" ? &city : &sphere;
+
+  SpeedTable table{
+      .name = "many lights",
+      .measured = fmt::format(
+          "point lights with ranges, {} x {} pixels; sphere: lights of range 0.3 on a sphere of radius 50 "
+          "around the camera; city: lights that fill it evenly, whose ranges shrink as they become more",
+          size.x, size.y),
+      .columns = {{"lights", "lights", 0},
+                  {"milliseconds", "ms", 1},
+                  {"prepare_lights_milliseconds", "prepare lights, ms", 1},
+                  {"cull_milliseconds", "cull, ms", 1},
+                  {"shade_milliseconds", "shade, ms", 1},
+                  {"list_entries", "list entries", 0},
+                  {"list_bytes", "list bytes", 0},
+                  {"million_pairs_evaluated", "million pairs", 2},
+                  {"million_pairs_in_range", "in range", 2},
+                  {"lights_in_range_per_pixel", "in range per pixel", 2}}};
+  for (const Row& row : rows) {
+    if (input.on_progress) input.on_progress(table.name + ": counts", table.rows.size(), rows.size());
+    const Stats stats = shadeRow(input.device, row, true);  // compiles, too
+    const double entries = countOf(stats, "list_entries"), in_range = countOf(stats, "pixel_lights_in_range");
+    table.rows.push_back({row.name,
+                          {double(row.scene.lights.size()),
+                           {},
+                           {},
+                           {},
+                           {},
+                           entries,
+                           listBytes(*row.gbuffer, entries),
+                           1e-6 * countOf(stats, "pixel_lights_evaluated"),
+                           1e-6 * in_range,
+                           quotient(in_range, countOf(stats, "pixels_lit"), "no pixel shows a surface")}});
+  }
+  const auto rounds =
+      runInRounds(rows.size(), input.repeats, table.name, input.on_progress, [&](std::size_t row) {
+        const Stats stats = shadeRow(input.device, rows[row], false);
+        const double prepare = stageTime(stats, "prepare lights"), cull = stageTime(stats, "cull"),
+                     shade = stageTime(stats, "shade");
+        return std::vector{prepare + cull + shade, prepare, cull, shade};
+      });
+  for (std::size_t row = 0; row < rounds.size(); ++row)
+    for (std::size_t i = 0; i < 4; ++i) table.rows[row].cells[1 + i] = rounds[row].summary(i);
+  return table;
+}
+
+}  // namespace luciole

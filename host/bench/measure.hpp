@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/variants.hpp"
+#include "cl/device.hpp"
+#include "figures/rounds.hpp"
+#include "image/compare.hpp"
+#include "render/render.hpp"
+
+namespace luciole {
+
+struct BenchSettings {
+  RenderSettings picture;  ///< size and camera of the scene; the variants replace `shade` and `samples`
+  std::string device;      ///< selector
+  int repeats = 9;
+  OnProgress on_progress{};
+};
+
+struct BenchRow {
+  Variant variant;
+  Repeated time{};          ///< milliseconds
+  ImageDifference error{};  ///< from the truth, linear units
+  double brightest = 0;     ///< the truth's largest value: what relative errors are relative to, if not 0
+  bool front = false;       ///< on the Pareto front, in a group that has one truth
+};
+
+struct BenchGroup {
+  VariantGroup group;
+  /// Mean absolute error that the truth itself may have; 0: only what float rounds off, 2⁻²⁴ of each value.
+  double truth_error = 0;
+  std::vector<BenchRow> rows{};  ///< in the order of group.variants
+};
+
+/// Makes every variant's picture, holds it against its group's truth, and times it, in rounds. Loading and
+/// compiling are left out. Throws InputError, MachineError.
+std::vector<BenchGroup> measureVariants(const Scene& scene, const std::vector<VariantGroup>& groups,
+                                        const BenchSettings& settings);
+
+}  // namespace luciole

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+
+#include "cl/device.hpp"
+#include "figures/rounds.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// What the measurements of speed are given.
+struct SpeedInput {
+  Device& device;
+  std::string device_selector;     ///< that opened it
+  const Scene* scene = nullptr;    ///< null: the built-in scenes only
+  std::optional<glm::ivec2> size;  ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size;  ///< of shadow maps, instead of those that are tried
+  int repeats = 9;
+  std::string program;  ///< the path of luciole itself, for measurements of the whole process
+  OnProgress on_progress;
+  std::uint64_t most_lights = 1'000'000;  ///< of any scene
+};
+
+}  // namespace luciole

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gbuffer/gbuffer.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// A hall of columns, arches and rubble seen from inside, every surface textured: 264,000 triangles, and 1024
+/// point lights with ranges. On 1280 x 720 pixels, 4.2 of them reach a pixel, and 12.5 the box around what a
+/// tile of 16 x 16 pixels shows.
+Scene makeHall();
+
+/// The inside of a sphere of radius 50.1 around the camera, with lights of range 0.3 all over a sphere of
+/// radius 50: 100,000 of them leave no place dark.
+Scene makeLightSphere(std::uint64_t lights);
+
+/// A city of a square kilometre, seen from above, in lights that fill it evenly; of 1,000,000, about 8 reach
+/// a pixel. Fewer lights reach as much farther as they stand apart.
+Scene makeCity(std::uint64_t lights);
+
+/// What the scene's first camera sees, with the groups that its lighting needs.
+GBuffer gbufferOf(const Scene& scene, glm::ivec2 size);
+
+}  // namespace luciole

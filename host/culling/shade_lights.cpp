@@ -1,0 +1,63 @@
+#include "culling/shade_lights.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "culling/light_tree.hpp"
+#include "raster/view.hpp"
+
+namespace luciole {
+namespace {
+
+/// Metres. Squares of a few times this are finite floats.
+constexpr double kFarthestLight = 1e18;
+/// Cosine of the narrowest cutoff: floats round a cosine near 1 by up to 12 · 2⁻²⁴, and the axis must stay
+/// inside.
+constexpr double kNarrowestEdge = 1 - 12 * 0x1p-24;
+
+float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y), float(xyz.z), float(w)}; }
+
+}  // namespace
+
+LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps) {
+  const glm::dmat4 world_to_view = worldToView(camera);
+  const glm::dmat3 rotation(world_to_view);
+  const std::vector<std::uint32_t> order = spatialOrder(scene.lights);
+  LightArray result(order.size());
+  tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
+    const Light& light = scene.lights[order[i]];
+    ShadeLight& out = result[i];
+    const glm::dvec3 shines = rotation * light.direction;
+    const double range = light.range;
+    const double inverse_range2 = light.kind == LightKind::kDirectional ? 0.0 : 1.0 / (range * range);
+    const double edge = std::min(std::cos(light.cutoff), kNarrowestEdge);
+    double cone_scale = 0;
+    // A light so far away is the same at every point that is seen, so it may come nearer along its direction
+    // if its falloff is stretched to match.
+    double nearer = 1;
+    if (light.kind == LightKind::kDirectional) {
+      out.kind = kDirectionalLight;
+      out.position = pack(-shines, 0);
+    } else {
+      out.kind = light.kind == LightKind::kSpot ? kSpotLight : kPointLight;
+      const glm::dvec3 place(world_to_view * glm::dvec4(light.position, 1));
+      nearer = std::max(glm::length(place) / kFarthestLight, 1.0);
+      out.position = pack(place / nearer, inverse_range2 * nearer * nearer);
+      if (light.falloff == SpotFalloff::kCone)
+        cone_scale = 1.0 / std::max(std::cos(light.inner_cone) - edge, 1e-6);
+    }
+    out.direction = pack(shines, edge);
+    out.diffuse = pack(light.diffuse, light.exponent);
+    out.specular = pack(light.specular, cone_scale);
+    out.ambient = pack(light.ambient, 0);
+    out.attenuation = pack(glm::dvec3(light.attenuation) * glm::dvec3(1, nearer, nearer * nearer), 0);
+    out.khr_window = light.window == RangeWindow::kKhr;
+    out.cone = light.falloff == SpotFalloff::kCone;
+    out.shadow = shadow_maps.map_of_light.empty() ? kNoShadow : shadow_maps.map_of_light[order[i]];
+  });
+  return result;
+}
+
+}  // namespace luciole

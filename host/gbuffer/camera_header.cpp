@@ -1,0 +1,205 @@
+#include "gbuffer/camera_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <locale>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text_file.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr char kPose[] = "luciole:cameraToWorld";
+constexpr char kProjection[] = "luciole:projection";
+constexpr char kName[] = "luciole:cameraName";
+// As OpenImageIO spells them, which writes the standard's spelling.
+constexpr char kWorldToCamera[] = "worldtocamera", kWorldToNdc[] = "worldToNDC";
+
+/// Turns −z ahead into +z ahead, and back.
+glm::dmat4 mirrorZ() {
+  glm::dmat4 mirror{1.0};
+  mirror[2][2] = -1.0;
+  return mirror;
+}
+
+glm::dvec2 halfExtent(const Camera& camera, glm::ivec2 size) {
+  const double height = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2);
+  return {height * size.x / size.y, height};
+}
+
+/// Camera space with +z ahead to OpenEXR's NDC; z runs from 0 at the near plane to 1 at the far plane.
+glm::dmat4 cameraToNdc(const Camera& camera, glm::dvec2 half_extent) {
+  const double depth = camera.far - camera.near;
+  glm::dmat4 m{0.0};
+  m[0][0] = 0.5 / half_extent.x;
+  m[1][1] = -0.5 / half_extent.y;
+  const int homogeneous = camera.orthographic ? 3 : 2;  // w is 1, or z
+  m[homogeneous][0] = 0.5;
+  m[homogeneous][1] = 0.5;
+  m[homogeneous][3] = 1.0;
+  m[2][2] = (camera.orthographic ? 1.0 : camera.far) / depth;
+  m[3][2] = -camera.near * m[2][2];
+  return m;
+}
+
+/// The attribute of that name among texts or matrices.
+template <class T>
+std::optional<T> findNamed(const std::vector<std::pair<std::string, T>>& attributes,
+                           std::string_view wanted) {
+  for (const auto& [name, value] : attributes)
+    if (equalIgnoringCase(name, wanted)) return value;
+  return {};
+}
+
+std::optional<glm::dmat4> findMatrix(const ExrAttributes& attributes, std::string_view name) {
+  const auto matrix = findNamed(attributes.matrices, name);
+  return matrix ? std::optional(glm::dmat4(*matrix)) : std::nullopt;
+}
+
+std::string findText(const ExrAttributes& attributes, std::string_view name) {
+  return findNamed(attributes.texts, name).value_or("");
+}
+
+/// `count` finite numbers and nothing else.
+std::vector<double> parseNumbers(std::istringstream text, std::size_t count, const std::string& path,
+                                 const char* attribute) {
+  text.imbue(std::locale::classic());
+  std::vector<double> numbers;
+  for (double number; text >> number;) numbers.push_back(number);
+  const bool all_finite =
+      std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
+  if (!text.eof() || numbers.size() != count || !all_finite) {
+    throw InputError(fmt::format("{}: attribute {}: expected {} finite numbers", path, attribute, count));
+  }
+  return numbers;
+}
+
+/// Float matrices of a rotation are orthogonal to a few of their epsilons (6e-8); decimal text in other tools
+/// keeps six digits or so. 1e-4 lets both pass and stops scales and shears, which would bend lengths and with
+/// them the light.
+void checkRigid(const glm::dmat4& m, const std::string& path, const char* attribute) {
+  const glm::dmat3 rotation(m);
+  const glm::dmat3 product = glm::transpose(rotation) * rotation;
+  bool rigid = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rigid = rigid && std::abs(product[i][j] - (i == j ? 1.0 : 0.0)) <= 1e-4;
+    rigid = rigid && std::isfinite(m[3][i]);
+  }
+  if (!rigid) {
+    throw InputError(fmt::format("{}: attribute {}: expected a rotation and a translation", path, attribute));
+  }
+}
+
+Camera parseOwn(const ExrAttributes& attributes, const std::string& path) {
+  Camera camera;
+  camera.name = findText(attributes, kName);
+  camera.camera_to_world =
+      glm::make_mat4(parseNumbers(std::istringstream(findText(attributes, kPose)), 16, path, kPose).data());
+  checkRigid(camera.camera_to_world, path, kPose);
+
+  std::istringstream projection(findText(attributes, kProjection));
+  std::string kind;
+  projection >> kind;
+  camera.orthographic = kind == "parallel";
+  if (!camera.orthographic && kind != "perspective") {
+    throw InputError(
+        fmt::format("{}: attribute {}: '{}', expected perspective or parallel", path, kProjection, kind));
+  }
+  const std::vector<double> numbers = parseNumbers(std::move(projection), 3, path, kProjection);
+  (camera.orthographic ? camera.half_height : camera.fov_y) = numbers[0];
+  camera.near = numbers[1];
+  camera.far = numbers[2];
+  const bool opening_ok = numbers[0] > 0 && (camera.orthographic || numbers[0] < 3.14159);
+  if (!opening_ok || !(camera.near > 0) || !(camera.far > camera.near)) {
+    throw InputError(
+        fmt::format("{}: attribute {}: expected an opening > 0 and 0 < near < far", path, kProjection));
+  }
+  return camera;
+}
+
+/// Reads the opening of a centred projection into the camera. `to_ndc`: camera space with +z ahead to NDC.
+void readProjection(const glm::dmat4& to_ndc, CameraHeader& header) {
+  const bool parallel = std::abs(to_ndc[2][3]) <= 1e-6 * std::abs(to_ndc[3][3]);
+  const int homogeneous = parallel ? 3 : 2;
+  const double w = to_ndc[homogeneous][3];
+  // Float matrices times the inverse of a float matrix: a few 1e-7 for a camera near the origin, worse in
+  // proportion to its distance. A thousandth of the picture still is no shift that anyone sets.
+  const bool centred =
+      std::abs(to_ndc[homogeneous][0] / w - 0.5) < 1e-3 && std::abs(to_ndc[homogeneous][1] / w - 0.5) < 1e-3;
+  const glm::dvec2 half{0.5 * w / to_ndc[0][0], -0.5 * w / to_ndc[1][1]};
+  if (!centred || !(half.x > 0) || !(half.y > 0) || !std::isfinite(half.x) || !std::isfinite(half.y)) return;
+  header.half_extent = half;
+  header.camera.orthographic = parallel;
+  if (parallel) {
+    header.camera.half_height = half.y;
+  } else {
+    header.camera.fov_y = 2 * std::atan(half.y);
+  }
+}
+
+/// Whether camera space has +z ahead (see readCamera).
+bool looksAlongPlusZ(const glm::dmat4& world_to_camera, const std::optional<glm::dmat4>& to_ndc,
+                     std::span<const glm::dvec3> visible_points) {
+  if (to_ndc && std::abs((*to_ndc)[2][3]) > 1e-6 * std::abs((*to_ndc)[3][3])) return (*to_ndc)[2][3] > 0;
+  if (!visible_points.empty()) {
+    std::size_t positive = 0;
+    for (const glm::dvec3& point : visible_points)
+      positive += (world_to_camera * glm::dvec4(point, 1.0)).z > 0;
+    return 2 * positive >= visible_points.size();
+  }
+  return glm::determinant(glm::dmat3(world_to_camera)) < 0;
+}
+
+}  // namespace
+
+ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size) {
+  const glm::dmat4 world_to_camera = mirrorZ() * glm::inverse(camera.camera_to_world);
+  const glm::dmat4 to_ndc = cameraToNdc(camera, halfExtent(camera, picture_size));
+  const double* pose = glm::value_ptr(camera.camera_to_world);
+  std::string text;
+  for (int i = 0; i < 16; ++i) text += fmt::format("{}{:.17g}", i ? " " : "", pose[i]);
+  ExrAttributes attributes;
+  attributes.matrices = {{kWorldToCamera, glm::mat4(world_to_camera)},
+                         {kWorldToNdc, glm::mat4(to_ndc * world_to_camera)}};
+  attributes.texts = {
+      {kPose, text},
+      {kProjection,
+       fmt::format("{} {:.17g} {:.17g} {:.17g}", camera.orthographic ? "parallel" : "perspective",
+                   camera.orthographic ? camera.half_height : camera.fov_y, camera.near, camera.far)}};
+  if (!camera.name.empty()) attributes.texts.emplace_back(kName, camera.name);
+  return attributes;
+}
+
+std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ivec2 picture_size,
+                                       const std::string& path, std::span<const glm::dvec3> visible_points) {
+  CameraHeader header;
+  if (findNamed(attributes.texts, kPose)) {
+    header.camera = parseOwn(attributes, path);
+    header.is_exact = true;
+    header.half_extent = halfExtent(header.camera, picture_size);
+    return header;
+  }
+  std::optional<glm::dmat4> world_to_camera = findMatrix(attributes, kWorldToCamera);
+  if (!world_to_camera) return {};
+  checkRigid(*world_to_camera, path, "worldToCamera");
+  std::optional<glm::dmat4> to_ndc;
+  if (const auto world_to_ndc = findMatrix(attributes, kWorldToNdc))
+    to_ndc = *world_to_ndc * glm::inverse(*world_to_camera);
+  if (!looksAlongPlusZ(*world_to_camera, to_ndc, visible_points)) {
+    world_to_camera = mirrorZ() * *world_to_camera;
+    if (to_ndc) to_ndc = *to_ndc * mirrorZ();
+  }
+  header.camera.camera_to_world = glm::inverse(mirrorZ() * *world_to_camera);
+  if (to_ndc) readProjection(*to_ndc, header);
+  return header;
+}
+
+}  // namespace luciole

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "base/array_memory.hpp"
+#include "kernels/shared.h"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+using Plane = std::vector<float, ArrayAllocator<float>>;
+/// A plane of packNormal()'s.
+using PackedNormals = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
+
+/// Bits 0 to 3 of v, moved to bits 0, 2, 4 and 6.
+constexpr std::size_t everyOtherBit(std::size_t v) {
+  v = (v | v << 2) & 0x33;
+  return (v | v << 1) & 0x55;
+}
+
+/// What the camera sees, one sample a pixel, laid out for the kernels.
+///
+///     tile (kTileSize × kTileSize pixels)      a plane group, here 3 components of `pixels()` floats each
+///     ┌────────┬────────┬──────                ┌───────────────┬───────────────┬───────────────┐
+///     │ 0      │ 1      │ 2                    │ x of tile 0,1…│ y of tile 0,1…│ z of tile 0,1…│
+///     ├────────┼────────┼──────                └───────────────┴───────────────┴───────────────┘
+///     │ tiles_x│ …      │                      inside a tile: in Z order (G. Morton, 1966), so that
+///     └────────┴────────┴──────                each square of 2, 4 or 8 pixels a side, and with it
+///                                              every row of lanes, lies in one piece
+///
+/// Space is view space: the eye is the origin, x right, y up, −z ahead (metres), so precision does not depend
+/// on where in the world the camera stands. A pixel that shows nothing, or lies in a tile beyond the
+/// picture's edge, has position (0, 0, −inf) and zeros everywhere else. A group that no feature needs is
+/// empty.
+struct GBuffer {
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  int tiles_x = 0;
+  int tiles_y = 0;
+  Plane position;       ///< x y z
+  Plane normal;         ///< x y z, unit, turned towards the viewer on double-sided surfaces
+  Plane diffuse;        ///< r g b, linear reflectance
+  Plane specular;       ///< r g b and shininess; optional
+  Plane ambient;        ///< r g b; optional
+  Plane emission;       ///< r g b; optional
+  PackedNormals facet;  ///< the triangle's own, on the side that `normal` was turned to; optional
+  Plane lift;           ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
+  Camera camera;        ///< whose view space this is
+  bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
+  glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
+  glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
+
+  /// Pixels in a plane, tiles beyond the edge included.
+  std::size_t pixels() const { return std::size_t(tiles_x) * tiles_y * kTilePixels; }
+
+  /// The place in a plane of pixel (x, y), counted from the top left.
+  std::size_t index(int x, int y) const {
+    const std::size_t tile = std::size_t(y / kTileSize) * tiles_x + x / kTileSize;
+    return tile * kTilePixels + 2 * everyOtherBit(y % kTileSize) + everyOtherBit(x % kTileSize);
+  }
+};
+
+/// Which of a G-buffer's optional groups to fill.
+struct PlaneSet {
+  bool specular = false;
+  bool ambient = false;
+  bool emission = false;
+  bool facet = false;
+  bool lift = false;
+};
+
+}  // namespace luciole

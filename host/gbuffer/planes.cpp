@@ -1,0 +1,27 @@
+#include "gbuffer/planes.hpp"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace luciole {
+
+void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
+  const std::size_t pixels = gbuffer.pixels();
+  // Side by side, since most of the time goes into the system's clearing of fresh memory.
+  tbb::parallel_invoke(
+      [&] {
+        gbuffer.position.resize(3 * pixels);
+        std::fill(gbuffer.position.begin() + std::ptrdiff_t(2 * pixels), gbuffer.position.end(),
+                  -std::numeric_limits<float>::infinity());
+      },
+      [&] { gbuffer.normal.resize(3 * pixels); }, [&] { gbuffer.diffuse.resize(3 * pixels); },
+      [&] { gbuffer.specular.resize(planes.specular ? 4 * pixels : 0); },
+      [&] { gbuffer.ambient.resize(planes.ambient ? 3 * pixels : 0); },
+      [&] { gbuffer.emission.resize(planes.emission ? 3 * pixels : 0); },
+      [&] { gbuffer.facet.resize(planes.facet ? pixels : 0); },
+      [&] { gbuffer.lift.resize(planes.lift ? pixels : 0); });
+}
+
+}  // namespace luciole

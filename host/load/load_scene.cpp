@@ -1,0 +1,101 @@
+#include "load/load_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "load/frame.hpp"
+#include "scene/json/json_scene.hpp"
+#include "scene/json/mesh_file.hpp"
+#include "scene/pose.hpp"
+
+namespace luciole {
+namespace {
+
+Light directionalLight(const glm::dvec3& direction, float strength, bool shadow) {
+  Light light;
+  light.kind = LightKind::kDirectional;
+  light.direction = glm::normalize(direction);
+  light.diffuse = light.specular = glm::vec3(strength);
+  light.shadow = shadow;
+  return light;
+}
+
+/// Daylight from above where the roof lets it in, and lamps down the hall that reach about as far as it is
+/// high.
+void lightHall(const Framing& framing, Scene& scene) {
+  const glm::dmat4& place = framing.camera.camera_to_world;
+  const double height = framing.ceiling - framing.floor;
+  const double reach = std::max(0.4 * height, 0.12 * framing.view_length);
+  scene.lights.push_back(directionalLight({0.25, -1, 0.15}, 0.9f, true));
+  for (double share : {0.05, 0.35, 0.65, 0.95}) {
+    Light lamp;
+    lamp.position = glm::dvec3(place[3]) - glm::dvec3(place[2]) * (share * framing.view_length);
+    lamp.position.y = framing.floor + 0.6 * height;
+    lamp.diffuse = lamp.specular = glm::vec3(0.8f, 0.7f, 0.55f);
+    lamp.attenuation = {1.0f, 0.0f, static_cast<float>(1 / (reach * reach))};
+    scene.lights.push_back(lamp);
+  }
+  scene.ambient = glm::vec3(0.25f);
+}
+
+/// A key light over the camera's left shoulder, which casts shadows, and a weak one from the right, which
+/// doesn't.
+void lightObject(const glm::dmat4& camera_to_world, Scene& scene) {
+  const glm::dmat3 axes{camera_to_world};
+  scene.lights.push_back(directionalLight(axes * glm::dvec3(0.5, -0.8, -0.9), 0.8f, true));
+  scene.lights.push_back(directionalLight(axes * glm::dvec3(-0.9, -0.1, -0.6), 0.25f, false));
+  scene.ambient = glm::vec3(0.2f);
+}
+
+/// Whether nothing that a scene shows has any light of its own or of others.
+bool isDark(const Scene& scene) {
+  const auto glows = [](const Material& material) { return material.emission != glm::vec3(0); };
+  return scene.lighting && scene.lights.empty() && scene.ambient == glm::vec3(0) &&
+         std::none_of(scene.materials.begin(), scene.materials.end(), glows);
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& path, double frame, MissingTextures missing) {
+  const bool is_mesh_file = isMeshFile(path);
+  Scene scene;
+  if (is_mesh_file) {
+    loadMeshFile(path, scene);
+    scene.name = path;
+  } else if (path == "-" || extensionOf(path) == ".json") {
+    scene = loadJsonScene(path);
+  } else {
+    throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
+                                 path, extensionOf(path)));
+  }
+  if (missing == MissingTextures::kError && !scene.missing_textures.empty())
+    throw InputError(scene.missing_textures.front());
+  for (const std::string& texture : scene.missing_textures)
+    scene.warnings.push_back(texture + "; drawn without");
+  poseScene(scene, 1);
+  completeScene(scene, is_mesh_file);
+  if (frame != 1) poseScene(scene, frame);
+  return scene;
+}
+
+std::string nothingLights(const Scene& scene) { return scene.name + ": nothing lights this scene"; }
+
+void completeScene(Scene& scene, bool is_mesh_file) {
+  const bool is_bare = is_mesh_file || !scene.objects.empty();
+  const bool needs_lights = is_bare && !scene.says_light && scene.lights.empty();
+  if (!needs_lights && isDark(scene)) scene.warnings.push_back(nothingLights(scene));
+  if (!scene.cameras.empty() && !needs_lights) return;
+  const Framing framing = frameScene(scene);
+  if (scene.cameras.empty()) scene.cameras.push_back(framing.camera);
+  if (!needs_lights) return;
+  if (framing.inside) {
+    lightHall(framing, scene);
+  } else {
+    lightObject(scene.cameras[0].camera_to_world, scene);
+  }
+  if (is_mesh_file) scene.background = 0.8f * glm::vec3(0.45f, 0.6f, 0.8f);
+}
+
+}  // namespace luciole

@@ -1,0 +1,192 @@
+#include "rays/ray_cast.hpp"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+
+namespace luciole {
+namespace {
+
+std::size_t countTriangles(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Object& object : scene.objects) count += scene.meshes[object.mesh].triangles.size();
+  return count;
+}
+
+/// Embree's question after a hit whether it counts.
+void filterMeetings(const RTCFilterFunctionNArguments* arguments) {
+  const auto& passes_through = *static_cast<const PassesThrough*>(arguments->geometryUserPtr);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    RTCRayN* ray = arguments->ray;
+    RTCHitN* hit = arguments->hit;
+    const RayMeeting meeting{{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
+                             RTCHitN_primID(hit, n, i),
+                             RTCHitN_u(hit, n, i),
+                             RTCHitN_v(hit, n, i)};
+    if (passes_through(meeting)) arguments->valid[i] = 0;
+  }
+}
+
+RTCRay makeRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance) {
+  const glm::vec3 o = from - scene.origin, d = direction;
+  RTCRay ray{};
+  ray.org_x = o.x;
+  ray.org_y = o.y;
+  ray.org_z = o.z;
+  ray.dir_x = d.x;
+  ray.dir_y = d.y;
+  ray.dir_z = d.z;
+  ray.tfar = static_cast<float>(distance);
+  ray.mask = ~0u;
+  return ray;
+}
+
+/// Embree takes origins and directions up to 1.844·10¹⁸ a component, and stops the program where one is
+/// beyond that or no number. Rays for which that is so, in a scene of 10¹⁸ metres or from a point that no
+/// direction leads away from, meet nothing.
+bool canBeCast(const RTCRay& ray) {
+  constexpr float kLargest = 1.8e18f;
+  bool valid = !std::isnan(ray.tfar);
+  for (const float value : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+    valid &= std::abs(value) <= kLargest;
+  return valid;
+}
+
+constexpr std::size_t kPacketSize = 16;
+/// Packets that a thread takes on at once.
+constexpr std::size_t kPacketsPerTask = 64;
+
+/// Asks one packet, of 1 to 16 rays.
+void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {
+  alignas(64) std::array<int, kPacketSize> valid{};
+  RTCRay16 packet{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RTCRay ray = makeRay(scene, rays[i].from, rays[i].direction, rays[i].distance);
+    packet.org_x[i] = ray.org_x;
+    packet.org_y[i] = ray.org_y;
+    packet.org_z[i] = ray.org_z;
+    packet.dir_x[i] = ray.dir_x;
+    packet.dir_y[i] = ray.dir_y;
+    packet.dir_z[i] = ray.dir_z;
+    packet.tfar[i] = ray.tfar;
+    packet.mask[i] = ray.mask;
+    valid[i] = canBeCast(ray) ? -1 : 0;
+  }
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid.data(), scene.scene.get(), &packet, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid.data(), scene.scene.get(), &context, &packet);
+#endif
+  for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = packet.tfar[i] < 0;
+}
+
+/// Fills three corners a triangle.
+void placeCorners(const Scene& scene, RayScene& rays, glm::vec3* corner) {
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    for (const glm::uvec3& triangle : mesh.triangles) {
+      for (int i = 0; i < 3; ++i)
+        *corner++ =
+            glm::dvec3(object.object_to_world * glm::dvec4(mesh.positions[triangle[i]], 1)) - rays.origin;
+    }
+    const bool mirrored = glm::determinant(glm::dmat3(object.object_to_world)) < 0;
+    rays.mirrored.insert(rays.mirrored.end(), mesh.triangles.size(), mirrored);
+  }
+}
+
+}  // namespace
+
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, PassesThrough passes_through) {
+  const std::shared_ptr<RTCDeviceTy> device(rtcNewDevice(nullptr), rtcReleaseDevice);
+  if (!device) throw MachineError("Embree can't be started");
+  RayScene result;
+  result.origin = origin;
+  // The scene keeps its device alive.
+  result.scene.reset(rtcNewScene(device.get()), [device](RTCScene built) { rtcReleaseScene(built); });
+  rtcSetSceneFlags(result.scene.get(), RTC_SCENE_FLAG_ROBUST);
+
+  const std::size_t count = countTriangles(scene);
+  const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * count));
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), count));
+  if (count > 0 && (!corners || !indices))
+    throw MachineError(scene.name + ": no memory for its triangles in Embree");
+  placeCorners(scene, result, corners);
+  for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
+  if (passes_through) {
+    result.passes_through = std::make_shared<const PassesThrough>(std::move(passes_through));
+    rtcSetGeometryUserData(geometry, const_cast<PassesThrough*>(result.passes_through.get()));
+    rtcSetGeometryIntersectFilterFunction(geometry, filterMeetings);
+    rtcSetGeometryOccludedFilterFunction(geometry, filterMeetings);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(result.scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(result.scene.get());
+  return result;
+}
+
+std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction) {
+  RTCRayHit query{};
+  query.ray = makeRay(scene, from, direction, std::numeric_limits<float>::infinity());
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!canBeCast(query.ray)) return std::nullopt;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene.scene.get(), &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene.scene.get(), &context, &query);
+#endif
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  const bool against = glm::dot(normal, glm::vec3(direction)) < 0;
+  return RayHit{query.ray.tfar, against != scene.mirrored[query.hit.primID], query.hit.primID};
+}
+
+bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance) {
+  RTCRay ray = makeRay(scene, from, direction, distance);
+  if (!canBeCast(ray)) return false;
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(scene.scene.get(), &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene.scene.get(), &context, &ray);
+#endif
+  return ray.tfar < 0;  // Embree's word for it
+}
+
+void areBlocked(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {
+  const std::size_t packets = (rays.size() + kPacketSize - 1) / kPacketSize;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, packets, kPacketsPerTask), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::size_t first = i * kPacketSize, count = std::min(kPacketSize, rays.size() - first);
+      askPacket(scene, rays.subspan(first, count), blocked.subspan(first, count));
+    }
+  });
+}
+
+}  // namespace luciole

@@ -1,0 +1,75 @@
+#include "rays/shadow_rays.hpp"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "kernels/shared.h"
+#include "raster/opacity.hpp"
+
+namespace luciole {
+namespace {
+
+/// What decides whether a triangle blocks a ray.
+struct Blockers {
+  const Scene& scene;
+  glm::dvec3 eye;
+  std::vector<PlacedObject> objects;  ///< in world space
+
+  bool passesThrough(const RayMeeting& meeting) const {
+    const PlacedObject& object = objectOfTriangle(objects, meeting.triangle);
+    const std::uint32_t in_mesh = meeting.triangle - object.first_triangle;
+    const glm::uvec3 corners = object.mesh->triangles[in_mesh];
+    return liesInPlane(object, corners, meeting.from) || isHoleAt(object, in_mesh, corners, meeting);
+  }
+
+  /// `from`: relative to the eye.
+  bool liesInPlane(const PlacedObject& object, const glm::uvec3& corners, const glm::dvec3& from) const {
+    const auto corner = [&](int i) {
+      return glm::dvec3(object.object_to_view * glm::dvec4(object.mesh->positions[corners[i]], 1)) - eye;
+    };
+    const glm::dvec3 a = corner(0), normal = glm::cross(corner(1) - a, corner(2) - a);
+    return std::abs(glm::dot(normal, from - a)) <= POINT_ERROR * glm::length(from) * glm::length(normal);
+  }
+
+  bool isHoleAt(const PlacedObject& object, std::uint32_t in_mesh, const glm::uvec3& corners,
+                const RayMeeting& meeting) const {
+    Surface surface;
+    surface.object = &object;
+    surface.material = &materialOf(scene, object, in_mesh);
+    surface.corners = corners;
+    if (surface.material->alpha_cutoff <= 0) return false;
+    const Weights weights(1 - meeting.second - meeting.third, meeting.second, meeting.third);
+    TexturePlace place{};
+    if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
+    return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
+  }
+};
+
+}  // namespace
+
+RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
+  auto blockers = std::make_shared<const Blockers>(
+      Blockers{scene, eye, placeObjects(scene, allObjects(scene), glm::dmat4(1))});
+  return buildRayScene(scene, eye,
+                       [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
+}
+
+glm::dvec3 shadowStart(const GBuffer& gbuffer, std::size_t place) {
+  const std::size_t stride = gbuffer.pixels();
+  const auto triple = [&](const Plane& group) {
+    return glm::dvec3(group[place], group[place + stride], group[place + 2 * stride]);
+  };
+  glm::dvec3 start = triple(gbuffer.position);
+  if (!gbuffer.lift.empty()) start += double(gbuffer.lift[place]) * triple(gbuffer.normal);
+  return glm::dvec3(gbuffer.camera.camera_to_world * glm::dvec4(start, 1));
+}
+
+ShadowRay shadowRay(const Light& light, const glm::dvec3& point) {
+  const bool directional = light.kind == LightKind::kDirectional;
+  const glm::dvec3 way = directional ? -light.direction : light.position - point;
+  const double length = glm::length(way);
+  return {point, way / length, directional ? std::numeric_limits<double>::infinity() : length};
+}
+
+}  // namespace luciole

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// Axis-aligned box, world space, metres. Empty: low > high.
+struct Bounds {
+  glm::dvec3 low{1e300};
+  glm::dvec3 high{-1e300};
+};
+
+/// The box around one object's vertices, and around all of them.
+Bounds objectBounds(const Scene& scene, const Object& object);
+Bounds sceneBounds(const Scene& scene);
+
+}  // namespace luciole

@@ -1,0 +1,272 @@
+#include "scene/gltf/gltf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "scene/gltf/gltf_animation.hpp"
+#include "scene/gltf/gltf_material.hpp"
+#include "scene/gltf/gltf_mesh.hpp"
+#include "scene/gltf/gltf_model.hpp"
+#include "scene/pose.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr const char* kLights = "KHR_lights_punctual";
+constexpr double kPi = 3.14159265358979323846;
+
+struct PlacedNode {
+  int node;
+  glm::dmat4 to_world;    ///< at rest, as the node itself says
+  int moving = -1;        ///< what it hangs on: in Animation::nodes; -1: nothing moves it
+  glm::dmat4 since{1.0};  ///< from there on
+};
+
+std::string nodePlace(int node) { return fmt::format("nodes[{}]", node); }
+
+/// What a node says of its own transform: a matrix, or the three parts.
+struct LocalTransform {
+  bool is_matrix = false;
+  glm::dmat4 matrix{1.0};
+  glm::dvec3 translate{0.0}, scale{1.0};
+  glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};
+};
+
+LocalTransform localTransform(const GltfModel& model, int index) {
+  const tinygltf::Node& node = model.file.nodes[index];
+  const auto has = [&](const std::vector<double>& values, std::size_t count, const char* name) {
+    if (values.empty() || values.size() == count) return !values.empty();
+    failGltf(model, nodePlace(index),
+             fmt::format("{} has {} numbers, expected {}", name, values.size(), count));
+  };
+  LocalTransform local;
+  if (has(node.matrix, 16, "matrix")) {
+    local.is_matrix = true;
+    for (int i = 0; i < 16; ++i) local.matrix[i / 4][i % 4] = node.matrix[i];
+    const glm::dvec4 last_row(local.matrix[0].w, local.matrix[1].w, local.matrix[2].w, local.matrix[3].w);
+    if (last_row != glm::dvec4(0, 0, 0, 1))
+      failGltf(model, nodePlace(index), "matrix must have 0 0 0 1 as last row");
+    return local;
+  }
+  for (int i = 0; has(node.translation, 3, "translation") && i < 3; ++i)
+    local.translate[i] = node.translation[i];
+  for (int i = 0; has(node.rotation, 4, "rotation") && i < 4; ++i) local.rotation[i] = node.rotation[i];
+  for (int i = 0; has(node.scale, 3, "scale") && i < 3; ++i) local.scale[i] = node.scale[i];
+  if (!(glm::length(local.rotation) > 0))
+    failGltf(model, nodePlace(index), "rotation must be a unit quaternion");
+  local.matrix = placementByQuaternion(local.translate, local.rotation, local.scale);
+  return local;
+}
+
+/// The node of the animation that an animated node becomes; what no curve moves stays as the node says.
+MovingNode movingNode(const LocalTransform& local, const NodeCurves& curves, Animation& animation) {
+  const auto orConstant = [&](int curve, const glm::dvec4& value) {
+    if (curve >= 0) return curve;
+    animation.curves.push_back(constantCurve(value));
+    return static_cast<int>(animation.curves.size()) - 1;
+  };
+  MovingNode moving;
+  moving.quaternion = true;
+  moving.translate = orConstant(curves.translation, glm::dvec4(local.translate, 0));
+  moving.rotate = orConstant(curves.rotation, local.rotation);
+  moving.scale = orConstant(curves.scale, glm::dvec4(local.scale, 0));
+  return moving;
+}
+
+/// The nodes at the top of the scene to show: the default one, else the first, else every node without a
+/// parent.
+std::vector<int> rootNodes(const GltfModel& model) {
+  const tinygltf::Model& file = model.file;
+  if (!file.scenes.empty()) {
+    return element(model, file.scenes, std::max(file.defaultScene, 0), "scene", "scene").nodes;
+  }
+  std::vector<bool> is_child(file.nodes.size(), false);
+  for (const tinygltf::Node& node : file.nodes) {
+    for (const int child : node.children) {
+      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) is_child[child] = true;
+    }
+  }
+  std::vector<int> roots;
+  for (std::size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+/// Every node of the scene with its transform, parents first; what moves is added to the animation. A scene
+/// whose roots have no parent and whose nodes have at most one is a forest, so that a walk down from the
+/// roots ends.
+std::vector<PlacedNode> placedNodes(const GltfModel& model, Animation& animation) {
+  const std::map<int, NodeCurves> curves = readGltfAnimations(model, animation);
+  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  const std::vector<int> roots = rootNodes(model);
+  std::vector<int> parents(nodes.size(), 0);
+  const auto addParent = [&](int child, const std::string& place) {
+    element(model, nodes, child, place, "node");
+    if (++parents[child] > 1)
+      failGltf(model, nodePlace(child), "has two parents or contains itself, expected a tree");
+  };
+  for (const int root : roots) addParent(root, "scene");
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (const int child : nodes[i].children) addParent(child, nodePlace(static_cast<int>(i)));
+  }
+
+  std::vector<PlacedNode> placed, stack;
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, glm::dmat4(1.0)});
+  while (!stack.empty()) {
+    PlacedNode next = stack.back();
+    stack.pop_back();
+    const LocalTransform local = localTransform(model, next.node);
+    next.to_world = next.to_world * local.matrix;
+    if (!isFinite(next.to_world)) failGltf(model, nodePlace(next.node), "transform is not finite");
+    if (const auto animated = curves.find(next.node); animated != curves.end()) {
+      if (local.is_matrix) failGltf(model, nodePlace(next.node), "is animated, so it must have no matrix");
+      MovingNode moving = movingNode(local, animated->second, animation);
+      moving.parent = next.moving;
+      moving.before = next.since;
+      next.moving = static_cast<int>(animation.nodes.size());
+      next.since = glm::dmat4(1.0);
+      animation.nodes.push_back(moving);
+    } else {
+      next.since = next.since * local.matrix;
+    }
+    placed.push_back(next);
+    const std::vector<int>& children = nodes[next.node].children;
+    for (auto child = children.rbegin(); child != children.rend(); ++child)
+      stack.push_back({*child, next.to_world, next.moving, next.since});
+  }
+  return placed;
+}
+
+/// Adds the mesh of each node as an object; a mesh of several nodes becomes one mesh and several objects.
+void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Scene& scene) {
+  const std::uint32_t first_material = static_cast<std::uint32_t>(scene.materials.size());
+  std::vector<int> materials;
+  std::map<int, int> meshes;  // glTF's index -> ours, -1: nothing to draw
+  for (const PlacedNode& placed : nodes) {
+    const int index = model.file.nodes[placed.node].mesh;
+    if (index < 0) continue;
+    element(model, model.file.meshes, index, nodePlace(placed.node), "mesh");
+    if (!meshes.count(index)) {
+      Mesh mesh = readGltfMesh(model, index, materials, first_material);
+      meshes[index] = mesh.triangles.empty() ? -1 : static_cast<int>(scene.meshes.size());
+      if (!mesh.triangles.empty()) scene.meshes.push_back(std::move(mesh));
+    }
+    if (meshes[index] < 0) continue;
+    const std::uint32_t mesh = static_cast<std::uint32_t>(meshes[index]);
+    // By a scale of 0, to hide it. What moves may be so for some time.
+    if (placed.moving < 0 && isFlat(placed.to_world)) continue;
+    scene.objects.push_back({mesh, placed.to_world, -1});
+    if (placed.moving < 0) continue;
+    hang(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
+                 static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
+  }
+  addGltfMaterials(model, materials, scene);
+}
+
+void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
+  const tinygltf::Node& node = model.file.nodes[placed.node];
+  const tinygltf::Camera& source =
+      element(model, model.file.cameras, node.camera, nodePlace(placed.node), "camera");
+  const std::string place = fmt::format("cameras[{}]", node.camera);
+  Camera camera;
+  camera.name = source.name.empty() ? node.name : source.name;
+  const std::string fault = hangCamera(placed.to_world, camera);
+  if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
+  camera.orthographic = source.type == "orthographic";
+  if (camera.orthographic) {
+    camera.half_height = std::abs(source.orthographic.ymag);
+    camera.far = source.orthographic.zfar;
+    // glTF allows 0 here; ours must be above.
+    camera.near = source.orthographic.znear == 0 ? 1e-6 * camera.far : source.orthographic.znear;
+    if (!(camera.half_height > 0)) failGltf(model, place, "ymag is 0");
+  } else {
+    camera.fov_y = source.perspective.yfov;
+    camera.near = source.perspective.znear;
+    // Without zfar glTF's projection is infinite.
+    camera.far = source.perspective.zfar == 0 ? 1e6 * camera.near : source.perspective.zfar;
+    if (!(camera.fov_y > 0 && camera.fov_y < kPi)) failGltf(model, place, "yfov must be between 0 and pi");
+  }
+  if (!(camera.near > 0 && camera.far > camera.near)) failGltf(model, place, "expected 0 < znear < zfar");
+  if (placed.moving >= 0)
+    scene.animation.hanging_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
+                                               static_cast<std::uint32_t>(placed.moving), placed.since});
+  scene.cameras.push_back(camera);
+}
+
+/// KHR_lights_punctual. Its intensities are candela and lux, and its Lambertian surface reflects base colour
+/// / π; our diffuse term has no 1/π, so the light carries it: diffuse = specular = colour · intensity / π. A
+/// surface then has the radiance in cd/m² that glTF gives it. Lights cast no shadow, as glTF says nothing of
+/// shadows.
+void addLight(const GltfModel& model, const PlacedNode& placed, double index, Scene& scene) {
+  const int number = index >= 0 && index < 1e9 ? static_cast<int>(index) : -1;
+  const tinygltf::Light& source = element(model, model.file.lights, number, nodePlace(placed.node), "light");
+  const std::string place = fmt::format("extensions.{}.lights[{}]", kLights, number);
+  Light light;
+  glm::vec3 color(1);
+  for (std::size_t i = 0; i < std::min<std::size_t>(source.color.size(), 3); ++i) {
+    color[static_cast<int>(i)] = static_cast<float>(source.color[i]);
+  }
+  light.diffuse = light.specular = color * static_cast<float>(source.intensity / kPi);
+  for (int i = 0; i < 3; ++i) {
+    if (!(light.diffuse[i] >= 0 && std::isfinite(light.diffuse[i]))) {
+      failGltf(model, place, "color and intensity must be at least 0 and finite");
+    }
+  }
+  if (source.type == "directional") {
+    light.kind = LightKind::kDirectional;
+  } else {
+    light.attenuation = {0, 0, 1};
+    light.window = RangeWindow::kKhr;
+    if (source.range != 0) light.range = static_cast<float>(source.range);
+    if (!(light.range > 0)) failGltf(model, place, "range must be above 0");
+  }
+  if (source.type == "spot") {
+    light.kind = LightKind::kSpot;
+    light.falloff = SpotFalloff::kCone;
+    light.cutoff = source.spot.outerConeAngle;
+    // Programs write inner = outer for a sharp edge; ours must be below.
+    light.inner_cone = std::min(source.spot.innerConeAngle, light.cutoff * (1 - 1e-6));
+    // π/2 as a decimal may have been rounded up.
+    if (light.cutoff > kPi / 2 && light.cutoff < kPi / 2 + 1e-5) light.cutoff = kPi / 2;
+    if (!(light.cutoff > 0 && light.cutoff <= kPi / 2 && source.spot.innerConeAngle >= 0 &&
+          source.spot.innerConeAngle <= source.spot.outerConeAngle)) {
+      failGltf(model, place, "expected 0 <= innerConeAngle < outerConeAngle <= pi/2");
+    }
+  } else if (source.type != "point" && source.type != "directional") {
+    failGltf(model, place, "type must be point, directional or spot");
+  }
+  const std::string fault = hangLight(placed.to_world, light);
+  if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
+  if (placed.moving >= 0)
+    scene.animation.hanging_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
+                                              static_cast<std::uint32_t>(placed.moving), placed.since});
+  scene.lights.push_back(light);
+}
+
+}  // namespace
+
+void loadGltf(const std::string& path, Scene& scene) {
+  const GltfModel model = readGltfModel(path);
+  const std::vector<std::string> ignored = ignoredExtensions(model);
+  scene.warnings.insert(scene.warnings.end(), ignored.begin(), ignored.end());
+  const std::vector<PlacedNode> nodes = placedNodes(model, scene.animation);
+  const std::size_t before = scene.objects.size() + scene.cameras.size() + scene.lights.size();
+  addObjects(model, nodes, scene);
+  for (const PlacedNode& placed : nodes) {
+    const tinygltf::Node& node = model.file.nodes[placed.node];
+    if (node.camera >= 0) addCamera(model, placed, scene);
+    if (node.extensions.count(kLights)) {
+      addLight(model, placed, extensionNumber(node.extensions, kLights, "light", -1), scene);
+    }
+  }
+  if (scene.objects.size() + scene.cameras.size() + scene.lights.size() == before) {
+    failGltf(model, "scene", "shows nothing, expected a mesh, a light or a camera");
+  }
+}
+
+}  // namespace luciole

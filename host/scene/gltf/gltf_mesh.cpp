@@ -1,0 +1,214 @@
+#include "scene/gltf/gltf_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "scene/gltf/gltf_accessor.hpp"
+#include "scene/gltf/gltf_uvs.hpp"
+#include "scene/normals.hpp"
+
+namespace luciole {
+namespace {
+
+/// The three vertices of a strip's triangle i; every other one is wound the other way round.
+glm::uvec3 stripTriangle(std::uint32_t i) { return {i, i + 1 + i % 2, i + 2 - i % 2}; }
+
+/// Triangles of vertex numbers, by the primitive's mode and indices.
+std::vector<glm::uvec3> readTriangles(const GltfModel& model, const tinygltf::Primitive& primitive,
+                                      std::size_t vertices, const std::string& place) {
+  std::vector<std::uint32_t> order(vertices);
+  std::iota(order.begin(), order.end(), 0);
+  if (primitive.indices >= 0) order = readIndices(model, primitive.indices, place + ".indices");
+  for (const std::uint32_t index : order) {
+    if (index >= vertices)
+      failGltf(model, place, fmt::format("index {}, but it has only {} vertices", index, vertices));
+  }
+  const std::uint32_t count = static_cast<std::uint32_t>(order.size());
+  std::vector<glm::uvec3> triangles;
+  if (primitive.mode == TINYGLTF_MODE_TRIANGLES) {
+    for (std::uint32_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(i, i + 1, i + 2);
+  } else if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+    for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.push_back(stripTriangle(i));
+  } else {
+    for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.emplace_back(i + 1, i + 2, 0);
+  }
+  for (glm::uvec3& triangle : triangles) triangle = {order[triangle.x], order[triangle.y], order[triangle.z]};
+  return triangles;
+}
+
+/// An attribute's values as vectors, or none where the primitive hasn't got it.
+template <typename Vector>
+std::vector<Vector> readAttribute(const GltfModel& model, const tinygltf::Primitive& primitive,
+                                  const std::string& name, const std::string& place) {
+  const auto found = primitive.attributes.find(name);
+  if (found == primitive.attributes.end()) return {};
+  const std::string here = place + "." + name;
+  const std::vector<float> values = readFloats(model, found->second, Vector::length(), here);
+  std::vector<Vector> vectors(values.size() / Vector::length());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    vectors[i / Vector::length()][i % Vector::length()] = values[i];
+  return vectors;
+}
+
+template <typename Vector>
+void checkFinite(const GltfModel& model, const std::vector<Vector>& vectors, const std::string& place) {
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    for (int j = 0; j < Vector::length(); ++j) {
+      if (!std::isfinite(vectors[i][j])) failGltf(model, place, fmt::format("element {} is not finite", i));
+    }
+  }
+}
+
+std::vector<glm::vec4> readColors(const GltfModel& model, const tinygltf::Primitive& primitive,
+                                  const std::string& place) {
+  const auto found = primitive.attributes.find("COLOR_0");
+  if (found == primitive.attributes.end()) return {};
+  if (accessorComponents(model, found->second, place) == 4) {
+    return readAttribute<glm::vec4>(model, primitive, "COLOR_0", place);
+  }
+  std::vector<glm::vec4> colors;
+  for (const glm::vec3& rgb : readAttribute<glm::vec3>(model, primitive, "COLOR_0", place)) {
+    colors.emplace_back(rgb, 1.0f);
+  }
+  return colors;
+}
+
+template <typename T>
+std::vector<T> unshared(const std::vector<T>& values, const std::vector<glm::uvec3>& triangles) {
+  std::vector<T> result;
+  if (values.empty()) return result;
+  for (const glm::uvec3& triangle : triangles) {
+    for (int i = 0; i < 3; ++i) result.push_back(values[triangle[i]]);
+  }
+  return result;
+}
+
+/// Gives each triangle vertices of its own, with the flat normals that glTF prescribes where there are none.
+void makeFlat(Mesh& mesh) {
+  mesh.positions = unshared(mesh.positions, mesh.triangles);
+  mesh.uvs = unshared(mesh.uvs, mesh.triangles);
+  mesh.emission_uvs = unshared(mesh.emission_uvs, mesh.triangles);
+  mesh.colors = unshared(mesh.colors, mesh.triangles);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
+  mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
+}
+
+/// Makes normals unit, and takes those without a direction from the faces around them.
+void repairNormals(Mesh& mesh) {
+  std::vector<glm::vec3> from_faces;
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    const double length = glm::length(glm::dvec3(mesh.normals[i]));
+    if (length > 0 && std::isfinite(length)) {
+      mesh.normals[i] = glm::vec3(glm::dvec3(mesh.normals[i]) / length);
+    } else {
+      if (from_faces.empty()) from_faces = angleWeightedNormals(mesh.positions, mesh.triangles);
+      mesh.normals[i] = from_faces[i];
+    }
+  }
+}
+
+/// Texture coordinates as a texture reads them; none where the primitive hasn't got them.
+std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& primitive, const GltfUvs& use,
+                             const std::string& place) {
+  auto uvs = readAttribute<glm::vec2>(model, primitive, fmt::format("TEXCOORD_{}", use.set), place);
+  if (use.matrix != glm::dmat2(1) || use.offset != glm::dvec2(0))
+    for (glm::vec2& uv : uvs) uv = glm::vec2(use.matrix * glm::dvec2(uv) + use.offset);
+  return uvs;
+}
+
+/// A primitive has one material, so that its vertices can carry what its textures make of their coordinates.
+void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
+             Mesh& mesh) {
+  const GltfUvs base = baseColorUvs(model, primitive.material),
+                emission = emissionUvs(model, primitive.material);
+  if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
+  if (emission.set < 0 || emission == base) return;
+  std::vector<glm::vec2>& uvs = base.set < 0 ? mesh.uvs : mesh.emission_uvs;
+  uvs = uvsOf(model, primitive, emission, place);
+}
+
+Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place) {
+  Mesh mesh;
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return mesh;
+  if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    failGltf(model, place, fmt::format("mode {} is not one of glTF's", primitive.mode));
+  }
+  mesh.positions = readAttribute<glm::vec3>(model, primitive, "POSITION", place);
+  if (mesh.positions.empty())
+    return mesh;  // glTF lets an extension say where such vertices are: nothing to draw
+  readUvs(model, primitive, place, mesh);
+  mesh.normals = readAttribute<glm::vec3>(model, primitive, "NORMAL", place);
+  mesh.colors = readColors(model, primitive, place);
+  for (const std::size_t count :
+       {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normals.size(), mesh.colors.size()}) {
+    if (count == 0 || count == mesh.positions.size()) continue;
+    failGltf(model, place,
+             fmt::format("its attributes have {} and {} elements", mesh.positions.size(), count));
+  }
+  checkFinite(model, mesh.positions, place + ".POSITION");
+  checkFinite(model, mesh.uvs, place + ".TEXCOORD");
+  checkFinite(model, mesh.emission_uvs, place + ".TEXCOORD");
+  checkFinite(model, mesh.colors, place + ".COLOR_0");
+  for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));
+
+  mesh.triangles = readTriangles(model, primitive, mesh.positions.size(), place);
+  if (mesh.normals.empty()) {
+    makeFlat(mesh);
+  } else {
+    repairNormals(mesh);
+  }
+  return mesh;
+}
+
+/// Appends an optional attribute, filling up with `missing` what either side hasn't got.
+template <typename T>
+void appendOptional(std::vector<T>& all, std::size_t count_before, const std::vector<T>& more,
+                    std::size_t count_more, const T& missing) {
+  if (all.empty() && more.empty()) return;
+  all.resize(count_before, missing);
+  all.insert(all.end(), more.begin(), more.end());
+  all.resize(count_before + count_more, missing);
+}
+
+void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
+  const std::size_t before = mesh.positions.size(), added = more.positions.size();
+  if (!mesh.emission_uvs.empty() || !more.emission_uvs.empty()) {
+    // A side without looks everything up at the same place.
+    if (mesh.emission_uvs.empty()) mesh.emission_uvs = mesh.uvs;
+    appendOptional(mesh.emission_uvs, before, more.emission_uvs.empty() ? more.uvs : more.emission_uvs, added,
+                   glm::vec2(0));
+  }
+  appendOptional(mesh.uvs, before, more.uvs, added, glm::vec2(0));
+  appendOptional(mesh.colors, before, more.colors, added, glm::vec4(1));
+  mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
+  mesh.normals.insert(mesh.normals.end(), more.normals.begin(), more.normals.end());
+  for (const glm::uvec3& triangle : more.triangles) {
+    mesh.triangles.push_back(triangle + static_cast<std::uint32_t>(before));
+    mesh.triangle_materials.push_back(material);
+  }
+}
+
+}  // namespace
+
+Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials,
+                  std::uint32_t first_material) {
+  const tinygltf::Mesh& source = model.file.meshes[index];
+  Mesh mesh;
+  mesh.name = source.name;
+  const std::string place = fmt::format("meshes[{}]", index);
+  if (source.primitives.empty()) failGltf(model, place, "has no primitives, expected at least one");
+  for (std::size_t i = 0; i < source.primitives.size(); ++i) {
+    const tinygltf::Primitive& primitive = source.primitives[i];
+    const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i));
+    if (part.triangles.empty()) continue;
+    auto known = std::find(materials.begin(), materials.end(), primitive.material);
+    if (known == materials.end()) known = materials.insert(known, primitive.material);
+    append(mesh, part, first_material + static_cast<std::uint32_t>(known - materials.begin()));
+  }
+  return mesh;
+}
+
+}  // namespace luciole

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/gltf/gltf_model.hpp"
+
+namespace luciole {
+
+/// Which texture coordinates a texture reads, and what KHR_texture_transform makes of them first.
+struct GltfUvs {
+  int set = -1;  ///< of the TEXCOORD attributes; -1: the material has no such texture
+  glm::dmat2 matrix{1.0};
+  glm::dvec2 offset{0.0};
+
+  bool operator==(const GltfUvs&) const = default;
+};
+
+/// Of the texture that colours the surface, and of the one that makes it glow, which for KHR_materials_unlit
+/// is the same. `material` −1 is glTF's default material. Throws InputError.
+GltfUvs baseColorUvs(const GltfModel& model, int material);
+GltfUvs emissionUvs(const GltfModel& model, int material);
+
+}  // namespace luciole

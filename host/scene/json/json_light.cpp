@@ -1,0 +1,286 @@
+#include "scene/json/json_light.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "scene/json/json_keys.hpp"
+#include "scene/json/light_list.hpp"
+#include "scene/pose.hpp"
+
+namespace luciole {
+namespace {
+
+LightKind readKind(const JsonNode& node) {
+  const std::string type = readText(node);
+  if (type == "point") return LightKind::kPoint;
+  if (type == "directional") return LightKind::kDirectional;
+  if (type == "spot") return LightKind::kSpot;
+  refuse(node, fmt::format("expected \"point\", \"directional\" or \"spot\", got {}", node.json->dump()));
+}
+
+/// The light's colours, without its intensity.
+void readOwnColors(const JsonNode& node, Light& light) {
+  glm::vec3 color{1.0f};
+  if (const auto n = find(node, "color")) color = readColor(*n);
+  light.ambient = glm::vec3(0);
+  light.diffuse = light.specular = color;
+  if (const auto n = find(node, "ambient")) light.ambient = readColor(*n);
+  if (const auto n = find(node, "diffuse")) light.diffuse = readColor(*n);
+  if (const auto n = find(node, "specular")) light.specular = readColor(*n);
+}
+
+float readOwnIntensity(const JsonNode& node) {
+  const auto n = find(node, "intensity");
+  return n ? static_cast<float>(readNumber(*n, 0, kLargestNumber)) : 1.0f;
+}
+
+void readColors(const JsonNode& node, Light& light) {
+  readOwnColors(node, light);
+  const float intensity = readOwnIntensity(node);
+  light.ambient *= intensity;
+  light.diffuse *= intensity;
+  light.specular *= intensity;
+}
+
+/// Where a spot shines and how it falls off to the sides. With OpenGL's cutoff of 180° it is a point light,
+/// whatever its exponent and direction; but that it shines somewhere must be said, as for a directional
+/// light.
+void readSpot(const JsonNode& node, Light& light) {
+  const auto direction = find(node, "direction");
+  const auto target = find(node, "target");
+  if (direction && target) refuse(*target, "expected either \"direction\" or \"target\", got both");
+  if (!direction && !target) refuse(node, "\"direction\" or \"target\" is missing");
+  if (direction) light.direction = readDirection(*direction);
+  if (target) {
+    const std::string fault = aimSpot(readVector(*target), light);
+    if (!fault.empty()) refuse(*target, fault);
+  }
+
+  if (find(node, "inner_cone") || find(node, "outer_cone")) {
+    refuseKeys(node, {"cutoff", "exponent"}, "beside inner_cone and outer_cone");
+    double inner = 0;
+    double outer = 45;
+    if (const auto n = find(node, "outer_cone")) outer = readNumber(*n, 0, 90);
+    if (const auto n = find(node, "inner_cone")) inner = readNumber(*n, 0, 90);
+    if (inner >= outer)
+      refuse(node, fmt::format("inner_cone {} isn't smaller than outer_cone {}", inner, outer));
+    light.falloff = SpotFalloff::kCone;
+    light.inner_cone = glm::radians(inner);
+    light.cutoff = glm::radians(outer);
+  } else {
+    double cutoff = 180;
+    if (const auto n = find(node, "cutoff")) {
+      cutoff = readNumber(*n);
+      if (!(cutoff >= 0 && cutoff <= 90) && cutoff != 180) {
+        refuse(*n, fmt::format("expected degrees from 0 to 90, or 180, got {}", cutoff));
+      }
+    }
+    if (const auto n = find(node, "exponent")) light.exponent = static_cast<float>(readNumber(*n, 0, 128));
+    if (cutoff == 180) {
+      light.kind = LightKind::kPoint;
+      light.exponent = 0;
+      return;
+    }
+    light.cutoff = glm::radians(cutoff);
+  }
+}
+
+/// One number, or [low, high].
+glm::vec2 readSpan(const JsonNode& node, double (*readOne)(const JsonNode&)) {
+  if (!node.json->is_array()) return glm::vec2(static_cast<float>(readOne(node)));
+  if (node.json->size() != 2) refuse(node, "expected a number or [lowest, highest]");
+  const double low = readOne(element(node, 0));
+  const double high = readOne(element(node, 1));
+  if (low > high) refuse(node, fmt::format("the lowest, {}, is above the highest, {}", low, high));
+  return {low, high};
+}
+
+void readBox(const JsonNode& node, LightField& field) {
+  field.low = readVector(need(node, "min"));
+  field.high = readVector(need(node, "max"));
+  for (int i = 0; i < 3; ++i) {
+    if (field.low[i] > field.high[i])
+      refuse(need(node, "min"), fmt::format("[{}] is above that of \"max\"", i));
+  }
+}
+
+void readCurve(const JsonNode& node, LightField& field) {
+  const JsonNode points = need(node, "points");
+  needArray(points);
+  for (std::size_t i = 0; i < points.json->size(); ++i)
+    field.points.push_back(readVector(element(points, i)));
+  if (field.points.size() < 2)
+    refuse(points, fmt::format("{} points, expected 2 or more", field.points.size()));
+  field.radius = 0;
+  if (const auto n = find(node, "radius")) field.radius = readNumber(*n, 0, kLargestNumber);
+}
+
+void readShape(const JsonNode& node, LightField& field) {
+  std::string name = "box";
+  if (const auto n = find(node, "shape")) {
+    name = readText(*n);
+    const auto shape = fieldShapeNamed(name);
+    if (!shape) refuse(*n, fmt::format("expected {}, got {}", kFieldShapeNames, n->json->dump()));
+    field.shape = *shape;
+  }
+  const std::string where = "for the shape " + name;
+  switch (field.shape) {
+    case FieldShape::kBox:
+      refuseKeys(node, {"center", "radius", "offset", "clusters", "points"}, where);
+      readBox(node, field);
+      break;
+    case FieldShape::kBall:
+    case FieldShape::kSphere:
+      refuseKeys(node, {"min", "max", "offset", "clusters", "points"}, where);
+      field.center = readVector(need(node, "center"));
+      field.radius = readPositive(need(node, "radius"));
+      break;
+    case FieldShape::kSurface:
+      refuseKeys(node, {"min", "max", "center", "radius", "clusters", "points"}, where);
+      if (const auto n = find(node, "offset")) field.offset = readNumber(*n);
+      break;
+    case FieldShape::kClusters:
+      refuseKeys(node, {"center", "offset", "points"}, where);
+      readBox(node, field);
+      field.radius = readPositive(need(node, "radius"));
+      field.clusters = readCount(need(node, "clusters"), kMostLights);
+      if (field.clusters == 0) refuse(need(node, "clusters"), "expected 1 or more");
+      break;
+    case FieldShape::kCurve:
+      refuseKeys(node, {"min", "max", "center", "offset", "clusters"}, where);
+      readCurve(node, field);
+      break;
+    case FieldShape::kList:
+      break;
+  }
+}
+
+void readList(const JsonNode& csv, const JsonNode& node, const std::string& folder, LightField& field) {
+  refuseKeys(node,
+             {"shape", "min", "max", "center", "radius", "offset", "clusters", "points", "color", "colors"},
+             "beside csv");
+  std::optional<std::uint64_t> count;
+  if (const auto n = find(node, "count")) count = readCount(*n, kMostLights);
+  field.shape = FieldShape::kList;
+  field.list = readLightList(readPath(csv, folder), count);
+  field.count = field.list.size();
+}
+
+/// How a light with keys moves; keys of what the light has none of its own are refused.
+std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& light) {
+  if (!hasKeys(node, {"position", "direction", "target", "color", "intensity", "range"})) return std::nullopt;
+  const auto vector = [](const JsonNode& n) { return glm::dvec4(readVector(n), 0); };
+  /// Of a member that only a light with the member `own` has.
+  const auto curveWith = [&](const char* member, const char* own, const ReadValue& read) {
+    return readMotion(node, member, [&](const JsonNode& n) {
+      if (!find(node, own)) refuse(n, fmt::format("means nothing for a light without its own \"{}\"", own));
+      return read(n);
+    });
+  };
+  LightMotion motion;
+  motion.position = curveWith("position", "position", vector);
+  motion.range =
+      curveWith("range", "position", [](const JsonNode& n) { return glm::dvec4(readPositive(n), 0, 0, 0); });
+  motion.direction =
+      curveWith("direction", "direction", [](const JsonNode& n) { return glm::dvec4(readDirection(n), 0); });
+  motion.target = curveWith("target", "target", vector);
+  const auto target = find(node, "target");
+  if (target && motion.target.keys.empty() && !motion.position.keys.empty())
+    motion.target = constantCurve(vector(*target));
+  if (light.kind == LightKind::kPoint) motion.direction.keys = motion.target.keys = {};  // a cutoff of 180
+  motion.color = readMotion(node, "color", [&](const JsonNode& n) {
+    if (find(node, "diffuse") || find(node, "specular"))
+      refuse(n, "means nothing for a light with \"diffuse\" or \"specular\"");
+    return glm::dvec4(readColor(n), 0);
+  });
+  motion.intensity = readMotion(node, "intensity", [](const JsonNode& n) {
+    return glm::dvec4(readNumber(n, 0, kLargestNumber), 0, 0, 0);
+  });
+  Light plain;
+  readOwnColors(node, plain);
+  motion.ambient = plain.ambient;
+  motion.diffuse = plain.diffuse;
+  motion.specular = plain.specular;
+  motion.own_intensity = readOwnIntensity(node);
+  Light posed = light;
+  checkPoses(node, [&](double frame) { return poseLight(motion, frame, posed); });
+  return motion;
+}
+
+}  // namespace
+
+void readLight(const JsonNode& node, Scene& scene) {
+  allowKeys(node,
+            {"type",       "position", "direction",   "target", "color",   "intensity", "ambient",
+             "diffuse",    "specular", "attenuation", "range",  "cutoff",  "exponent",  "inner_cone",
+             "outer_cone", "shadow",   "radius",      "angle",  "enabled", "keys",      "interpolation"});
+  Light light;
+  light.kind = readKind(need(node, "type"));
+  if (light.kind == LightKind::kDirectional) {
+    refuseKeys(node, {"position", "target", "attenuation", "range", "radius"}, "for a directional light");
+    light.direction = readDirection(need(node, "direction"));
+    if (const auto n = find(node, "angle")) light.half_angle = glm::radians(readNumber(*n, 0, 90)) / 2;
+  } else {
+    refuseKeys(node, {"angle"}, "for a light with a position");
+    light.position = readVector(need(node, "position"));
+    if (const auto n = find(node, "radius")) light.radius = readNumber(*n, 0, kLargestNumber);
+    if (const auto n = find(node, "attenuation")) light.attenuation = readAttenuation(*n);
+    if (const auto n = find(node, "range")) light.range = static_cast<float>(readPositive(*n));
+  }
+  if (light.kind == LightKind::kPoint) refuseKeys(node, {"direction", "target"}, "for a point light");
+  if (light.kind == LightKind::kSpot) {
+    readSpot(node, light);
+  } else {
+    refuseKeys(node, {"cutoff", "exponent", "inner_cone", "outer_cone"}, "for a light that isn't a spot");
+  }
+  readColors(node, light);
+  if (const auto n = find(node, "shadow")) light.shadow = readBool(*n);
+  std::optional<LightMotion> motion = readLightMotion(node, light);
+  if (const auto n = find(node, "enabled"); n && !readBool(*n)) return;
+  if (motion) {
+    motion->light = static_cast<std::uint32_t>(scene.lights.size());
+    scene.animation.lights.push_back(std::move(*motion));
+  }
+  scene.lights.push_back(light);
+}
+
+LightField readLightField(const JsonNode& node, const std::string& folder) {
+  allowKeys(node, {"count", "seed", "shape", "min", "max", "center", "radius", "offset", "points", "clusters",
+                   "csv", "color", "colors", "intensity", "range", "cutoff", "attenuation", "shadow"});
+  LightField field;
+  if (const auto n = find(node, "seed"))
+    field.seed = readCount(*n, std::numeric_limits<std::uint64_t>::max());
+  if (const auto csv = find(node, "csv")) {
+    readList(*csv, node, folder, field);
+  } else {
+    field.count = readCount(need(node, "count"), kMostLights);
+    readShape(node, field);
+  }
+  if (const auto n = find(node, "color")) {
+    refuseKeys(node, {"colors"}, "beside color");
+    field.colors = {readColor(*n)};
+  }
+  if (const auto n = find(node, "colors")) {
+    needArray(*n);
+    if (n->json->empty()) refuse(*n, "expected one colour or more");
+    field.colors.clear();
+    for (std::size_t i = 0; i < n->json->size(); ++i) field.colors.push_back(readColor(element(*n, i)));
+  }
+  if (const auto n = find(node, "intensity")) {
+    field.intensity = readSpan(*n, [](const JsonNode& one) { return readNumber(one, 0, kLargestNumber); });
+  }
+  if (const auto n = find(node, "range")) field.range = readSpan(*n, readPositive);
+  if (const auto n = find(node, "attenuation")) field.attenuation = readAttenuation(*n);
+  if (const auto n = find(node, "cutoff")) {
+    refuseKeys(node, {"range", "attenuation"}, "beside cutoff");
+    field.cutoff = readPositive(*n);
+    field.attenuation = {0, 0, 1};
+  }
+  if (const auto n = find(node, "shadow")) field.shadow = readBool(*n);
+  return field;
+}
+
+}  // namespace luciole

@@ -1,0 +1,278 @@
+#include "scene/json/json_object.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "scene/json/json_keys.hpp"
+#include "scene/json/mesh_file.hpp"
+#include "scene/load_textures.hpp"
+#include "scene/pose.hpp"
+#include "scene/primitives.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr std::size_t kMostObjects = 10'000'000;
+
+/// What a mesh file shows, placed as the file says; its nodes and hanging objects count from 0.
+struct LoadedFile {
+  std::vector<Object> objects;
+  std::vector<MovingNode> nodes;
+  std::vector<Hanging> hanging;
+};
+
+/// What has been loaded so far, by what would make it the same.
+struct Loaded {
+  std::uint32_t plain_material = 0;               ///< of primitives that name none
+  std::map<std::string, int> materials;           ///< name -> index in Scene::materials
+  std::map<std::string, LoadedFile> mesh_files;   ///< by path
+  std::map<Primitive, std::uint32_t> primitives;  ///< -> index in Scene::meshes
+};
+
+/// No texture where the file is missing.
+TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene) {
+  TextureUse use;
+  const std::string path = pathOf(node, folder), fault = faultOfPath(path);
+  if (fault.empty())
+    use.texture = addTexture(scene, path);
+  else
+    scene.missing_textures.push_back(messageAt(node, fault));
+  return use;
+}
+
+Material readMaterial(const JsonNode& node, const std::string& folder, Scene& scene) {
+  allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
+                   "alpha_map", "alpha", "alpha_cutoff", "double_sided"});
+  Material material;
+  material.name = node.key;
+  if (const auto n = find(node, "diffuse")) material.diffuse = readColor(*n);
+  material.ambient = material.diffuse;
+  if (const auto n = find(node, "ambient")) material.ambient = readColor(*n);
+  if (const auto n = find(node, "specular")) material.specular = readColor(*n);
+  if (const auto n = find(node, "shininess")) {
+    material.shininess = static_cast<float>(readNumber(*n, 0, kLargestNumber));
+  }
+  if (const auto n = find(node, "diffuse_map")) material.diffuse_map = readMap(*n, folder, scene);
+  if (const auto n = find(node, "emission_map")) {
+    material.emission_map = readMap(*n, folder, scene);
+    material.emission = glm::vec3(1);  // the map's factor: black would hide it
+  }
+  if (const auto n = find(node, "emission")) material.emission = readColor(*n);
+  // What glows by a picture that is missing doesn't.
+  if (find(node, "emission_map") && material.emission_map.texture < 0) material.emission = glm::vec3(0);
+  if (const auto n = find(node, "alpha_map")) {
+    material.alpha_map = readMap(*n, folder, scene);
+    if (material.alpha_map.texture >= 0) material.alpha_cutoff = 0.5f;
+  }
+  if (const auto n = find(node, "alpha")) material.alpha = static_cast<float>(readNumber(*n, 0, 1));
+  if (const auto n = find(node, "alpha_cutoff"))
+    material.alpha_cutoff = static_cast<float>(readNumber(*n, 0, 1));
+  if (const auto n = find(node, "double_sided")) material.double_sided = readBool(*n);
+  return material;
+}
+
+Primitive readPrimitive(const JsonNode& object) {
+  static const std::map<std::string, PrimitiveKind> kKinds{
+      {"plane", PrimitiveKind::kPlane},   {"box", PrimitiveKind::kBox},
+      {"sphere", PrimitiveKind::kSphere}, {"cylinder", PrimitiveKind::kCylinder},
+      {"cone", PrimitiveKind::kCone},     {"torus", PrimitiveKind::kTorus}};
+  const JsonNode node = need(object, "primitive");
+  const auto kind = kKinds.find(readText(node));
+  if (kind == kKinds.end()) {
+    refuse(node,
+           fmt::format("expected \"plane\", \"box\", \"sphere\", \"cylinder\", \"cone\" or \"torus\", got {}",
+                       node.json->dump()));
+  }
+  Primitive primitive;
+  primitive.kind = kind->second;
+  const bool is_plane = primitive.kind == PrimitiveKind::kPlane;
+  const bool is_box = primitive.kind == PrimitiveKind::kBox;
+  if (is_box) refuseKeys(object, {"segments"}, "for a box");
+  if (!is_plane && !is_box) primitive.segments = 64;
+  // What is flat needs no more triangles than it has sides, but where colours are lit at vertices. A box's
+  // side goes a quarter of the way around.
+  if (is_plane && !find(object, "segments")) primitive.lit_segments = 64;
+  if (is_box) primitive.lit_segments = 16;
+  if (const auto n = find(object, "segments")) {
+    primitive.segments = static_cast<int>(readCount(*n, kMostSegments));
+    const int fewest = is_plane ? 1 : 3;
+    if (primitive.segments < fewest) refuse(*n, fmt::format("expected {} or more", fewest));
+  }
+  if (primitive.kind != PrimitiveKind::kTorus)
+    refuseKeys(object, {"minor_radius"}, "for anything but a torus");
+  if (const auto n = find(object, "minor_radius")) {
+    primitive.minor_radius = static_cast<float>(readPositive(*n));
+    if (primitive.minor_radius >= 1) refuse(*n, "expected less than 1, the major radius");
+  }
+  if (const auto n = find(object, "uv_scale")) primitive.uv_scale = static_cast<float>(readPositive(*n));
+  return primitive;
+}
+
+glm::dvec3 readScale(const JsonNode& node) {
+  const glm::dvec3 scale = node.json->is_array() ? readVector(node) : glm::dvec3(readNumber(node));
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(scale[i]) < 1 / kLargestNumber) refuse(node, "a factor is 0; expected 1e-18 or more");
+  }
+  return scale;
+}
+
+/// Where an object lies, and if it has keys, the node that it then hangs on.
+struct Placement {
+  glm::dmat4 still{1.0};
+  int node = -1;  ///< in Animation::nodes
+};
+
+Placement readPlacement(const JsonNode& node, Animation& animation) {
+  glm::dvec3 translate{0.0}, rotate{0.0}, scale{1.0};
+  if (const auto n = find(node, "translate")) translate = readVector(*n);
+  if (const auto n = find(node, "rotate")) rotate = readVector(*n);
+  if (const auto n = find(node, "scale")) scale = readScale(*n);
+  Placement result{placement(translate, rotate, scale)};
+  if (!hasKeys(node, {"translate", "rotate", "scale"})) return result;
+  /// A member's curve, which is constant where no key names it.
+  const auto addCurve = [&](const char* member, glm::dvec3 (*read)(const JsonNode&), const glm::dvec3& own) {
+    Curve curve = readMotion(node, member, [&](const JsonNode& n) { return glm::dvec4(read(n), 0); });
+    if (curve.keys.empty()) curve = constantCurve(glm::dvec4(own, 0));
+    animation.curves.push_back(std::move(curve));
+    return static_cast<int>(animation.curves.size()) - 1;
+  };
+  MovingNode moving;
+  moving.translate = addCurve("translate", readVector, translate);
+  moving.rotate = addCurve("rotate", readVector, rotate);
+  moving.scale = addCurve("scale", readScale, scale);
+  result.node = static_cast<int>(animation.nodes.size());
+  animation.nodes.push_back(moving);
+  return result;
+}
+
+/// Cuts off the end of a list from `first` on, and returns it.
+template <class T>
+std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
+  std::vector<T> end(std::make_move_iterator(list.begin() + static_cast<std::ptrdiff_t>(first)),
+                     std::make_move_iterator(list.end()));
+  list.resize(first);
+  return end;
+}
+
+/// A mesh file's objects, which on its first use is loaded into the scene without its lights and cameras.
+const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& scene) {
+  const auto [it, is_new] = loaded.mesh_files.try_emplace(path);
+  if (!is_new) return it->second;
+  Animation& animation = scene.animation;
+  const std::size_t first_object = scene.objects.size(), first_node = animation.nodes.size();
+  const std::size_t light_count = scene.lights.size(), camera_count = scene.cameras.size();
+  const std::size_t first_hanging = animation.objects.size();
+  loadMeshFile(path, scene);
+  LoadedFile& file = it->second;
+  file.objects = cutFrom(scene.objects, first_object);
+  file.nodes = cutFrom(animation.nodes, first_node);
+  file.hanging = cutFrom(animation.objects, first_hanging);
+  for (MovingNode& node : file.nodes) node.parent -= node.parent < 0 ? 0 : static_cast<int>(first_node);
+  for (Hanging& hanging : file.hanging) {
+    hanging.index -= static_cast<std::uint32_t>(first_object);
+    hanging.node -= static_cast<std::uint32_t>(first_node);
+  }
+  scene.lights.resize(light_count);
+  scene.cameras.resize(camera_count);
+  animation.hanging_lights.clear();  // a scene file has none of its own
+  animation.hanging_cameras.clear();
+  return file;
+}
+
+/// Places what a file shows; what moves in it goes on doing so where it is placed.
+void placeObjects(const LoadedFile& file, const Placement& placement, int material, Scene& scene) {
+  Animation& animation = scene.animation;
+  const std::size_t first = scene.objects.size();
+  const int first_node = static_cast<int>(animation.nodes.size());
+  for (const Object& part : file.objects) {
+    scene.objects.push_back(
+        {part.mesh, placement.still * part.object_to_world, material == -1 ? part.material : material});
+  }
+  for (MovingNode node : file.nodes) {
+    if (node.parent < 0 && placement.node < 0) node.before = placement.still * node.before;
+    node.parent = node.parent < 0 ? placement.node : first_node + node.parent;
+    animation.nodes.push_back(node);
+  }
+  std::vector<bool> hangs(file.objects.size(), false);
+  for (Hanging hanging : file.hanging) {
+    hangs[hanging.index] = true;
+    hanging.index += static_cast<std::uint32_t>(first);
+    hanging.node += static_cast<std::uint32_t>(first_node);
+    animation.objects.push_back(hanging);
+  }
+  if (placement.node < 0) return;
+  for (std::size_t i = 0; i < file.objects.size(); ++i) {
+    const Object& part = file.objects[i];
+    if (!hangs[i])
+      hang(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
+                   part.object_to_world, part.mesh});
+  }
+}
+
+void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded, Scene& scene) {
+  allowKeys(node, {"mesh", "primitive", "translate", "rotate", "scale", "material", "segments",
+                   "minor_radius", "uv_scale", "keys", "interpolation"});
+  const Placement placement = readPlacement(node, scene.animation);
+  int material = -1;
+  if (const auto n = find(node, "material")) {
+    const auto it = loaded.materials.find(readText(*n));
+    if (it == loaded.materials.end()) refuse(*n, fmt::format("no material is called {}", n->json->dump()));
+    material = it->second;
+  }
+  LoadedFile single;
+  const LoadedFile* parts = &single;
+  if (const auto n = find(node, "mesh")) {
+    refuseKeys(node, {"primitive", "segments", "minor_radius", "uv_scale"}, "beside mesh");
+    const std::string path = readPath(*n, folder);
+    if (!isMeshFile(path)) refuse(*n, fmt::format("expected a .obj, .gltf or .glb file, got {}", path));
+    parts = &loadedFile(path, loaded, scene);
+  } else if (find(node, "primitive")) {
+    const Primitive primitive = readPrimitive(node);
+    const auto [it, is_new] =
+        loaded.primitives.try_emplace(primitive, static_cast<std::uint32_t>(scene.meshes.size()));
+    if (is_new) {
+      // The object says which material it shows: others may share the mesh.
+      scene.meshes.push_back(makePrimitive(primitive, loaded.plain_material));
+    }
+    single.objects.push_back({it->second, glm::dmat4(1.0), -1});
+  } else {
+    refuse(node, "\"mesh\" or \"primitive\" is missing");
+  }
+  if (scene.objects.size() + parts->objects.size() > kMostObjects) {
+    refuse(node, fmt::format("a scene may have {} objects at most", kMostObjects));
+  }
+  if (scene.animation.nodes.size() + parts->nodes.size() > kMostObjects) {
+    refuse(node, fmt::format("a scene may have {} moving nodes at most", kMostObjects));
+  }
+  placeObjects(*parts, placement, material, scene);
+}
+
+}  // namespace
+
+void readObjects(const JsonNode& top, const std::string& folder, Scene& scene) {
+  Loaded loaded;
+  Material plain;
+  plain.ambient = plain.diffuse;
+  loaded.plain_material = static_cast<std::uint32_t>(scene.materials.size());
+  scene.materials.push_back(plain);
+  if (const auto materials = find(top, "materials")) {
+    needObject(*materials);
+    for (const auto& [name, value] : materials->json->items()) {
+      loaded.materials[name] = static_cast<int>(scene.materials.size());
+      scene.materials.push_back(readMaterial(*find(*materials, name), folder, scene));
+    }
+  }
+  decodeTextures(scene);
+  if (const auto objects = find(top, "objects")) {
+    needArray(*objects);
+    for (std::size_t i = 0; i < objects->json->size(); ++i)
+      readObject(element(*objects, i), folder, loaded, scene);
+  }
+}
+
+}  // namespace luciole

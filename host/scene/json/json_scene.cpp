@@ -1,0 +1,228 @@
+#include "scene/json/json_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/picture_size.hpp"
+#include "base/text_file.hpp"
+#include "scene/json/json_fields.hpp"
+#include "scene/json/json_keys.hpp"
+#include "scene/json/json_light.hpp"
+#include "scene/json/json_object.hpp"
+#include "scene/pose.hpp"
+
+namespace luciole {
+namespace {
+
+std::string readWhole(const std::string& path) {
+  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  return readFile(path);
+}
+
+glm::dvec4 readVectorValue(const JsonNode& node) { return {readVector(node), 0}; }
+
+double readFovY(const JsonNode& node) {
+  const double degrees = readNumber(node);
+  if (!(degrees > 0 && degrees < 180))
+    refuse(node, fmt::format("expected degrees above 0 and below 180, got {}", degrees));
+  return degrees;
+}
+
+/// [azimuth, elevation, distance].
+glm::dvec3 readOrbit(const JsonNode& node) {
+  const glm::dvec3 orbit = readVector(node);
+  if (!(std::abs(orbit.y) <= 90)) refuse(element(node, 1), "expected an elevation from -90 to 90 degrees");
+  readPositive(element(node, 2));
+  return orbit;
+}
+
+/// How a camera with keys moves; `still` is what it has of its own.
+void readCameraMotion(const JsonNode& node, const CameraMotion& still, Camera& camera, Scene& scene) {
+  if (!hasKeys(node, {still.orbits ? "orbit" : "eye", "target", "fov_y"})) return;
+  CameraMotion motion = still;
+  motion.camera = static_cast<std::uint32_t>(scene.cameras.size());
+  Curve place = readMotion(node, still.orbits ? "orbit" : "eye", [&](const JsonNode& value) {
+    return glm::dvec4(still.orbits ? readOrbit(value) : readVector(value), 0);
+  });
+  if (!place.keys.empty()) motion.eye = std::move(place);
+  Curve target = readMotion(node, "target", readVectorValue);
+  if (!target.keys.empty()) motion.target = std::move(target);
+  motion.fov_y = readMotion(node, "fov_y", [&](const JsonNode& value) {
+    if (camera.orthographic) refuse(value, "means nothing beside orthographic");
+    return glm::dvec4(readFovY(value), 0, 0, 0);
+  });
+  checkPoses(node, [&](double frame) { return poseCamera(motion, frame, camera); });
+  scene.animation.cameras.push_back(std::move(motion));
+}
+
+/// Reads a camera and how it moves.
+void readCamera(const JsonNode& node, const std::string& name, Scene& scene) {
+  allowKeys(node, {"eye", "orbit", "target", "up", "fov_y", "orthographic", "near", "far", "keys",
+                   "interpolation"});
+  Camera camera;
+  camera.name = name;
+  CameraMotion still;
+  glm::dvec3 eye;
+  const glm::dvec3 target = readVector(need(node, "target"));
+  if (const auto n = find(node, "orbit")) {
+    refuseKeys(node, {"eye"}, "beside orbit");
+    still.orbits = true;
+    still.eye = constantCurve(glm::dvec4(readOrbit(*n), 0));
+    eye = orbitEye(readOrbit(*n), target);
+  } else {
+    eye = readVector(need(node, "eye"));
+    still.eye = constantCurve(glm::dvec4(eye, 0));
+  }
+  still.target = constantCurve(glm::dvec4(target, 0));
+  if (const auto n = find(node, "up")) still.up = readDirection(*n);
+  const std::string fault = aimCamera(eye, target, still.up, camera);
+  if (!fault.empty()) refuse(node, fault);
+  if (const auto n = find(node, "fov_y")) {
+    refuseKeys(node, {"orthographic"}, "beside fov_y");
+    camera.fov_y = glm::radians(readFovY(*n));
+  }
+  if (const auto n = find(node, "orthographic")) {
+    camera.orthographic = true;
+    camera.half_height = readPositive(*n);
+  }
+  if (const auto n = find(node, "near")) camera.near = readPositive(*n);
+  if (const auto n = find(node, "far")) camera.far = readPositive(*n);
+  if (camera.far <= camera.near) {
+    refuse(node, fmt::format("far {} isn't beyond near {}", camera.far, camera.near));
+  }
+  readCameraMotion(node, still, camera, scene);
+  scene.cameras.push_back(std::move(camera));
+}
+
+Fog readFog(const JsonNode& node) {
+  allowKeys(node, {"mode", "density", "start", "end", "color", "distance"});
+  Fog fog;
+  const JsonNode mode = need(node, "mode");
+  const std::string name = readText(mode);
+  if (name == "linear") {
+    fog.mode = FogMode::kLinear;
+    refuseKeys(node, {"density"}, "for linear fog, only for the modes exp and exp2");
+    if (const auto n = find(node, "start")) fog.start = static_cast<float>(readNumber(*n));
+    if (const auto n = find(node, "end")) fog.end = static_cast<float>(readNumber(*n));
+    if (fog.start == fog.end) refuse(node, "start and end are the same distance");
+  } else if (name == "exp" || name == "exp2") {
+    fog.mode = name == "exp" ? FogMode::kExp : FogMode::kExp2;
+    refuseKeys(node, {"start", "end"}, fmt::format("for {} fog, only for the mode linear", name));
+    if (const auto n = find(node, "density")) fog.density = readColor(*n);
+  } else {
+    refuse(mode, fmt::format("expected \"linear\", \"exp\" or \"exp2\", got {}", mode.json->dump()));
+  }
+  if (const auto n = find(node, "color")) fog.color = readColor(*n);
+  if (const auto n = find(node, "distance")) {
+    const std::string distance = readText(*n);
+    if (distance != "depth" && distance != "radial") {
+      refuse(*n, fmt::format("expected \"depth\" or \"radial\", got {}", n->json->dump()));
+    }
+    fog.radial = distance == "radial";
+  }
+  return fog;
+}
+
+/// Whether a scene file says anything of what lights its objects. What glows counts.
+bool saysLight(const JsonNode& top) {
+  for (const char* key : {"lights", "light_fields", "ambient", "lighting"})
+    if (find(top, key)) return true;
+  const auto materials = find(top, "materials");
+  return materials && std::any_of(materials->json->begin(), materials->json->end(), [](const Json& material) {
+           return material.contains("emission") || material.contains("emission_map");
+         });
+}
+
+glm::ivec2 readSize(const JsonNode& node) {
+  needArray(node);
+  if (node.json->size() != 2) refuse(node, "expected [width, height]");
+  glm::ivec2 size;
+  for (int i = 0; i < 2; ++i) {
+    size[i] = static_cast<int>(readCount(element(node, static_cast<std::size_t>(i)), kLargestSide));
+  }
+  checkPictureSize(size, fmt::format("{}: size", node.parent->key));
+  return size;
+}
+
+std::vector<LightField> readLightFields(const JsonNode& node, const std::string& folder,
+                                        std::uint64_t lights) {
+  needArray(node);
+  std::vector<LightField> fields;
+  for (std::size_t i = 0; i < node.json->size(); ++i) {
+    const JsonNode field = element(node, i);
+    fields.push_back(readLightField(field, folder));
+    lights += fields.back().count;
+    if (lights > kMostLights) {
+      refuse(field, fmt::format("{} lights up to here; a scene may have {} at most", lights, kMostLights));
+    }
+  }
+  return fields;
+}
+
+}  // namespace
+
+void checkPictureSize(glm::ivec2 size, const std::string& where) {
+  if (size.x < 1 || size.y < 1 || size.x > kLargestSide || size.y > kLargestSide) {
+    throw InputError(
+        fmt::format("{}: {}x{} pixels, expected 1 to {} a side", where, size.x, size.y, kLargestSide));
+  }
+}
+
+Scene loadJsonScene(const std::string& path) {
+  Scene scene;
+  const std::string file = path == "-" ? "standard input" : path;
+  // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
+  // there may be a million, cameras because their order counts and a JSON object has none.
+  const auto take = [&scene](const JsonNode& node) {
+    const bool in_array = node.index != JsonNode::kNoIndex;
+    if (in_array && node.parent->key == "lights") {
+      readLight(node, scene);
+      return true;
+    }
+    if (!in_array && node.parent->key == "cameras") {
+      readCamera(node, std::string(node.key), scene);
+      return true;
+    }
+    return false;
+  };
+  const Json json = parseJson(readWhole(path), file, take);
+
+  const JsonNode top{&json, nullptr, file, JsonNode::kNoIndex};
+  allowKeys(top, {"camera", "cameras", "size", "background", "ambient", "fog", "materials", "objects",
+                  "lights", "light_fields", "lighting", "frame_rate"});
+  if (const auto n = find(top, "lights")) needArray(*n);
+  if (const auto n = find(top, "cameras")) {
+    refuseKeys(top, {"camera"}, "beside cameras");
+    needObject(*n);
+    if (scene.cameras.empty()) refuse(*n, "expected one camera or more");
+  }
+  if (const auto n = find(top, "camera")) readCamera(*n, "", scene);
+  if (const auto n = find(top, "size")) scene.size = readSize(*n);
+  if (const auto n = find(top, "background")) scene.background = readColor(*n);
+  if (const auto n = find(top, "ambient")) scene.ambient = readColor(*n);
+  if (const auto n = find(top, "fog")) scene.fog = readFog(*n);
+  if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
+  if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
+  const std::string folder = path == "-" ? "" : std::filesystem::path(path).parent_path().string();
+  scene.name = file;
+  std::vector<LightField> fields;
+  if (const auto n = find(top, "light_fields")) fields = readLightFields(*n, folder, scene.lights.size());
+  readObjects(top, folder, scene);
+  scene.says_light = saysLight(top);
+  if (!fields.empty()) poseScene(scene, 1);  // the surfaces that lights lie on
+  // Lights that are spread at random say nothing of where to stand.
+  if (!fields.empty() && scene.cameras.empty()) scene.cameras.push_back(frameScene(scene).camera);
+  for (const LightField& field : fields) expandLightField(field, scene);
+  return scene;
+}
+
+}  // namespace luciole

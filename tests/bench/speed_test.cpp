@@ -1,0 +1,157 @@
+// Each measurement of speed at a tiny size: its rows, and what must hold between their figures however fast
+// the machine is.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/embedded_files.hpp"
+#include "bench/culled_shading.hpp"
+#include "bench/many_lights.hpp"
+#include "bench/memory_use.hpp"
+#include "bench/raster_speed.hpp"
+#include "bench/shading_rate.hpp"
+#include "bench/start_time.hpp"
+#include "kernels/probe.hpp"
+
+namespace luciole::test {
+namespace {
+
+using testing::ElementsAre;
+
+SpeedInput tinyInput() {
+  return {.device = deviceWithLanes(16),
+          .device_selector = "",
+          .scene = nullptr,
+          .size = glm::ivec2(64, 36),
+          .shadow_size = {},
+          .repeats = 2,
+          .program = LUCIOLE_BINARY,
+          .on_progress = {},
+          .most_lights = 1000};
+}
+
+std::vector<std::string> rowNames(const SpeedTable& table) {
+  std::vector<std::string> names;
+  for (const SpeedRow& row : table.rows) names.push_back(row.name);
+  return names;
+}
+
+const SpeedCell& cellOf(const SpeedTable& table, std::size_t row, const std::string& key) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (table.columns[i].key == key) return table.rows.at(row).cells.at(i);
+  throw std::logic_error("no column " + key);
+}
+
+double count(const SpeedTable& table, std::size_t row, const std::string& key) {
+  return std::get<double>(cellOf(table, row, key));
+}
+
+double median(const SpeedTable& table, std::size_t row, const std::string& key) {
+  return std::get<Repeated>(cellOf(table, row, key)).median;
+}
+
+/// What holds for every table: as many cells as columns, a sentence, and no figure that can't be.
+void expectWhole(const SpeedTable& table) {
+  EXPECT_GT(table.measured.size(), 20u) << table.name;
+  for (const SpeedRow& row : table.rows) {
+    ASSERT_EQ(row.cells.size(), table.columns.size()) << row.name;
+    for (const SpeedCell& cell : row.cells) {
+      if (const double* value = std::get_if<double>(&cell)) {
+        EXPECT_TRUE(std::isfinite(*value) && *value >= 0) << row.name;
+      }
+      if (const Repeated* runs = std::get_if<Repeated>(&cell)) {
+        EXPECT_TRUE(std::isfinite(runs->median) && runs->spread >= 0) << row.name;
+      }
+    }
+  }
+}
+
+TEST(ShadingRate, OursIsHeldAgainstTheYardsticks) {
+  const SpeedTable table = measureShadingRate(tinyInput());
+  expectWhole(table);
+  ASSERT_EQ(table.rows.size(), 1 + yardstickKernels().size());
+  EXPECT_EQ(table.rows[0].name, "plain");
+  EXPECT_EQ(table.rows[1].name, "ours");
+  EXPECT_EQ(median(table, 0, "times_plain"), 1);
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    // 64 lights on 64 x 48 pixels, the tiles' last rows included.
+    const double pairs = 64.0 * 64 * 48;
+    EXPECT_NEAR(
+        count(table, row, "million_pairs_per_second") * median(table, row, "milliseconds") * 1000 / pairs, 1,
+        1e-12);  // a few operations in double
+    EXPECT_GT(median(table, row, "times_plain"), 0);
+  }
+}
+
+TEST(CulledShading, CountsPairsWithAndWithoutCulling) {
+  const SpeedTable table = measureCulledShading(tinyInput());
+  expectWhole(table);
+  ASSERT_THAT(rowNames(table), ElementsAre("lists of 4 x 4 pixels", "lists of 8 x 8 pixels",
+                                           "lists of 16 x 16 pixels", "no culling"));
+  const std::size_t none = 3;
+  EXPECT_DOUBLE_EQ(count(table, none, "million_pairs_evaluated"), 1e-6 * 1024 * 64 * 36);
+  EXPECT_EQ(median(table, none, "cull_milliseconds"), 0);
+  for (std::size_t row = 0; row < none; ++row) {
+    EXPECT_EQ(count(table, row, "million_pairs_in_range"), count(table, none, "million_pairs_in_range"));
+    EXPECT_GT(count(table, row, "million_pairs_evaluated"), 0);
+    EXPECT_LT(count(table, row, "million_pairs_evaluated"), count(table, none, "million_pairs_evaluated"));
+    EXPECT_GT(median(table, row, "cull_milliseconds"), 0);
+    EXPECT_GT(median(table, row, "shade_milliseconds"), 0);
+  }
+}
+
+TEST(ManyLights, ASeriesOfPowersOfTenAfterTheSphere) {
+  const SpeedTable table = measureManyLights(tinyInput());
+  expectWhole(table);
+  ASSERT_THAT(rowNames(table), ElementsAre("sphere", "city", "city", "city", "city"));
+  double lights = 1;
+  for (std::size_t row = 1; row < table.rows.size(); ++row, lights *= 10) {
+    EXPECT_EQ(count(table, row, "lights"), lights);
+    EXPECT_GE(count(table, row, "list_bytes"), 8 * count(table, row, "list_entries"));
+    for (const char* stage : {"prepare_lights_milliseconds", "cull_milliseconds", "shade_milliseconds"}) {
+      EXPECT_GT(median(table, row, stage), 0) << stage;
+      EXPECT_LE(median(table, row, stage), median(table, row, "milliseconds")) << stage;
+    }
+  }
+}
+
+TEST(RasterSpeed, DrawsAGBufferAndADepthMapOfTheHallOrOfTheNamedScene) {
+  SpeedInput input = tinyInput();
+  const SpeedTable hall = measureRasterizer(input);
+  expectWhole(hall);
+  EXPECT_THAT(rowNames(hall), ElementsAre("G-buffer, 64 x 36", "depth, 64 x 36"));
+  EXPECT_THAT(hall.measured, testing::HasSubstr("hall, 263584 triangles"));
+  for (std::size_t row = 0; row < 2; ++row)
+    for (const char* figure : {"milliseconds", "one_thread_milliseconds", "times_one_thread"})
+      EXPECT_GT(median(hall, row, figure), 0) << figure;
+  Scene scene;
+  scene.name = "nothing";
+  scene.cameras.emplace_back();
+  input.scene = &scene;
+  EXPECT_THAT(measureRasterizer(input).measured, testing::HasSubstr("nothing, 0 triangles"));
+}
+
+TEST(StartTime, RunsTheProgramColdOnceAndWarmThrice) {
+  const SpeedTable table = measureStart(tinyInput());
+  expectWhole(table);
+  ASSERT_THAT(rowNames(table), ElementsAre("cold", "warm"));
+  EXPECT_EQ(count(table, 0, "runs"), 1);
+  EXPECT_EQ(count(table, 1, "runs"), 3);
+  EXPECT_GT(median(table, 1, "milliseconds"), 0);
+}
+
+TEST(MemoryUse, GrowsWithPixelsAndLights) {
+  SpeedInput input = tinyInput();
+  input.size = glm::ivec2(512);
+  input.repeats = 1;
+  input.most_lights = 200'000;
+  const SpeedTable table = measureMemory(input);
+  expectWhole(table);
+  ASSERT_THAT(rowNames(table), ElementsAre("pixel", "light"));
+  for (std::size_t row = 0; row < 2; ++row) {
+    EXPECT_GT(median(table, row, "device_bytes"), 0);
+    EXPECT_GT(median(table, row, "peak_bytes"), 0);
+  }
+}
+
+}  // namespace
+}  // namespace luciole::test

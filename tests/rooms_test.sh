@@ -1,0 +1,115 @@
+#!/usr/bin/env bash
+# The rooms of host/ stand on each other as CMakeLists.txt says.
+#
+#   rooms_test.sh                draws them, each in a row above all that it stands on
+#   rooms_test.sh TEST           runs one of the tests below
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# folder_of: by the target's name. stands_on: by the folder, the folders that it may include from, " a b ".
+declare -A folder_of stands_on
+order=()
+
+readRooms() {
+  local line words name room
+  while read -r line; do
+    line=${line#luciole_room(}
+    read -r -a words <<<"${line%)*}"
+    name=${words[0]}
+    room=${words[1]}
+    folder_of[$name]=$room
+    order+=("$room")
+    stands_on[$room]=" "
+    local word below in_rooms=
+    for word in "${words[@]:2}"; do
+      case $word in
+        ROOMS) in_rooms=yes ;;
+        LIBRARIES | FILES | WITHOUT) in_rooms= ;;
+        *)
+          [[ $in_rooms ]] || continue
+          for below in ${folder_of[$word]} ${stands_on[${folder_of[$word]}]}; do
+            [[ ${stands_on[$room]} == *" $below "* ]] || stands_on[$room]+="$below "
+          done
+          ;;
+      esac
+    done
+  done < <(grep '^luciole_room(' CMakeLists.txt)
+}
+
+# The highest room first; those of a row don't know each other.
+drawRooms() {
+  local -A height rows
+  local room below highest=0 row
+  for room in "${order[@]}"; do
+    height[$room]=0
+    for below in ${stands_on[$room]}; do
+      ((height[$room] > height[$below])) || height[$room]=$((height[$below] + 1))
+    done
+    rows[${height[$room]}]+="   $room"
+    ((highest >= height[$room])) || highest=${height[$room]}
+  done
+  echo "    cli"
+  for ((row = highest; row >= 0; --row)); do echo "    ${rows[$row]#   }"; done
+}
+
+RoomsIncludeOnlyFromWhatTheyStandOn() {
+  local file room other status=0
+  while IFS=: read -r file other; do
+    room=${file#host/}
+    room=${room%/*}
+    other=${other#*\"}
+    other=${other%/*}
+    case $other in kernels | "$room") continue ;; esac
+    [[ $room == cli ]] && continue
+    [[ ${stands_on[$room]-} == *" $other "* ]] || {
+      echo "$file includes from $other, on which $room doesn't stand"
+      status=1
+    }
+  done < <(grep -rE '^#include "' host --include='*.cpp' --include='*.hpp')
+  return $status
+}
+
+EveryFolderIsARoom() {
+  local folder status=0
+  while read -r folder; do
+    [[ $folder == cli || -v stands_on[$folder] ]] || {
+      echo "host/$folder has sources and is no room of CMakeLists.txt"
+      status=1
+    }
+  done < <(find host -name '*.[ch]pp' -printf '%P\n' | sed 's|/[^/]*$||' | sort -u)
+  return $status
+}
+
+OnlyTheirRoomsKnowLibraries() {
+  local status=0
+  allow() { # allow HEADER ROOM…: who may include it
+    local header=$1 file room
+    shift
+    while read -r file; do
+      room=${file#host/}
+      room=${room%/*}
+      [[ " $* " == *" $room "* ]] || {
+        echo "$file includes $header"
+        status=1
+      }
+    done < <(grep -rlE "^#include <$header" host)
+  }
+  allow OpenImageIO image
+  allow embree rays
+  allow tiny_obj_loader scene/obj
+  allow tiny_gltf scene/gltf
+  allow CL/ cl
+  return $status
+}
+
+DrawingIsWhatCMakeLinks() {
+  local drawn
+  drawn=$(drawRooms)
+  [[ $(<host/README.md) == *"$drawn"* ]] || {
+    printf 'host/README.md lacks the drawing of the rooms as they are:\n%s\n' "$drawn"
+    return 1
+  }
+}
+
+readRooms
+if (($# == 0)); then drawRooms; else "$1"; fi
