@@ -1,5 +1,5 @@
 # cmake -DOUTPUT=x.cpp -DFILES=a;b -DTABLE=name -P embed.cmake: writes a C++ file that holds the files' bytes and the
-# function `name` that gives a table of them, declared in host/embedded_files.hpp.
+# function `name` that gives a table of them, declared in host/base/embedded_files.hpp.
 set(arrays "")
 set(table "")
 foreach(file ${FILES})
@@ -10,6 +10,6 @@ foreach(file ${FILES})
   string(APPEND arrays "const unsigned char ${identifier}[] = {${bytes}};\n")
   string(APPEND table "    {\"${name}\", {reinterpret_cast<const char*>(${identifier}), sizeof ${identifier}}},\n")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"embedded_files.hpp\"\n\nnamespace {\n${arrays}}\n\nnamespace luciole {\n"
+file(WRITE ${OUTPUT} "#include \"base/embedded_files.hpp\"\n\nnamespace {\n${arrays}}\n\nnamespace luciole {\n"
   "const std::vector<EmbeddedFile>& ${TABLE}() {\n  static const std::vector<EmbeddedFile> files{\n${table}  };\n"
   "  return files;\n}\n}\n")

@@ -5,6 +5,7 @@
 
 #include "load/frame.hpp"
 #include "scene/lights/light_field.hpp"
+#include "scene/pose.hpp"
 #include "scene/primitives.hpp"
 
 namespace luciole {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "load/frame.hpp"
+#include "scene/pose.hpp"
 #include "scene/primitives.hpp"
 
 namespace luciole {

@@ -14,6 +14,7 @@
 #include "load/load_scene.hpp"
 #include "raster/view.hpp"
 #include "rays/shadow_rays.hpp"
+#include "scene/bounds.hpp"
 
 namespace luciole {
 namespace {

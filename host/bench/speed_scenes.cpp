@@ -8,6 +8,7 @@
 #include "raster/rasterize.hpp"
 #include "render/features.hpp"
 #include "scene/lights/light_field.hpp"
+#include "scene/pose.hpp"
 #include "scene/primitives.hpp"
 
 namespace luciole {

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {

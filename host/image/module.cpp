@@ -12,13 +12,9 @@
 namespace luciole {
 namespace {
 
-/// Beside the program, or for those of tests one folder up. Not left to the loader's search path, which it
-/// loses under the address sanitizer.
+/// Beside the program. Not left to the loader's search path, which it loses under the address sanitizer.
 std::string modulePath() {
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::filesystem::path beside = folder / LUCIOLE_IMAGE_MODULE;
-  const std::filesystem::path above = folder.parent_path() / LUCIOLE_IMAGE_MODULE;
-  return !std::filesystem::exists(beside) && std::filesystem::exists(above) ? above : beside;
+  return std::filesystem::read_symlink("/proc/self/exe").replace_filename(LUCIOLE_IMAGE_MODULE);
 }
 
 /// What OpenImageIO and the libraries that it brings take at the least: under `ulimit -v` of 440 MiB they

@@ -56,6 +56,14 @@ bool isDark(const Scene& scene) {
          std::none_of(scene.materials.begin(), scene.materials.end(), glows);
 }
 
+/// Lights that are spread at random say nothing of where to stand: a camera is chosen before there are any.
+void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
+  if (fields.empty()) return;
+  poseScene(scene, 1);  // the surfaces that lights lie on
+  if (scene.cameras.empty()) scene.cameras.push_back(frameScene(scene).camera);
+  for (const LightField& field : fields) expandLightField(field, scene);
+}
+
 }  // namespace
 
 Scene loadScene(const std::string& path, double frame, MissingTextures missing) {
@@ -65,7 +73,9 @@ Scene loadScene(const std::string& path, double frame, MissingTextures missing) 
     loadMeshFile(path, scene);
     scene.name = path;
   } else if (path == "-" || extensionOf(path) == ".json") {
-    scene = loadJsonScene(path);
+    SceneFile read = loadJsonScene(path);
+    scene = std::move(read.scene);
+    addLightFields(read.light_fields, scene);
   } else {
     throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
                                  path, extensionOf(path)));

@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "raster/rasterize.hpp"
+#include "scene/bounds.hpp"
 
 namespace luciole {
 namespace {

@@ -14,6 +14,7 @@
 #include "image/image.hpp"
 #include "image/srgb.hpp"
 #include "load/load_scene.hpp"
+#include "scene/pose.hpp"
 
 namespace luciole::test {
 namespace {

@@ -19,6 +19,7 @@
 #include "gbuffer/packed_normal.hpp"
 #include "image/oiio.hpp"
 #include "image/read_texture.hpp"
+#include "scene/pose.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
@@ -431,7 +432,7 @@ TEST(GBufferFile, PicturesCarryTheCameraAsGBuffersDo) {
   gbuffer.crop_origin = {5, 2};
   writeGBuffer(gbuffer, folder / "g.exr", {});
   writeImage({4, 3, {"R", "G", "B"}, std::vector<float>(36, 0.5f)}, folder / "p.exr", {},
-             {.picture_size = {20, 10}, .crop_origin = {5, 2}, .camera = someCamera()});
+             {.picture_size = {20, 10}, .crop_origin = {5, 2}, .exr = cameraAttributes(someCamera(), {20, 10})});
   const auto g = OIIO::ImageInput::open(folder / "g.exr"), p = OIIO::ImageInput::open(folder / "p.exr");
   ASSERT_TRUE(g && p);
   const OIIO::TypeDesc matrix(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44);

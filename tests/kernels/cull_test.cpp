@@ -10,6 +10,7 @@
 #include "culling/light_tree.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "scene/bounds.hpp"
 
 namespace luciole::test {
 namespace {

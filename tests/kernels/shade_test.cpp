@@ -7,6 +7,7 @@
 #include "kernels/shade_bounds.hpp"
 #include "reference/reference.hpp"
 #include "render/lighting.hpp"
+#include "scene/bounds.hpp"
 
 namespace luciole::test {
 namespace {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "raster/raster_scenes.hpp"
+#include "scene/bounds.hpp"
 
 namespace luciole::test {
 namespace {

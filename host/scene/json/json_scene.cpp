@@ -177,8 +177,9 @@ void checkPictureSize(glm::ivec2 size, const std::string& where) {
   }
 }
 
-Scene loadJsonScene(const std::string& path) {
-  Scene scene;
+SceneFile loadJsonScene(const std::string& path) {
+  SceneFile read;
+  Scene& scene = read.scene;
   const std::string file = path == "-" ? "standard input" : path;
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
   // there may be a million, cameras because their order counts and a JSON object has none.
@@ -214,15 +215,11 @@ Scene loadJsonScene(const std::string& path) {
   if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
   const std::string folder = path == "-" ? "" : std::filesystem::path(path).parent_path().string();
   scene.name = file;
-  std::vector<LightField> fields;
-  if (const auto n = find(top, "light_fields")) fields = readLightFields(*n, folder, scene.lights.size());
+  if (const auto n = find(top, "light_fields"))
+    read.light_fields = readLightFields(*n, folder, scene.lights.size());
   readObjects(top, folder, scene);
   scene.says_light = saysLight(top);
-  if (!fields.empty()) poseScene(scene, 1);  // the surfaces that lights lie on
-  // Lights that are spread at random say nothing of where to stand.
-  if (!fields.empty() && scene.cameras.empty()) scene.cameras.push_back(frameScene(scene).camera);
-  for (const LightField& field : fields) expandLightField(field, scene);
-  return scene;
+  return read;
 }
 
 }  // namespace luciole

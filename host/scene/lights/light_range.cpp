@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "scene/bounds.hpp"
 #include "scene/z_curve.hpp"
 
 namespace luciole {

@@ -13,6 +13,7 @@
 #include "load/load_scene.hpp"
 #include "scene/json/write_scene.hpp"
 #include "scene/lights/light_field.hpp"
+#include "scene/pose.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
@@ -26,12 +27,17 @@ class JsonScene : public testing::Test {
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   Scene load(const std::string& text) {
     write("scene.json", text);
-    return loadJsonScene(folder_ / "scene.json");
+    return loadJsonScene(folder_ / "scene.json").scene;
+  }
+  /// With what is made of it.
+  Scene loadWhole(const std::string& text) {
+    write("scene.json", text);
+    return loadScene(folder_ / "scene.json");
   }
   /// The message for a scene that must be refused, without the path before the file's name.
   std::string refusal(const std::string& text) {
     try {
-      load(text);
+      loadWhole(text);
     } catch (const InputError& error) {
       const std::string message = error.what();
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -319,7 +325,7 @@ TEST_F(JsonScene, RefusesWhatCannotBeDrawn) {
 TEST_F(JsonScene, ReadsEveryShapeOfLightField) {
   write("lamps.csv", "x,y,z,r,g,b,range\n1,2,3,1,1,1,4\n5,6,7,1,1,1,\n8,9,10,1,1,1,\n");
   const Scene scene =
-      load(R"({"objects": [{"primitive": "plane", "scale": 2, "translate": [0, 5, 0]}], "light_fields": [
+      loadWhole(R"({"objects": [{"primitive": "plane", "scale": 2, "translate": [0, 5, 0]}], "light_fields": [
     {"count": 2, "shape": "surface", "offset": 0.5, "cutoff": 0.25, "color": 4, "shadow": true},
     {"count": 3, "shape": "clusters", "clusters": 2, "min": [9,9,9], "max": [9,9,9], "radius": 0.5},
     {"count": 4, "shape": "curve", "points": [[0,0,7],[1,0,7],[2,0,7]]},
