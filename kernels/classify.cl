@@ -6,7 +6,6 @@
 #include "shadow.clh"
 #include "shared.h"
 
-#if SHADOWS
 // A row of texels: of the plane of what covers all of the texel, and of what else may be in it.
 typedef struct {
   floatL depth, step_x, step_y, others;
@@ -83,7 +82,6 @@ INLINE uint bits_of(intL mask) {
   for (uint lane = 0; lane < LANES; ++lane) bits |= (lanes[lane] ? 1u : 0u) << lane;
   return bits;
 }
-#endif
 
 // bits: kPairWords words for each entry of the lists: first the pixels of the tile that are lit, then those that are unsure.
 __kernel void classify(uint plane_stride, __global const float *position, __global const float *normal,
@@ -91,19 +89,13 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
                        __global const ListEntry *list, __global const ShadowMap *shadow_maps,
                        __global const ShadowFace *shadow_faces, __global const BoundTexel *texels, uint texel_count,
                        __global uint *bits) {
-#if SHADOWS
+  if (!SHADOWS) return;
   uint tile = get_global_id(0);
-#if LIGHT_LISTS
-  uint entry = list_starts[tile], end = list_starts[tile + 1];
-#else
-  uint entry = tile * light_count, end = entry + light_count;
-#endif
+  uint entry = LIGHT_LISTS ? list_starts[tile] : tile * light_count;
+  uint end = LIGHT_LISTS ? list_starts[tile + 1] : entry + light_count;
   for (; entry < end; ++entry) {
-#if LIGHT_LISTS
-    uint index = list[entry].light, squares = list[entry].squares;
-#else
-    uint index = entry - tile * light_count, squares = 0xffffffff;
-#endif
+    uint index = LIGHT_LISTS ? list[entry].light : entry - tile * light_count;
+    uint squares = LIGHT_LISTS ? list[entry].squares : 0xffffffff;
     __global const ShadeLight *light = lights + index;
     __global uint *lit = bits + entry * kPairWords, *unsure = lit + kPairWords / 2;
     for (uint word = 0; word < kPairWords; ++word) lit[word] = 0;
@@ -115,16 +107,11 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
       intL asked = may_light(light, &p, n);
       if (!any_lane(asked)) continue;
-#if LIFT
       // Off the map nothing is sure.
-      MapPoint point = lifted_point(map, shadow_faces, p, n, n, load_lanes(lift + first));
-#else
-      MapPoint point = map_point(map, shadow_faces, p, n);
-#endif
+      MapPoint point = LIFT ? lifted_point(map, shadow_faces, p, n, n, load_lanes(lift + first)) : map_point(map, shadow_faces, p, n);
       Verdict verdict = classify_points(map, shadow_faces, texels, texel_count, point, p);
       lit[row / 32] |= bits_of(asked & verdict.lit) << row % 32;
       unsure[row / 32] |= bits_of(asked & !(verdict.lit | verdict.dark)) << row % 32;
     }
   }
-#endif
 }

@@ -6,7 +6,6 @@
 #include "shadow.clh"
 #include "shared.h"
 
-#if SHADOWS
 // The bin that was noted last: the rows of a tile mostly fall into the same one.
 typedef struct {
   uint bin, depth;
@@ -32,26 +31,19 @@ INLINE void add_needed(__global const ShadowFace *face, int reach, __global uint
     }
   }
 }
-#endif
 
 // needed: one a bin, by ShadowFace::first_bin; kNotNeeded before the first tile.
 __kernel void find_needed(uint plane_stride, __global const float *position, __global const float *normal,
                           __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
                           __global const ListEntry *list, __global const ShadowMap *shadow_maps,
                           __global const ShadowFace *shadow_faces, __global uint *needed) {
-#if SHADOWS
+  if (!SHADOWS) return;
   uint tile = get_global_id(0);
-#if LIGHT_LISTS
-  uint entry = list_starts[tile], end = list_starts[tile + 1];
-#else
-  uint entry = 0, end = light_count;
-#endif
+  uint entry = LIGHT_LISTS ? list_starts[tile] : 0;
+  uint end = LIGHT_LISTS ? list_starts[tile + 1] : light_count;
   for (; entry < end; ++entry) {
-#if LIGHT_LISTS
-    uint index = list[entry].light, squares = list[entry].squares;
-#else
-    uint index = entry, squares = 0xffffffff;
-#endif
+    uint index = LIGHT_LISTS ? list[entry].light : entry;
+    uint squares = LIGHT_LISTS ? list[entry].squares : 0xffffffff;
     __global const ShadeLight *light = lights + index;
     if (light->shadow == kNoShadow) continue;
     __global const ShadowMap *map = shadow_maps + light->shadow;
@@ -72,5 +64,4 @@ __kernel void find_needed(uint plane_stride, __global const float *position, __g
       }
     }
   }
-#endif
 }

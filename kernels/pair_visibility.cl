@@ -11,11 +11,10 @@ __kernel void pair_visibility(uint stride, __global const float *position, __glo
                               __global const uint *facet, __global const float *lift, __global const uint *map_of_row, __global const ShadowMap *maps,
                               __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,
                               __global float *visibility) {
-#if SHADOWS
+  if (!SHADOWS) return;
   uint row = get_global_id(0), first = row * LANES;
   MapPoint point = receiver_point(maps + map_of_row[row], faces, load_vec3(position + first, stride),
                                   load_vec3(normal + first, stride), unpack_normal(*(__global const intL *)(facet + first)),
                                   LIFT ? load_lanes(lift + first) : (floatL)(0.0f));
   store_lanes(visibility + first, map_lookup(maps + map_of_row[row], faces, texels, texel_count, point));
-#endif
 }
