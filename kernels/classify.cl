@@ -76,13 +76,6 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
   return verdict;
 }
 
-INLINE uint bits_of(intL mask) {
-  const int *lanes = (const int *)&mask;
-  uint bits = 0;
-  for (uint lane = 0; lane < LANES; ++lane) bits |= (lanes[lane] ? 1u : 0u) << lane;
-  return bits;
-}
-
 // bits: kPairWords words for each entry of the lists: first the pixels of the tile that are lit, then those that are unsure.
 __kernel void classify(uint plane_stride, __global const float *position, __global const float *normal,
                        __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
@@ -110,8 +103,8 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
       // Off the map nothing is sure.
       MapPoint point = LIFT ? lifted_point(map, shadow_faces, p, n, n, load_lanes(lift + first)) : map_point(map, shadow_faces, p, n);
       Verdict verdict = classify_points(map, shadow_faces, texels, texel_count, point, p);
-      lit[row / 32] |= bits_of(asked & verdict.lit) << row % 32;
-      unsure[row / 32] |= bits_of(asked & !(verdict.lit | verdict.dark)) << row % 32;
+      lit[row / 32] |= lane_bits(asked & verdict.lit) << row % 32;
+      unsure[row / 32] |= lane_bits(asked & !(verdict.lit | verdict.dark)) << row % 32;
     }
   }
 }

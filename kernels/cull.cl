@@ -28,26 +28,6 @@ typedef struct {
 } Bounds;
 #define BOUNDS (kSquaresPerTile / LANES)
 
-INLINE float least_lane(floatL v) {
-#if LANES == 1
-  return v;
-#else
-#if LANES == 16
-  float8 half8 = v.lo < v.hi ? v.lo : v.hi;
-#elif LANES == 8
-  float8 half8 = v;
-#endif
-#if LANES >= 8
-  float4 half4 = half8.lo < half8.hi ? half8.lo : half8.hi;
-#else
-  float4 half4 = v;
-#endif
-  float2 half2 = half4.lo < half4.hi ? half4.lo : half4.hi;
-  return half2.x < half2.y ? half2.x : half2.y;
-#endif
-}
-INLINE float most_lane(floatL v) { return -least_lane(-v); }
-
 // Makes the boxes from low to high, one a lane, hold the points in the mask.
 INLINE void grow_boxes(vec3L *low, vec3L *high, vec3L p, intL mask) {
   floatL inf = INFINITY;
@@ -71,12 +51,12 @@ INLINE void bound_pixels(__global const float *position, __global const float *n
     grow_boxes(&normal_low, &normal_high, n, covered);
   }
   float4 l = {least_lane(low.x), least_lane(low.y), least_lane(low.z), 0.0f};
-  float4 h = {most_lane(high.x), most_lane(high.y), most_lane(high.z), 0.0f};
+  float4 h = {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z), 0.0f};
   float4 middle = 0.5f * l + 0.5f * h;
   floatL plane = inf;
   for (uint pixel = 0; pixel < 1u << shift; pixel += LANES) {
     vec3L p = load_vec3(position + pixel, plane_stride), n = load_vec3(normal + pixel, plane_stride);
-    floatL along = n.x * (p.x - middle.x) + n.y * (p.y - middle.y) + n.z * (p.z - middle.z);
+    floatL along = dot3(n, (vec3L){p.x - middle.x, p.y - middle.y, p.z - middle.z});
     plane = min_lanes(plane, p.z > -INFINITY ? along : inf);
   }
   float *out = (float *)(bounds + i / LANES) + i % LANES;
@@ -89,31 +69,10 @@ INLINE void bound_pixels(__global const float *position, __global const float *n
   out[6 * LANES] = least_lane(normal_low.x);
   out[7 * LANES] = least_lane(normal_low.y);
   out[8 * LANES] = least_lane(normal_low.z);
-  out[9 * LANES] = most_lane(normal_high.x);
-  out[10 * LANES] = most_lane(normal_high.y);
-  out[11 * LANES] = most_lane(normal_high.z);
+  out[9 * LANES] = greatest_lane(normal_high.x);
+  out[10 * LANES] = greatest_lane(normal_high.y);
+  out[11 * LANES] = greatest_lane(normal_high.z);
   out[12 * LANES] = least_lane(plane);
-}
-
-// Bit i: lane i of the mask.
-INLINE uint lane_bits(intL mask) {
-#if LANES == 1
-  return mask ? 1u : 0u;
-#else
-#if LANES == 16
-  int16 bits = mask & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
-  int8 half8 = bits.lo | bits.hi;
-#elif LANES == 8
-  int8 half8 = mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-#endif
-#if LANES >= 8
-  int4 half4 = half8.lo | half8.hi;
-#else
-  int4 half4 = mask & (int4)(1, 2, 4, 8);
-#endif
-  int2 half2 = half4.lo | half4.hi;
-  return (uint)(half2.x | half2.y);
-#endif
 }
 
 INLINE uint lowest_bit(uint bits) { return 31 - clz(bits & (0 - bits)); }
@@ -269,7 +228,7 @@ INLINE void start_tile(Walk *walk, const Bounds *bounds, __global const float *t
   walk->tree = tree;
   walk->stride = tree_stride;
   walk->low = (float4)(least_lane(low.x), least_lane(low.y), least_lane(low.z), 0.0f);
-  walk->high = (float4)(most_lane(high.x), most_lane(high.y), most_lane(high.z), 0.0f);
+  walk->high = (float4)(greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z), 0.0f);
   start_walk(walk, light_count);
 }
 

@@ -90,9 +90,9 @@ INLINE vec3L all_lanes(float4 v) {
 
 // *sum += a·b, channel by channel.
 INLINE void add_product(vec3L *sum, vec3L a, vec3L b) {
-  sum->x += a.x * b.x;
-  sum->y += a.y * b.y;
-  sum->z += a.z * b.z;
+  sum->x = fma_lanes(a.x, b.x, sum->x);
+  sum->y = fma_lanes(a.y, b.y, sum->y);
+  sum->z = fma_lanes(a.z, b.z, sum->z);
 }
 
 INLINE void meet_light(Pair *pair, const Pixels *pixels, __global const ShadeLight *light) {
@@ -137,7 +137,7 @@ INLINE void cast_shadows(Pair *pairs, Pixels *const *pixels, __global const Shad
     strength[k] *= visible;
     if (OUTPUT_SHADOW) {
       floatL counted = faces_light ? (floatL)(1.0f) : (floatL)(0.0f);
-      pixels[k]->visible += visible * counted;
+      pixels[k]->visible = fma_lanes(visible, counted, pixels[k]->visible);
       pixels[k]->shadow_lights += counted;
     }
   }
@@ -261,9 +261,9 @@ INLINE void start_row(Pixels *pixels, const ShadeFrame *frame, uint first, const
   if (!SPECULAR) return;
   pixels->shininess = load_lanes(planes->specular + first + 3 * stride);
   if (PARALLEL_VIEW) {
-    pixels->to_eye.x = frame->eye.x - frame->eye.w * pixels->position.x;
-    pixels->to_eye.y = frame->eye.y - frame->eye.w * pixels->position.y;
-    pixels->to_eye.z = frame->eye.z - frame->eye.w * pixels->position.z;
+    pixels->to_eye.x = fma_lanes(-frame->eye.w, pixels->position.x, frame->eye.x);
+    pixels->to_eye.y = fma_lanes(-frame->eye.w, pixels->position.y, frame->eye.y);
+    pixels->to_eye.z = fma_lanes(-frame->eye.w, pixels->position.z, frame->eye.z);
   } else {
     pixels->to_eye = scale3(pixels->position, (floatL)(-1.0f));
   }
@@ -302,7 +302,7 @@ INLINE vec3L finish_row(Pixels *pixels, const ShadeFrame *frame, uint first, con
     seen.y += ke.y;
     seen.z += ke.z;
   }
-  return FOG ? apply_fog(frame, seen, pixels->position) : seen;
+  return FOG ? apply_fog(*frame, seen, pixels->position) : seen;
 }
 
 // While lights are summed, memory brings the rows that come next.

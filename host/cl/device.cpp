@@ -231,7 +231,7 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
                     Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
-    const std::string options = fmt::format("-cl-std=CL1.2 -cl-mad-enable -cl-denorms-are-zero -DLANES={} {}",
+    const std::string options = fmt::format("-cl-std=CL1.2 -cl-denorms-are-zero -DLANES={} {}",
                                             device.description.lanes, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {

@@ -468,9 +468,7 @@ TEST_F(CommandLine, EveryLaneWidthRendersThePicture) {
   succeed("luciole render scene.json -o native.exr");
   for (const char* lanes : {"1", "4", "8", "16"}) {
     succeed(std::string("luciole render scene.json --device ,lanes=") + lanes + " -o lanes.exr");
-    // The same operations in the same order on other vector widths; only what the compiler contracts may
-    // differ: a few rounding errors (2^-24 each) per light and pixel, of colours below 8.
-    succeed("luciole compare native.exr lanes.exr --max-abs 1e-4");
+    succeed("luciole compare native.exr lanes.exr --max-abs 0");
   }
 }
 

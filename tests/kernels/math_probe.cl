@@ -1,7 +1,4 @@
 // Every function of math.clh, and of lanes.clh what computes, a kernel each.
-#if APART
-#pragma OPENCL FP_CONTRACT OFF
-#endif
 #include "lanes.clh"
 #include "math.clh"
 
@@ -30,12 +27,14 @@ PROBE_2(probe_pow_one_minus_half, pow_one_minus_half)
 PROBE_2(probe_max, max_lanes)
 PROBE_2(probe_min, min_lanes)
 
-// a·b less what it rounds to: 0, unless the compiler fuses the product into the difference.
-__kernel void probe_fusing(__global const float *in, __global float *out, uint stride) {
-  uint first = get_global_id(0) * LANES;
-  floatL a = load_lanes(in + first), b = load_lanes(in + first + stride), rounded = load_lanes(in + first + 2 * stride);
-  store_lanes(out + first, a * b - rounded);
-}
+#define PROBE_3(name, expression)                                                           \
+  __kernel void name(__global const float *in, __global float *out, uint stride) {          \
+    uint first = get_global_id(0) * LANES;                                                  \
+    floatL a = load_lanes(in + first), b = load_lanes(in + first + stride), c = load_lanes(in + first + 2 * stride); \
+    store_lanes(out + first, expression);                                                   \
+  }
+PROBE_3(probe_fma, fma_lanes(a, b, c))
+PROBE_3(probe_product_and_sum, a * b + c)
 
 __kernel void probe_normalize(__global const float *in, __global float *out, uint stride) {
   uint first = get_global_id(0) * LANES;

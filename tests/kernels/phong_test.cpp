@@ -63,7 +63,7 @@ struct Worst {
 //   5.2 + 6 + 4 + 3 + 1 < 20.
 //   Blinn: a = N, b = (L + V)/|L + V|. L's and V's errors tilt the sum by 6.2/|L + V| ≤ 12.4, it rounds (1)
 //   and is scaled (5.2), N has 1: < 20.
-// The power's own error is n·|log2(1 − t)|·4.8 + 3.
+// The power's own error is n·|log2(1 − t)|·4.2 + 3.
 Worst worstError(const Lobes& lobes, const Column& result, bool blinn) {
   constexpr double kDelta = 20 * kUnit;
   Worst worst;

@@ -71,7 +71,7 @@ inline Interval attenuationInterval(const Light& light, const WayToLight& way) {
       .widened(20 * kUnit);
 }
 
-/// cosⁿ, by pow_one_minus_half within (|log2 cosⁿ|·4.8 + 3) units, and 0 below 2^-125.5.
+/// cosⁿ, by pow_one_minus_half within (|log2 cosⁿ|·4.2 + 3) units, and 0 below 2^-125.5.
 inline Interval powerInterval(double cosine, double error, double exponent) {
   const Interval power =
       growing(cosine, error, [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); });

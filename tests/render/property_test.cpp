@@ -225,8 +225,7 @@ TEST(Property, BrighterLightsScaleThePicture) {
   EXPECT_FALSE(failure) << *failure;
 }
 
-// One program runs at every width: contraction of products and sums is decided in the language's front end,
-// expression by expression, and every lane does what a scalar does. So no ulp is lost between them.
+// One program runs at every width, only what says so is contracted, and every lane does what a scalar does.
 TEST(Property, LanesChangeNothing) {
   const auto failure =
       hunt({"Lanes",
