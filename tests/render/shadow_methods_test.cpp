@@ -76,6 +76,20 @@ std::string nameOf(const testing::TestParamInfo<ShadowMethod>& test) {
   return kNames[int(test.param)];
 }
 
+// A search that finds no blocker ends there, whatever the pixels beside it find.
+TEST(SoftShadows, OfAPixelDontDependOnItsNeighbours) {
+  const Scene scene = loadScene(LUCIOLE_SOURCE_DIR "/scenes/fireflies.json");
+  const auto render = [&](int lanes) {
+    RenderSettings settings;
+    settings.size = {160, 90};
+    settings.camera = scene.cameras.front();
+    settings.shade.shadows = ShadowMethod::kSoft;
+    Stats stats;
+    return renderScene(deviceWithLanes(lanes), scene, settings, stats).pixels;
+  };
+  EXPECT_EQ(render(16), render(1));
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ShadowMethods,
                          testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
                                          ShadowMethod::kExact),
