@@ -49,3 +49,15 @@ __kernel void probe_any_lane(__global const float *in, __global float *out, uint
   uint first = get_global_id(0) * LANES;
   store_lanes(out + first, (floatL)(any_lane(load_lanes(in + first) > 0.0f) ? 1.0f : 0.0f));
 }
+
+#define PROBE_ROW(name, expression)                                                   \
+  __kernel void name(__global const float *in, __global float *out, uint stride) {          \
+    uint first = get_global_id(0) * LANES;                                                  \
+    floatL row = load_lanes(in + first);                                                    \
+    store_lanes(out + first, (floatL)((float)(expression)));                                \
+  }
+PROBE_ROW(probe_least_lane, least_lane(row))
+PROBE_ROW(probe_greatest_lane, greatest_lane(row))
+PROBE_ROW(probe_smallest_lane, smallest_lane(convert_intL(row)))
+PROBE_ROW(probe_largest_lane, largest_lane(convert_intL(row)))
+PROBE_ROW(probe_lane_bits, lane_bits(row < 0.0f))

@@ -279,5 +279,28 @@ TEST(MathKernels, AnyLaneSeesEveryLane) {
   }
 }
 
+// A row for each lane in which that one is the extreme.
+TEST(MathKernels, FoldsOfARowSeeEveryLane) {
+  for (const int lanes : kAllLanes) {
+    for (const char* dialect : kDialects) {
+      const auto of = [&](const char* kernel, const Column& in) {
+        return probe(deviceWithLanes(lanes), "math_probe.cl", kernel, {in}, 1, {}, dialect)[0];
+      };
+      const std::size_t size = std::size_t(lanes) * lanes;
+      Column low(size, 3.0f), high(size, -3.0f), least(size, -5.0f), most(size, 5.0f), bits;
+      for (int lane = 0; lane < lanes; ++lane) {
+        low[lane * lanes + lane] = -5;
+        high[lane * lanes + lane] = 5;
+        bits.insert(bits.end(), lanes, float(1 << lane));
+      }
+      EXPECT_EQ(of("probe_least_lane", low), least) << lanes << dialect;
+      EXPECT_EQ(of("probe_smallest_lane", low), least) << lanes << dialect;
+      EXPECT_EQ(of("probe_greatest_lane", high), most) << lanes << dialect;
+      EXPECT_EQ(of("probe_largest_lane", high), most) << lanes << dialect;
+      EXPECT_EQ(of("probe_lane_bits", low), bits) << lanes << dialect;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace luciole::test
