@@ -262,6 +262,24 @@ TEST(MalformedMeshes, BinaryJunkAsObjIsRefused) {
   EXPECT_EQ(loadInChild(folder / "missing.glb").kind, 'I');
 }
 
+TEST(MalformedMeshes, AStatementOfVeryManyLinesIsReadInTime) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "file.obj";
+  std::string text;
+  for (int i = 0; i < 400'000; ++i) text += "\\\n";
+  writeBytes(path, text + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(loadInChild(path).kind, 'S');
+}
+
+TEST(MalformedMeshes, AMaterialFileThatIsNamedVeryOftenIsReadOnce) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "file.obj";
+  std::string text;
+  for (int i = 0; i < 20'000; ++i) text += "mtllib file.obj\n";
+  writeBytes(path, text + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(loadInChild(path).kind, 'S');
+}
+
 TEST(MalformedMeshes, ANameTooLongForTheSystemIsThatOfAMissingFile) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "file.obj";

@@ -1,15 +1,11 @@
 #include "scene/obj/obj.hpp"
 
-#include <fmt/format.h>
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <sstream>
-#include <type_traits>
+#include <set>
 #include <unordered_map>
 
 #include "base/error.hpp"
@@ -17,52 +13,16 @@
 #include "scene/load_textures.hpp"
 #include "scene/normals.hpp"
 #include "scene/obj/mtl.hpp"
-#include "scene/obj/obj_text.hpp"
+#include "scene/obj/obj_file.hpp"
 #include "scene/triangulate.hpp"
 
 namespace luciole {
 namespace {
 
-/// Where a triangle's corner finds its data in the file's lists; -1: the file gives none.
-struct Corner {
-  int position;
-  int normal;
-  int uv;
-};
-
 struct Triangle {
-  std::array<Corner, 3> corners;
-  int entry;           ///< index of its material in ObjFile::entries, -1: none or unknown
+  std::array<ObjCorner, 3> corners;
+  int entry;           ///< index of its material among the entries, -1: none or unknown
   unsigned smoothing;  ///< group; 0: flat
-};
-
-/// A parsed OBJ file with its polygons cut into triangles.
-struct ObjFile {
-  std::vector<MtlEntry> entries;
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> colors;  ///< one a position, or none
-  std::vector<glm::vec3> normals;
-  std::vector<glm::vec2> uvs;  ///< v grows upwards, as in the file
-  std::vector<Triangle> triangles;
-};
-
-/// Tells tinyobjloader the materials' names and nothing else: their values are read when a face uses them.
-class NamesOnly : public tinyobj::MaterialReader {
- public:
-  explicit NamesOnly(const std::vector<MtlEntry>& entries) : entries_(entries) {}
-  bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>* ids,
-                  std::string*, std::string*) override {
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      std::string name = entries_[i].name;
-      std::replace_if(
-          name.begin(), name.end(), [](char c) { return c == ' ' || c == '\t'; }, kNameBlank);
-      ids->emplace(name, static_cast<int>(i));
-    }
-    return true;
-  }
-
- private:
-  const std::vector<MtlEntry>& entries_;
 };
 
 std::string withSlashes(const std::string& words) {
@@ -93,90 +53,61 @@ std::vector<std::string> materialPaths(const std::filesystem::path& folder, cons
   return paths;
 }
 
+/// The materials of all files that the statements name, each file once.
 std::vector<MtlEntry> readEntries(const std::string& path, const std::vector<std::string>& material_files) {
   std::vector<MtlEntry> entries;
+  std::set<std::string> read;
   for (const std::string& arguments : material_files) {
     for (const std::string& file : materialPaths(std::filesystem::path(path).parent_path(), arguments)) {
+      if (!read.insert(file).second) continue;
       for (MtlEntry& entry : readMtl(file)) entries.push_back(std::move(entry));
     }
   }
   return entries;
 }
 
-void addFace(ObjFile& file, const tinyobj::index_t* corners, int count, int entry, unsigned smoothing) {
-  if (count < 3) return;
+/// Cuts the file's faces into triangles. Of materials with one name the first counts.
+std::vector<Triangle> cutFaces(const ObjFile& file, const std::vector<MtlEntry>& entries) {
+  std::unordered_map<std::string, int> entry_of_name;
+  for (const MtlEntry& entry : entries)
+    entry_of_name.emplace(entry.name, static_cast<int>(&entry - entries.data()));
+  std::vector<int> entry_of_material;
+  for (const std::string& name : file.material_names) {
+    const auto found = entry_of_name.find(name);
+    entry_of_material.push_back(found == entry_of_name.end() ? -1 : found->second);
+  }
+  std::vector<Triangle> triangles;
   std::vector<glm::dvec3> polygon;
-  for (int i = 0; i < count; ++i) polygon.emplace_back(file.positions[corners[i].vertex_index]);
-  for (const std::array<int, 3>& cut : triangulate(polygon)) {
-    Triangle triangle{{}, entry, smoothing};
-    for (int i = 0; i < 3; ++i) {
-      const tinyobj::index_t& corner = corners[cut[i]];
-      triangle.corners[i] = {corner.vertex_index, corner.normal_index, corner.texcoord_index};
-    }
-    file.triangles.push_back(triangle);
+  for (const ObjFace& face : file.faces) {
+    if (face.corner_count < 3) continue;
+    const ObjCorner* corners = &file.corners[face.first_corner];
+    polygon.clear();
+    for (int i = 0; i < face.corner_count; ++i) polygon.emplace_back(file.positions[corners[i].position]);
+    const int entry = face.material < 0 ? -1 : entry_of_material[face.material];
+    for (const auto& [a, b, c] : triangulate(polygon))
+      triangles.push_back({{corners[a], corners[b], corners[c]}, entry, face.smoothing});
   }
-}
-
-ObjFile parse(const std::string& path) {
-  ObjText obj = readObjText(path);
-  ObjFile file;
-  file.entries = readEntries(path, obj.material_files);
-  NamesOnly reader(file.entries);
-  obj.text.insert(0, "mtllib names\n");
-
-  tinyobj::attrib_t lists;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> unused;
-  std::string warnings, errors;
-  std::istringstream stream(std::move(obj.text));
-  // Polygons stay whole: tinyobjloader cuts concave quads wrongly.
-  if (!tinyobj::LoadObj(&lists, &shapes, &unused, &warnings, &errors, &stream, &reader, false, false)) {
-    throw InputError(path + ": " + forMessage(errors));
-  }
-  const auto vectors = [](const std::vector<float>& values, auto& list) {
-    constexpr int n = std::remove_reference_t<decltype(list)>::value_type::length();
-    list.resize(values.size() / n);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      for (int j = 0; j < n; ++j) list[i][j] = values[n * i + j];
-    }
-  };
-  vectors(lists.vertices, file.positions);
-  vectors(lists.normals, file.normals);
-  vectors(lists.texcoords, file.uvs);
-  if (lists.colors.size() == lists.vertices.size()) vectors(lists.colors, file.colors);
-
-  for (const tinyobj::shape_t& shape : shapes) {
-    std::size_t first = 0;
-    for (std::size_t face = 0; face < shape.mesh.num_face_vertices.size(); ++face) {
-      const int count = shape.mesh.num_face_vertices[face];
-      const unsigned smoothing = obj.has_smoothing ? shape.mesh.smoothing_group_ids[face] : 1;
-      addFace(file, &shape.mesh.indices[first], count, shape.mesh.material_ids[face], smoothing);
-      first += count;
-    }
-  }
-  if (file.triangles.empty())
-    throw InputError(path + ": has no faces, expected an OBJ file with at least one");
-  return file;
+  return triangles;
 }
 
 /// Makes the file's normals unit; corners whose normal has no direction are left without.
-void normalize(ObjFile& file) {
+void normalize(ObjFile& file, std::vector<Triangle>& triangles) {
   std::vector<bool> usable;
   for (glm::vec3& normal : file.normals) {
     const double length = glm::length(glm::dvec3(normal));
     usable.push_back(length > 0);
     if (length > 0) normal = glm::vec3(glm::dvec3(normal) / length);
   }
-  for (Triangle& triangle : file.triangles) {
-    for (Corner& corner : triangle.corners) {
+  for (Triangle& triangle : triangles) {
+    for (ObjCorner& corner : triangle.corners) {
       if (corner.normal >= 0 && !usable[corner.normal]) corner.normal = -1;
     }
   }
 }
 
 /// Winds triangles to agree with the file's normals, where all three corners have one.
-void windByNormals(ObjFile& file) {
-  for (Triangle& triangle : file.triangles) {
+void windByNormals(const ObjFile& file, std::vector<Triangle>& triangles) {
+  for (Triangle& triangle : triangles) {
     auto& [a, b, c] = triangle.corners;
     if (a.normal < 0 || b.normal < 0 || c.normal < 0) continue;
     const glm::dvec3 origin(file.positions[a.position]);
@@ -188,18 +119,18 @@ void windByNormals(ObjFile& file) {
 }
 
 /// Gives corners without a normal one, smooth within a smoothing group, flat outside any.
-void addMissingNormals(ObjFile& file) {
+void addMissingNormals(ObjFile& file, std::vector<Triangle>& triangles) {
   const auto has_all = [](const Triangle& triangle) {
     return std::all_of(triangle.corners.begin(), triangle.corners.end(),
-                       [](const Corner& c) { return c.normal >= 0; });
+                       [](const ObjCorner& c) { return c.normal >= 0; });
   };
-  if (std::all_of(file.triangles.begin(), file.triangles.end(), has_all)) return;
+  if (std::all_of(triangles.begin(), triangles.end(), has_all)) return;
 
   // A joint is a position as one smoothing group sees it; a flat triangle has three of its own.
   std::unordered_map<std::uint64_t, std::uint32_t> joints;
   std::vector<glm::vec3> positions;
-  std::vector<glm::uvec3> triangles;
-  for (const Triangle& triangle : file.triangles) {
+  std::vector<glm::uvec3> joined;
+  for (const Triangle& triangle : triangles) {
     glm::uvec3 corners;
     for (int i = 0; i < 3; ++i) {
       const int position = triangle.corners[i].position;
@@ -209,15 +140,15 @@ void addMissingNormals(ObjFile& file) {
       corners[i] = triangle.smoothing == 0 ? fresh : joints.emplace(key, fresh).first->second;
       if (corners[i] == fresh) positions.push_back(file.positions[position]);
     }
-    triangles.push_back(corners);
+    joined.push_back(corners);
   }
-  const std::vector<glm::vec3> normals = angleWeightedNormals(positions, triangles);
+  const std::vector<glm::vec3> normals = angleWeightedNormals(positions, joined);
   const int first = static_cast<int>(file.normals.size());
   file.normals.insert(file.normals.end(), normals.begin(), normals.end());
-  for (std::size_t i = 0; i < file.triangles.size(); ++i) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (int j = 0; j < 3; ++j) {
-      int& normal = file.triangles[i].corners[j].normal;
-      if (normal < 0) normal = first + static_cast<int>(triangles[i][j]);
+      int& normal = triangles[i].corners[j].normal;
+      if (normal < 0) normal = first + static_cast<int>(joined[i][j]);
     }
   }
 }
@@ -228,10 +159,10 @@ class VertexMaker {
   VertexMaker(const ObjFile& file, Mesh& mesh)
       : file_(file), mesh_(mesh), first_(file.positions.size(), -1) {}
 
-  std::uint32_t vertex(const Corner& corner) {
+  std::uint32_t vertex(const ObjCorner& corner) {
     int* link = &first_[corner.position];
     for (; *link >= 0; link = &made_[*link].next) {
-      const Corner& other = made_[*link].corner;
+      const ObjCorner& other = made_[*link].corner;
       if (other.normal == corner.normal && other.uv == corner.uv) return *link;
     }
     const int index = *link = static_cast<int>(made_.size());
@@ -249,7 +180,7 @@ class VertexMaker {
 
  private:
   struct Made {
-    Corner corner;
+    ObjCorner corner;
     int next;  ///< the next vertex at the same position, or -1
   };
   const ObjFile& file_;
@@ -259,15 +190,16 @@ class VertexMaker {
 };
 
 /// The index in the scene of the material of each entry that a triangle uses; key -1: the default material.
-std::map<int, std::uint32_t> addMaterials(const ObjFile& file, Scene& scene) {
+std::map<int, std::uint32_t> addMaterials(const std::vector<MtlEntry>& entries,
+                                          const std::vector<Triangle>& triangles, Scene& scene) {
   std::map<int, std::uint32_t> materials;
-  for (const Triangle& triangle : file.triangles) {
+  for (const Triangle& triangle : triangles) {
     if (materials.count(triangle.entry)) continue;
     materials[triangle.entry] = static_cast<std::uint32_t>(scene.materials.size());
     Material material;
     material.name = "default";
     material.double_sided = true;
-    if (triangle.entry >= 0) material = readMaterial(file.entries[triangle.entry], scene);
+    if (triangle.entry >= 0) material = readMaterial(entries[triangle.entry], scene);
     scene.materials.push_back(material);
   }
   decodeTextures(scene);
@@ -278,16 +210,19 @@ std::map<int, std::uint32_t> addMaterials(const ObjFile& file, Scene& scene) {
 }  // namespace
 
 std::uint32_t loadObj(const std::string& path, Scene& scene) {
-  ObjFile file = parse(path);
-  normalize(file);
-  windByNormals(file);
-  addMissingNormals(file);
+  ObjFile file = readObjFile(path);
+  const std::vector<MtlEntry> entries = readEntries(path, file.material_files);
+  std::vector<Triangle> triangles = cutFaces(file, entries);
+  if (triangles.empty()) throw InputError(path + ": has no faces, expected an OBJ file with at least one");
+  normalize(file, triangles);
+  windByNormals(file, triangles);
+  addMissingNormals(file, triangles);
 
-  const std::map<int, std::uint32_t> materials = addMaterials(file, scene);
+  const std::map<int, std::uint32_t> materials = addMaterials(entries, triangles, scene);
   Mesh mesh;
   mesh.name = path;
   VertexMaker maker(file, mesh);
-  for (const Triangle& triangle : file.triangles) {
+  for (const Triangle& triangle : triangles) {
     glm::uvec3 vertices;
     for (int i = 0; i < 3; ++i) vertices[i] = maker.vertex(triangle.corners[i]);
     mesh.triangles.push_back(vertices);

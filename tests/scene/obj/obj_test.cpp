@@ -337,6 +337,7 @@ TEST_F(ObjLoader, LinesPointsAndUnknownStatementsAreIgnored) {
 TEST_F(ObjLoader, MistakesNameTheLineInOneLine) {
   EXPECT_THAT(error("v 0 0 0\nv nan 0 0\n"), HasSubstr("a.obj: line 2: 'nan' is not a finite number"));
   EXPECT_THAT(error("v 1e39 0 0\n"), HasSubstr("line 1: '1e39' is not a finite number"));
+  EXPECT_THAT(error("v +-1 0 0\n"), HasSubstr("line 1: '+-1' is not a finite number"));
   EXPECT_THAT(error("v 1 2\n"), HasSubstr("line 1: a vertex needs 3 numbers, found 2"));
   EXPECT_THAT(error("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n"),
               HasSubstr("line 5: a face refers to vertex 4"));

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace luciole {
+
+/// A corner of a face: indices into the file's lists, counted from 0; -1: the file gives none.
+struct ObjCorner {
+  int position = -1;
+  int uv = -1;
+  int normal = -1;
+};
+
+struct ObjFace {
+  std::size_t first_corner;  ///< index in ObjFile::corners
+  int corner_count;          ///< 0 to 255
+  int material;              ///< index in ObjFile::material_names, -1: none
+  unsigned smoothing;        ///< group; 0: flat
+};
+
+/// What an OBJ file says of surfaces. Every number is finite, every index points into its list.
+struct ObjFile {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> colors;  ///< one a position, or none
+  std::vector<glm::vec2> uvs;     ///< v grows upwards
+  std::vector<glm::vec3> normals;
+  std::vector<ObjCorner> corners;
+  std::vector<ObjFace> faces;
+  std::vector<std::string> material_names;  ///< one a usemtl statement
+  std::vector<std::string> material_files;  ///< arguments of the mtllib statements, as written
+};
+
+/// Reads the statements v, vt, vn, f, s, usemtl and mtllib, and leaves out all others. In a file without any
+/// "s", all faces are of smoothing group 1. Throws InputError naming the line. Takes time in proportion to
+/// the file's size.
+ObjFile readObjFile(const std::string& path);
+
+}  // namespace luciole
