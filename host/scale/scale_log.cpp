@@ -9,13 +9,12 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/output_file.hpp"
+#include "base/text_file.hpp"
 
 namespace luciole {
 namespace {
@@ -182,11 +181,6 @@ void take(const Json& line, ScaleResults& results) {
 
 std::vector<std::string> filesOf(const PointCheck& check) {
   return {check.picture, check.error_map, check.list_map};
-}
-
-std::string readFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 /// The log in `text`, which ends after a whole line. Throws InputError "path: line: what".

@@ -1,30 +1,72 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 
 #include "base/error.hpp"
 #include "gbuffer/gbuffer_file.hpp"
 #include "load/load_scene.hpp"
+#include "scale/scale_files.hpp"
+#include "scale/scale_log.hpp"
+#include "scale/scale_plot.hpp"
+#include "scale/scale_summary.hpp"
+#include "scale/scale_table.hpp"
+#include "scene/load_textures.hpp"
+#include "scene/obj/mtl.hpp"
 #include "scene/pose.hpp"
 #include "scene/scene_fault.hpp"
+#include "shared_files.hpp"
 
 namespace luciole::test {
 
-/// Reads a stranger's file as its extension says: .exr is a G-buffer, all else a scene. A file that is
-/// refused in one line, or doesn't fit the machine, has been dealt with; anything else that goes wrong gets
-/// out of here.
+inline void readStrangersScene(const std::string& path) {
+  Scene scene = loadScene(path);
+  for (const double frame : {1.0, 2.5, 30.0}) {
+    poseScene(scene, frame);
+    if (const std::string fault = sceneFault(scene); !fault.empty()) throw std::logic_error(fault);
+  }
+}
+
+/// Every material of the file, as an OBJ that uses them all has it read.
+inline void readStrangersMaterials(const std::string& path) {
+  Scene scene;
+  for (const MtlEntry& entry : readMtl(path)) scene.materials.push_back(readMaterial(entry, scene));
+  decodeTextures(scene);
+  for (Material& material : scene.materials) cutHoles(material, scene);
+  if (const std::string fault = sceneFault(scene); !fault.empty()) throw std::logic_error(fault);
+}
+
+/// The log of an experiment with the picture pictures/a.png: merged, summarized and taken up again.
+inline void readStrangersLog(const std::string& path) {
+  const TemporaryFolder folder;
+  const std::string run = folder / "run", merged = folder / "merged";
+  std::filesystem::create_directories(run + "/pictures");
+  std::ofstream(run + "/pictures/a.png") << "picture";
+  std::filesystem::copy_file(path, run + "/results.jsonl");
+  const ScaleSummary summary = summarizeScale(mergeScaleLogs({run}, merged));
+  scaleCsv(summary);
+  growthJson(summary);
+  pageData(summary, merged, "luciole scale merge");
+  scaleTable(summary);
+  if (!summary.points.empty()) scalePlot(summary);
+  ScaleLog(run, summary.description);
+}
+
+/// Reads a stranger's file as its extension says: .exr is a G-buffer, .mtl materials, .jsonl the log of an
+/// experiment, all else a scene. A file that is refused in one line, or doesn't fit the machine, has been
+/// dealt with; anything else that goes wrong gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {
       readGBuffer(path);
+    } else if (path.ends_with(".mtl")) {
+      readStrangersMaterials(path);
+    } else if (path.ends_with(".jsonl")) {
+      readStrangersLog(path);
     } else {
-      Scene scene = loadScene(path);
-      for (const double frame : {1.0, 2.5, 30.0}) {
-        poseScene(scene, frame);
-        if (const std::string fault = sceneFault(scene); !fault.empty()) throw std::logic_error(fault);
-      }
+      readStrangersScene(path);
     }
   } catch (const InputError& error) {
     if (std::string(error.what()).find('\n') != std::string::npos)
