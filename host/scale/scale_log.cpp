@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/output_file.hpp"
@@ -45,22 +46,42 @@ Json toJson(const ScaleDescription& description) {
             {"repeats", description.repeats}}}};
 }
 
+/// A whole number that T can hold. `key` is what messages call it. Throws InputError.
+template <class T>
+T wholeNumber(const Json& number, const char* key) {
+  const bool fits = number.is_number_unsigned()
+                        ? std::in_range<T>(number.get<std::uint64_t>())
+                        : number.is_number_integer() && std::in_range<T>(number.get<std::int64_t>());
+  if (!fits)
+    throw InputError(fmt::format("{} {}: expected a whole number between {} and {}", key,
+                                 forMessage(number.dump()), std::numeric_limits<T>::min(),
+                                 std::numeric_limits<T>::max()));
+  return number.get<T>();
+}
+
+/// The same, of an object's member.
+template <class T>
+T wholeMember(const Json& json, const char* key) {
+  return wholeNumber<T>(json.at(key), key);
+}
+
 ScaleDescription descriptionOf(const Json& line) {
   const Json& json = line.at("experiment");
   ScaleDescription description;
   description.version = json.at("version").get<std::string>();
   description.scene = json.at("scene").get<std::string>();
-  description.digest = json.at("digest").get<std::uint64_t>();
+  description.digest = wholeMember<std::uint64_t>(json, "digest");
   for (const auto& [name, value] : json.at("settings").items())
     description.settings.emplace_back(name, value.get<std::string>());
-  description.lights = json.at("lights").get<std::vector<std::uint64_t>>();
+  for (const Json& lights : json.at("lights"))
+    description.lights.push_back(wholeNumber<std::uint64_t>(lights, "lights"));
   for (const Json& axis : json.at("axes"))
     description.axes.push_back(
         {axis.at("name").get<std::string>(), axis.at("values").get<std::vector<std::string>>()});
   for (const Json& point : json.at("points"))
     description.points.push_back(
-        {point.at("lights").get<std::uint64_t>(), point.at("values").get<std::vector<std::string>>()});
-  description.repeats = json.at("repeats").get<int>();
+        {wholeMember<std::uint64_t>(point, "lights"), point.at("values").get<std::vector<std::string>>()});
+  description.repeats = wholeMember<int>(json, "repeats");
   const bool is_whole =
       std::all_of(description.points.begin(), description.points.end(),
                   [&](const ScalePoint& point) { return point.values.size() == description.axes.size(); });
@@ -85,11 +106,11 @@ Json toJson(const Machine& machine) {
 Machine machineOf(const Json& line) {
   const Json& json = line.at("machine");
   return {.processor = json.at("processor").get<std::string>(),
-          .threads = json.at("threads").get<unsigned>(),
-          .memory_bytes = json.at("memory_bytes").get<std::uint64_t>(),
+          .threads = wholeMember<unsigned>(json, "threads"),
+          .memory_bytes = wholeMember<std::uint64_t>(json, "memory_bytes"),
           .system = json.at("system").get<std::string>(),
           .device = {json.at("platform").get<std::string>(), json.at("device").get<std::string>(),
-                     json.at("driver").get<std::string>(), json.at("lanes").get<int>()},
+                     json.at("driver").get<std::string>(), wholeMember<int>(json, "lanes")},
           .compiler = json.at("compiler").get<std::string>()};
 }
 
@@ -133,12 +154,12 @@ std::string fileNamed(const Json& json, const char* key) {
 
 PointCheck checkOf(const Json& line) {
   const Json& json = line.at("check");
-  return {.pairs_evaluated = json.at("pairs_evaluated").get<std::uint64_t>(),
-          .pairs_in_range = json.at("pairs_in_range").get<std::uint64_t>(),
-          .pixels_lit = json.at("pixels_lit").get<std::uint64_t>(),
-          .list_entries = json.at("list_entries").get<std::uint64_t>(),
+  return {.pairs_evaluated = wholeMember<std::uint64_t>(json, "pairs_evaluated"),
+          .pairs_in_range = wholeMember<std::uint64_t>(json, "pairs_in_range"),
+          .pixels_lit = wholeMember<std::uint64_t>(json, "pixels_lit"),
+          .list_entries = wholeMember<std::uint64_t>(json, "list_entries"),
           .reach = numberOrInfinity(json.at("reach")),
-          .pixels = json.at("pixels").get<std::uint64_t>(),
+          .pixels = wholeMember<std::uint64_t>(json, "pixels"),
           .mean_abs = numberOrInfinity(json.at("mean_abs")),
           .max_abs = numberOrInfinity(json.at("max_abs")),
           .rmse = numberOrInfinity(json.at("rmse")),
@@ -161,8 +182,8 @@ PointRun runOf(const Json& line) {
   PointRun run;
   for (const auto& [name, milliseconds] : line.at("stages").items())
     run.stages.emplace_back(name, milliseconds.get<double>());
-  run.device_bytes = line.at("device_bytes").get<std::uint64_t>();
-  run.peak_bytes = line.at("peak_bytes").get<std::uint64_t>();
+  run.device_bytes = wholeMember<std::uint64_t>(line, "device_bytes");
+  run.peak_bytes = wholeMember<std::uint64_t>(line, "peak_bytes");
   return run;
 }
 
@@ -176,7 +197,7 @@ void take(const Json& line, ScaleResults& results) {
   if (line.contains("check"))
     record.check = checkOf(line);
   else
-    record.runs[line.at("repeat").get<int>()] = runOf(line);
+    record.runs[wholeMember<int>(line, "repeat")] = runOf(line);
 }
 
 std::vector<std::string> filesOf(const PointCheck& check) {

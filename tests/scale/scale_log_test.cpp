@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -197,6 +198,26 @@ TEST(ScaleLog, MergeRefusesWhatIsNotOneExperiment) {
   EXPECT_FALSE(std::filesystem::exists(folder / "merged"));
   EXPECT_THAT(merge("bare", "merged"), HasSubstr("pictures/1.png"));
   EXPECT_THAT(merge("other", "0"), HasSubstr("already"));
+}
+
+TEST(ScaleLog, NumbersThatDoNotFitAreRefusedWithTheirKeyAndLine) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run", file = path + "/results.jsonl";
+  makeShard(path, madeUpExperiment(), 0, "one");
+  const std::string whole = readText(file);
+  for (const auto& [good, bad, said] :
+       {std::array{"\"repeats\":2", "\"repeats\":1e300", "line 1: repeats 1e+300: expected a whole number"},
+        std::array{"\"repeats\":2", "\"repeats\":3000000000", "line 1: repeats 3000000000: expected"},
+        std::array{"\"lights\":[1,100]", "\"lights\":[1,-1]", "line 1: lights -1: expected"},
+        std::array{"\"digest\":", "\"digest\":-", "line 1: digest -"},
+        std::array{"\"threads\":2", "\"threads\":2.5", "line 2: threads 2.5: expected"},
+        std::array{"\"pixels\":16", "\"pixels\":true", "line 3: pixels true: expected"},
+        std::array{"\"repeat\":0", "\"repeat\":-4000000000", "line 4: repeat -4000000000: expected"}}) {
+    std::string text = whole;
+    ASSERT_NE(text.find(good), text.npos) << good;
+    writeText(file, text.replace(text.find(good), std::string(good).size(), bad));
+    EXPECT_THAT(refusal([&] { readScaleLog(path); }), HasSubstr(said)) << bad;
+  }
 }
 
 /// A shard whose log says that the first point's picture is `file`.
