@@ -358,8 +358,8 @@ ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::
       throw InputError(fmt::format("{} and {}: aren't of one experiment: the first is {}", folders[0],
                                    folders[i], difference(parts[0].description, parts[i].description)));
     for (const auto& [point, record] : parts[i].records) {
-      const auto once = [&](bool is_new, const std::string& other) {
-        if (!is_new) throw InputError(fmt::format("{} and {}: both have {}", other, folders[i], point));
+      const auto once = [&, &name = point](bool is_new, const std::string& other) {
+        if (!is_new) throw InputError(fmt::format("{} and {}: both have {}", other, folders[i], name));
       };
       if (record.check) {
         for (const std::string& file : filesOf(*record.check)) pictureFile(folders[i], file);
