@@ -70,7 +70,8 @@ TriangleRuns findRuns(const Scene& scene) {
     result.vertices.insert(result.vertices.end(), first, first + run.vertex_count);
   }
   for (std::size_t first = 0; first < count; first += kRunsPerGroup) {
-    TriangleRuns::Box& box = result.groups.emplace_back(result.runs[first].low, result.runs[first].high);
+    result.groups.push_back({result.runs[first].low, result.runs[first].high});
+    TriangleRuns::Box& box = result.groups.back();
     for (std::size_t i = first; i < std::min(count, first + kRunsPerGroup); ++i) {
       box.low = glm::min(box.low, result.runs[i].low);
       box.high = glm::max(box.high, result.runs[i].high);

@@ -54,7 +54,7 @@ struct Digest {
     else if constexpr (IsPacked<T>::value)
       addBytes(&value, sizeof value);
     else
-      withFields(value, [this](const auto&... fields) { (addField(fields), ...); });
+      withFields(value, [this](const auto&... fields) { (this->addField(fields), ...); });
   }
   void addField(const std::string& text) {
     add(text.size());

@@ -214,8 +214,9 @@ TEST(ErrorMap, WithoutAFontThatCanBeReadItLacksOnlyItsLabels) {
     const Bar bar = barUnder(map, 240);
     for (int y = 0; y < map.height; ++y)
       for (int x = 0; x < map.width; ++x)
-        if (const Codes with = codesAt(labelled, x, y), without = codesAt(map, x, y); with != without)
+        if (const Codes with = codesAt(labelled, x, y), without = codesAt(map, x, y); with != without) {
           ASSERT_TRUE(without == kWhite && y >= 240 && (y < bar.top || y > bar.bottom)) << x << " " << y;
+        }
     EXPECT_EQ(codesAt(map, 0, 0), kLowest);
     EXPECT_EQ(barUnder(labelled, 240).left, bar.left);
   }

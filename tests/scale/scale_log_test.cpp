@@ -232,7 +232,7 @@ void makeShardNaming(const std::string& folder, const std::string& file) {
 TEST(ScaleLog, NamesPicturesOfItsOwnFolderOrIsRefusedWithItsLine) {
   const TemporaryFolder folder;
   writeText(folder / "secret.png", "secret");
-  for (const std::string& file :
+  for (const std::string file :
        {"../secret.png", "pictures/../../secret.png", "/etc/hostname", "", ".", "..", "pictures", "0.png",
         "results.jsonl", "pictures/../results.jsonl", "other/pictures/0.png"}) {
     makeShardNaming(folder / "shard", file);

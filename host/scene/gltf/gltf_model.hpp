@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace luciole {
@@ -25,7 +26,7 @@ std::vector<std::string> ignoredExtensions(const GltfModel& model);
 
 /// `list[index]`, or an InputError: "`place` refers to `what` `index`, but the file has only …".
 template <typename T>
-const T& element(const GltfModel& model, const std::vector<T>& list, int index, const std::string& place,
+const T& element(const GltfModel& model, const std::vector<T>& list, int index, std::string_view place,
                  const char* what);
 
 /// The bytes that a buffer view shows. Throws InputError where it reaches past its buffer.
@@ -43,10 +44,10 @@ double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* ext
 [[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);
 
 template <typename T>
-const T& element(const GltfModel& model, const std::vector<T>& list, int index, const std::string& place,
+const T& element(const GltfModel& model, const std::vector<T>& list, int index, std::string_view place,
                  const char* what) {
   if (index < 0 || static_cast<std::size_t>(index) >= list.size()) {
-    failGltf(model, place,
+    failGltf(model, std::string(place),
              std::string("refers to ") + what + " " + std::to_string(index) + ", but the file has " +
                  std::to_string(list.size()) + " of them");
   }

@@ -1,0 +1,385 @@
+#!/usr/bin/env python3
+"""mutate_kernels.py [--build FOLDER] [--jobs N] [FILE…]: makes small mistakes in the kernels, one at a time, and tells which of
+them the tests find. FILE: only the mutants of that kernel file.
+
+No file is touched and nothing is built: a preloaded library (mutate_kernels.c) hands OpenCL the sources with one line changed.
+The tests must have been built from the kernels as they are (./luciole test, or ninja -C build).
+
+Of each mutant the verdict is one of
+  killed   by the test named
+  LIVED    no test fails
+  same     no test fails, nor could any: the table says why
+  broken   it doesn't compile, and counts for nothing
+  unseen   no test compiled it, and counts for nothing
+Exit status: 0; 1 where a mutant lived, is broken or unseen, or one that is called the same was killed; 2 where the table or the
+build doesn't fit the kernels, or a test fails without any mutant.
+"""
+import argparse
+import concurrent.futures
+import dataclasses
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# Which tests look for the mutants of a file, the quickest first: (program, filter of GoogleTest).
+MATH = ("kernels", "MathKernels.*-*AreRefused")
+FALLOFF = ("kernels", "FalloffKernels.*")
+FOG = ("kernels", "FogKernels.*")
+PHONG = ("kernels", "PhongKernels.*")
+COOK_TORRANCE = ("kernels", "CookTorranceKernel.*")
+TOON = ("kernels", "ToonKernels.*")
+SHADOW = ("kernels", "ShadowKernels.*")
+CULL = ("kernels", "*CullKernels.*")
+SHADE = ("kernels", "*ShadeKernel.*/16")
+CLOSED_FORM = ("render", "ClosedForm.*")
+PICTURES = ("render", "Render.*:Property.PicturesAgree*:Property.ShadowsOnly*")
+EXACT = ("render", "Exact.*:Bands.TheirHeightChangesNoShadow*:Property.CullingChangesNothing")
+SUMS = ("hard_cases", "HardLights.Million*")
+NUMBERS = ("hard_cases", "HardNumbers.*:HardLobe*")
+NEEDED = ("render", "FindNeeded.*")
+MAPS = ("shadow", "ShadowMaps.*:*HoveringSquare*")
+SOFT = ("shadow", "*SoftEdge*")
+METHODS = ("render", "*ShadowMethods.*")
+TERMINATOR = ("render", "*Terminator*")
+
+TESTS = {
+    "classify.cl": [METHODS, TERMINATOR, EXACT],
+    "cook_torrance.clh": [COOK_TORRANCE, PICTURES],
+    "count_in_range.cl": [PICTURES, EXACT],
+    "cull.cl": [CULL, EXACT, PICTURES],
+    "disc.clh": [SOFT],
+    "falloff.clh": [FALLOFF, CLOSED_FORM, SHADE],
+    "find_needed.cl": [NEEDED, MAPS],
+    "fog.clh": [FOG, CLOSED_FORM, PICTURES],
+    "lanes.clh": [MATH, FALLOFF, PHONG, SHADE],
+    "long_sum.clh": [SUMS, CLOSED_FORM, EXACT],
+    "math.clh": [MATH, SHADOW, PICTURES, TERMINATOR, METHODS],
+    "pair_visibility.cl": [("bench", "*HardShadows*")],
+    "phong.clh": [PHONG, CLOSED_FORM, NUMBERS],
+    "shade.cl": [CLOSED_FORM, SHADE, PICTURES, EXACT, SUMS, METHODS],
+    "shadow.clh": [SHADOW, NEEDED, MAPS, METHODS, TERMINATOR, SOFT],
+    "toon.clh": [TOON],
+}
+
+
+@dataclasses.dataclass
+class Mutant:
+    """A change of one line. `old` stands once in the file; `same`: why no picture changes by it."""
+    old: str
+    new: str
+    same: str = ""
+
+
+MUTANTS = {
+    "lanes.clh": [
+        Mutant("return a > b ? a : b", "return a < b ? a : b"),
+        Mutant("a < 0.0f ? -a : a", "a < 0.0f ? a : a"),
+        Mutant("dot3(vec3L a, vec3L b) { return a.x * b.x + a.y", "dot3(vec3L a, vec3L b) { return a.x * b.x - a.y"),
+        Mutant("float4 b) { return a.x * b.x + a.y * b.y", "float4 b) { return a.x * b.x + a.y * b.x"),
+        Mutant("load_lanes(p + 2 * plane_stride)", "load_lanes(p + plane_stride)"),
+        Mutant("color.y * weight", "color.x * weight"),
+        Mutant("a.z * s}", "a.y * s}"),
+        Mutant("(floatL)(0.0f)), (floatL)(1.0f))", "(floatL)(0.0f)), (floatL)(2.0f))"),
+        Mutant("define REDUCE_OR __builtin_reduce_or", "define REDUCE_OR __builtin_reduce_and"),
+        Mutant("(half2.x | half2.y) != 0", "half2.x != 0"),
+        Mutant("define REDUCE_MIN __builtin_reduce_min", "define REDUCE_MIN __builtin_reduce_max"),
+    ],
+    "math.clh": [
+        Mutant("0.5f - 0.5f * x * y * y", "0.5f - 0.49f * x * y * y"),
+        Mutant("1.35047585f", "1.36047585f"),
+        Mutant("0x5f320000", "0x5f3a0000"),
+        Mutant("12582912.0f - 126.0f", "12582912.0f - 130.0f"),
+        Mutant("(m - 1.0f) + lost", "(m - 1.0f)"),
+        Mutant("x > 0.0f ? result : (floatL)(-1e9f)", "x > 0.0f ? result : (floatL)(1e9f)"),
+        Mutant("bits >> 23", "bits >> 22"),
+        Mutant("as_intL(shifted) << 23", "as_intL(shifted) << 22"),
+        Mutant("1.44269504f", "1.4426953f"),
+        Mutant("0.055503417f", "0.055513417f"),
+        Mutant("c <= -3.4028235e38f", "c >= -3.4028235e38f"),
+        Mutant("y < 0.0f ? y - fold : y + fold", "y < 0.0f ? y + fold : y - fold"),
+        Mutant("packed << 16 >> 16", "packed & 0xffff"),
+    ],
+    "falloff.clh": [
+        Mutant("(dy) * (dy) + (dz) * (dz)", "(dy) * (dy)"),
+        Mutant("1.0f - ratio2 * ratio2", "1.0f - ratio2"),
+        Mutant("!light->khr_window", "light->khr_window"),
+        Mutant("a.z * d2", "a.y * d2"),
+        Mutant("a.y * (d2 * inverse_d)", "a.y * inverse_d"),
+        Mutant("7.8886091e-31f", "7.8886091e-29f"),
+        Mutant("cosine >= light->direction.w", "cosine > light->direction.w"),
+        Mutant("* light->specular.w", "* light->diffuse.w"),
+        Mutant("strength = ramp * ramp", "strength = ramp"),
+        Mutant("2.0f * clamp01(1.0f - cosine)", "clamp01(1.0f - cosine)"),
+        Mutant("cosine = -(dot3s", "cosine = (dot3s"),
+    ],
+    "fog.clh": [
+        Mutant("frame->fog_end - distance", "frame->fog_end + distance"),
+        Mutant("exp_lanes(-(depth * depth))", "exp_lanes(-depth)"),
+        Mutant("exp_lanes(-(density * distance))", "exp_lanes(density * distance)"),
+        Mutant("frame->fog_density.y", "frame->fog_density.x"),
+        Mutant("d2 * rsqrt_lanes(d2)", "rsqrt_lanes(d2)"),
+        Mutant("frame->fog_color.z", "frame->fog_color.y"),
+        Mutant("FOG_RADIAL && frame->fog_radial", "FOG_RADIAL && !frame->fog_radial"),
+    ],
+    "phong.clh": [
+        Mutant("2.0f * dot3(v, normal)", "dot3(v, normal)"),
+        Mutant("twice * normal.y - v.y", "twice * normal.y + v.y"),
+        Mutant("to_light.y * inverse_d + to_eye.y", "to_light.y * inverse_d - to_eye.y"),
+        Mutant("normal.z - half_way.z", "normal.z + half_way.z"),
+        Mutant("to_light.x * inverse_d - ", "to_light.x - "),
+        Mutant("half_way = normalize_lanes(half_way)", "half_way = half_way"),
+    ],
+    "cook_torrance.clh": [
+        Mutant("50.0f * f0", "40.0f * f0"),
+        Mutant("1.0f - 0.25f *", "1.0f - 0.5f *"),
+        Mutant("glance2 * glance2 * glance", "glance2 * glance2"),
+        Mutant("0.5f * shininess + 1.0f", "0.5f * shininess + 2.0f"),
+        Mutant("9.0949470e-13f", "9.0949470e-11f"),
+        Mutant("(1.0f - alpha2) * (x * x)", "(1.0f + alpha2) * (x * x)"),
+        Mutant("weight - weight * fresnel", "weight"),
+        Mutant("smith(max_lanes(n_dot_v, (floatL)(0.0f)), alpha2)", "smith(n_dot_v, alpha2)"),
+        Mutant("clamp01(1.0f - 0.5f * (length2 * inverse))", "clamp01(1.0f - length2 * inverse)"),
+    ],
+    "toon.clh": [
+        Mutant("32.0f * (x - edge)", "31.0f * (x - edge)"),
+        Mutant("(lobe, 0.5f)", "(lobe, 0.49f)"),
+        Mutant("(n_dot_l, 0.625f)", "(n_dot_l, 0.6f)"),
+        Mutant("0.25f * toon_step", "0.26f * toon_step"),
+    ],
+    "long_sum.clh": [
+        Mutant("x - (sum - *total)", "0.0f"),
+        Mutant("sum.lost.y + block->y", "block->y"),
+        Mutant("block->z = full ? zero : block->z", "block->z = block->z"),
+        Mutant("full ? block->x : zero", "block->x"),
+    ],
+    "disc.clh": [
+        Mutant("{-0.159645f, 0.1462479f}", "{0.159645f, 0.1462479f}"),
+        Mutant("{0.5365958f, -0.8345298f}", "{0.5365958f, 0.8345298f}"),
+        Mutant("{0.2149088f, -0.9552913f}", "{0.2149088f, 0.9552913f}"),
+    ],
+    "shade.cl": [
+        Mutant("n_dot_l > 0.0f ?", "n_dot_l > -1.0f ?"),
+        Mutant("k < count ?", "k <= count ?"),
+        Mutant("sums->fullest == kSumBlock", "sums->fullest == 2 * kSumBlock"),
+        Mutant("sums->terms >= kSumBlock", "sums->terms > kSumBlock"),
+        Mutant("end - entry > kSumBlock", "end - entry >= kSumBlock",
+               same="a single block of kSumBlock terms, moved to a total of 0, is that total to the bit"),
+        Mutant("pixels->covered ? finite_color(seen.y) : color.y", "finite_color(seen.y)"),
+        Mutant("light.y += sums->part[kAmbientPart].y", "light.y += sums->part[kAmbientPart].x"),
+        Mutant("seen.z += ke.z", "seen.z += ke.y"),
+        Mutant("frame->eye.y - frame->eye.w", "frame->eye.y + frame->eye.w"),
+        Mutant("visible * counted", "visible"),
+        Mutant("pixels->shadow_lights > 0.0f ? share : (floatL)(1.0f)", "share"),
+        Mutant("strength[k] *= visible", "strength[k] = visible"),
+        Mutant("all_lanes(frame.background)", "all_lanes(frame.ambient)"),
+        Mutant("light->specular, pair->strength * pair->highlight", "light->diffuse, pair->strength * pair->highlight"),
+        Mutant("tile * frame.light_count + entry", "entry"),
+        Mutant("pixels->place / 32]", "pixels->place / 64]"),
+        Mutant("squares & square[row]", "squares | square[row]",
+               same="a light that a list leaves out adds nothing; this costs time alone"),
+        Mutant("finish_sum(sums->closed[part]", "finish_sum(sums->closed[kDiffusePart]"),
+    ],
+    "shadow.clh": [
+        Mutant("face.middle_y - face.scale * v", "face.middle_y + face.scale * v"),
+        Mutant("!point.inside & (x > face.low)", "(x > face.low)"),
+        Mutant("+ 0x1p-22f * point.depth", ""),
+        Mutant("POSITION_ROUNDING 0x1p-22f", "POSITION_ROUNDING 0x1p-40f"),
+        Mutant("way.x = negative ? -way.x : way.x", "way.x = way.x"),
+        Mutant("normal.z = negative ? -normal.z : normal.z", "normal.z = normal.z"),
+        Mutant("negative ? face + 1 : face", "face"),
+        Mutant("on_y = ay >= az", "on_y = ay <= az"),
+        Mutant("i == 0 ? 1.0f - fx", "i == 0 ? fx"),
+        Mutant("j == PCF_WIDTH - 1 ? fy", "j == PCF_WIDTH - 1 ? 1.0f - fy"),
+        Mutant("1.0f / ((PCF_WIDTH - 1) * (PCF_WIDTH - 1))", "1.0f / (PCF_WIDTH - 1)"),
+        Mutant("convert_intL(left + 1.0f) - 1", "convert_intL(left)"),
+        Mutant("texel.slopes << 16", "texel.slopes"),
+        Mutant("point.rounding - tilt -", "point.rounding -"),
+        Mutant("convert_floatL(column) + 0.5f - point.x", "convert_floatL(column) - point.x"),
+        Mutant("map->depth_scale * inverse_w + map->depth_offset", "map->depth_scale * inverse_w - map->depth_offset"),
+        Mutant("point.rise_y = -n.y * slope", "point.rise_y = n.y * slope"),
+        Mutant("LEAST_COSINE 0.002f", "LEAST_COSINE 0.2f"),
+        Mutant("width * width >= away2", "width * width <= away2"),
+        Mutant("-1e-5f * length", "1e-2f * length"),
+        Mutant("1.00001f", "0.9f"),
+        Mutant("off ? (floatL)(0.0f) : lift", "lift"),
+        Mutant("p.y + lift * n.y", "p.y - lift * n.y"),
+        Mutant("slope_x * (from_x - shift_x)", "slope_x * from_x"),
+    ],
+    "cull.cl": [
+        Mutant("n.z * (p.z - middle.z)", "n.z * p.z"),
+        Mutant("node + 3 * stride", "node + 2 * stride"),
+        Mutant("6 * stride)) >= 1.0f", "6 * stride)) >= 0.9f"),
+        Mutant("(1u << nodes) - 1", "(2u << nodes) - 1"),
+        Mutant("start += rows * kTreeArity", "start += nodes"),
+        Mutant("-SLACK * sizes", "SLACK * sizes"),
+        Mutant("SLACK 4e-6f", "SLACK 0.0f"),
+        Mutant("if (cosine <= 0.0f)", "if (cosine <= -1.0f)"),
+        Mutant("* cosine - along * sine", "* cosine + along * sine"),
+        Mutant("radius + 1e-3f * v2", "radius - 1e-3f * v2"),
+        Mutant("max_lanes(high.y - middle.y, middle.y - low.y)", "high.y - middle.y"),
+        Mutant("(tests & kByCone) && ", ""),
+        Mutant("0.5f * low.y + 0.5f * high.y", "0.5f * low.y - 0.5f * high.y"),
+        Mutant("group << i * SQUARES_IN(shift)", "group << i"),
+        Mutant("count <= kFoundPerTile", "count <= 2 * kFoundPerTile"),
+        Mutant("gap(low.z,", "0.0f * gap(low.z,"),
+        Mutant("max_lanes(high.y, bounds[i].high.y)", "max_lanes(high.y, bounds[i].low.y)"),
+        Mutant("0xffffu >> (kSquaresPerTile", "0x7fffu >> (kSquaresPerTile"),
+    ],
+    "classify.cl": [
+        Mutant("above > lost) |", "above > -lost) |"),
+        Mutant("tolerance * 1.001f", "-tolerance"),
+        Mutant("tolerance * 0.999f", "tolerance * 1e6f"),
+        Mutant("bits_of(asked & verdict.lit) << row % 32", "bits_of(asked & verdict.lit) << row % 16"),
+        Mutant("metres = point.w * per_depth", "metres = per_depth"),
+        Mutant("- a * point.u + b * point.v", "+ a * point.u + b * point.v"),
+        Mutant("texel.depth : (floatL)(0.0f)", "texel.others : (floatL)(0.0f)"),
+    ],
+    "find_needed.cl": [
+        Mutant("smallest_lane(mask ? y : none)", "smallest_lane(mask ? x : none)"),
+        Mutant("y * (last + 1) + x", "y * last + x"),
+        Mutant("depth >= last_noted->depth", "depth <= last_noted->depth"),
+        Mutant("(int)face->bins - 1", "(int)face->bins - 2"),
+        Mutant("asked &= point.inside", "asked |= point.inside"),
+    ],
+    "count_in_range.cl": [
+        Mutant("light->position.z - p.z", "light->position.z"),
+        Mutant("light->kind != kDirectionalLight", "light->kind == kDirectionalLight"),
+        Mutant("!(ratio2 >= 1.0f)", "!(ratio2 <= 1.0f)"),
+    ],
+    "pair_visibility.cl": [
+        Mutant("map_lookup(maps + map_of_row[row]", "map_lookup(maps"),
+        Mutant("load_vec3(normal + first", "load_vec3(position + first"),
+    ],
+}
+
+
+@dataclasses.dataclass
+class Found:
+    """A mutant's place: a line of a kernel file, counted from 1, as it is and as it becomes."""
+    file: str
+    number: int
+    old_line: str
+    new_line: str
+    mutant: Mutant
+
+
+def fail(message):
+    print(f"mutate_kernels.py: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
+def find_places(files):
+    """Of each mutant of the files its place. Ends the program where an `old` isn't there, or more than once."""
+    places, wrong = [], []
+    for file in files:
+        lines = (ROOT / "kernels" / file).read_text().split("\n")
+        for mutant in MUTANTS[file]:
+            hits = [(i, line) for i, line in enumerate(lines) for _ in range(line.count(mutant.old))]
+            if len(hits) == 1:
+                i, line = hits[0]
+                places.append(Found(file, i + 1, line, line.replace(mutant.old, mutant.new), mutant))
+            else:
+                wrong.append(f"  kernels/{file}: {len(hits)} times: {mutant.old}")
+    if wrong:
+        fail("the table must name text that stands once in its file, and doesn't:\n" + "\n".join(wrong))
+    return places
+
+
+class Runner:
+    """Runs tests of a build, with or without a mutant."""
+
+    def __init__(self, build, temporary):
+        self.build, self.temporary = build, temporary
+        self.library = build / "mutate_kernels.so"
+        subprocess.run(["cc", "-O1", "-Wall", "-Wextra", "-shared", "-fPIC", "-o", self.library,
+                        ROOT / "tests" / "mutate_kernels.c", "-ldl"], check=True)
+        self.limits = {}  # seconds, by test
+
+    def run(self, test, environment, limit):
+        """None if the tests pass, else the first that fails."""
+        program, tests = test
+        command = [self.build / "tests" / f"{program}_test", f"--gtest_filter={tests}", "--gtest_fail_fast", "--gtest_brief=1"]
+        # A cache of its own: what the mutants leave there doesn't stay in the tests'.
+        environment = dict(os.environ, POCL_CACHE_DIR=str(self.build / "mutants_cache"), **environment)
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                                   cwd=self.build / "tests", start_new_session=True)
+        try:
+            output, _ = process.communicate(timeout=limit)
+        except BaseException as error:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            if isinstance(error, subprocess.TimeoutExpired):
+                return f"{program}_test {tests}, which doesn't end"
+            raise
+        if process.returncode == 0:
+            if " 0 tests from " in output:
+                fail(f"{program}_test has no test {tests}")
+            return None
+        failed = re.search(r"^\[  FAILED  \] ([^, \n]+)", output, re.MULTILINE)
+        return failed[1] if failed else f"{program}_test {tests}, which ends with status {process.returncode}"
+
+    def time_without_mutant(self, test):
+        start = time.monotonic()
+        failed = self.run(test, {}, None)
+        if failed:
+            fail(f"{failed} fails without any mutant")
+        seconds = time.monotonic() - start
+        # The first run compiles all kernels, as a mutant may have to.
+        self.limits[test] = 60 + 5 * seconds
+        print(f"{seconds:7.1f} s  {test[0]}_test --gtest_filter={test[1]}", flush=True)
+
+    def verdict(self, place):
+        log = pathlib.Path(tempfile.mkstemp(dir=self.temporary)[1])
+        environment = {"LD_PRELOAD": str(self.library), "MUTANT_FILE": f"kernels/{place.file}", "MUTANT_LINE": str(place.number),
+                       "MUTANT_OLD": place.old_line, "MUTANT_NEW": place.new_line, "MUTANT_LOG": str(log)}
+        killer = None
+        for test in TESTS[place.file]:
+            killer = self.run(test, environment, self.limits[test])
+            if killer:
+                break
+        events = set(log.read_text().split())
+        if "stale" in events:
+            return "stale", ""
+        if "built" not in events:
+            return ("broken" if "broken" in events else "unseen"), ""
+        if killer:
+            return "killed", f"by {killer}"
+        return ("same" if place.mutant.same else "LIVED"), place.mutant.same
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Which mistakes in the kernels do the tests find?")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("files", nargs="*", metavar="FILE", choices=[[], *MUTANTS], help="kernel files; default: all")
+    options = parser.parse_args()
+    files = options.files or list(MUTANTS)
+    places = find_places(files)
+    counts = {}
+    with tempfile.TemporaryDirectory() as temporary:
+        runner = Runner(options.build.resolve(), pathlib.Path(temporary))
+        for test in dict.fromkeys(test for file in files for test in TESTS[file]):
+            runner.time_without_mutant(test)
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            for place, (verdict, why) in zip(places, pool.map(runner.verdict, places)):
+                if verdict == "stale":
+                    pool.shutdown(cancel_futures=True)
+                    fail(f"{options.build} was built from another kernels/{place.file}")
+                counts[verdict] = counts.get(verdict, 0) + 1
+                wrongly_same = place.mutant.same and verdict == "killed"
+                if wrongly_same:
+                    counts["killed, but called the same"] = counts.get("killed, but called the same", 0) + 1
+                print(f"{verdict:7s} kernels/{place.file}:{place.number}: {place.mutant.old}  →  {place.mutant.new}  {why}", flush=True)
+    print(f"{len(places)} mutants: " + ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())))
+    return 0 if set(counts) <= {"killed", "same"} else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
