@@ -61,3 +61,12 @@ PROBE_ROW(probe_greatest_lane, greatest_lane(row))
 PROBE_ROW(probe_smallest_lane, smallest_lane(convert_intL(row)))
 PROBE_ROW(probe_largest_lane, largest_lane(convert_intL(row)))
 PROBE_ROW(probe_lane_bits, lane_bits(row < 0.0f))
+
+// packed: by packNormal().
+__kernel void probe_unpack_normal(__global const float *in, __global float *out, uint stride, __global const uint *packed) {
+  uint first = get_global_id(0) * LANES;
+  vec3L unit = unpack_normal(*(__global const intL *)(packed + first));
+  store_lanes(out + first, unit.x);
+  store_lanes(out + first + stride, unit.y);
+  store_lanes(out + first + 2 * stride, unit.z);
+}

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
+#include "gbuffer/packed_normal.hpp"
 #include "kernels/math_functions.hpp"
 
 namespace luciole::test {
@@ -113,6 +116,39 @@ TEST(MathKernels, OnlyWhatSaysSoFusesAProductAndASum) {
       EXPECT_EQ(of("probe_fma"), Column{0x1p-46f}) << lanes << dialect;
       EXPECT_EQ(of("probe_product_and_sum"), Column{0}) << lanes << dialect;
     }
+  }
+}
+
+TEST(MathKernels, UnpackedNormalsAreTheHosts) {
+  // Of steps on both halves of the octahedron, in every quadrant, on its edges, folds and corners.
+  std::vector<std::uint32_t> packed;
+  const int steps[] = {-kPackedNormalSteps,
+                       -32766,
+                       -20000,
+                       -16384,
+                       -16383,
+                       -12345,
+                       -1,
+                       0,
+                       1,
+                       12345,
+                       16383,
+                       16384,
+                       20000,
+                       32766,
+                       kPackedNormalSteps,
+                       7};
+  for (const int y : steps)
+    for (const int x : steps) packed.push_back(std::uint32_t(x & 0xffff) | std::uint32_t(y) << 16);
+  for (const int lanes : kAllLanes) {
+    const auto out = probe(deviceWithLanes(lanes), "math_probe.cl", "probe_unpack_normal",
+                           {Column(packed.size())}, 3, {bytesOf(packed)});
+    double difference = 0;
+    for (std::size_t i = 0; i < packed.size(); ++i)
+      difference = std::max(
+          difference, glm::length(glm::dvec3(out[0][i], out[1][i], out[2][i]) - unpackNormal(packed[i])));
+    // Whole numbers until it is made unit: what UnitVectors allows of length and angle.
+    EXPECT_LE(difference, 4.4 * kUnit) << lanes << " lanes";
   }
 }
 
