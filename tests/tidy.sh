@@ -10,8 +10,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Versions format differently: this is the one that the files are formatted with.
 format=$(command -v clang-format-14 || true)
 tidy=$(command -v clang-tidy-14 || true)
-if [[ -z $format || -z $tidy ]]; then
-  echo "tidy.sh: NOT CHECKED: it takes clang-format-14 and clang-tidy-14 (apt install clang-format-14 clang-tidy-14)" >&2
+if [[ -z $format || -z $tidy ]] || ! command -v clang++-14 >/dev/null; then
+  echo "tidy.sh: NOT CHECKED: it takes clang-format, clang-tidy and clang++ 14 (apt install clang-format-14 clang-tidy-14 clang-14)" >&2
   exit 77
 fi
 
