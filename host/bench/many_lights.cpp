@@ -21,7 +21,8 @@ struct Row {
 
 /// The lists' entries and where each list starts.
 double listBytes(const GBuffer& gbuffer, double entries) {
-  return entries * sizeof(ListEntry) + double(gbuffer.pixels() / kTilePixels + 1) * sizeof(cl_uint);
+  const std::size_t starts = gbuffer.pixels() / kTilePixels + 1;
+  return entries * sizeof(ListEntry) + double(starts) * sizeof(cl_uint);
 }
 
 Stats shadeRow(Device& device, const Row& row, bool count_lights) {

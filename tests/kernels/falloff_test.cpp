@@ -189,5 +189,15 @@ TEST(FalloffKernels, PlainSpotIsOneInsideItsCutoff) {
   expectSpot(SpotCase::exponent(25, 0), "-DSPOT_CONE=0 -DSPOT_EXPONENT=0");
 }
 
+TEST(FalloffKernels, CutoffItselfIsInside) {
+  ShadeLight light{};
+  // A half space: 0 is a cosine that doesn't round.
+  light.direction = {0, 0, -1, 0};
+  const std::vector<Column> across{{2, 0, 1}, {0, -3, 1}, {0, 0, 0}};
+  for (const int lanes : kAllLanes)
+    EXPECT_EQ(falloffs(lanes, light, across, "-DSPOT_CONE=0 -DSPOT_EXPONENT=0")[1], Column(3, 1.0f))
+        << lanes << " lanes";
+}
+
 }  // namespace
 }  // namespace luciole::test

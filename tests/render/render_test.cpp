@@ -117,6 +117,39 @@ TEST(Render, ListLengthLayerHoldsWhatIsEvaluatedAndAtLeastWhatIsInRange) {
   }
 }
 
+TEST(Render, LightCountLayerCountsTheLightsWhoseRangeHoldsThePoint) {
+  // Of the last two lights one reaches a disc of the wall around its middle, the other not the wall.
+  const std::string json = R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
+    "objects": [{"primitive": "plane", "rotate": [90, 0, 0], "scale": 20}],
+    "lights": [{"type": "directional", "direction": [0, 0, -1]}, {"type": "point", "position": [0, 0, 1]},
+               {"type": "point", "position": [0, 0, 0.5], "range": 1},
+               {"type": "point", "position": [0, 0, 1], "range": 0.5}]})";
+  for (const Culling culling : {Culling::kNone, Culling::kTiles}) {
+    const Image image = renderJson(json, {64, 48}, [&](RenderSettings& settings) {
+      settings.aovs = {Aov::kPosition, Aov::kLightCount};
+      settings.shade.culling = culling;
+    });
+    const std::size_t x = channelIndex(image, "P.X"), y = channelIndex(image, "P.Y"),
+                      count = channelIndex(image, "light_count");
+    for (std::size_t i = 0; i < image.pixels.size(); i += image.channels.size()) {
+      const double distance2 = std::pow(image.pixels[i + x], 2) + std::pow(image.pixels[i + y], 2) + 0.25;
+      // A float's rounding of a place a metre away moves its square by 2⁻²².
+      if (std::abs(distance2 - 1) < 1e-6) continue;
+      ASSERT_EQ(image.pixels[i + count], distance2 < 1 ? 3 : 2) << distance2;
+    }
+  }
+}
+
+TEST(Render, ShadowLayerIsOneWhereNoShadowedLightShines) {
+  const std::string json = R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
+    "objects": [{"primitive": "plane", "rotate": [90, 0, 0], "scale": 20}],
+    "lights": [{"type": "directional", "direction": [0, 0, -1]},
+               {"type": "point", "position": [0, 0, -1], "shadow": true}]})";
+  const Image image =
+      renderJson(json, {16, 16}, [](RenderSettings& settings) { settings.aovs = {Aov::kShadow}; });
+  for (std::size_t i = 3; i < image.pixels.size(); i += 4) ASSERT_EQ(image.pixels[i], 1) << i / 4;
+}
+
 TEST(Render, UnlitSceneShowsDiffuseAndEmission) {
   const Image image = renderJson(R"({"lighting": false, "camera": {"eye": [0, 0, 3], "target": [0, 0, 0]},
     "materials": {"m": {"diffuse": [0.25, 0.5, 0.75], "emission": [0.125, 0, 0]}},
