@@ -50,8 +50,9 @@ TEST(ClipPolygon, OfWhatIsOutsideNothingIsLeft) { EXPECT_EQ(clipAt(polygonOf(kSq
 
 TEST(ClipPolygon, NothingStaysNothing) { EXPECT_EQ(clipAt(Flat{}, {1, 0}, 0).count, 0); }
 
-TEST(ClipPolygon, CornersOnThePlaneAreInside) {
-  EXPECT_EQ(cornersOf(clipAt(polygonOf(kSquare), {1, 0}, 4)), (std::vector<glm::dvec2>{{4, 0}, {4, 4}}));
+TEST(ClipPolygon, CornersOnThePlaneAreInsideAndTheirEdgesToTheOutsideAreCutThere) {
+  EXPECT_EQ(cornersOf(clipAt(polygonOf(kSquare), {1, 0}, 4)),
+            (std::vector<glm::dvec2>{{4, 0}, {4, 0}, {4, 4}, {4, 4}}));
 }
 
 TEST(ClipPolygon, CutEdgesGetNewCornersInTheOrderOfTheOldOnes) {
