@@ -14,6 +14,7 @@
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/suggest.hpp"
+#include "shadow/shadow_sizes.hpp"
 
 namespace luciole {
 namespace {

@@ -19,6 +19,7 @@
 #include "load/load_scene.hpp"
 #include "render/coarse_triangles.hpp"
 #include "scene/json/json_scene.hpp"
+#include "shadow/shadow_sizes.hpp"
 
 namespace luciole {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
-#include <vector>
 
+#include "raster/list_items.hpp"
 #include "raster/setup.hpp"
 #include "raster/view.hpp"
 
@@ -12,19 +12,40 @@ namespace luciole {
 
 constexpr int kBinSize = 64;  ///< pixels a side
 
-/// For every square of kBinSize² pixels that the crop touches, the triangles whose bounding boxes touch it:
-/// the opaque ones in order, then those with holes, which are looked for only where nothing nearer is. Bins
-/// are aligned to the whole picture, so that a crop only takes some of them.
-struct Bins {
-  glm::ivec2 first;                      ///< bin of the whole picture: the top left one here
-  glm::ivec2 count;                      ///< columns and rows
-  std::vector<std::size_t> starts;       ///< of each bin's list, row by row, and the end of the last
-  std::vector<std::uint32_t> triangles;  ///< indices into the triangles given
+/// The squares of kBinSize² pixels that a view's crop touches, row by row. Bins are aligned to the whole
+/// picture, so that a crop only takes some of them.
+struct BinGrid {
+  glm::ivec2 first;  ///< bin of the whole picture: the top left one here
+  glm::ivec2 count;  ///< columns and rows
 
   int size() const { return count.x * count.y; }
+  /// The bin's top left pixel, in the whole picture.
   glm::ivec2 origin(int bin) const { return (first + glm::ivec2(bin % count.x, bin / count.x)) * kBinSize; }
+};
+BinGrid binGrid(const View& view);
+
+/// For each row of a bin's pixels, as far as it lies in the crop, calls visit(in_bin, in_crop, count): where
+/// its first pixel is in the bin and in the crop, both stored row by row, and how many pixels it has.
+template <class Visit>
+void forEachRow(const View& view, const glm::ivec2& bin_origin, Visit visit) {
+  const glm::ivec2 first = glm::max(bin_origin, view.crop_origin);
+  const glm::ivec2 end = glm::min(bin_origin + kBinSize, view.crop_origin + view.crop_size);
+  for (int y = first.y; y < end.y; ++y)
+    visit((y - bin_origin.y) * kBinSize + first.x - bin_origin.x,
+          std::size_t(y - view.crop_origin.y) * view.crop_size.x + (first.x - view.crop_origin.x),
+          end.x - first.x);
+}
+
+/// For every bin, the triangles whose bounding boxes touch it: the opaque ones in order, then those with
+/// holes, which are looked for only where nothing nearer is.
+struct Bins : BinGrid {
+  ItemLists
+      lists;  ///< indices into the triangles given; of each bin two lists: opaque triangles, then others
+
   std::span<const std::uint32_t> list(int bin) const {
-    return std::span(triangles).subspan(starts[bin], starts[bin + 1] - starts[bin]);
+    const std::size_t start = lists.starts[2 * std::size_t(bin)],
+                      end = lists.starts[2 * std::size_t(bin) + 2];
+    return std::span(lists.items).subspan(start, end - start);
   }
 };
 

@@ -1,6 +1,7 @@
 #include "raster/clip.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace luciole {
 namespace {
@@ -25,11 +26,11 @@ double distance(const glm::dvec4& p, Side side, const ClipVolume& volume) {
   }
 }
 
-/// Always computed from the inside out, so that it does not depend on the way round a triangle goes.
-glm::dvec4 crossing(const glm::dvec4& inside, double inside_distance, const glm::dvec4& outside,
-                    double outside_distance, Side side, const ClipVolume& volume) {
-  const double t = inside_distance / (inside_distance - outside_distance);
-  glm::dvec4 p = inside + t * (outside - inside);
+/// The new corner of a cut edge, in the plane. Always computed from the inside out, so that it does not
+/// depend on the way round a triangle goes.
+glm::dvec4 crossing(const glm::dvec4& a, double da, const glm::dvec4& b, double db, Side side,
+                    const ClipVolume& volume) {
+  glm::dvec4 p = da >= 0.0 ? edgeCrossing(a, da, b, db) : edgeCrossing(b, db, a, da);
   // Rounding may put the new corner beside the plane, or, where lengths differ by 10¹⁶, behind the eye.
   p.w = std::max(p.w, volume.near_w);
   if (side == kNear) p.z = p.w = volume.near_w;
@@ -41,23 +42,6 @@ glm::dvec4 crossing(const glm::dvec4& inside, double inside_distance, const glm:
   return p;
 }
 
-/// One step of Sutherland and Hodgman, "Reentrant polygon clipping", 1974.
-ClipPolygon clipAgainst(const ClipPolygon& polygon, Side side, const ClipVolume& volume) {
-  ClipPolygon result;
-  for (int i = 0; i < polygon.count; ++i) {
-    const glm::dvec4& a = polygon.corners[i];
-    const glm::dvec4& b = polygon.corners[(i + 1) % polygon.count];
-    const double a_distance = distance(a, side, volume);
-    const double b_distance = distance(b, side, volume);
-    if (a_distance >= 0.0) result.corners[result.count++] = a;
-    if (a_distance >= 0.0 && b_distance < 0.0)
-      result.corners[result.count++] = crossing(a, a_distance, b, b_distance, side, volume);
-    if (a_distance < 0.0 && b_distance >= 0.0)
-      result.corners[result.count++] = crossing(b, b_distance, a, a_distance, side, volume);
-  }
-  return result;
-}
-
 }  // namespace
 
 ClipVolume clipVolume(const View& view) {
@@ -66,10 +50,19 @@ ClipVolume clipVolume(const View& view) {
 }
 
 ClipPolygon clipTriangle(const std::array<glm::dvec4, 3>& triangle, const ClipVolume& volume) {
-  ClipPolygon polygon;
-  std::copy(triangle.begin(), triangle.end(), polygon.corners.begin());
-  polygon.count = 3;
-  for (int side = 0; side < kSides; ++side) polygon = clipAgainst(polygon, Side(side), volume);
+  // Backwards until the end: so its first corner stays the first for as long as nothing cuts it off.
+  ClipPolygon polygon{{triangle[2], triangle[1], triangle[0]}, 3}, kept;
+  for (int i = 0; i < kSides; ++i) {
+    const Side side = Side(i);
+    clipPolygon(
+        polygon, [&](const glm::dvec4& p) { return distance(p, side, volume); },
+        [&](const glm::dvec4& a, double da, const glm::dvec4& b, double db) {
+          return crossing(a, da, b, db, side, volume);
+        },
+        kept);
+    std::swap(polygon, kept);
+  }
+  std::reverse(polygon.corners.begin(), polygon.corners.begin() + polygon.count);
   return polygon;
 }
 

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "base/picture_size.hpp"
+#include "raster/clip_polygon.hpp"
 #include "raster/view.hpp"
 
 namespace luciole {
@@ -19,15 +20,12 @@ struct ClipVolume {
 };
 ClipVolume clipVolume(const View& view);
 
-/// In the triangle's winding. Cutting a convex polygon adds one corner a plane, but rounding may dent it, and
-/// of n corners in any order a plane makes 3n/2 at most: 3, 4, 6, 9, 13, 19, 28 after six planes.
-struct ClipPolygon {
-  std::array<glm::dvec4, 28> corners;
-  int count = 0;
-};
+/// After six planes a triangle has at most 3, 4, 6, 9, 13, 19, 28 corners.
+using ClipPolygon = Polygon<glm::dvec4, 28>;
 
-/// What is left of a triangle in the volume. Triangles that share an edge get the same new corners on it, bit
-/// for bit.
+/// What is left of a triangle in the volume, in the triangle's winding; its first corner comes first if it is
+/// left. Triangles that share an edge get the same new corners on it,
+/// bit for bit.
 ClipPolygon clipTriangle(const std::array<glm::dvec4, 3>& triangle, const ClipVolume& volume);
 
 }  // namespace luciole

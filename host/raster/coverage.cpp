@@ -71,6 +71,15 @@ struct Target {
   }
 };
 
+/// kLanes pixels of a row.
+struct Group {
+  int x, y;               ///< its first pixel, in the bin
+  std::int32_t edges[3];  ///< the edge functions there
+  float start;            ///< the triangle's depth there
+  float* depth;           ///< of the pixels, as in BinPixels
+  std::uint32_t* label;
+};
+
 constexpr int kRows = 16;     ///< that are looked at side by side
 constexpr int kFewRows = 12;  ///< to draw so many in vain costs less than to find out which are
 
@@ -91,16 +100,24 @@ std::uint32_t rowsReached(const Target& target, int x, int y) {
   return rows;
 }
 
-/// Calls `visit` with the first pixel of every group that the triangle may cover a sample of, in a box of the
-/// bin's pixels.
+/// Calls `visit` with every group that the triangle may cover a sample of, in a box of the bin's pixels.
 template <class Visit>
-void forEachGroup(const Target& target, const PixelBox& box, Visit visit) {
+void forEachGroup(const Target& target, const PixelBox& box, BinPixels& pixels, Visit visit) {
   const bool few = box.last.y - box.first.y < kFewRows;
   for (int y = box.first.y / kRows * kRows; y <= box.last.y; y += kRows) {
     for (int x = box.first.x / kLanes * kLanes; x <= box.last.x; x += kLanes) {
       const std::uint32_t rows = few ? (1u << kRows) - 1 : rowsReached(target, x, y);
       const int end = std::min(y + int(std::bit_width(rows)), box.last.y + 1);
-      for (int in = std::max(y + std::countr_zero(rows), box.first.y); in < end; ++in) visit(x, in);
+      for (int in = std::max(y + std::countr_zero(rows), box.first.y); in < end; ++in) {
+        const auto [e0, e1, e2] = target.edgesAt(x, in);
+        const int first = in * kBinSize + x;
+        visit(Group{x,
+                    in,
+                    {e0, e1, e2},
+                    target.depthAt(x, in),
+                    pixels.depth.data() + first,
+                    pixels.label.data() + first});
+      }
     }
   }
 }
@@ -114,19 +131,16 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const std::uint32_t own_label = labelOf<kLabel>(target.triangle);
   const std::int32_t* step_x = target.edges.step_x;
   std::int32_t covered = 0;
-  forEachGroup(target, box, [&](int x, int y) {
-    const auto [e0, e1, e2] = target.edgesAt(x, y);
-    const float start = target.depthAt(x, y);
-    float* depth = pixels.depth.data() + y * kBinSize + x;
-    std::uint32_t* label = pixels.label.data() + y * kBinSize + x;
+  forEachGroup(target, box, pixels, [&](const Group& group) {
+    const auto [e0, e1, e2] = group.edges;
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::int32_t inside =
           ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
-      const float z = std::min(std::max(start + step * float(lane), low), high);
-      const bool seen = inside & std::int32_t(z > depth[lane]);
+      const float z = std::min(std::max(group.start + step * float(lane), low), high);
+      const bool seen = inside & std::int32_t(z > group.depth[lane]);
       covered |= inside;
-      depth[lane] = seen ? z : depth[lane];
-      label[lane] = seen ? own_label : label[lane];
+      group.depth[lane] = seen ? z : group.depth[lane];
+      group.label[lane] = seen ? own_label : group.label[lane];
     }
   });
   return covered != 0;
@@ -154,31 +168,29 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
   const std::int32_t* step_x = target.edges.step_x;
   std::optional<Surface> surface;
   std::int32_t covered = 0;
-  forEachGroup(target, box, [&](int x, int y) {
-    const auto [e0, e1, e2] = target.edgesAt(x, y);
-    const float start = target.depthAt(x, y);
-    float* depth = pixels.depth.data() + y * kBinSize + x;
-    std::uint32_t* label = pixels.label.data() + y * kBinSize + x;
+  forEachGroup(target, box, pixels, [&](const Group& group) {
+    const auto [e0, e1, e2] = group.edges;
     std::array<float, kLanes> z;
     std::uint32_t nearest = 0;  // a bit a lane
     for (int lane = 0; lane < kLanes; ++lane) {
       const std::int32_t inside =
           ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
-      z[lane] = std::min(std::max(start + step * float(lane), low), high);
+      z[lane] = std::min(std::max(group.start + step * float(lane), low), high);
       covered |= inside;
-      std::int32_t nearer = z[lane] > depth[lane];
+      std::int32_t nearer = z[lane] > group.depth[lane];
       // Opaque triangles were drawn before their turn, and a depth of 0 is nothing.
       if (kLabel == Label::kTriangle)
-        nearer |= (z[lane] == depth[lane]) & (number < label[lane]) & (z[lane] > 0.0f);
+        nearer |= (z[lane] == group.depth[lane]) & (number < group.label[lane]) & (z[lane] > 0.0f);
       nearest |= std::uint32_t(inside & nearer) << lane;
     }
     if (nearest == 0) return;
     if (!surface) surface = makeSurface(holes.scene, holes.objects, number, holes.plane);
-    nearest &= ~holesIn(holes, *surface, nearest, target.bin_origin.x + x, target.bin_origin.y + y);
+    nearest &=
+        ~holesIn(holes, *surface, nearest, target.bin_origin.x + group.x, target.bin_origin.y + group.y);
     for (int lane = 0; lane < kLanes; ++lane) {
       const bool seen = nearest >> lane & 1;
-      depth[lane] = seen ? z[lane] : depth[lane];
-      label[lane] = seen ? own_label : label[lane];
+      group.depth[lane] = seen ? z[lane] : group.depth[lane];
+      group.label[lane] = seen ? own_label : group.label[lane];
     }
   });
   return covered != 0;

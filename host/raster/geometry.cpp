@@ -5,8 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
 #include "raster/clip.hpp"
@@ -22,31 +20,6 @@ glm::dmat3 normalMatrix(const glm::dmat3& m, double determinant) {
 }
 
 }  // namespace
-
-ScreenVertex toScreen(const glm::dvec4& clip, const View& view) {
-  const double inverse_w = 1.0 / clip.w;
-  return {(0.5 + 0.5 * (clip.x * inverse_w)) * view.size.x - view.sample.x,
-          (0.5 - 0.5 * (clip.y * inverse_w)) * view.size.y - view.sample.y, clip.z * inverse_w};
-}
-
-std::uint16_t transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume,
-                              ScreenVertex& screen) {
-  const glm::dvec4 clip = view.projection * glm::dvec4(position, 1.0);
-  unsigned place = 0;
-  if (clip.z > clip.w) place |= kBehindNear;
-  if (clip.z < 0.0) place |= kBeyondFar;
-  if (clip.x < -clip.w) place |= kLeftOf;
-  if (clip.x > clip.w) place |= kRightOf;
-  if (clip.y < -clip.w) place |= kBelow;
-  if (clip.y > clip.w) place |= kAbove;
-  if (std::abs(clip.x) > volume.guard.x * clip.w || std::abs(clip.y) > volume.guard.y * clip.w)
-    place |= kOutsideGuard;
-  const double largest = std::abs(position.x) + std::abs(position.y) + std::abs(position.z);
-  if (!(largest <= std::numeric_limits<float>::max()) || !std::isfinite(clip.x + clip.y + clip.z + clip.w))
-    place |= kUnusable;
-  screen = toScreen(clip, view);
-  return std::uint16_t(place);
-}
 
 std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
                                        const glm::dmat4& world_to_view, bool lit_vertices) {
@@ -103,7 +76,9 @@ Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> obj
       for (; i < end; ++i) {
         geometry.positions[i] =
             glm::dvec3(object->object_to_view * glm::dvec4(positions[i - object->first_vertex], 1.0));
-        geometry.places[i] = transformVertex(geometry.positions[i], view, volume, geometry.screen[i]);
+        const glm::dvec4 clip = view.projection * glm::dvec4(geometry.positions[i], 1.0);
+        geometry.screen[i] = toScreen(clip, view);
+        geometry.places[i] = std::uint16_t(vertexPlace(geometry.positions[i], clip, volume.guard));
       }
     }
   });

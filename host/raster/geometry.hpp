@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -60,12 +62,29 @@ struct Geometry {
   std::vector<std::uint16_t> places;  ///< VertexPlace bits
 };
 
-/// Perspective division and viewport; w > 0.
-ScreenVertex toScreen(const glm::dvec4& clip, const View& view);
+/// Perspective division and viewport; meaningless unless clip.w > 0.
+inline ScreenVertex toScreen(const glm::dvec4& clip, const View& view) {
+  const double inverse_w = 1.0 / clip.w;
+  return {(0.5 + 0.5 * (clip.x * inverse_w)) * view.size.x - view.sample.x,
+          (0.5 - 0.5 * (clip.y * inverse_w)) * view.size.y - view.sample.y, clip.z * inverse_w};
+}
 
-/// Where a vertex, given in view space, appears (`screen`) and lies (VertexPlace bits, returned).
-std::uint16_t transformVertex(const glm::dvec3& position, const View& view, const ClipVolume& volume,
-                              ScreenVertex& screen);
+/// VertexPlace bits of a vertex at `position` in view space and `clip` in clip space; `guard`: see
+/// ClipVolume; a vertex that isn't `placed` is said to lie outside of it. Without branches, so that loops
+/// over vertices become vector instructions.
+inline std::uint32_t vertexPlace(const glm::dvec3& position, const glm::dvec4& clip, const glm::dvec2& guard,
+                                 bool placed = true) {
+  const double largest = std::abs(position.x) + std::abs(position.y) + std::abs(position.z);
+  const double sum = clip.x + clip.y + clip.z + clip.w;
+  const bool usable = (largest <= double(std::numeric_limits<float>::max())) &
+                      (std::abs(sum) <= std::numeric_limits<double>::max());
+  const bool outside_guard =
+      (std::abs(clip.x) > guard.x * clip.w) | (std::abs(clip.y) > guard.y * clip.w) | !placed;
+  return (clip.z > clip.w ? kBehindNear : 0) | (clip.z < 0.0 ? kBeyondFar : 0) |
+         (clip.x < -clip.w ? kLeftOf : 0) | (clip.x > clip.w ? kRightOf : 0) |
+         (clip.y < -clip.w ? kBelow : 0) | (clip.y > clip.w ? kAbove : 0) |
+         (outside_guard ? kOutsideGuard : 0) | (usable ? 0 : kUnusable);
+}
 
 /// `lit_vertices`: as in placeObjects.
 Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,

@@ -11,8 +11,8 @@
 #include "base/picture_size.hpp"
 #include "gbuffer/planes.hpp"
 #include "raster/bins.hpp"
-#include "raster/clip.hpp"
 #include "raster/coverage.hpp"
+#include "raster/placed_runs.hpp"
 #include "raster/resolve.hpp"
 #include "raster/setup.hpp"
 
@@ -79,28 +79,20 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
 void rasterizeDepth(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
                     const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels) {
   checkView(view);
-  std::vector<std::uint32_t> used;
-  for (const std::uint32_t run : chosen)
-    if (used.empty() || used.back() != runs.runs[run].object) used.push_back(runs.runs[run].object);
-  const std::vector<PlacedObject> objects = placeObjects(scene, used, view.world_to_view);
-  const RasterSetup setup = setupRuns(scene, runs, chosen, objects, view);
+  const PlacedRuns placed = placeRuns(scene, runs, chosen, view.world_to_view);
+  const RasterSetup setup = setupRuns(scene, placed, view);
   const Bins bins = binTriangles(setup.triangles, view, farthest);
 
   const ViewPlane plane = viewPlane(view);
-  const HoleTest holes{scene, objects, plane};
+  const HoleTest holes{scene, placed.objects, plane};
   tbb::parallel_for(0, bins.size(), [&](int bin) {
     if (!farthest.empty() && !std::isfinite(farthest[bin])) return;
     BinPixels pixels;
     drawBinDepth(setup.triangles, bins, bin, holes, pixels);
-    const glm::ivec2 origin = bins.origin(bin);
-    const glm::ivec2 first = glm::max(origin, view.crop_origin);
-    const glm::ivec2 end = glm::min(origin + kBinSize, view.crop_origin + view.crop_size);
-    for (int y = first.y; y < end.y; ++y) {
-      const int in_bin = (y - origin.y) * kBinSize + first.x - origin.x;
-      ShadowTexel* row = texels.data() + std::size_t(y - view.crop_origin.y) * view.crop_size.x +
-                         (first.x - view.crop_origin.x);
-      for (int i = 0; i < end.x - first.x; ++i) row[i] = {pixels.depth[in_bin + i], pixels.label[in_bin + i]};
-    }
+    forEachRow(view, bins.origin(bin), [&](int in_bin, std::size_t in_crop, int count) {
+      ShadowTexel* row = texels.data() + in_crop;
+      for (int i = 0; i < count; ++i) row[i] = {pixels.depth[in_bin + i], pixels.label[in_bin + i]};
+    });
   });
 }
 

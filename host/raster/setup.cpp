@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "raster/clip.hpp"
+#include "raster/concatenate.hpp"
 
 namespace luciole {
 namespace {
@@ -76,6 +77,15 @@ void emitSnapped(RasterTriangle& triangle, const std::array<ScreenVertex, 3>& co
   output.triangles.push_back(triangle);
 }
 
+/// A place on the picture to 1/256 pixel, ties to even, and into the guard band.
+/// `fine`: in 1/256 pixel, finite.
+inline std::int32_t snap(double fine, double low, double high) {
+  // To add and take away this rounds a double below 2⁵¹ to an integer.
+  // Unlike std::lrint it becomes vector instructions.
+  constexpr double kRound = 0x1.8p52;
+  return std::int32_t((std::min(std::max(fine, low), high) + kRound) - kRound);
+}
+
 void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame, Winding winding,
                   std::uint32_t number, bool masked, Output& output) {
   RasterTriangle triangle;
@@ -83,8 +93,8 @@ void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame
     const double x = corners[i].x * kSubpixels;
     const double y = corners[i].y * kSubpixels;
     if (!(std::isfinite(x) && std::isfinite(y))) return;
-    triangle.x[i] = std::int32_t(std::lrint(std::clamp(x, frame.snap_low.x, frame.snap_high.x)));
-    triangle.y[i] = std::int32_t(std::lrint(std::clamp(y, frame.snap_low.y, frame.snap_high.y)));
+    triangle.x[i] = snap(x, frame.snap_low.x, frame.snap_high.x);
+    triangle.y[i] = snap(y, frame.snap_low.y, frame.snap_high.y);
   }
   const PixelBox box = pixelBox(triangle);
   const glm::ivec2 crop_last = frame.view.crop_origin + frame.view.crop_size - 1;
@@ -142,23 +152,12 @@ void setupTriangle(const Scene& scene, const PlacedObject& object, std::uint32_t
 /// The outputs one after another.
 RasterSetup join(std::vector<Output> outputs) {
   RasterSetup setup;
-  if (outputs.size() == 1) {
-    setup.triangles = std::move(outputs[0].triangles);
-    setup.back_facing = outputs[0].back_facing;
-    return setup;
+  std::vector<std::vector<RasterTriangle>> triangles;
+  for (Output& output : outputs) {
+    setup.back_facing += output.back_facing;
+    triangles.push_back(std::move(output.triangles));
   }
-  std::vector<std::size_t> starts(outputs.size());
-  std::size_t total = 0;
-  for (std::size_t run = 0; run < outputs.size(); ++run) {
-    starts[run] = total;
-    total += outputs[run].triangles.size();
-    setup.back_facing += outputs[run].back_facing;
-  }
-  setup.triangles.resize(total);
-  tbb::parallel_for(std::size_t(0), outputs.size(), [&](std::size_t run) {
-    std::copy(outputs[run].triangles.begin(), outputs[run].triangles.end(),
-              setup.triangles.begin() + starts[run]);
-  });
+  setup.triangles = concatenate(std::move(triangles));
   return setup;
 }
 
@@ -210,49 +209,34 @@ std::uint32_t transformRun(const TriangleRuns& runs, const TriangleRun& run, con
     out.view_y[i] = to_view_y.times(x, y, z);
     out.view_z[i] = to_view_z.times(x, y, z);
   }
-  const View& view = frame.view;
+  const View view = frame.view;  // its own, which no store below can change
   const MatrixRow to_x(view.projection, 0), to_y(view.projection, 1), to_z(view.projection, 2),
       to_w(view.projection, 3);
-  const double width = view.size.x, height = view.size.y;
-  const glm::dvec2 sample = view.sample, guard = frame.volume.guard;
-  const glm::dvec2 low = frame.snap_low, high = frame.snap_high;
-  const glm::ivec2 crop_origin = view.crop_origin, crop_size = view.crop_size;
-  // To add and take away this rounds a double below 2⁵¹ to an integer, as std::lrint does.
-  constexpr double kRound = 0x1.8p52;
+  const glm::dvec2 guard = frame.volume.guard, low = frame.snap_low, high = frame.snap_high;
   constexpr double kLargest = std::numeric_limits<double>::max();
   std::uint32_t all = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double vx = out.view_x[i], vy = out.view_y[i], vz = out.view_z[i];
-    const double x = to_x.times(vx, vy, vz), y = to_y.times(vx, vy, vz), z = to_z.times(vx, vy, vz),
-                 w = to_w.times(vx, vy, vz);
-    const double inverse_w = 1.0 / w;
-    const double screen_x = (0.5 + 0.5 * (x * inverse_w)) * width - sample.x;
-    const double screen_y = (0.5 - 0.5 * (y * inverse_w)) * height - sample.y;
-    out.x[i] = screen_x;
-    out.y[i] = screen_y;
-    out.depth[i] = z * inverse_w;
-    const double fine_x = screen_x * kSubpixels, fine_y = screen_y * kSubpixels;
+    const glm::dvec3 seen(out.view_x[i], out.view_y[i], out.view_z[i]);
+    const glm::dvec4 clip(to_x.times(seen.x, seen.y, seen.z), to_y.times(seen.x, seen.y, seen.z),
+                          to_z.times(seen.x, seen.y, seen.z), to_w.times(seen.x, seen.y, seen.z));
+    const ScreenVertex screen = toScreen(clip, view);
+    out.x[i] = screen.x;
+    out.y[i] = screen.y;
+    out.depth[i] = screen.depth;
+    const double fine_x = screen.x * kSubpixels, fine_y = screen.y * kSubpixels;
     const bool placed = (std::abs(fine_x) <= kLargest) & (std::abs(fine_y) <= kLargest);
-    const double sum = x + y + z + w, largest = std::abs(vx) + std::abs(vy) + std::abs(vz);
-    const bool usable = (largest <= double(std::numeric_limits<float>::max())) & (std::abs(sum) <= kLargest);
-    const bool outside_guard = (std::abs(x) > guard.x * w) | (std::abs(y) > guard.y * w) | !placed;
-    const std::uint32_t place = (z > w ? kBehindNear : 0) | (z < 0.0 ? kBeyondFar : 0) |
-                                (x < -w ? kLeftOf : 0) | (x > w ? kRightOf : 0) | (y < -w ? kBelow : 0) |
-                                (y > w ? kAbove : 0) | (outside_guard ? kOutsideGuard : 0) |
-                                (usable ? 0 : kUnusable);
+    const std::uint32_t place = vertexPlace(seen, clip, guard, placed);
     out.places[i] = place;
     all |= place;
-    const double clamped_x = placed ? std::min(std::max(fine_x, low.x), high.x) : 0.0;
-    const double clamped_y = placed ? std::min(std::max(fine_y, low.y), high.y) : 0.0;
-    const auto snapped_x = std::int32_t((clamped_x + kRound) - kRound);
-    const auto snapped_y = std::int32_t((clamped_y + kRound) - kRound);
+    const std::int32_t snapped_x = snap(placed ? fine_x : 0.0, low.x, high.x);
+    const std::int32_t snapped_y = snap(placed ? fine_y : 0.0, low.y, high.y);
     out.snapped_x[i] = snapped_x;
     out.snapped_y[i] = snapped_y;
     constexpr std::int32_t kUp = kSubpixels - 1;
-    const std::int32_t column = ((snapped_x + kUp) >> kSubpixelBits) - crop_origin.x;
-    const std::int32_t row = ((snapped_y + kUp) >> kSubpixelBits) - crop_origin.y;
-    out.samples[i] = std::uint32_t(std::min(std::max(column, 0), crop_size.x)) |
-                     std::uint32_t(std::min(std::max(row, 0), crop_size.y)) << 16;
+    const std::int32_t column = ((snapped_x + kUp) >> kSubpixelBits) - view.crop_origin.x;
+    const std::int32_t row = ((snapped_y + kUp) >> kSubpixelBits) - view.crop_origin.y;
+    out.samples[i] = std::uint32_t(std::min(std::max(column, 0), view.crop_size.x)) |
+                     std::uint32_t(std::min(std::max(row, 0), view.crop_size.y)) << 16;
   }
   return all;
 }
@@ -344,21 +328,15 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
   return join(std::move(outputs));
 }
 
-RasterSetup setupRuns(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
-                      std::span<const PlacedObject> objects, const View& view) {
+RasterSetup setupRuns(const Scene& scene, const PlacedRuns& placed, const View& view) {
   const Frame frame = makeFrame(view);
   constexpr std::size_t kTask = 512;  // runs; the faces of most lights' maps have fewer
-  std::vector<const PlacedObject*> object_of(chosen.size());
-  std::size_t object = 0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (i > 0 && runs.runs[chosen[i]].object != runs.runs[chosen[i - 1]].object) ++object;
-    object_of[i] = &objects[object];
-  }
+  const std::span<const std::uint32_t> chosen = placed.chosen;
   std::vector<Output> outputs((chosen.size() + kTask - 1) / kTask);
   tbb::parallel_for(std::size_t(0), outputs.size(), [&](std::size_t task) {
     const std::size_t end = std::min(chosen.size(), (task + 1) * kTask);
     for (std::size_t i = task * kTask; i < end; ++i)
-      setupRun(scene, runs, chosen[i], *object_of[i], frame, outputs[task]);
+      setupRun(scene, placed.runs, chosen[i], placed.object(i), frame, outputs[task]);
   });
   return join(std::move(outputs));
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "raster/geometry.hpp"
-#include "raster/triangle_runs.hpp"
+#include "raster/placed_runs.hpp"
 
 namespace luciole {
 
@@ -38,10 +38,8 @@ struct RasterSetup {
 RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
                            FaceCulling culling);
 
-/// The same for some runs of triangles, of which `objects` places those objects of the scene that they belong
-/// to, in order. No face is culled.
-RasterSetup setupRuns(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
-                      std::span<const PlacedObject> objects, const View& view);
+/// The same for runs of triangles. No face is culled.
+RasterSetup setupRuns(const Scene& scene, const PlacedRuns& placed, const View& view);
 
 /// The pixels whose samples a triangle may cover: those in its bounding box, `last` included. A sample on the
 /// right or bottom edge belongs to the neighbour.

@@ -7,6 +7,7 @@
 
 #include "kernels/shared.h"
 #include "raster/lift.hpp"
+#include "shadow/shadow_views.hpp"
 
 namespace luciole {
 

@@ -10,6 +10,7 @@
 #include "render/exact_shadows.hpp"
 #include "render/find_needed.hpp"
 #include "render/shade.hpp"
+#include "shadow/draw_shadow_maps.hpp"
 
 namespace luciole {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "hard_cases/shot.hpp"
 #include "render/lighting.hpp"
+#include "shadow/draw_shadow_maps.hpp"
 #include "shadow/texel_place.hpp"
 
 // The whole scene, camera and lights with it, far from the origin. Its numbers round to doubles, and what a

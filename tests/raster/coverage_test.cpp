@@ -83,17 +83,10 @@ TEST(Coverage, TrianglesSmallerThanAPixelCoverEverySampleOnce) {
   // Cells of 0.77 pixels; 30 of them are 23 pixels wide, and the picture 20.
   constexpr int kCells = 30;
   std::vector<glm::vec3> positions;
-  std::vector<glm::uvec3> triangles;
   for (int y = 0; y <= kCells; ++y)
     for (int x = 0; x <= kCells; ++x)
       positions.push_back({0.77f * (x - 0.5f * kCells), 0.77f * (y - 0.5f * kCells), -1.0f});
-  for (std::uint32_t y = 0; y < kCells; ++y)
-    for (std::uint32_t x = 0; x < kCells; ++x) {
-      const std::uint32_t a = y * (kCells + 1) + x;
-      triangles.push_back({a, a + 1, a + kCells + 2});
-      triangles.push_back({a, a + kCells + 2, a + kCells + 1});
-    }
-  const Scene scene = meshScene(positions, triangles);
+  const Scene scene = meshScene(positions, gridTriangles(kCells));
   for (const int count : coverageCounts(scene, pixelView({20, 20}))) ASSERT_EQ(count, 1);
   RasterCounts counts;
   draw(scene, pixelView({20, 20}), Shading::kPhong, {}, &counts);

@@ -7,6 +7,7 @@
 
 #include "load/load_scene.hpp"
 #include "raster/rasterize.hpp"
+#include "shadow/draw_shadow_maps.hpp"
 #include "shadow/shadow_maps.hpp"
 #include "shared_files.hpp"
 

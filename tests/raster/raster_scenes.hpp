@@ -43,6 +43,18 @@ inline Scene meshScene(std::vector<glm::vec3> positions, std::vector<glm::uvec3>
   return scene;
 }
 
+/// Two triangles a cell of a grid of cells², whose vertices come row by row.
+inline std::vector<glm::uvec3> gridTriangles(std::uint32_t cells) {
+  std::vector<glm::uvec3> triangles;
+  for (std::uint32_t y = 0; y < cells; ++y)
+    for (std::uint32_t x = 0; x < cells; ++x) {
+      const std::uint32_t a = y * (cells + 1) + x;
+      triangles.push_back({a, a + 1, a + cells + 2});
+      triangles.push_back({a, a + cells + 2, a + cells + 1});
+    }
+  return triangles;
+}
+
 /// A rectangle facing +z at depth z; texture coordinates (0,0) at its top left, (1,1) at its bottom right.
 inline Scene rectangleScene(float half_width, float half_height, float z,
                             const Material& material = doubleSided()) {

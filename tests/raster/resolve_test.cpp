@@ -335,17 +335,10 @@ TEST(DepthMap, RunsThatDontReachTheViewChangeNothing) {
   constexpr std::uint32_t kCells = 40;
   std::mt19937 random(4);
   std::vector<glm::vec3> positions;
-  std::vector<glm::uvec3> triangles;
   for (std::uint32_t y = 0; y <= kCells; ++y)
     for (std::uint32_t x = 0; x <= kCells; ++x)
       positions.push_back({float(x), float(y), -50.0f + 0.01f * float(random() % 1000)});
-  for (std::uint32_t y = 0; y < kCells; ++y)
-    for (std::uint32_t x = 0; x < kCells; ++x) {
-      const std::uint32_t a = y * (kCells + 1) + x;
-      triangles.push_back({a, a + 1, a + kCells + 2});
-      triangles.push_back({a, a + kCells + 2, a + kCells + 1});
-    }
-  const Scene scene = meshScene(positions, triangles);
+  const Scene scene = meshScene(positions, gridTriangles(kCells));
   const View view = pixelView({17, 13});  // x to 8.5 and y to 6.5
   const TriangleRuns runs = findRuns(scene);
   std::vector<std::uint32_t> near;

@@ -8,6 +8,7 @@
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "render/lighting.hpp"
+#include "shadow/draw_shadow_maps.hpp"
 #include "shadow/texel_place.hpp"
 
 namespace luciole::test {

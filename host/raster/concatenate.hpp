@@ -1,0 +1,29 @@
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace luciole {
+
+/// The vectors one after another, copied in parallel.
+template <class Item>
+std::vector<Item> concatenate(std::vector<std::vector<Item>> parts) {
+  if (parts.size() == 1) return std::move(parts[0]);
+  std::vector<std::size_t> starts(parts.size());
+  std::size_t total = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    starts[i] = total;
+    total += parts[i].size();
+  }
+  std::vector<Item> all(total);
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
+    std::copy(parts[i].begin(), parts[i].end(), all.begin() + std::ptrdiff_t(starts[i]));
+  });
+  return all;
+}
+
+}  // namespace luciole

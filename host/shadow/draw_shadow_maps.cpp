@@ -1,0 +1,120 @@
+#include "shadow/draw_shadow_maps.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <bit>
+#include <limits>
+#include <optional>
+
+#include "raster/bound_depth.hpp"
+#include "raster/rasterize.hpp"
+#include "shadow/runs_seen.hpp"
+
+namespace luciole {
+namespace {
+
+static_assert(kShadowBin == kBinSize);  // so that a bin is drawn or not
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+/// A face that must be drawn to.
+struct Task {
+  std::size_t face;
+  bool moves;               ///< its rectangle grows, so it gets a new place and all its bins are drawn
+  std::vector<bool> fresh;  ///< bins to draw
+};
+
+/// What of a face must be drawn, if anything; notes it in the face.
+std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::span<const std::uint32_t> needed,
+                           PlannedFace& face) {
+  const int side = int(lookup.bins);
+  if (face.farthest.empty()) face.farthest.assign(std::size_t(side) * side, kNever);
+  Task task{index, false, std::vector<bool>(face.farthest.size())};
+  bool any = false;
+  glm::ivec2 first(side), last(-1);
+  for (int bin = 0; bin < side * side; ++bin) {
+    const std::uint32_t bits = needed[lookup.first_bin + bin];
+    const float depth = bits == kNotNeeded ? kNever : std::bit_cast<float>(bits);
+    if (depth < face.farthest[bin]) {
+      face.farthest[bin] = depth;
+      task.fresh[bin] = any = true;
+    }
+    if (face.farthest[bin] == kNever) continue;
+    first = glm::min(first, glm::ivec2(bin % side, bin / side));
+    last = glm::max(last, glm::ivec2(bin % side, bin / side));
+  }
+  if (!any) return std::nullopt;
+  const glm::ivec2 from = first * kBinSize, to = glm::min((last + 1) * kBinSize, face.view.size);
+  task.moves = from != face.first || to - from != face.count;
+  face.first = from;
+  face.count = to - from;
+  return task;
+}
+
+std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; }
+
+/// place: of the face's rectangle among the texels.
+void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std::size_t place,
+              ShadowMaps& maps) {
+  View view = face.view;
+  view.crop_origin = face.first;
+  view.crop_size = face.count;
+  const int side = (view.size.x + kBinSize - 1) / kBinSize;
+  WantedBins bins{binGrid(view), {}};
+  for (int y = 0; y < bins.count.y; ++y) {
+    for (int x = 0; x < bins.count.x; ++x) {
+      const int bin = (bins.first.y + y) * side + bins.first.x + x;
+      bins.farthest.push_back(task.moves || task.fresh[bin] ? face.farthest[bin] : kNever);
+    }
+  }
+  const std::vector<std::uint32_t> seen = runsSeen(maps.runs, view, bins, scene.lights[face.light]);
+  if (maps.method == ShadowMethod::kExact)
+    rasterizeBounds(scene, maps.runs, seen, view, bins.farthest,
+                    std::span(maps.bounds).subspan(place, area(face.count)));
+  else
+    rasterizeDepth(scene, maps.runs, seen, view, bins.farthest,
+                   std::span(maps.texels).subspan(place, area(face.count)));
+}
+
+}  // namespace
+
+void drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed, ShadowMaps& maps) {
+  std::vector<Task> tasks;
+  const bool exact = maps.method == ShadowMethod::kExact;
+  std::size_t held = exact ? maps.bounds.size() : maps.texels.size(), total = held;
+  for (std::size_t i = 0; i < maps.planned.size(); ++i) {
+    if (auto task = taskOf(i, maps.faces[i], needed, maps.planned[i])) {
+      if (task->moves) total += area(maps.planned[i].count);
+      tasks.push_back(std::move(*task));
+    }
+  }
+  // Rectangles that moved leave their old places empty: where that takes more than was planned, all move
+  // together.
+  if (total > maps.planned_texels) {
+    held = 0;
+    tasks.clear();
+    for (std::size_t i = 0; i < maps.planned.size(); ++i)
+      if (maps.planned[i].count.x > 0) tasks.push_back({i, true, {}});
+  }
+  total = held;
+  for (const Task& task : tasks) {
+    if (!task.moves) continue;
+    const PlannedFace& face = maps.planned[task.face];
+    ShadowFace& lookup = maps.faces[task.face];
+    lookup.width = uint(face.count.x);
+    lookup.first = uint(total) - uint(face.first.y) * lookup.width - uint(face.first.x);
+    total += area(face.count);
+  }
+  if (exact)
+    maps.bounds.resize(total);
+  else
+    maps.texels.resize(total);
+  tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
+    const PlannedFace& face = maps.planned[tasks[i].face];
+    const ShadowFace& lookup = maps.faces[tasks[i].face];
+    const uint place = lookup.first + uint(face.first.y) * lookup.width + uint(face.first.x);
+    drawFace(scene, tasks[i], face, place, maps);
+  });
+}
+
+}  // namespace luciole

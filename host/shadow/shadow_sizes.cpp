@@ -1,0 +1,81 @@
+#include "shadow/shadow_sizes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "raster/geometry.hpp"
+#include "shadow/frustum.hpp"
+
+namespace luciole {
+namespace {
+
+/// Texels a side that make a texel as large as a pixel where the light reaches, halfway to the end of its
+/// reach.
+double wantedSize(const Light& light, const PlanInput& input) {
+  const double reach = lightReach(light, input.bounds);
+  const glm::dmat4& projection = input.camera.projection;
+  const glm::dvec3 place(input.camera.world_to_view * glm::dvec4(light.position, 1));
+  for (const glm::dvec4& plane : cropPlanes(input.camera))
+    if (glm::dot(plane, glm::dvec4(light.position, 1)) < -reach * glm::length(glm::dvec3(plane))) return 0;
+  // A pixel's height in metres, at one metre ahead if the view is a perspective one.
+  double pixel = 2 / (projection[1][1] * input.camera.size.y);
+  if (isPerspective(input.camera)) pixel *= std::max(glm::length(place), 0.5 * reach);
+  const double tangent = usesCubeMap(light) ? 1.0 : std::tan(light.cutoff);
+  return reach * tangent / pixel;
+}
+
+int largestSize(const Light& light, const ShadowLimits& limits) {
+  return std::max(usesCubeMap(light) ? limits.size / 2 : limits.size, kSmallestFace);
+}
+
+/// A face's texels a side where `wanted` of them should show something, `largest` at most.
+int withBorder(double wanted, ShadowMethod method, int largest) {
+  const double size = std::ceil(std::min(wanted, double(largest)));
+  return std::clamp(int(size) + 2 * borderOf(int(size), method), kSmallestFace, largest);
+}
+
+/// What exact maps leave unsure takes rays; half as many texels a side leave twice as much of it, but cost a
+/// quarter, which is less in all.
+double sizeShare(ShadowMethod method) { return method == ShadowMethod::kExact ? 0.5 : 1.0; }
+
+}  // namespace
+
+ShadowSizes chooseSizes(const Scene& scene, const PlanInput& input, const ShadowLimits& limits) {
+  ShadowSizes result{std::vector<int>(scene.lights.size(), 0)};
+  std::vector<int>& wanted = result.sizes;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    if (!light.shadow) continue;
+    const double share = sizeShare(input.method);
+    const int largest = std::max(int(share * largestSize(light, limits)), kSmallestFace);
+    wanted[i] = light.kind == LightKind::kDirectional
+                    ? largest
+                    : withBorder(share * wantedSize(light, input), input.method, largest);
+  }
+  const auto scaled = [](int size, double scale) { return std::max(int(size * scale), kSmallestFace); };
+  const auto bytesAt = [&](double scale) {
+    double texels = 0;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i] > 0) texels += facesOf(scene.lights[i]) * std::pow(double(scaled(wanted[i], scale)), 2);
+    return texels * (input.method == ShadowMethod::kExact ? sizeof(BoundTexel) : sizeof(ShadowTexel));
+  };
+  double scale = 1;
+  while (bytesAt(scale) > double(limits.bytes)) {
+    if (scale < 1e-4)
+      throw MachineError(fmt::format("{}: the shadow maps of its lights don't fit into {} MiB", scene.name,
+                                     limits.bytes >> 20));
+    scale *= 0.95;
+  }
+  for (int& size : wanted) {
+    if (size == 0) continue;
+    const int less = scaled(size, scale);
+    result.reduced_lights += less < size;
+    size = less;
+  }
+  return result;
+}
+
+}  // namespace luciole
