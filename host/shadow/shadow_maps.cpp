@@ -521,6 +521,18 @@ std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::spa
 
 std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; }
 
+/// The texels that a face's task draws: of whole rows, from the first bin to the last. place: as in drawFace.
+IndexRange drawnTexels(const Task& task, const PlannedFace& face, std::size_t place) {
+  if (task.moves) return {place, area(face.count)};
+  const int side = (face.view.size.x + kBinSize - 1) / kBinSize;
+  const auto first = std::find(task.fresh.begin(), task.fresh.end(), true);
+  const auto last = std::find(task.fresh.rbegin(), task.fresh.rend(), true).base() - 1;
+  const int from = int(first - task.fresh.begin()) / side * kBinSize - face.first.y;
+  const int to = (int(last - task.fresh.begin()) / side + 1) * kBinSize - face.first.y;
+  const auto width = std::size_t(face.count.x);
+  return {place + std::size_t(from) * width, std::size_t(std::min(to, face.count.y) - from) * width};
+}
+
 /// place: of the face's rectangle among the texels.
 void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std::size_t place,
               ShadowMaps& maps) {
@@ -588,7 +600,8 @@ ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMet
   return result;
 }
 
-void drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed, ShadowMaps& maps) {
+std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed,
+                                   ShadowMaps& maps) {
   std::vector<Task> tasks;
   const bool exact = maps.method == ShadowMethod::kExact;
   std::size_t held = exact ? maps.bounds.size() : maps.texels.size(), total = held;
@@ -619,12 +632,15 @@ void drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed, Shado
     maps.bounds.resize(total);
   else
     maps.texels.resize(total);
+  std::vector<IndexRange> drawn(tasks.size());
   tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
     const PlannedFace& face = maps.planned[tasks[i].face];
     const ShadowFace& lookup = maps.faces[tasks[i].face];
     const uint place = lookup.first + uint(face.first.y) * lookup.width + uint(face.first.x);
     drawFace(scene, tasks[i], face, place, maps);
+    drawn[i] = drawnTexels(tasks[i], face, place);
   });
+  return drawn;
 }
 
 }  // namespace luciole

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/array_memory.hpp"
+#include "base/index_range.hpp"
 #include "kernels/shared.h"
 #include "raster/triangle_runs.hpp"
 #include "raster/view.hpp"
@@ -77,7 +78,9 @@ ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMet
 inline constexpr int kSmallestFace = 16, kLargestFace = 16384;
 
 /// Draws the bins that are needed (see findNeeded) and weren't drawn yet, from the triangles that can be seen
-/// there within the light's reach, and no farther away than what looks there.
-void drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed, ShadowMaps& maps);
+/// there within the light's reach, and no farther away than what looks there. Returns the texels that it drew
+/// to, of maps.texels or maps.bounds; where there are any, maps.faces changed, too.
+std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed,
+                                   ShadowMaps& maps);
 
 }  // namespace luciole

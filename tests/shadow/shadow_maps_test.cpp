@@ -424,6 +424,30 @@ TEST(ShadowMaps, TexelsAreTheSameHoweverMuchIsDrawn) {
   EXPECT_GT(compared, all.texels.size() / 4);
 }
 
+TEST(ShadowMaps, ACopyOfWhatWasDrawnStaysUpToDate) {
+  const Scene scene = terrainScene();
+  ShadowMaps maps = planFor(scene, {200, 100}, {.size = 500});
+  std::vector<ShadowTexel> copy;
+  std::mt19937 random(31);
+  std::size_t copied = 0;
+  for (int round = 0; round < 12; ++round) {
+    std::vector<std::uint32_t> needed = nothing(maps);
+    for (std::uint32_t& bin : needed)
+      if (random() % 8 == 0) bin = 0;
+    const std::vector<IndexRange> drawn = drawNeeded(scene, needed, maps);
+    copy.resize(maps.texels.size());
+    for (const IndexRange& range : drawn) {
+      ASSERT_LE(range.first + range.count, copy.size());
+      std::copy_n(maps.texels.begin() + std::ptrdiff_t(range.first), range.count,
+                  copy.begin() + std::ptrdiff_t(range.first));
+      copied += range.count;
+    }
+    ASSERT_EQ(std::memcmp(copy.data(), maps.texels.data(), copy.size() * sizeof(ShadowTexel)), 0)
+        << "round " << round;
+  }
+  EXPECT_LT(copied, 12 * maps.texels.size() / 2) << "not everything each time";
+}
+
 TEST(ShadowMaps, OnlyNeededBinsAreDrawnAndOnlyOnce) {
   const Scene scene = terrainScene();
   ShadowMaps maps = planFor(scene, {200, 100}, {.size = 512});
