@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 
 #include "base/array_memory.hpp"
@@ -95,15 +96,21 @@ DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size) {
   return inPlace(device, CL_MEM_READ_WRITE, array, size);
 }
 
-void write(Device& device, const DeviceMemory& memory, std::size_t offset, const void* array,
-           std::size_t size) {
-  if (size == 0) return;
+void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range) {
+  if (range.count == 0 || range.rows == 0) return;
+  const char* const first = static_cast<const char*>(whole) + range.first;
   try {
-    device.queue.enqueueWriteBuffer(memory.handle, CL_TRUE, offset, size, array);
+    if (range.rows == 1) {
+      device.queue.enqueueWriteBuffer(memory.handle, CL_TRUE, range.first, range.count, first);
+    } else {
+      const std::array<std::size_t, 3> place{range.first % range.pitch, range.first / range.pitch, 0};
+      device.queue.enqueueWriteBufferRect(memory.handle, CL_TRUE, place, place, {range.count, range.rows, 1},
+                                          range.pitch, 0, range.pitch, 0, const_cast<void*>(whole));
+    }
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
-  if (!device.shares_host_memory) count(device, &Traffic::bytes_up, size);
+  if (!device.shares_host_memory) count(device, &Traffic::bytes_up, range.count * range.rows);
 }
 
 void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size) {

@@ -40,8 +40,8 @@ namespace bytes {
 DeviceMemory make(Device& device, std::size_t size);
 DeviceMemory borrow(Device& device, const void* array, std::size_t size);
 DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size);
-void write(Device& device, const DeviceMemory& memory, std::size_t offset, const void* array,
-           std::size_t size);
+/// `whole`: the host's array that the buffer is a copy of. range: of bytes.
+void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range);
 void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size);
 void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size);
 void fill(Device& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
@@ -101,12 +101,14 @@ void refresh(Device& device, Array&& array, std::span<const IndexRange> changed,
     if (buffer.memory.handle()) bytes::copy(device, buffer.memory, larger.memory, buffer.count * sizeof(T));
     buffer = larger;
   }
+  const auto follows = [](const IndexRange& next, const IndexRange& range) {
+    return range.rows == 1 && next.rows == 1 && next.first == range.first + range.count;
+  };
   for (std::size_t i = 0; i < changed.size();) {
     IndexRange range = changed[i++];
-    for (; i < changed.size() && changed[i].first == range.first + range.count; ++i)
-      range.count += changed[i].count;
-    const auto part = values.subspan(range.first, range.count);
-    bytes::write(device, buffer.memory, range.first * sizeof(T), part.data(), part.size_bytes());
+    for (; i < changed.size() && follows(changed[i], range); ++i) range.count += changed[i].count;
+    bytes::write(device, buffer.memory, values.data(),
+                 {range.first * sizeof(T), range.count * sizeof(T), range.rows, range.pitch * sizeof(T)});
   }
 }
 

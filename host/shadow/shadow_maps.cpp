@@ -521,16 +521,21 @@ std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::spa
 
 std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; }
 
-/// The texels that a face's task draws: of whole rows, from the first bin to the last. place: as in drawFace.
-IndexRange drawnTexels(const Task& task, const PlannedFace& face, std::size_t place) {
-  if (task.moves) return {place, area(face.count)};
+/// Adds the texels that a face's task draws. place: as in drawFace.
+void addDrawn(const Task& task, const PlannedFace& face, std::size_t place, std::vector<IndexRange>& drawn) {
+  if (task.moves) {
+    drawn.push_back({place, area(face.count)});
+    return;
+  }
   const int side = (face.view.size.x + kBinSize - 1) / kBinSize;
-  const auto first = std::find(task.fresh.begin(), task.fresh.end(), true);
-  const auto last = std::find(task.fresh.rbegin(), task.fresh.rend(), true).base() - 1;
-  const int from = int(first - task.fresh.begin()) / side * kBinSize - face.first.y;
-  const int to = (int(last - task.fresh.begin()) / side + 1) * kBinSize - face.first.y;
   const auto width = std::size_t(face.count.x);
-  return {place + std::size_t(from) * width, std::size_t(std::min(to, face.count.y) - from) * width};
+  for (int bin = 0; bin < side * side; ++bin) {
+    if (!task.fresh[bin]) continue;
+    const glm::ivec2 first = glm::ivec2(bin % side, bin / side) * kBinSize - face.first;
+    const glm::ivec2 count = glm::min(face.count - first, kBinSize);
+    drawn.push_back({place + std::size_t(first.y) * width + std::size_t(first.x), std::size_t(count.x),
+                     std::size_t(count.y), width});
+  }
 }
 
 /// place: of the face's rectangle among the texels.
@@ -632,13 +637,15 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
     maps.bounds.resize(total);
   else
     maps.texels.resize(total);
-  std::vector<IndexRange> drawn(tasks.size());
+  const auto placeOf = [&](const Task& task) {
+    const glm::ivec2 first = maps.planned[task.face].first;
+    const ShadowFace& lookup = maps.faces[task.face];
+    return std::size_t(uint(lookup.first + uint(first.y) * lookup.width + uint(first.x)));
+  };
+  std::vector<IndexRange> drawn;
+  for (const Task& task : tasks) addDrawn(task, maps.planned[task.face], placeOf(task), drawn);
   tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
-    const PlannedFace& face = maps.planned[tasks[i].face];
-    const ShadowFace& lookup = maps.faces[tasks[i].face];
-    const uint place = lookup.first + uint(face.first.y) * lookup.width + uint(face.first.x);
-    drawFace(scene, tasks[i], face, place, maps);
-    drawn[i] = drawnTexels(tasks[i], face, place);
+    drawFace(scene, tasks[i], maps.planned[tasks[i].face], placeOf(tasks[i]), maps);
   });
   return drawn;
 }

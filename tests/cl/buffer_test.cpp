@@ -121,6 +121,19 @@ TEST_P(Buffers, RefreshBringsWhatChangedAndNoMore) {
   EXPECT_EQ(content(buffer), values);
 }
 
+TEST_P(Buffers, RefreshBringsRectangles) {
+  std::vector<int> values = numbers(300);
+  Buffer<const int> buffer = borrowed(device, values);
+  traffic();
+  giveBack(buffer);
+  // Of rows of 20 from element 7 on: columns 3 and 4 of the first three, 11 and 12 of the sixth and seventh.
+  for (const std::size_t first : {10, 30, 50, 118, 138}) values[first] = values[first + 1] = -1;
+  const std::vector<IndexRange> changed{{10, 2, 3, 20}, {118, 2, 2, 20}};
+  refresh(device, values, changed, buffer);
+  EXPECT_EQ(traffic(), (shared() ? Bytes{} : Bytes{40, 0, 0}));
+  EXPECT_EQ(content(buffer), values);
+}
+
 TEST_P(Buffers, RefreshKeepsWhatWasThereWhereItGrows) {
   std::vector<int> values = numbers(300);
   Buffer<const int> buffer = borrowed(device, values);

@@ -437,10 +437,12 @@ TEST(ShadowMaps, ACopyOfWhatWasDrawnStaysUpToDate) {
     const std::vector<IndexRange> drawn = drawNeeded(scene, needed, maps);
     copy.resize(maps.texels.size());
     for (const IndexRange& range : drawn) {
-      ASSERT_LE(range.first + range.count, copy.size());
-      std::copy_n(maps.texels.begin() + std::ptrdiff_t(range.first), range.count,
-                  copy.begin() + std::ptrdiff_t(range.first));
-      copied += range.count;
+      for (std::size_t row = 0; row < range.rows; ++row) {
+        const std::size_t first = range.first + row * range.pitch;
+        ASSERT_LE(first + range.count, copy.size());
+        std::copy_n(maps.texels.data() + first, range.count, copy.data() + first);
+        copied += range.count;
+      }
     }
     ASSERT_EQ(std::memcmp(copy.data(), maps.texels.data(), copy.size() * sizeof(ShadowTexel)), 0)
         << "round " << round;
