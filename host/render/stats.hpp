@@ -21,8 +21,8 @@ struct Stats {
   int width = 0, height = 0, samples = 1;
   std::vector<std::pair<std::string, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
-  std::vector<std::string>
-      beside;        ///< of the stages, those that ran in threads of their own while others did
+  /// Of the stages, those that ran in threads of their own while others did
+  std::vector<std::string> beside;
   double began = 0;  ///< when the picture was begun, in milliseconds since the process's start
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< measured ones, where a command measures any
@@ -68,9 +68,7 @@ double pictureMilliseconds(const Stats& stats);
 ///   were, null where the platform doesn't tell (see kernelsCompiled).
 /// Of memory it says:
 /// - peak_bytes: of the process, by the system. device_bytes: see Stats.
-/// - uploaded_bytes, downloaded_bytes: copied from the host to the device and back, 0 where they share
-/// memory.
-///   made_bytes: of all memory that buffers were given, one after another (see Traffic).
+/// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.
 std::string statsJson(const Stats& stats);
 
 }  // namespace luciole
