@@ -119,7 +119,7 @@ void giveBack(Buffer<T>& buffer) {
   if (buffer.memory.loan) buffer = {};
 }
 
-/// Queues the writing of `value` to every element.
+/// Writes `value` to every element.
 template <class T>
 void fill(Device& device, const Buffer<T>& buffer, const std::type_identity_t<T>& value) {
   bytes::fill(device, buffer.memory, &value, sizeof(T), buffer.count * sizeof(T));
