@@ -7,6 +7,7 @@
 
 #include "base/embedded_files.hpp"
 #include "cl/kernel_source.hpp"
+#include "cl/launch.hpp"
 #include "figures/stage_figures.hpp"
 #include "render/render.hpp"
 
@@ -38,10 +39,11 @@ std::vector<ShadeLight> shadeLights(const Scene& scene) {
   return lights;
 }
 
-double launchMilliseconds(Device& device, Kernel& kernel, std::size_t items, std::size_t group) {
+double launchMilliseconds(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
+                          const WorkItems& work) {
   Stats stats;
   timed(stats, "launch", [&] {
-    launch(device, kernel, items, group);
+    launch(device, kernel, arguments, work);
     finish(device);
   });
   return stats.stages.front().second;
@@ -57,39 +59,51 @@ std::vector<float4> packed(const Plane& planes, std::size_t pixels) {
   return values;
 }
 
-/// tests/kernels/plain.cl and its arguments. The buffers may share the host's memory.
+/// tests/kernels/plain.cl and its arguments.
 struct Plain {
   Plain(Device& device_, const AllPairs& pairs)
       : device(device_),
         pixels(pairs.gbuffer.pixels()),
+        position(packed(pairs.gbuffer.position, pixels)),
+        normal(packed(pairs.gbuffer.normal, pixels)),
+        diffuse(packed(pairs.gbuffer.diffuse, pixels)),
+        specular(packed(pairs.gbuffer.specular, pixels)),
         lights(shadeLights(pairs.scene)),
-        kernel(makeKernelFromSource(device, yardstickSource("plain.cl"), "plain", "")) {
-    const GBuffer& gbuffer = pairs.gbuffer;
-    cl_uint argument = 0;
-    for (const Plane* planes : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular}) {
-      groups.push_back(packed(*planes, pixels));
-      kernel.setArg(argument++, buffers.emplace_back(inputBuffer(device, groups.back())));
-    }
-    kernel.setArg(4, buffers.emplace_back(inputBuffer(device, lights)));
-    kernel.setArg(5, static_cast<cl_uint>(lights.size()));
-    kernel.setArg(6, buffers.emplace_back(deviceBuffer(device, pixels * sizeof(float4))));
-  }
+        position_buffer(borrowed(device, position)),
+        normal_buffer(borrowed(device, normal)),
+        diffuse_buffer(borrowed(device, diffuse)),
+        specular_buffer(borrowed(device, specular)),
+        light_buffer(borrowed(device, lights)),
+        image(makeBuffer<float4>(device, pixels)),
+        kernel(makeKernelFromSource(device, yardstickSource("plain.cl"), "plain", "")) {}
   Plain(const Plain&) = delete;
   Plain& operator=(const Plain&) = delete;
 
-  double run() { return launchMilliseconds(device, kernel, pixels, 64); }
+  double run() {
+    return launchMilliseconds(device, kernel,
+                              {{"position", position_buffer},
+                               {"normal", normal_buffer},
+                               {"diffuse", diffuse_buffer},
+                               {"specular", specular_buffer},
+                               {"lights", light_buffer},
+                               {"light_count", uint(lights.size())},
+                               {"image", image}},
+                              {.items = pixels, .group = 64});
+  }
 
   std::vector<float4> picture() {
     std::vector<float4> colors(pixels);
-    readBuffer(device, buffers.back(), colors.data(), pixels * sizeof(float4));
+    download(device, image, colors);
     return colors;
   }
 
   Device& device;
   std::size_t pixels;
+  std::vector<float4> position, normal, diffuse, specular;
   std::vector<ShadeLight> lights;
-  std::vector<std::vector<float4>> groups;
-  std::vector<cl::Buffer> buffers;
+  Buffer<const float4> position_buffer, normal_buffer, diffuse_buffer, specular_buffer;
+  Buffer<const ShadeLight> light_buffer;
+  Buffer<float4> image;
   Kernel kernel;
 };
 
@@ -99,28 +113,28 @@ struct Roof {
       : device(device_),
         rows(pairs.gbuffer.pixels() / std::size_t(device.description.lanes)),
         lights(shadeLights(pairs.scene)),
-        light_buffer(inputBuffer(device, lights)),
-        image(deviceBuffer(device, pairs.gbuffer.pixels() * sizeof(float))),
+        light_buffer(borrowed(device, lights)),
+        image(makeBuffer<float>(device, pairs.gbuffer.pixels())),
         kernel(makeKernelFromSource(device, yardstickSource("roof.cl"), "roof", "")) {
-    ShadeFrame frame{};
-    frame.light_count = static_cast<uint>(lights.size());
-    frame.plane_stride = static_cast<uint>(pairs.gbuffer.pixels());
-    kernel.setArg(0, frame);
-    kernel.setArg(1, light_buffer);
-    kernel.setArg(2, static_cast<cl_uint>(lights.size()));
-    kernel.setArg(3, image);
+    frame.light_count = uint(lights.size());
+    frame.plane_stride = uint(pairs.gbuffer.pixels());
   }
   Roof(const Roof&) = delete;
   Roof& operator=(const Roof&) = delete;
 
   double run() {
-    return launchMilliseconds(device, kernel, rows, std::size_t(kTilePixels / device.description.lanes));
+    return launchMilliseconds(
+        device, kernel,
+        {{"frame", frame}, {"lights", light_buffer}, {"light_count", uint(lights.size())}, {"image", image}},
+        {.items = rows, .group = std::size_t(kTilePixels / device.description.lanes)});
   }
 
   Device& device;
   std::size_t rows;
   std::vector<ShadeLight> lights;
-  cl::Buffer light_buffer, image;
+  Buffer<const ShadeLight> light_buffer;
+  Buffer<float> image;
+  ShadeFrame frame{};
   Kernel kernel;
 };
 

@@ -83,10 +83,10 @@ TexelSide texelSides(const Scene& scene, const ShadowMaps& shadows) {
 /// what is true.
 std::vector<float> exactVisibility(Device& device, const Judged& judged, const Lighting& lighting,
                                    const LitPlanes& lit) {
-  std::vector<cl_uint> starts(lit.lists.tiles + 1);
-  std::vector<ListEntry> list(lit.lists.entries);
-  readBuffer(device, lit.lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
-  readBuffer(device, lit.lists.list, list.data(), list.size() * sizeof(ListEntry));
+  std::vector<uint> starts(lighting.lists.tiles + 1);
+  std::vector<ListEntry> list(lighting.lists.entries);
+  download(device, lighting.lists.starts, starts);
+  download(device, lighting.lists.list, list);
   std::vector<std::uint32_t> device_light(lighting.order.size());
   for (std::uint32_t i = 0; i < lighting.order.size(); ++i) device_light[lighting.order[i]] = i;
   std::vector<float> visibility;
@@ -99,7 +99,7 @@ std::vector<float> exactVisibility(Device& device, const Judged& judged, const L
                          [](const ListEntry& e, std::uint32_t light) { return e.light < light; });
     const bool listed = entry != end && entry->light == device_light[pair.light] &&
                         (entry->squares >> SQUARE_OF_PIXEL(place) & 1) != 0;
-    const cl_uint* bits = lit.pair_bits.data() + std::size_t(entry - list.begin()) * kPairWords;
+    const uint* bits = lit.pair_bits.data() + std::size_t(entry - list.begin()) * kPairWords;
     visibility.push_back(listed ? float(bits[place / 32] >> place % 32 & 1) : float(judged.truth.lit[i]));
   }
   return visibility;

@@ -6,15 +6,12 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
-#include <memory>
-#include <new>
 #include <optional>
 #include <thread>
 
-#include "base/array_memory.hpp"
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
-#include "cl/kernel_source.hpp"
+#include "cl/device_error.hpp"
 
 namespace luciole {
 namespace {
@@ -45,8 +42,6 @@ int nativeLanes(const cl::Device& device) {
 /// by itself or hung under `ulimit -v` of 720 MiB and `ulimit -d` of 320, well under 760 and 360, of which
 /// this program and the stacks of a thread a core of the platform's and of ours took 130 and 40.
 constexpr double kPlatformBytes = 192 << 20, kPlatformAddresses = 640 << 20, kPlatformData = 320 << 20;
-/// Of that, what must be left when a program is compiled.
-constexpr double kCompilerBytes = 64 << 20;
 
 std::vector<FoundDevice> findDevices() {
   requireMemory(kPlatformBytes, "OpenCL");
@@ -85,78 +80,6 @@ std::optional<std::size_t> parseNumber(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-/// Memory of ours that a buffer lies in.
-struct HostArray {
-  void* memory;
-  std::size_t bytes;
-  explicit HostArray(std::size_t size) : memory(allocateArray(size)), bytes(size) {}
-  HostArray(const HostArray&) = delete;
-  HostArray& operator=(const HostArray&) = delete;
-  ~HostArray() { freeArray(memory, bytes); }
-};
-
-void CL_CALLBACK freeHostArray(cl_mem, void* array) { delete static_cast<HostArray*>(array); }
-
-/// An error's name in the standard, or its number where it isn't one of OpenCL 1.2's.
-std::string errorName(cl_int error) {
-#define NAMED(name) \
-  case name:        \
-    return #name
-  switch (error) {
-    NAMED(CL_DEVICE_NOT_FOUND);
-    NAMED(CL_DEVICE_NOT_AVAILABLE);
-    NAMED(CL_COMPILER_NOT_AVAILABLE);
-    NAMED(CL_MEM_OBJECT_ALLOCATION_FAILURE);
-    NAMED(CL_OUT_OF_RESOURCES);
-    NAMED(CL_OUT_OF_HOST_MEMORY);
-    NAMED(CL_MEM_COPY_OVERLAP);
-    NAMED(CL_BUILD_PROGRAM_FAILURE);
-    NAMED(CL_MAP_FAILURE);
-    NAMED(CL_MISALIGNED_SUB_BUFFER_OFFSET);
-    NAMED(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST);
-    NAMED(CL_KERNEL_ARG_INFO_NOT_AVAILABLE);
-    NAMED(CL_INVALID_VALUE);
-    NAMED(CL_INVALID_PLATFORM);
-    NAMED(CL_INVALID_DEVICE);
-    NAMED(CL_INVALID_CONTEXT);
-    NAMED(CL_INVALID_QUEUE_PROPERTIES);
-    NAMED(CL_INVALID_COMMAND_QUEUE);
-    NAMED(CL_INVALID_HOST_PTR);
-    NAMED(CL_INVALID_MEM_OBJECT);
-    NAMED(CL_INVALID_BINARY);
-    NAMED(CL_INVALID_BUILD_OPTIONS);
-    NAMED(CL_INVALID_PROGRAM);
-    NAMED(CL_INVALID_PROGRAM_EXECUTABLE);
-    NAMED(CL_INVALID_KERNEL_NAME);
-    NAMED(CL_INVALID_KERNEL_DEFINITION);
-    NAMED(CL_INVALID_KERNEL);
-    NAMED(CL_INVALID_ARG_INDEX);
-    NAMED(CL_INVALID_ARG_VALUE);
-    NAMED(CL_INVALID_ARG_SIZE);
-    NAMED(CL_INVALID_KERNEL_ARGS);
-    NAMED(CL_INVALID_WORK_DIMENSION);
-    NAMED(CL_INVALID_WORK_GROUP_SIZE);
-    NAMED(CL_INVALID_WORK_ITEM_SIZE);
-    NAMED(CL_INVALID_GLOBAL_OFFSET);
-    NAMED(CL_INVALID_EVENT_WAIT_LIST);
-    NAMED(CL_INVALID_EVENT);
-    NAMED(CL_INVALID_OPERATION);
-    NAMED(CL_INVALID_BUFFER_SIZE);
-    NAMED(CL_INVALID_GLOBAL_WORK_SIZE);
-    NAMED(CL_INVALID_PROPERTY);
-  }
-#undef NAMED
-  return fmt::format("OpenCL error {}", error);
-}
-
-MachineError deviceError(const cl::Error& error, const std::string& device) {
-  if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_HOST_MEMORY ||
-      error.err() == CL_OUT_OF_RESOURCES || error.err() == CL_INVALID_BUFFER_SIZE)
-    return MachineError(
-        fmt::format("{}: out of memory ({}: {})", device, error.what(), errorName(error.err())));
-  return MachineError(fmt::format("{}: {} failed: {}", device, error.what(), errorName(error.err())));
 }
 
 }  // namespace
@@ -222,131 +145,18 @@ void awaitDevice(const Device& device) {
   if (device.opening.valid()) device.opening.get();
 }
 
-namespace {
-
-/// The kernel `name` of the program known by `key`, which is built from the source that source() gives where
-/// it isn't there yet.
-template <class Source>
-Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
-                    Source&& source) {
-  const std::lock_guard lock(device.programs_mutex);
-  try {
-    const std::string options = fmt::format("-cl-std=CL1.2 -cl-denorms-are-zero -DLANES={} {}",
-                                            device.description.lanes, defines);
-    auto place = device.programs.find(options + key);
-    if (place == device.programs.end()) {
-      requireMemory(kCompilerBytes, "compiling kernels");
-      cl::Program program(device.context, source());
-      program.build({device.device}, options.c_str());
-      place = device.programs.emplace(options + key, std::move(program)).first;
-    }
-    return {cl::Kernel(place->second, name), name, device.description.name};
-  } catch (const cl::BuildError& error) {
-    std::string log;
-    for (const auto& [where, text] : error.getBuildLog()) log += text;
-    std::replace(log.begin(), log.end(), '\n', ' ');
-    throw MachineError(fmt::format("{}: kernel '{}' does not compile: {}", device.description.name, name,
-                                   log.substr(0, 1000)));
-  } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
-  }
-}
-
-}  // namespace
-
-void Kernel::refuseArgument(cl_uint number, const cl::Error& error) const {
-  throw MachineError(fmt::format("{}: kernel '{}', argument {}: {} failed: {}", device_name, name, number,
-                                 error.what(), errorName(error.err())));
-}
-
-Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
-  return makeKernelOf(device, file, name, defines, [&] { return kernelSource(file); });
-}
-
-Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
-                            const std::string& defines) {
-  return makeKernelOf(device, source, name, defines, [&] { return source; });
-}
-
-cl::Buffer inputBuffer(Device& device, const void* data, std::size_t bytes) {
-  if (bytes == 0) return deviceBuffer(device, sizeof(cl_float4));
-  try {
-    const cl_mem_flags how = device.shares_host_memory ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    return cl::Buffer(device.context, CL_MEM_READ_ONLY | how, bytes, const_cast<void*>(data));
-  } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
-  }
-}
-
-cl::Buffer deviceBuffer(Device& device, std::size_t bytes) {
-  bytes = std::max(bytes, sizeof(cl_float4));
-  try {
-    if (!device.shares_host_memory) return cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes);
-    // Our own memory, for its larger pages.
-    auto array = std::make_unique<HostArray>(bytes);
-    cl::Buffer buffer(device.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, array->memory);
-    buffer.setDestructorCallback(freeHostArray, array.get());
-    array.release();
-    return buffer;
-  } catch (const std::bad_alloc&) {
-    throw MachineError(fmt::format("{}: out of memory", device.description.name));
-  } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
-  }
-}
-
-cl::Buffer outputBuffer(Device& device, void* data, std::size_t bytes) {
-  if (!device.shares_host_memory || bytes == 0) return deviceBuffer(device, bytes);
-  try {
-    return cl::Buffer(device.context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, data);
-  } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
-  }
-}
-
-cl::Buffer updateBuffer(Device& device, void* data, std::size_t bytes) {
-  try {
-    const cl_mem_flags how = device.shares_host_memory ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    return cl::Buffer(device.context, CL_MEM_READ_WRITE | how, bytes, data);
-  } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
-  }
-}
-
-void readBuffer(Device& device, const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
-  if (bytes == 0) return;
-  try {
-    if (buffer.getInfo<CL_MEM_HOST_PTR>() == data && offset == 0) {
-      // The buffer is this very memory: mapping it is what makes its content the host's.
-      void* mapped = device.queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_READ, 0, bytes);
-      device.queue.enqueueUnmapMemObject(buffer, mapped);
-      device.queue.finish();
-      return;
-    }
-    device.queue.enqueueReadBuffer(buffer, CL_TRUE, offset, bytes, data);
-  } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
-  }
-}
-
-void launch(Device& device, Kernel& kernel, std::size_t items, std::size_t group) {
-  if (items == 0) return;
-  try {
-    const std::size_t most =
-        std::min(kernel.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device),
-                 device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
-    while (group > std::max<std::size_t>(most, 1)) group /= 2;
-    device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
-  } catch (const cl::Error& error) {
-    throw deviceError(error, fmt::format("{}: kernel '{}'", device.description.name, kernel.name));
-  }
+Traffic trafficOf(Device& device) {
+  const std::lock_guard lock(device.notes_mutex);
+  return device.traffic;
 }
 
 void finish(Device& device) {
   try {
     device.queue.finish();
   } catch (const cl::Error& error) {
-    throw deviceError(error, device.description.name);
+    const std::lock_guard lock(device.notes_mutex);
+    throw deviceError(
+        error, fmt::format("{}: kernel '{}' or one before", device.description.name, device.running_kernel));
   }
 }
 

@@ -2,13 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <numeric>
 
-#include "base/error.hpp"
-#include "base/machine_memory.hpp"
 #include "rays/shadow_rays.hpp"
 
 namespace luciole {
@@ -18,12 +15,12 @@ constexpr std::size_t kHalf = kPairWords / 2;
 
 /// The pixels of an entry that are unsure, by rays in blocks of some packets.
 void traceEntry(const RayScene& rays, const GBuffer& gbuffer, const Light& light, std::size_t tile,
-                std::span<cl_uint> words) {
+                std::span<uint> words) {
   std::array<ShadowRay, kTilePixels> block;
   std::array<std::uint8_t, kTilePixels> blocked, pixels;
   std::size_t count = 0;
   for (std::size_t word = 0; word < kHalf; ++word) {
-    for (cl_uint left = words[kHalf + word]; left != 0; left &= left - 1) {
+    for (uint left = words[kHalf + word]; left != 0; left &= left - 1) {
       const std::size_t pixel = word * 32 + std::size_t(std::countr_zero(left));
       block[count] = shadowRay(light, shadowStart(gbuffer, tile * kTilePixels + pixel));
       pixels[count++] = std::uint8_t(pixel);
@@ -36,43 +33,14 @@ void traceEntry(const RayScene& rays, const GBuffer& gbuffer, const Light& light
 
 }  // namespace
 
-PairBits classify(Device& device, const std::string& defines, const ClassifyArguments& arguments) {
-  const std::size_t tiles = arguments.plane_stride / kTilePixels;
-  const std::size_t entries =
-      arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * arguments.light_count;
-  requireMemory(double(entries) * (kPairWords * sizeof(cl_uint)), "the exact shadows of all pixels");
-  if (entries > 0xffffffffu / kPairWords)
-    throw MachineError(
-        "exact shadows of more than 2^28 pairs of a tile and a light: use fewer lights or a smaller picture");
-  PairBits bits(std::max<std::size_t>(entries, 1) * kPairWords);
-  const cl::Buffer result = outputBuffer(device, bits.data(), bits.size() * sizeof(cl_uint));
-  Kernel kernel = makeKernel(device, "classify.cl", "classify", defines);
-  kernel.setArg(0, static_cast<cl_uint>(arguments.plane_stride));
-  kernel.setArg(1, arguments.position);
-  kernel.setArg(2, arguments.normal);
-  kernel.setArg(3, arguments.lift);
-  kernel.setArg(4, arguments.lights);
-  kernel.setArg(5, static_cast<cl_uint>(arguments.light_count));
-  kernel.setArg(6, arguments.lists.starts);
-  kernel.setArg(7, arguments.lists.list);
-  kernel.setArg(8, arguments.shadow_maps);
-  kernel.setArg(9, arguments.shadow_faces);
-  kernel.setArg(10, arguments.bounds);
-  kernel.setArg(11, static_cast<cl_uint>(arguments.texel_count));
-  kernel.setArg(12, result);
-  launch(device, kernel, tiles, 1);
-  readBuffer(device, result, bits.data(), bits.size() * sizeof(cl_uint));
-  return bits;
-}
-
 std::uint64_t traceUnsure(Device& device, const Scene& scene, const RayScene& rays, const GBuffer& gbuffer,
                           std::span<const std::uint32_t> order, const LightLists& lists, PairBits& bits) {
   const std::size_t tiles = gbuffer.pixels() / kTilePixels;
-  std::vector<cl_uint> starts(tiles + 1);
+  std::vector<uint> starts(tiles + 1);
   std::vector<ListEntry> list(lists.entries);
   if (lists.tiles > 0) {
-    readBuffer(device, lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
-    readBuffer(device, lists.list, list.data(), list.size() * sizeof(ListEntry));
+    download(device, lists.starts, starts);
+    download(device, lists.list, list);
   }
   std::vector<std::uint64_t> unsure(tiles);
   tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {

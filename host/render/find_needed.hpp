@@ -3,23 +3,22 @@
 #include <string>
 #include <vector>
 
-#include "cl/device.hpp"
 #include "culling/cull.hpp"
 #include "kernels/shared.h"
 
 namespace luciole {
 
 struct FindNeededArguments {
-  std::size_t plane_stride;    ///< floats
-  const cl::Buffer& position;  ///< G-buffer planes x, y, z
-  const cl::Buffer& normal;    ///< likewise
-  const cl::Buffer& lift;      ///< one plane, with Feature::kLift only
-  const cl::Buffer& lights;    ///< ShadeLight[light_count]
+  std::size_t plane_stride;      ///< floats
+  Buffer<const float> position;  ///< G-buffer planes x, y, z
+  Buffer<const float> normal;    ///< likewise
+  Buffer<const float> lift;      ///< one plane, with Feature::kLift only
+  Buffer<const ShadeLight> lights;
   std::size_t light_count;
-  const LightLists& lists;         ///< with Feature::kLightLists only
-  const cl::Buffer& shadow_maps;   ///< ShadowMap[]
-  const cl::Buffer& shadow_faces;  ///< ShadowFace[]
-  std::size_t bin_count;           ///< of all faces
+  const LightLists& lists;  ///< with Feature::kLightLists only
+  Buffer<const ShadowMap> shadow_maps;
+  Buffer<const ShadowFace> shadow_faces;
+  std::size_t bin_count;  ///< of all faces
 };
 
 /// Launches kernels/find_needed.cl: for each bin the reversed depth of the farthest point of the G-buffer

@@ -7,6 +7,7 @@
 #include "culling/cull.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "rays/shadow_rays.hpp"
+#include "render/count_in_range.hpp"
 #include "render/exact_shadows.hpp"
 #include "render/find_needed.hpp"
 #include "render/shade.hpp"
@@ -50,10 +51,10 @@ std::vector<std::uint32_t> squareLengths(Device& device, const LightLists* lists
                                          std::size_t light_count) {
   if (!lists) return std::vector<std::uint32_t>(tiles * kSquaresPerTile, std::uint32_t(light_count));
   std::vector<std::uint32_t> lengths(tiles * kSquaresPerTile);
-  std::vector<cl_uint> starts(lists->tiles + 1);
+  std::vector<uint> starts(lists->tiles + 1);
   std::vector<ListEntry> entries(lists->entries);
-  readBuffer(device, lists->starts, starts.data(), starts.size() * sizeof(cl_uint));
-  readBuffer(device, lists->list, entries.data(), entries.size() * sizeof(ListEntry));
+  download(device, lists->starts, starts);
+  download(device, lists->list, entries);
   for (std::size_t tile = 0; tile < tiles; ++tile)
     for (std::size_t entry = starts[tile]; entry < starts[tile + 1]; ++entry)
       for (int square = 0; square < kSquaresPerTile; ++square)
@@ -86,17 +87,29 @@ PackedNormals packNormals(const GBuffer& gbuffer) {
   return packed;
 }
 
-LightLists cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
-                      std::size_t pixels, unsigned tests) {
-  return cull(device, {.position = buffers.position,
-                       .normal = buffers.normal,
-                       .plane_stride = pixels,
-                       .shift = lighting.shift,
-                       .lights = lighting.lights,
-                       .light_count = lighting.frame.light_count,
-                       .tree = lighting.tree,
-                       .tree_stride = lighting.host_tree.stride,
-                       .tests = tests});
+void cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& buffers, std::size_t pixels,
+                unsigned tests, LightLists& lists) {
+  cull(device,
+       {.position = buffers.position,
+        .normal = buffers.normal,
+        .plane_stride = pixels,
+        .shift = lighting.shift,
+        .lights = lighting.lights,
+        .light_count = lighting.frame.light_count,
+        .tree = lighting.tree,
+        .tree_stride = lighting.host_tree.stride,
+        .tests = tests},
+       lists);
+}
+
+/// The host side of lights and shadow maps, to the device.
+void uploadLighting(Device& device, Lighting& lighting) {
+  lighting.lights = borrowed(device, lighting.host_lights);
+  lighting.tree = borrowed(device, lighting.host_tree.planes);
+  lighting.shadow_maps = borrowed(device, lighting.host_shadows.maps);
+  lighting.shadow_faces = borrowed(device, lighting.host_shadows.faces);
+  lighting.shadow_texels = borrowed(device, lighting.host_shadows.texels);
+  lighting.shadow_bounds = borrowed(device, lighting.host_shadows.bounds);
 }
 
 /// Draws what shading the G-buffer will look at of the scene's shadow maps and isn't there yet.
@@ -114,18 +127,27 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
                        .light_count = lighting.frame.light_count,
                        .lists = lists,
                        .shadow_maps = lighting.shadow_maps,
-                       .shadow_faces = inputBuffer(device, shadows.faces),
+                       .shadow_faces = lighting.shadow_faces,
                        .bin_count = shadows.bin_count});
   });
-  timed(stats, "shadow maps", [&] { drawNeeded(scene, needed, shadows); });
+  timed(stats, "shadow maps", [&] {
+    giveBack(lighting.shadow_faces);
+    giveBack(lighting.shadow_texels);
+    giveBack(lighting.shadow_bounds);
+    const std::vector<IndexRange> drawn = drawNeeded(scene, needed, shadows);
+    const std::vector<IndexRange> faces(drawn.empty() ? 0 : 1, {0, shadows.faces.size()});
+    refresh(device, shadows.faces, faces, lighting.shadow_faces);
+    if (shadows.method == ShadowMethod::kExact)
+      refresh(device, shadows.bounds, drawn, lighting.shadow_bounds);
+    else
+      refresh(device, shadows.texels, drawn, lighting.shadow_texels);
+  });
 }
 
 /// The exact shadows of all entries of the lists; `traced`: how many pairs took a ray.
 PairBits decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
                        const std::string& defines, const GBuffer& gbuffer, const GBufferBuffers& buffers,
-                       const LightLists& lists, const cl::Buffer& shadow_faces, std::uint64_t& traced,
-                       Stats& stats) {
-  const auto& texels = lighting.host_shadows.bounds;
+                       const LightLists& lists, std::uint64_t& traced, Stats& stats) {
   PairBits bits = timed(stats, "classify", [&] {
     return classify(device, defines,
                     {.plane_stride = gbuffer.pixels(),
@@ -136,9 +158,9 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
                      .light_count = lighting.frame.light_count,
                      .lists = lists,
                      .shadow_maps = lighting.shadow_maps,
-                     .shadow_faces = shadow_faces,
-                     .bounds = inputBuffer(device, texels),
-                     .texel_count = std::max<std::size_t>(texels.size(), 1)});
+                     .shadow_faces = lighting.shadow_faces,
+                     .texels = lighting.shadow_bounds,
+                     .texel_count = std::max<std::size_t>(lighting.host_shadows.bounds.size(), 1)});
   });
   traced = timed(stats, "trace unsure", [&] {
     return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, bits);
@@ -147,23 +169,22 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
 }
 
 /// How many lights have each pixel in their range.
-Plane lightsInRange(Device& device, const Lighting& lighting, const GBufferBuffers& buffers,
-                    std::size_t pixels) {
-  const LightLists lists = cullLights(device, lighting, buffers, pixels, kByRange);
+Plane lightsInRange(Device& device, Lighting& lighting, const GBufferBuffers& buffers, std::size_t pixels) {
+  cullLights(device, lighting, buffers, pixels, kByRange, lighting.lists_in_range);
   Plane result(pixels);
-  const cl::Buffer counts = outputBuffer(device, result.data(), pixels * sizeof(float));
+  const Buffer<float> counts = borrowedForOutput(device, result);
   countInRange(device, {.position = buffers.position,
                         .plane_stride = pixels,
                         .lights = lighting.lights,
-                        .lists = lists,
+                        .lists = lighting.lists_in_range,
                         .counts = counts});
-  readBuffer(device, counts, result.data(), pixels * sizeof(float));
+  download(device, counts, result);
   return result;
 }
 
 /// Fills in those of the counts that are asked for. lists: that the pixels went through, null where they went
 /// through all lights.
-void countLights(Device& device, const Lighting& lighting, const LightLists* lists, const GBuffer& gbuffer,
+void countLights(Device& device, Lighting& lighting, const LightLists* lists, const GBuffer& gbuffer,
                  const GBufferBuffers& buffers, const PixelCounts& counts, LitPlanes& lit) {
   const std::size_t pixels = gbuffer.pixels();
   if (counts.in_range) lit.light_count = lightsInRange(device, lighting, buffers, pixels);
@@ -199,9 +220,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   timed(stats, "prepare lights", [&] {
     if (scene.lighting) lighting.host_lights = prepareLights(scene, camera, lighting.host_shadows);
     lighting.host_tree = buildLightTree(lighting.host_lights);
-    lighting.lights = inputBuffer(device, lighting.host_lights);
-    lighting.tree = inputBuffer(device, lighting.host_tree.planes);
-    lighting.shadow_maps = inputBuffer(device, lighting.host_shadows.maps);
+    uploadLighting(device, lighting);
   });
   lighting.bytes =
       lighting.host_lights.size() * sizeof(ShadeLight) + lighting.host_tree.planes.size() * sizeof(float);
@@ -218,29 +237,28 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   Plane level;  // for a G-buffer that lies on its facets
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
   const Plane& lift = level.empty() ? gbuffer.lift : level;
-  const GBufferBuffers buffers = uploadGBuffer(device, gbuffer, facet, lift, lighting.unlit);
+  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, facet, lift, lighting.unlit);
   LitPlanes lit;
-  LightLists lists;
   const bool culled = features.has(Feature::kLightLists);
+  const LightLists none;
+  const LightLists& lists = culled ? lighting.lists : none;
   if (culled) {
     const unsigned tests = kByCone | (features.has(Feature::kLightAmbient) ? 0 : kByFacing);
-    lists = timed(stats, "cull", [&] { return cullLights(device, lighting, buffers, pixels, tests); });
+    timed(stats, "cull", [&] { cullLights(device, lighting, buffers, pixels, tests, lighting.lists); });
     lit.list_entries = lists.entries;
   }
   if (features.shadows() && !lighting.host_shadows.maps.empty())
     drawShadowMaps(device, scene, lighting, lookup_defines, buffers, lists, pixels, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
-  const cl::Buffer shadow_faces = inputBuffer(device, shadows.faces);
-  const cl::Buffer shadow_texels = inputBuffer(device, shadows.texels);
   if (features.has(Feature::kExact))
-    lit.pair_bits = decideShadows(device, scene, lighting, lookup_defines, gbuffer, buffers, lists,
-                                  shadow_faces, lit.traced, stats);
-  const cl::Buffer pair_buffer = inputBuffer(device, lit.pair_bits);
+    lit.pair_bits =
+        decideShadows(device, scene, lighting, lookup_defines, gbuffer, buffers, lists, lit.traced, stats);
+  const Buffer<const uint> pair_bits = borrowed(device, lit.pair_bits);
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(shadows.texels.size(), 1));
   lit.color.resize(pixels * (features.has(Feature::kOutputShadow) ? 4 : 3));
-  const cl::Buffer image = outputBuffer(device, lit.color.data(), lit.color.size() * sizeof(float));
+  const Buffer<float> image = borrowedForOutput(device, lit.color);
   timed(stats, "shade", [&] {
     shade(device, defines,
           {.frame = frame,
@@ -248,13 +266,12 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
            .lights = lighting.lights,
            .lists = lists,
            .shadow_maps = lighting.shadow_maps,
-           .shadow_faces = shadow_faces,
-           .shadow_texels = shadow_texels,
-           .pair_bits = pair_buffer,
+           .shadow_faces = lighting.shadow_faces,
+           .shadow_texels = lighting.shadow_texels,
+           .pair_bits = pair_bits,
            .image = image});
   });
-  timed(stats, "read back",
-        [&] { readBuffer(device, image, lit.color.data(), lit.color.size() * sizeof(float)); });
+  timed(stats, "read back", [&] { download(device, image, lit.color); });
   if (counts.in_range || counts.evaluated || counts.list_length)
     timed(stats, "count lights",
           [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, counts, lit); });
@@ -264,8 +281,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
                                                         shadows.texels.size() * sizeof(ShadowTexel) +
                                                         shadows.bounds.size() * sizeof(BoundTexel) +
-                                                        lit.pair_bits.size() * sizeof(cl_uint));
-  lit.lists = std::move(lists);
+                                                        lit.pair_bits.size() * sizeof(uint));
   return lit;
 }
 
@@ -280,14 +296,13 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
   lighting.shift = shiftOf(settings.tile_size);
-  for (cl::Buffer* buffer : {&lighting.lights, &lighting.tree, &lighting.shadow_maps})
-    *buffer = deviceBuffer(device, 0);
   // A map of nothing, so that its kernel is compiled too.
   if (features.shadows()) {
     lighting.host_shadows.maps.emplace_back();
     lighting.host_shadows.faces.emplace_back();
     lighting.host_shadows.bin_count = 1;
   }
+  uploadLighting(device, lighting);
   Stats ignored;
   lightGBuffer(device, {}, lighting, features, empty, {}, ignored);
 }

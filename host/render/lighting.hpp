@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "cl/device.hpp"
 #include "culling/cull.hpp"
 #include "culling/light_tree.hpp"
 #include "culling/shade_lights.hpp"
@@ -17,8 +16,8 @@
 namespace luciole {
 
 /// What stays the same for all G-buffers of one picture: lights and shadow maps in the camera's view space,
-/// on the device. The buffers may share the host's memory, so host side and device side live together and are
-/// not copied.
+/// on the device; and memory there that one G-buffer leaves to the next. Buffers are borrowed from what
+/// stands before them, so host side and device side live together and are not copied.
 struct Lighting {
   FeatureSet features;
   std::string math_defines;  ///< as by mathDefines
@@ -30,8 +29,15 @@ struct Lighting {
   ShadowMaps host_shadows;
   RayScene shadow_rays;              ///< with Feature::kExact only
   std::vector<std::uint32_t> order;  ///< likewise: the scene's index of each light in host_lights
-  cl::Buffer lights, tree, shadow_maps;
-  std::size_t bytes = 0;  ///< of all that but the shadow maps'
+  Buffer<const ShadeLight> lights;
+  Buffer<const float> tree;
+  Buffer<const ShadowMap> shadow_maps;
+  Buffer<const ShadowFace> shadow_faces;
+  Buffer<const ShadowTexel> shadow_texels;  ///< drawn so far
+  Buffer<const BoundTexel> shadow_bounds;   ///< likewise
+  LightLists lists;                         ///< of the last G-buffer, with Feature::kLightLists
+  LightLists lists_in_range;                ///< that its lights in range were counted by
+  std::size_t bytes = 0;                    ///< of lights and tree
 
   Lighting() = default;
   Lighting(const Lighting&) = delete;
@@ -51,8 +57,7 @@ struct LitPlanes {
   Plane
       list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists
   std::uint64_t list_entries = 0;
-  LightLists lists;             ///< that it was lit by, with Feature::kLightLists
-  PairBits pair_bits;           ///< of their entries, with Feature::kExact
+  PairBits pair_bits;           ///< of the entries of Lighting::lists, with Feature::kExact
   std::uint64_t traced = 0;     ///< pixel-light pairs whose exact shadow took a ray
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cl/launch.hpp"
+
 namespace luciole {
 
 std::vector<float> pairVisibility(Device& device, const std::string& defines, const GBuffer& gbuffer,
@@ -19,7 +21,7 @@ std::vector<float> pairVisibility(Device& device, const std::string& defines, co
   const std::size_t slots = first_of_row.size() * lanes, stride = gbuffer.pixels();
   Plane points(3 * slots), normals(3 * slots), lifts(slots), seen(slots);
   PackedNormals facets(slots);
-  std::vector<cl_uint> map_of_row;
+  std::vector<uint> map_of_row;
   for (std::size_t row = 0; row < first_of_row.size(); ++row) {
     map_of_row.push_back(pairs[first_of_row[row]].map);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -33,25 +35,22 @@ std::vector<float> pairVisibility(Device& device, const std::string& defines, co
       if (!gbuffer.lift.empty()) lifts[slot] = gbuffer.lift[pixel];
     }
   }
-  const cl::Buffer position = inputBuffer(device, points), normal = inputBuffer(device, normals);
-  const cl::Buffer facet = inputBuffer(device, facets), lift = inputBuffer(device, lifts);
-  const cl::Buffer result = outputBuffer(device, seen.data(), slots * sizeof(float));
-  const cl::Buffer map_buffer = inputBuffer(device, map_of_row), maps = inputBuffer(device, shadows.maps),
-                   faces = inputBuffer(device, shadows.faces), texels = inputBuffer(device, shadows.texels);
+  const Buffer<float> visible = borrowedForOutput(device, seen);
   Kernel kernel = makeKernel(device, "pair_visibility.cl", "pair_visibility", defines);
-  kernel.setArg(0, static_cast<cl_uint>(slots));
-  kernel.setArg(1, position);
-  kernel.setArg(2, normal);
-  kernel.setArg(3, facet);
-  kernel.setArg(4, lift);
-  kernel.setArg(5, map_buffer);
-  kernel.setArg(6, maps);
-  kernel.setArg(7, faces);
-  kernel.setArg(8, texels);
-  kernel.setArg(9, static_cast<cl_uint>(std::max<std::size_t>(shadows.texels.size(), 1)));
-  kernel.setArg(10, result);
-  launch(device, kernel, first_of_row.size(), 1);
-  readBuffer(device, result, seen.data(), slots * sizeof(float));
+  launch(device, kernel,
+         {{"stride", uint(slots)},
+          {"position", borrowed(device, points)},
+          {"normal", borrowed(device, normals)},
+          {"facet", borrowed(device, facets)},
+          {"lift", borrowed(device, lifts)},
+          {"map_of_row", borrowed(device, map_of_row)},
+          {"maps", borrowed(device, shadows.maps)},
+          {"faces", borrowed(device, shadows.faces)},
+          {"texels", borrowed(device, shadows.texels)},
+          {"texel_count", uint(std::max<std::size_t>(shadows.texels.size(), 1))},
+          {"visibility", visible}},
+         {.items = first_of_row.size()});
+  download(device, visible, seen);
   std::vector<float> visibility;
   for (std::size_t row = 0; row < first_of_row.size(); ++row)
     for (std::size_t i = first_of_row[row]; i < rows_end[row]; ++i)

@@ -124,6 +124,20 @@ void awaitKernels(std::future<double>& compiling, Device& device, Stats& stats) 
   stats.device = device.description;
 }
 
+/// Adds to a picture's statistics what buffers cost from its beginning to its end.
+struct TrafficMeter {
+  Device& device;
+  Stats& stats;
+  Traffic before = trafficOf(device);
+
+  ~TrafficMeter() {
+    const Traffic after = trafficOf(device);
+    stats.traffic.bytes_up += after.bytes_up - before.bytes_up;
+    stats.traffic.bytes_down += after.bytes_down - before.bytes_down;
+    stats.traffic.bytes_made += after.bytes_made - before.bytes_made;
+  }
+};
+
 /// Layers are the first sample's, statistics all samples'.
 PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
   return {.evaluated = settings.count_lights,
@@ -196,6 +210,7 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const TakeRows& take,
                  Stats& stats) {
+  const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const ShadeSettings shade = shadeSettings(settings);
   SurfaceTraits surfaces = materialTraits(scene);
@@ -266,6 +281,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   stats.height = view.crop_size.y;
   std::vector<glm::vec3> vertex_colors;
   if (settings.shading == Shading::kGouraud) {
+    const TrafficMeter meter{*device, stats};
     Lighting lighting;
     prepareLighting(*device, scene, settings.camera, view, features, settings.shade, lighting, stats);
     vertex_colors = lightVertices(*device, scene, objects, view, lighting, stats);
@@ -285,6 +301,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
 
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats) {
+  const TrafficMeter meter{device, stats};
   const ShadeSettings shade = shadeSettings(settings);
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);

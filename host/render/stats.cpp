@@ -47,7 +47,11 @@ std::string statsJson(const Stats& stats) {
   json["counts"] = nlohmann::ordered_json::object();
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
   for (const auto& [name, error] : stats.errors) json["errors"][name] = error;
-  json["memory"] = {{"peak_bytes", peakBytes()}, {"device_bytes", stats.device_bytes}};
+  json["memory"] = {{"peak_bytes", peakBytes()},
+                    {"device_bytes", stats.device_bytes},
+                    {"uploaded_bytes", stats.traffic.bytes_up},
+                    {"downloaded_bytes", stats.traffic.bytes_down},
+                    {"made_bytes", stats.traffic.bytes_made}};
   json["cold_start_milliseconds"] = cold_start;
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;

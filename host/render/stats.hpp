@@ -21,12 +21,14 @@ struct Stats {
   int width = 0, height = 0, samples = 1;
   std::vector<std::pair<std::string, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
-  std::vector<std::string> beside;  ///< of the stages, those that ran in threads of their own while others did
+  /// Of the stages, those that ran in threads of their own while others did
+  std::vector<std::string> beside;
   double began = 0;  ///< when the picture was begun, in milliseconds since the process's start
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< measured ones, where a command measures any
   /// OpenCL buffers of one sample of the largest band, those shared with the host included
   std::size_t device_bytes = 0;
+  Traffic traffic;  ///< of the whole picture, compiling its kernels included
 };
 
 /// Adds `milliseconds` to the stage of that name.
@@ -56,14 +58,17 @@ double pictureMilliseconds(const Stats& stats);
 
 /// The JSON text that --stats writes, by the names of the interface. Of the time it says:
 /// - stages: how long each took, in milliseconds. The device is opened and kernels are compiled by threads of
-///   their own while other stages run, so the sum may be more than the whole; "wait for …" is what was left to
-///   wait for them. wall_milliseconds of a stage: its own share of the whole (see ownShare).
+///   their own while other stages run, so the sum may be more than the whole; "wait for …" is what was left
+///   to wait for them. wall_milliseconds of a stage: its own share of the whole (see ownShare).
 /// - picture_milliseconds: the whole, from the picture's beginning to this text. The first picture's is the
 ///   process's start.
 /// - wall_milliseconds: from the process's start to this text (see millisecondsSinceStart).
 /// - cold_start_milliseconds: opening the device and compiling the kernels.
 /// - kernels_compiled: whether that start was a cold one: how many kernels weren't in the cache, 0 where all
 ///   were, null where the platform doesn't tell (see kernelsCompiled).
+/// Of memory it says:
+/// - peak_bytes: of the process, by the system. device_bytes: see Stats.
+/// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.
 std::string statsJson(const Stats& stats);
 
 }  // namespace luciole

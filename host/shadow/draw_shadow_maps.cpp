@@ -53,6 +53,23 @@ std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::spa
 
 std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; }
 
+/// Adds the texels that a face's task draws. place: as in drawFace.
+void addDrawn(const Task& task, const PlannedFace& face, std::size_t place, std::vector<IndexRange>& drawn) {
+  if (task.moves) {
+    drawn.push_back({place, area(face.count)});
+    return;
+  }
+  const int side = (face.view.size.x + kBinSize - 1) / kBinSize;
+  const auto width = std::size_t(face.count.x);
+  for (int bin = 0; bin < side * side; ++bin) {
+    if (!task.fresh[bin]) continue;
+    const glm::ivec2 first = glm::ivec2(bin % side, bin / side) * kBinSize - face.first;
+    const glm::ivec2 count = glm::min(face.count - first, kBinSize);
+    drawn.push_back({place + std::size_t(first.y) * width + std::size_t(first.x), std::size_t(count.x),
+                     std::size_t(count.y), width});
+  }
+}
+
 /// place: of the face's rectangle among the texels.
 void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std::size_t place,
               ShadowMaps& maps) {
@@ -78,7 +95,8 @@ void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std
 
 }  // namespace
 
-void drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed, ShadowMaps& maps) {
+std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed,
+                                   ShadowMaps& maps) {
   std::vector<Task> tasks;
   const bool exact = maps.method == ShadowMethod::kExact;
   std::size_t held = exact ? maps.bounds.size() : maps.texels.size(), total = held;
@@ -109,12 +127,17 @@ void drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed, Shado
     maps.bounds.resize(total);
   else
     maps.texels.resize(total);
+  const auto placeOf = [&](const Task& task) {
+    const glm::ivec2 first = maps.planned[task.face].first;
+    const ShadowFace& lookup = maps.faces[task.face];
+    return std::size_t(uint(lookup.first + uint(first.y) * lookup.width + uint(first.x)));
+  };
+  std::vector<IndexRange> drawn;
+  for (const Task& task : tasks) addDrawn(task, maps.planned[task.face], placeOf(task), drawn);
   tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
-    const PlannedFace& face = maps.planned[tasks[i].face];
-    const ShadowFace& lookup = maps.faces[tasks[i].face];
-    const uint place = lookup.first + uint(face.first.y) * lookup.width + uint(face.first.x);
-    drawFace(scene, tasks[i], face, place, maps);
+    drawFace(scene, tasks[i], maps.planned[tasks[i].face], placeOf(tasks[i]), maps);
   });
+  return drawn;
 }
 
 }  // namespace luciole

@@ -4,17 +4,18 @@
 #include <cstddef>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
-#include "cl/device.hpp"
 #include "cl/kernel_source.hpp"
+#include "cl/launch.hpp"
 #include "kernels/shared.h"
 
 namespace luciole {
 namespace {
 
-/// Runs a kernel of struct_layout.cl, whose first argument takes what it reports.
-template <class... Arguments>
-std::vector<cl_uint> report(const char* kernel_name, std::size_t count, const Arguments&... arguments) {
+/// Runs a kernel of struct_layout.cl, whose argument `out` takes the `count` numbers that it reports.
+std::vector<uint> report(const char* kernel_name, std::size_t count,
+                         std::vector<KernelArgument> arguments = {}) {
   std::ifstream file(LUCIOLE_SOURCE_DIR "/tests/cl/struct_layout.cl");
   std::stringstream text;
   text << file.rdbuf();
@@ -22,18 +23,16 @@ std::vector<cl_uint> report(const char* kernel_name, std::size_t count, const Ar
   openDevice("", device);
   Kernel kernel =
       makeKernelFromSource(device, expandKernelSource("struct_layout.cl", text.str()), kernel_name, "");
-  const cl::Buffer out = deviceBuffer(device, count * sizeof(cl_uint));
-  kernel.setArg(0, out);
-  cl_uint index = 1;
-  (kernel.setArg(index++, arguments), ...);
-  launch(device, kernel, 1, 1);
-  std::vector<cl_uint> reported(count);
-  readBuffer(device, out, reported.data(), count * sizeof(cl_uint));
+  const Buffer<uint> out = makeBuffer<uint>(device, count);
+  arguments.push_back({"out", out});
+  launch(device, kernel, arguments, {.items = 1});
+  std::vector<uint> reported(count);
+  download(device, out, reported);
   return reported;
 }
 
 void expectLayout(const char* kernel, const std::vector<std::size_t>& host) {
-  const std::vector<cl_uint> device = report(kernel, host.size());
+  const std::vector<uint> device = report(kernel, host.size());
   EXPECT_EQ(std::vector<std::size_t>(device.begin(), device.end()), host);
 }
 
@@ -96,9 +95,9 @@ TEST(StructLayout, FrameArrivesByValue) {
   frame.fog_end = 7;
   frame.fog_mode = 42;
   frame.texel_count = 43;
-  EXPECT_EQ(report("report_frame_argument", 5, frame),
-            (std::vector<cl_uint>{std::bit_cast<cl_uint>(1.5f), std::bit_cast<cl_uint>(-2.25f),
-                                  std::bit_cast<cl_uint>(7.0f), 42, 43}));
+  EXPECT_EQ(report("report_frame_argument", 5, {{"frame", frame}}),
+            (std::vector<uint>{std::bit_cast<uint>(1.5f), std::bit_cast<uint>(-2.25f),
+                               std::bit_cast<uint>(7.0f), 42, 43}));
 }
 
 }  // namespace

@@ -82,9 +82,8 @@ void makeMistake(const char* mistake) {
   Device device;
   openChecked(1, device);
   Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), mistake, "");
-  const cl::Buffer values = deviceBuffer(device, 16 * sizeof(float));
-  kernel.setArg(0, values);
-  launch(device, kernel, 16, 16);
+  const Buffer<float> values = makeBuffer<float>(device, 16);
+  launch(device, kernel, {{"values", values}}, {.items = 16, .group = 16});
   finish(device);
 }
 

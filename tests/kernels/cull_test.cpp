@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -49,28 +50,27 @@ struct Lists {
   }
 };
 
-Lists cullWith(int lanes, const Points& points, std::span<const ShadeLight> lights, unsigned shift,
-               unsigned tests) {
+/// By buffers that may have held other lists.
+Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<const ShadeLight> lights,
+               unsigned shift, unsigned tests) {
   Device& device = deviceWithLanes(lanes);
   const LightTree tree = buildLightTree(lights);
-  const cl::Buffer position = inputBuffer(device, points.position),
-                   normal = inputBuffer(device, points.normal),
-                   light_buffer = inputBuffer(device, lights.data(), lights.size_bytes()),
-                   planes = inputBuffer(device, tree.planes);
-  const LightLists lists = cull(device, {.position = position,
-                                         .normal = normal,
-                                         .plane_stride = points.count(),
-                                         .shift = shift,
-                                         .lights = light_buffer,
-                                         .light_count = lights.size(),
-                                         .tree = planes,
-                                         .tree_stride = tree.stride,
-                                         .tests = tests});
+  cull(device,
+       {.position = borrowed(device, points.position),
+        .normal = borrowed(device, points.normal),
+        .plane_stride = points.count(),
+        .shift = shift,
+        .lights = borrowed(device, lights),
+        .light_count = lights.size(),
+        .tree = borrowed(device, tree.planes),
+        .tree_stride = tree.stride,
+        .tests = tests},
+       lists);
   EXPECT_EQ(lists.tiles, points.count() / kTilePixels);
   std::vector<cl_uint> starts(lists.tiles + 1);
   std::vector<ListEntry> entries(lists.entries);
-  readBuffer(device, lists.starts, starts.data(), starts.size() * sizeof(cl_uint));
-  readBuffer(device, lists.list, entries.data(), entries.size() * sizeof(ListEntry));
+  download(device, lists.starts, starts);
+  download(device, lists.list, entries);
   EXPECT_EQ(starts[0], 0u);
   EXPECT_EQ(starts.back(), entries.size());
   Lists result{{0}, {}};
@@ -88,6 +88,12 @@ Lists cullWith(int lanes, const Points& points, std::span<const ShadeLight> ligh
     }
   }
   return result;
+}
+
+Lists cullWith(int lanes, const Points& points, std::span<const ShadeLight> lights, unsigned shift,
+               unsigned tests) {
+  LightLists lists;
+  return cullInto(lists, lanes, points, lights, shift, tests);
 }
 
 /// By every width, which give the same.
@@ -394,6 +400,22 @@ TEST(CullKernels, ListsGrowAsLongAsTheyMust) {
     for (std::size_t entry = 0; entry < lists.list.size(); ++entry)
       ASSERT_EQ(lists.list[entry], entry % 20001);
   }
+}
+
+TEST(CullKernels, ListsAreTheSameInBuffersThatHeldOthers) {
+  Random random(9);
+  const Points many = randomPoints(6, random), few = randomPoints(3, random);
+  const std::vector<ShadeLight> lights(1000, pointLight({0, 0, 0}, INFINITY));
+  const std::span all(lights);
+  LightLists lists;
+  cullInto(lists, 1, many, all, 8, kByCone);
+  const auto memory = [&] {
+    return std::array{lists.starts.memory.handle(), lists.list.memory.handle(), lists.found.memory.handle()};
+  };
+  const auto before = memory();
+  EXPECT_EQ(cullInto(lists, 1, few, all.first(70), 4, kByCone), cullWith(1, few, all.first(70), 4, kByCone));
+  EXPECT_EQ(cullInto(lists, 1, many, all, 8, kByCone), cullWith(1, many, all, 8, kByCone));
+  EXPECT_EQ(memory(), before);
 }
 
 TEST(CullKernels, NoLightsAndNoPixelsMakeEmptyLists) {

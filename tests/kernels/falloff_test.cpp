@@ -16,7 +16,7 @@ constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 /// distance_falloff and spot_falloff of one light for each vector to it.
 std::vector<Column> falloffs(int lanes, const ShadeLight& light, const std::vector<Column>& to_light,
                              const std::string& defines = "") {
-  return probe(deviceWithLanes(lanes), "falloff_probe.cl", "probe_falloff", to_light, 2, {bytesOf(light)},
+  return probe(deviceWithLanes(lanes), "falloff_probe.cl", "probe_falloff", to_light, 2, {{"light", light}},
                defines);
 }
 

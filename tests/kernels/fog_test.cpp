@@ -73,7 +73,7 @@ void expectFog(const ShadeFrame& frame, const char* defines) {
   const float density[3] = {frame.fog_density.x, frame.fog_density.y, frame.fog_density.z};
   for (const int lanes : lanesFor(defines)) {
     Device& device = deviceWithLanes(lanes);
-    const auto out = probe(device, "fog_probe.cl", "probe_fog", in, 3, {bytesOf(frame)}, defines);
+    const auto out = probe(device, "fog_probe.cl", "probe_fog", in, 3, {{"frame", frame}}, defines);
     for (std::size_t i = 0; i < in[0].size(); ++i) {
       const double distance =
           frame.fog_radial ? glm::length(glm::dvec3(in[3][i], in[4][i], in[5][i])) : -double(in[5][i]);
@@ -123,7 +123,7 @@ TEST(FogKernels, OutsideTheFogColoursStayAsTheyAre) {
   for (const int lanes : kAllLanes) {
     Device& device = deviceWithLanes(lanes);
     for (const ShadeFrame& frame : {none, before, thin}) {
-      EXPECT_EQ(probe(device, "fog_probe.cl", "probe_fog", in, 3, {bytesOf(frame)}), colors)
+      EXPECT_EQ(probe(device, "fog_probe.cl", "probe_fog", in, 3, {{"frame", frame}}), colors)
           << frame.fog_mode;
     }
   }
@@ -138,7 +138,7 @@ TEST(FogKernels, BeyondTheFogNothingIsLeft) {
     frame.fog_mode = mode;
     for (const int lanes : kAllLanes) {
       Device& device = deviceWithLanes(lanes);
-      const auto out = probe(device, "fog_probe.cl", "probe_fog", in, 3, {bytesOf(frame)});
+      const auto out = probe(device, "fog_probe.cl", "probe_fog", in, 3, {{"frame", frame}});
       EXPECT_EQ(out[0], Column(in[0].size(), frame.fog_color.x)) << mode;
       EXPECT_EQ(out[2], Column(in[0].size(), frame.fog_color.z)) << mode;
     }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cl/device.hpp"
+#include "cl/buffer.hpp"
 
 namespace luciole::test {
 
@@ -30,7 +30,11 @@ class GuardedBuffer {
     if (!content.empty()) device.queue.enqueueWriteBuffer(part_, CL_TRUE, 0, content.size(), content.data());
   }
 
-  const cl::Buffer& buffer() const { return part_; }
+  /// For launch(). It belongs to this.
+  template <class Element>
+  Buffer<Element> as() const {
+    return {{part_, {}}, (end_ - guard_bytes_) / sizeof(Element)};
+  }
 
   /// Whether all that was launched before left the guard words alone.
   bool intact(Device& device) const {

@@ -17,9 +17,7 @@ bool intactAfterWriteAt(int place) {
   Device& device = deviceWithLanes(1);
   const GuardedBuffer values(device, 16 * sizeof(float));
   Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "write_at", "");
-  kernel.setArg(0, values.buffer());
-  kernel.setArg(1, cl_int(place));
-  launch(device, kernel, 1, 1);
+  launch(device, kernel, {{"values", values.as<float>()}, {"place", place}}, {.items = 1});
   return values.intact(device);
 }
 
@@ -31,16 +29,14 @@ TEST(GuardedBuffer, SeesAWriteJustPastEitherEndAndAsFarAsItIsLong) {
 TEST(GuardedBuffer, ReadsPastTheEndAreNaN) {
   Device& device = deviceWithLanes(1);
   const std::vector<float> ones(16, 1.0f);
-  const GuardedBuffer values(device, bytesOf(ones));
+  const GuardedBuffer values(device, std::as_bytes(std::span(ones)));
   std::vector<float> found(1);
-  const GuardedBuffer output(device, sizeof(float));
+  const Buffer<float> output = makeBuffer<float>(device, 1);
   Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "read_at", "");
   for (const int place : {-1, 0, 15, 16}) {
-    kernel.setArg(0, values.buffer());
-    kernel.setArg(1, output.buffer());
-    kernel.setArg(2, cl_int(place));
-    launch(device, kernel, 1, 1);
-    device.queue.enqueueReadBuffer(output.buffer(), CL_TRUE, 0, sizeof(float), found.data());
+    launch(device, kernel, {{"values", values.as<const float>()}, {"found", output}, {"place", place}},
+           {.items = 1});
+    download(device, output, found);
     EXPECT_EQ(std::isnan(found[0]), place < 0 || place > 15) << place;
   }
 }

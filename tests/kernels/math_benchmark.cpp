@@ -26,17 +26,15 @@ void timeKernel(benchmark::State& state, const char* kernel_name, const std::vec
   Plane block;  // aligned to whole rows
   for (const Column& column : in)
     for (std::size_t i = 0; i < kBlock; ++i) block.push_back(column[i * column.size() / kBlock]);
-  const cl::Buffer input = inputBuffer(device(), block),
-                   sums = deviceBuffer(device(), kItems * device().description.lanes * sizeof(float));
+  const Buffer<const float> input = borrowed(device(), block);
+  const Buffer<float> sums = makeBuffer<float>(device(), kItems * std::size_t(device().description.lanes));
   Kernel kernel = makeKernelFromSource(device(), probeSource("math_benchmark.cl"), kernel_name, defines);
-  kernel.setArg(0, input);
-  kernel.setArg(1, sums);
-  kernel.setArg(2, static_cast<cl_uint>(kBlock));
-  launch(device(), kernel, kItems, 1);
-  for (auto _ : state) {
-    launch(device(), kernel, kItems, 1);
+  const auto run = [&] {
+    launch(device(), kernel, {{"in", input}, {"out", sums}, {"stride", uint(kBlock)}}, {.items = kItems});
     finish(device());
-  }
+  };
+  run();  // compiles
+  for (auto _ : state) run();
   using benchmark::Counter;
   state.counters["seconds_a_value"] =
       Counter(kBlock * kItems, Counter::kIsIterationInvariantRate | Counter::kInvert);

@@ -9,10 +9,11 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "cl/device.hpp"
 #include "cl/kernel_source.hpp"
+#include "cl/launch.hpp"
 #include "kernels/guarded_buffer.hpp"
 
 // Kernels of the tests' own, in files beside the tests, that call one function of kernels/*.clh for every
@@ -47,23 +48,32 @@ inline std::string probeSource(const std::string& file) {
 /// One value for each case.
 using Column = std::vector<float>;
 
-/// The bytes of a struct or of a container's elements, as probe() takes them.
-template <class Struct>
-std::span<const std::byte> bytesOf(const Struct& value) {
-  return std::as_bytes(std::span(&value, 1));
-}
-template <class Element>
-std::span<const std::byte> bytesOf(const std::vector<Element>& values) {
-  return std::as_bytes(std::span(values));
-}
+/// What a kernel reads beside the columns: the name of its argument, and the struct or the elements there.
+struct ProbeInput {
+  template <class Struct>
+  ProbeInput(const char* name_, const Struct& value)
+      : name(name_), bytes(std::as_bytes(std::span(&value, 1))), argument(argumentOf<Struct>) {}
+  template <class Element>
+  ProbeInput(const char* name_, const std::vector<Element>& values)
+      : name(name_), bytes(std::as_bytes(std::span(values))), argument(argumentOf<Element>) {}
 
-/// Runs kernel `name` of tests/kernels/`file`, whose arguments are (in, out, stride, more…): a work-item
-/// reads LANES cases from the columns of `in`, and writes as many of `outputs` columns, `stride` floats
-/// apart. Throws std::runtime_error where the kernel wrote past the end of a buffer.
+  const char* name;
+  std::span<const std::byte> bytes;
+  KernelArgument (*argument)(const char* name, const GuardedBuffer& buffer);
+
+ private:
+  template <class Element>
+  static KernelArgument argumentOf(const char* name, const GuardedBuffer& buffer) {
+    return {name, buffer.as<const Element>()};
+  }
+};
+
+/// Runs kernel `name` of tests/kernels/`file`, whose arguments are in, out, stride and those of `more`: a
+/// work-item reads LANES cases from the columns of `in`, and writes as many of `outputs` columns, `stride`
+/// floats apart. Throws std::runtime_error where the kernel wrote past the end of a buffer.
 inline std::vector<Column> probe(Device& device, const std::string& file, const char* name,
                                  const std::vector<Column>& in, std::size_t outputs,
-                                 const std::vector<std::span<const std::byte>>& more = {},
-                                 const std::string& defines = "") {
+                                 const std::vector<ProbeInput>& more = {}, const std::string& defines = "") {
   constexpr std::size_t kMostLanes = 16;
   const std::size_t cases = in.at(0).size();
   const std::size_t stride = (cases + kMostLanes - 1) / kMostLanes * kMostLanes;
@@ -72,23 +82,25 @@ inline std::vector<Column> probe(Device& device, const std::string& file, const 
     columns.insert(columns.end(), column.begin(), column.end());
     columns.resize(columns.size() + stride - cases, column.back());
   }
-  const std::size_t output_bytes = outputs * stride * sizeof(float);
-  std::deque<GuardedBuffer> buffers;
-  buffers.emplace_back(device, bytesOf(columns));
-  const GuardedBuffer& output = buffers.emplace_back(device, output_bytes);
-  for (const std::span<const std::byte> bytes : more) buffers.emplace_back(device, bytes);
+  const GuardedBuffer output(device, outputs * stride * sizeof(float));
+  std::deque<std::pair<std::string, GuardedBuffer>> inputs;
+  std::vector<KernelArgument> arguments{{"stride", uint(stride)}, {"out", output.as<float>()}};
+  const auto add = [&](const ProbeInput& input) {
+    inputs.emplace_back(input.name, GuardedBuffer(device, input.bytes));
+    arguments.push_back(input.argument(input.name, inputs.back().second));
+  };
+  add({"in", columns});
+  for (const ProbeInput& input : more) add(input);
   Kernel kernel = makeKernelFromSource(device, probeSource(file), name, defines);
-  kernel.setArg(0, buffers[0].buffer());
-  kernel.setArg(1, output.buffer());
-  kernel.setArg(2, static_cast<cl_uint>(stride));
-  for (std::size_t i = 0; i < more.size(); ++i)
-    kernel.setArg(static_cast<cl_uint>(3 + i), buffers[2 + i].buffer());
-  launch(device, kernel, stride / device.description.lanes, 1);
-  for (std::size_t i = 0; i < buffers.size(); ++i)
-    if (!buffers[i].intact(device))
-      throw std::runtime_error(std::string(name) + " wrote past the end of buffer " + std::to_string(i));
+  launch(device, kernel, arguments, {.items = stride / std::size_t(device.description.lanes)});
+  const auto expectIntact = [&](const std::string& argument, const GuardedBuffer& buffer) {
+    if (!buffer.intact(device))
+      throw std::runtime_error(std::string(name) + " wrote past the end of " + argument);
+  };
+  expectIntact("out", output);
+  for (const auto& [argument, buffer] : inputs) expectIntact(argument, buffer);
   std::vector<float> values(outputs * stride);
-  device.queue.enqueueReadBuffer(output.buffer(), CL_TRUE, 0, output_bytes, values.data());
+  download(device, output.as<float>(), values);
   std::vector<Column> out;
   for (std::size_t i = 0; i < outputs; ++i)
     out.emplace_back(values.begin() + i * stride, values.begin() + i * stride + cases);

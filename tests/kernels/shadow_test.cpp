@@ -58,13 +58,14 @@ struct Map {
 Column visibility(int lanes, const Map& map, const std::vector<Receiver>& receivers, const char* defines) {
   const auto texel_count = cl_uint(map.texels.size());
   return probe(deviceWithLanes(lanes), "shadow_probe.cl", "probe_shadow", columnsOf(receivers), 1,
-               {bytesOf(map.map), bytesOf(map.faces), bytesOf(map.texels), bytesOf(texel_count)}, defines)[0];
+               {{"map", map.map}, {"faces", map.faces}, {"texels", map.texels}, {"texel_count", texel_count}},
+               defines)[0];
 }
 
 /// Where lookups go: x, y, depth, rise_x, rise_y, face, inside.
 std::vector<Column> places(int lanes, const Map& map, const std::vector<Receiver>& receivers) {
   return probe(deviceWithLanes(lanes), "shadow_probe.cl", "probe_point", columnsOf(receivers), 7,
-               {bytesOf(map.map), bytesOf(map.faces)});
+               {{"map", map.map}, {"faces", map.faces}});
 }
 
 /// Texels whose filters stay on a face of the tests' maps.

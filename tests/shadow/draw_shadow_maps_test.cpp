@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
@@ -75,6 +76,49 @@ TEST(DrawShadowMaps, TexelsAreTheSameHoweverMuchIsDrawn) {
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
   EXPECT_GT(compared, all.texels.size() / 4);
+}
+
+TEST(DrawShadowMaps, ACopyOfWhatWasDrawnStaysUpToDate) {
+  const Scene scene = terrainScene();
+  ShadowMaps maps = planFor(scene, {200, 100}, {.size = 500});
+  std::vector<ShadowTexel> copy;
+  std::mt19937 random(31);
+  for (int round = 0; round < 12; ++round) {
+    std::vector<std::uint32_t> needed = nothing(maps);
+    for (std::uint32_t& bin : needed)
+      if (random() % 8 == 0) bin = 0;
+    const std::vector<IndexRange> drawn = drawNeeded(scene, needed, maps);
+    copy.resize(maps.texels.size());
+    for (const IndexRange& range : drawn) {
+      for (std::size_t row = 0; row < range.rows; ++row) {
+        const std::size_t first = range.first + row * range.pitch;
+        ASSERT_LE(first + range.count, copy.size());
+        std::copy_n(maps.texels.data() + first, range.count, copy.data() + first);
+      }
+    }
+    ASSERT_EQ(std::memcmp(copy.data(), maps.texels.data(), copy.size() * sizeof(ShadowTexel)), 0)
+        << "round " << round;
+  }
+}
+
+TEST(DrawShadowMaps, ABinInsideItsFacesRectangleIsToldByItself) {
+  const Scene scene = terrainScene();
+  ShadowMaps maps = planFor(scene, {200, 100}, {.size = 512});
+  std::vector<std::uint32_t> needed = nothing(maps);
+  const auto bin = [&](uint x, uint y) -> std::uint32_t& {
+    return needed.at(maps.faces[2].first_bin + y * maps.faces[2].bins + x);
+  };
+  bin(1, 1) = bin(3, 2) = 0;
+  drawNeeded(scene, needed, maps);
+  EXPECT_TRUE(drawNeeded(scene, needed, maps).empty()) << "what is there already";
+  bin(2, 2) = 0;
+  const std::vector<IndexRange> drawn = drawNeeded(scene, needed, maps);
+  ASSERT_EQ(drawn.size(), 1u);
+  const std::size_t width = 3 * kShadowBin;
+  EXPECT_EQ(drawn[0].first, kShadowBin * width + kShadowBin);
+  EXPECT_EQ(drawn[0].count, std::size_t(kShadowBin));
+  EXPECT_EQ(drawn[0].rows, std::size_t(kShadowBin));
+  EXPECT_EQ(drawn[0].pitch, width);
 }
 
 TEST(DrawShadowMaps, OnlyNeededBinsAreDrawnAndOnlyOnce) {

@@ -1,0 +1,153 @@
+#include "cl/buffer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <vector>
+
+#include "base/array_memory.hpp"
+#include "cl/device_error.hpp"
+
+namespace luciole {
+namespace {
+
+/// Memory of ours that a buffer lies in.
+struct OwnArray {
+  void* memory;
+  std::size_t bytes;
+  explicit OwnArray(std::size_t size) : memory(allocateArray(size)), bytes(size) {}
+  OwnArray(const OwnArray&) = delete;
+  OwnArray& operator=(const OwnArray&) = delete;
+  ~OwnArray() { freeArray(memory, bytes); }
+};
+
+void CL_CALLBACK freeOwnArray(cl_mem, void* array) { delete static_cast<OwnArray*>(array); }
+
+/// Ends when nothing queued works on what was lent.
+struct Loan {
+  cl::CommandQueue queue;
+  ~Loan() {
+    try {
+      queue.finish();
+    } catch (const cl::Error&) {
+      // A queue that fails has stopped.
+    }
+  }
+};
+
+void count(Device& device, std::uint64_t Traffic::*kind, std::size_t bytes) {
+  const std::lock_guard lock(device.notes_mutex);
+  device.traffic.*kind += bytes;
+}
+
+/// A buffer of memory that OpenCL or the host has: see clCreateBuffer.
+cl::Buffer create(Device& device, cl_mem_flags flags, std::size_t size, void* array) {
+  try {
+    return cl::Buffer(device.context, flags, size, array);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+/// In the host's array, where memory is shared.
+DeviceMemory inPlace(Device& device, cl_mem_flags access, void* array, std::size_t size) {
+  return {create(device, access | CL_MEM_USE_HOST_PTR, size, array), std::make_shared<Loan>(device.queue)};
+}
+
+}  // namespace
+
+namespace bytes {
+
+DeviceMemory make(Device& device, std::size_t size) {
+  size = std::max(size, sizeof(cl_float4));
+  DeviceMemory memory;
+  if (!device.shares_host_memory) {
+    memory.handle = create(device, CL_MEM_READ_WRITE, size, nullptr);
+  } else {
+    try {
+      // Our own memory, for its larger pages.
+      auto array = std::make_unique<OwnArray>(size);
+      memory.handle = create(device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size, array->memory);
+      memory.handle.setDestructorCallback(freeOwnArray, array.get());
+      array.release();
+    } catch (const std::bad_alloc&) {
+      throw MachineError(fmt::format("{}: out of memory", device.description.name));
+    } catch (const cl::Error& error) {
+      throw deviceError(error, device.description.name);
+    }
+  }
+  count(device, &Traffic::bytes_made, size);
+  return memory;
+}
+
+DeviceMemory borrow(Device& device, const void* array, std::size_t size) {
+  if (size == 0) return make(device, 0);
+  void* const values = const_cast<void*>(array);
+  if (device.shares_host_memory) return inPlace(device, CL_MEM_READ_ONLY, values, size);
+  DeviceMemory memory{create(device, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, size, values), {}};
+  count(device, &Traffic::bytes_made, size);
+  count(device, &Traffic::bytes_up, size);
+  return memory;
+}
+
+DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size) {
+  if (size == 0 || !device.shares_host_memory) return make(device, size);
+  return inPlace(device, CL_MEM_READ_WRITE, array, size);
+}
+
+void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range) {
+  if (range.count == 0 || range.rows == 0) return;
+  const char* const first = static_cast<const char*>(whole) + range.first;
+  try {
+    if (range.rows == 1) {
+      device.queue.enqueueWriteBuffer(memory.handle, CL_TRUE, range.first, range.count, first);
+    } else {
+      const std::array<std::size_t, 3> place{range.first % range.pitch, range.first / range.pitch, 0};
+      device.queue.enqueueWriteBufferRect(memory.handle, CL_TRUE, place, place, {range.count, range.rows, 1},
+                                          range.pitch, 0, range.pitch, 0, const_cast<void*>(whole));
+    }
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+  if (!device.shares_host_memory) count(device, &Traffic::bytes_up, range.count * range.rows);
+}
+
+void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size) {
+  if (size == 0) return;
+  finish(device);  // by itself, so that an error of a kernel carries its name
+  try {
+    if (memory.loan && memory.handle.getInfo<CL_MEM_HOST_PTR>() == array && offset == 0) {
+      // The buffer is this very memory: mapping it is what makes its content the host's.
+      void* mapped = device.queue.enqueueMapBuffer(memory.handle, CL_TRUE, CL_MAP_READ, 0, size);
+      device.queue.enqueueUnmapMemObject(memory.handle, mapped);
+      device.queue.finish();
+      return;
+    }
+    device.queue.enqueueReadBuffer(memory.handle, CL_TRUE, offset, size, array);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+  if (!device.shares_host_memory) count(device, &Traffic::bytes_down, size);
+}
+
+void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size) {
+  try {
+    if (size > 0) device.queue.enqueueCopyBuffer(from.handle, to.handle, 0, 0, size);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+}
+
+void fill(Device& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
+          std::size_t size) {
+  // Not by clEnqueueFillBuffer: what that has filled, Oclgrind 21.10 takes for unwritten.
+  const auto* const first = static_cast<const std::byte*>(element);
+  std::vector<std::byte> values;
+  while (values.size() < size) values.insert(values.end(), first, first + element_size);
+  write(device, memory, values.data(), {0, size});
+}
+
+}  // namespace bytes
+}  // namespace luciole

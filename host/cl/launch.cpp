@@ -1,0 +1,139 @@
+#include "cl/launch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "base/machine_memory.hpp"
+#include "cl/device_error.hpp"
+#include "cl/kernel_source.hpp"
+
+namespace luciole {
+namespace {
+
+/// What must be left when a program is compiled. Measured as what a platform takes is (device.cpp), which
+/// this is a part of.
+constexpr double kCompilerBytes = 64 << 20;
+
+std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
+  std::vector<DeclaredArgument> arguments;
+  const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+  for (cl_uint i = 0; i < count; ++i) {
+    // Some platforms leave the terminator in the text.
+    arguments.push_back(
+        {kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i).c_str(),
+         kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i).c_str(),
+         kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i),
+         (kernel.getArgInfo<CL_KERNEL_ARG_TYPE_QUALIFIER>(i) & CL_KERNEL_ARG_TYPE_CONST) != 0});
+  }
+  return arguments;
+}
+
+/// The kernel `name` of the program known by `key`, which is built from the source that source() gives where
+/// it isn't there yet.
+template <class Source>
+Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
+                    Source&& source) {
+  const std::lock_guard lock(device.programs_mutex);
+  try {
+    const std::string options =
+        fmt::format("-cl-std=CL1.2 -cl-denorms-are-zero -cl-kernel-arg-info -DLANES={} {}",
+                    device.description.lanes, defines);
+    auto place = device.programs.find(options + key);
+    if (place == device.programs.end()) {
+      requireMemory(kCompilerBytes, "compiling kernels");
+      cl::Program program(device.context, source());
+      program.build({device.device}, options.c_str());
+      place = device.programs.emplace(options + key, std::move(program)).first;
+    }
+    const cl::Kernel kernel(place->second, name);
+    return {kernel, name, declaredArguments(kernel)};
+  } catch (const cl::BuildError& error) {
+    std::string log;
+    for (const auto& [where, text] : error.getBuildLog()) log += text;
+    std::replace(log.begin(), log.end(), '\n', ' ');
+    throw MachineError(fmt::format("{}: kernel '{}' does not compile: {}", device.description.name, name,
+                                   log.substr(0, 1000)));
+  } catch (const cl::Error& error) {
+    if (error.err() == CL_KERNEL_ARG_INFO_NOT_AVAILABLE)
+      throw MachineError(fmt::format(
+          "{}: this OpenCL driver doesn't tell what the arguments of kernel '{}' are called, by which "
+          "they are set (CL_KERNEL_ARG_INFO_NOT_AVAILABLE): try another driver or device",
+          device.description.name, name));
+    throw deviceError(error, fmt::format("{}: kernel '{}'", device.description.name, name));
+  }
+}
+
+/// Why an argument can't have a value; empty: it can.
+std::string whyNot(const DeclaredArgument& declared, const KernelArgument& given) {
+  if (declared.space == CL_KERNEL_ARG_ADDRESS_LOCAL) return "is in local memory, where launch() puts nothing";
+  if (declared.type != given.type) return fmt::format("is a {}, not a {}", declared.type, given.type);
+  const bool writes = declared.space == CL_KERNEL_ARG_ADDRESS_GLOBAL && !declared.is_const;
+  if (writes && given.is_read_only) return "isn't const, but the buffer may only be read";
+  return "";
+}
+
+/// The one of the declared arguments that each given one is for. Throws std::logic_error where they don't
+/// match.
+std::vector<cl_uint> matchArguments(const Kernel& kernel, const std::vector<KernelArgument>& given) {
+  const auto refuse = [&](std::string_view argument, const std::string& why) {
+    throw std::logic_error(fmt::format("kernel '{}', argument '{}' {}", kernel.name, argument, why));
+  };
+  std::vector<cl_uint> places;
+  for (const KernelArgument& argument : given) {
+    const auto found = std::find_if(kernel.arguments.begin(), kernel.arguments.end(),
+                                    [&](const DeclaredArgument& one) { return one.name == argument.name; });
+    if (found == kernel.arguments.end()) refuse(argument.name, "is none of its arguments");
+    const auto place = cl_uint(found - kernel.arguments.begin());
+    if (std::find(places.begin(), places.end(), place) != places.end())
+      refuse(argument.name, "is given twice");
+    if (const std::string why = whyNot(*found, argument); !why.empty()) refuse(argument.name, why);
+    places.push_back(place);
+  }
+  for (cl_uint i = 0; i < kernel.arguments.size(); ++i)
+    if (std::find(places.begin(), places.end(), i) == places.end())
+      refuse(kernel.arguments[i].name, "is missing");
+  return places;
+}
+
+}  // namespace
+
+Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
+  return makeKernelOf(device, file, name, defines, [&] { return kernelSource(file); });
+}
+
+Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+                            const std::string& defines) {
+  return makeKernelOf(device, source, name, defines, [&] { return source; });
+}
+
+void launch(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
+            const WorkItems& work) {
+  const std::vector<cl_uint> places = matchArguments(kernel, arguments);
+  if (work.items == 0) return;
+  std::string what = fmt::format("{}: kernel '{}'", device.description.name, kernel.name);
+  try {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      try {
+        kernel.kernel.setArg(places[i], arguments[i].value.size(), arguments[i].value.data());
+      } catch (const cl::Error&) {
+        what += fmt::format(", argument '{}'", arguments[i].name);
+        throw;
+      }
+    }
+    const std::size_t most =
+        std::min(kernel.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device),
+                 device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
+    std::size_t group = work.group;
+    while (group > std::max<std::size_t>(most, 1)) group /= 2;
+    device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange, cl::NDRange(work.items),
+                                      cl::NDRange(group));
+  } catch (const cl::Error& error) {
+    throw deviceError(error, what);
+  }
+  const std::lock_guard lock(device.notes_mutex);
+  device.running_kernel = kernel.name;
+}
+
+}  // namespace luciole

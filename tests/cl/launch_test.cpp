@@ -1,0 +1,216 @@
+#include "cl/launch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cl/kernel_source.hpp"
+#include "cl/messages.hpp"
+
+namespace luciole::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A device of the test's own.
+struct WithDevice : testing::Test {
+  Device device;
+  WithDevice() { openDevice("", device); }
+};
+
+using MakeKernel = WithDevice;
+
+TEST_F(MakeKernel, CompileErrorNamesTheRealFileAndLine) {
+  // Line 4, after an include of many lines that includes more.
+  const std::string text =
+      "// a probe\n#include \"math.clh\"\n__kernel void probe(__global float *out) {\n  *out = "
+      "no_such_thing;\n}\n";
+  const std::string message = messageOf<MachineError>(
+      [&] { makeKernelFromSource(device, expandKernelSource("broken.cl", text), "probe", ""); });
+  EXPECT_THAT(message, HasSubstr("kernels/broken.cl:4"));
+  EXPECT_THAT(message, HasSubstr("no_such_thing"));
+  EXPECT_THAT(message, HasSubstr("'probe'"));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+TEST_F(MakeKernel, ErrorInAnIncludedFileNamesThatFile) {
+  // A number in place of the name of a function.
+  const std::string text = "#define distance_falloff 1\n#include \"falloff.clh\"\n";
+  EXPECT_THAT(messageOf<MachineError>(
+                  [&] { makeKernelFromSource(device, expandKernelSource("broken.cl", text), "probe", ""); }),
+              HasSubstr("kernels/falloff.clh:"));
+}
+
+TEST_F(MakeKernel, ProgramsAreBuiltOnceADevice) {
+  const std::string source = "__kernel void probe(__global float *out) { *out = VALUE; }\n";
+  makeKernelFromSource(device, source, "probe", "-DVALUE=1");
+  makeKernelFromSource(device, source, "probe", "-DVALUE=1");
+  EXPECT_EQ(device.programs.size(), 1u);
+  makeKernelFromSource(device, source, "probe", "-DVALUE=2");
+  EXPECT_EQ(device.programs.size(), 2u);
+}
+
+TEST_F(MakeKernel, AKernelThatTheProgramLacksIsTold) {
+  const std::string source = "__kernel void probe(__global float *out) { *out = 1; }\n";
+  EXPECT_THAT(messageOf<MachineError>([&] { makeKernelFromSource(device, source, "prob", ""); }),
+              AllOf(HasSubstr("kernel 'prob'"), HasSubstr("CL_INVALID_KERNEL_NAME")));
+}
+
+TEST_F(MakeKernel, ArgumentsAreThoseOfTheSource) {
+  const Kernel kernel = makeKernelFromSource(
+      device,
+      "typedef struct { float x; } Own;\n"
+      "__kernel void probe(__global const Own *in, Own own, uint count, __constant float4 *fixed,\n"
+      "                    __global float *restrict out, __local int *scratch) { *out = in->x; }\n",
+      "probe", "");
+  const std::vector<DeclaredArgument> expected{{"in", "Own*", CL_KERNEL_ARG_ADDRESS_GLOBAL, true},
+                                               {"own", "Own", CL_KERNEL_ARG_ADDRESS_PRIVATE, false},
+                                               {"count", "uint", CL_KERNEL_ARG_ADDRESS_PRIVATE, false},
+                                               {"fixed", "float4*", CL_KERNEL_ARG_ADDRESS_CONSTANT, true},
+                                               {"out", "float*", CL_KERNEL_ARG_ADDRESS_GLOBAL, false},
+                                               {"scratch", "int*", CL_KERNEL_ARG_ADDRESS_LOCAL, false}};
+  ASSERT_EQ(kernel.arguments.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(kernel.arguments[i].name, expected[i].name);
+    EXPECT_EQ(kernel.arguments[i].type, expected[i].type) << expected[i].name;
+    EXPECT_EQ(kernel.arguments[i].space, expected[i].space) << expected[i].name;
+    EXPECT_EQ(kernel.arguments[i].is_const, expected[i].is_const) << expected[i].name;
+  }
+}
+
+/// A kernel that writes scale · (in[i] + offset) to out[i].
+struct Launch : WithDevice {
+  const std::vector<float> values{1, 2, 3, 4};
+  Buffer<const float> in = borrowed(device, values);
+  Buffer<float> out = makeBuffer<float>(device, 4);
+  Kernel kernel = makeKernelFromSource(
+      device,
+      "__kernel void probe(__global const float *in, float scale, uint offset, __global float *out) {\n"
+      "  out[get_global_id(0)] = scale * (in[get_global_id(0)] + offset);\n"
+      "}\n",
+      "probe", "");
+
+  void run(const std::vector<KernelArgument>& arguments) { launch(device, kernel, arguments, {.items = 4}); }
+  /// What is wrong with the arguments.
+  std::string mistake(const std::vector<KernelArgument>& arguments) {
+    return messageOf<std::logic_error>([&] { run(arguments); });
+  }
+};
+
+TEST_F(Launch, ArgumentsAreFoundByNameInAnyOrder) {
+  run({{"out", out}, {"offset", 10u}, {"in", in}, {"scale", 2.0f}});
+  std::vector<float> back(4);
+  download(device, out, back);
+  EXPECT_EQ(back, (std::vector<float>{22, 24, 26, 28}));
+}
+
+TEST_F(Launch, ABufferThatMayBeWrittenMayBeRead) {
+  const Buffer<float> same = makeBuffer<float>(device, 4);
+  fill(device, same, 5.0f);
+  run({{"in", same}, {"scale", 1.0f}, {"offset", 1u}, {"out", out}});
+  std::vector<float> back(4);
+  download(device, out, back);
+  EXPECT_EQ(back, std::vector<float>(4, 6.0f));
+}
+
+TEST_F(Launch, AMissingArgumentIsNamed) {
+  EXPECT_EQ(mistake({{"in", in}, {"scale", 2.0f}, {"out", out}}),
+            "kernel 'probe', argument 'offset' is missing");
+}
+
+TEST_F(Launch, AMisspeltArgumentIsNamed) {
+  EXPECT_EQ(mistake({{"in", in}, {"scala", 2.0f}, {"offset", 1u}, {"out", out}}),
+            "kernel 'probe', argument 'scala' is none of its arguments");
+}
+
+TEST_F(Launch, AnArgumentThatIsGivenTwiceIsNamed) {
+  EXPECT_EQ(mistake({{"in", in}, {"scale", 2.0f}, {"scale", 2.0f}, {"offset", 1u}, {"out", out}}),
+            "kernel 'probe', argument 'scale' is given twice");
+}
+
+TEST_F(Launch, AValueOfAnotherTypeIsRefusedThoughItIsAsLarge) {
+  EXPECT_EQ(mistake({{"in", in}, {"scale", 2u}, {"offset", 1u}, {"out", out}}),
+            "kernel 'probe', argument 'scale' is a float, not a uint");
+}
+
+TEST_F(Launch, ABufferOfAnotherTypeIsRefused) {
+  EXPECT_EQ(
+      mistake({{"in", makeBuffer<ShadeLight>(device, 4)}, {"scale", 2.0f}, {"offset", 1u}, {"out", out}}),
+      "kernel 'probe', argument 'in' is a float*, not a ShadeLight*");
+}
+
+TEST_F(Launch, AValueInPlaceOfABufferIsRefused) {
+  EXPECT_EQ(mistake({{"in", 1.0f}, {"scale", 2.0f}, {"offset", 1u}, {"out", out}}),
+            "kernel 'probe', argument 'in' is a float*, not a float");
+}
+
+TEST_F(Launch, ABufferToReadIsRefusedWhereTheKernelMayWrite) {
+  EXPECT_EQ(mistake({{"in", in}, {"scale", 2.0f}, {"offset", 1u}, {"out", in}}),
+            "kernel 'probe', argument 'out' isn't const, but the buffer may only be read");
+}
+
+TEST_F(Launch, LocalMemoryIsRefused) {
+  Kernel local = makeKernelFromSource(
+      device, "__kernel void probe(__local float *scratch) { *scratch = 1; }\n", "probe", "");
+  EXPECT_EQ(messageOf<std::logic_error>([&] {
+              launch(device, local, {{"scratch", out}}, {.items = 1});
+            }),
+            "kernel 'probe', argument 'scratch' is in local memory, where launch() puts nothing");
+}
+
+TEST_F(Launch, MistakesShowWithoutAnyWorkItems) {
+  EXPECT_THROW(launch(device, kernel, {}, {.items = 0}), std::logic_error);
+}
+
+TEST_F(Launch, AValueThatTheDeviceRefusesIsToldWithKernelArgumentAndTheErrorsName) {
+  KernelArgument offset("offset", 1u);
+  offset.value.resize(2 * sizeof(uint));  // as if host and device disagreed
+  const std::string message = messageOf<MachineError>([&] {
+    run({{"in", in}, {"scale", 2.0f}, offset, {"out", out}});
+  });
+  EXPECT_THAT(message,
+              AllOf(HasSubstr(device.description.name), HasSubstr("kernel 'probe', argument 'offset'"),
+                    HasSubstr("clSetKernelArg"), HasSubstr("CL_INVALID_ARG_SIZE")));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+TEST_F(Launch, WhatTheQueueRefusesIsToldWithTheKernel) {
+  // Groups that don't divide the items.
+  EXPECT_THAT(messageOf<MachineError>([&] {
+                launch(device, kernel, {{"in", in}, {"scale", 2.0f}, {"offset", 1u}, {"out", out}},
+                       {.items = 3, .group = 2});
+              }),
+              AllOf(HasSubstr("kernel 'probe'"), HasSubstr("CL_INVALID_WORK_GROUP_SIZE")));
+}
+
+TEST_F(Launch, AQueueThatFailsLaterIsToldWithTheKernel) {
+  run({{"in", in}, {"scale", 2.0f}, {"offset", 1u}, {"out", out}});
+  finish(device);
+  const cl::CommandQueue queue = device.queue;
+  device.queue = {};  // none: as good as one that failed
+  EXPECT_THAT(messageOf<MachineError>([&] { finish(device); }),
+              AllOf(HasSubstr("kernel 'probe'"), HasSubstr("CL_INVALID_COMMAND_QUEUE")));
+  device.queue = queue;
+}
+
+TEST_F(Launch, GroupsGetNoLargerThanTheDeviceTakes) {
+  Kernel sizes = makeKernelFromSource(
+      device, "__kernel void probe(__global uint *out) { out[get_global_id(0)] = get_local_size(0); }\n",
+      "probe", "");
+  const std::size_t most = device.device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>(),
+                    items = std::bit_ceil(8 * most);
+  std::vector<uint> back(items);
+  const Buffer<uint> found = borrowedForOutput(device, back);
+  launch(device, sizes, {{"out", found}}, {.items = items, .group = items});
+  download(device, found, back);
+  EXPECT_EQ(back, std::vector<uint>(items, uint(std::bit_floor(most))));
+}
+
+}  // namespace
+}  // namespace luciole::test

@@ -1,0 +1,96 @@
+// What goes to the device and back for a picture, on a device whose memory is the host's and on one with
+// memory of its own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render_json.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// Shadows of every kind, some of them soft, and lights for the lists.
+constexpr const char* kScene =
+    R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 60}, "ambient": 0.1,
+  "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
+  "objects": [{"primitive": "plane", "scale": 20, "segments": 9, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"},
+              {"primitive": "torus", "translate": [1, 0.5, 2], "rotate": [60, 0, 20], "material": "m"}],
+  "lights": [{"type": "directional", "direction": [-1, -2, -1], "intensity": 0.5, "shadow": true, "angle": 3},
+             {"type": "point", "position": [1, 2, 2], "radius": 0.1, "range": 4, "shadow": true, "color": [1, 0.5, 0.2]},
+             {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "cutoff": 40, "exponent": 4, "shadow": true}],
+  "light_fields": [{"count": 100, "seed": 3, "min": [-4, 0, -4], "max": [4, 2, 4], "range": 0.8, "intensity": 0.5}]})";
+
+/// A device with memory of its own, as far as this program is told.
+Device& deviceApart() {
+  static Device device;
+  static const bool opened = (openDevice("", device), device.shares_host_memory = false, true);
+  (void)opened;
+  return device;
+}
+
+RenderSettings settingsFor(const Scene& scene, ShadowMethod method, int samples) {
+  RenderSettings settings;
+  settings.size = {100, 150};
+  settings.camera = scene.cameras.front();
+  settings.samples = samples;
+  settings.shade.shadows = method;
+  settings.shade.shadow_limits.size = 256;
+  return settings;
+}
+
+Traffic trafficOfPicture(Device& device, const Scene& scene, const RenderSettings& settings) {
+  Stats stats;
+  renderScene(device, scene, settings, stats);
+  return stats.traffic;
+}
+
+struct TrafficByMethod : testing::TestWithParam<ShadowMethod> {};
+
+TEST_P(TrafficByMethod, PictureIsTheSameWhereTheDeviceHasMemoryOfItsOwn) {
+  const Scene scene = sceneFromJson(kScene);
+  RenderSettings settings = settingsFor(scene, GetParam(), 2);
+  settings.band_height = 64;
+  settings.aovs = {Aov::kLightCount, Aov::kShadow};
+  Stats stats;
+  EXPECT_EQ(renderScene(deviceApart(), scene, settings, stats).pixels,
+            renderScene(testDevice(), scene, settings, stats).pixels);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, TrafficByMethod,
+                         testing::Values(ShadowMethod::kOff, ShadowMethod::kHard, ShadowMethod::kPcf,
+                                         ShadowMethod::kSoft, ShadowMethod::kExact));
+
+TEST(Traffic, NothingIsCopiedWhereMemoryIsShared) {
+  Device device;
+  openDevice("", device);
+  if (!device.shares_host_memory) GTEST_SKIP() << "the default device has memory of its own";
+  const Scene scene = sceneFromJson(kScene);
+  const Traffic traffic = trafficOfPicture(device, scene, settingsFor(scene, ShadowMethod::kPcf, 2));
+  EXPECT_EQ(traffic.bytes_up, 0u);
+  EXPECT_EQ(traffic.bytes_down, 0u);
+  EXPECT_GT(traffic.bytes_made, 0u);
+}
+
+TEST(Traffic, OnlyShadowTexelsThatWereDrawnGoUp) {
+  const Scene scene = sceneFromJson(kScene);
+  constexpr int kSamples = 8;
+  RenderSettings settings = settingsFor(scene, ShadowMethod::kPcf, kSamples);
+  settings.shade.shadow_limits.size = 512;
+  Stats with;
+  renderScene(deviceApart(), scene, settings, with);
+  const auto shadow_bytes = std::find_if(with.counts.begin(), with.counts.end(),
+                                         [](const auto& count) { return count.first == "shadow_bytes"; });
+  ASSERT_NE(shadow_bytes, with.counts.end());
+  settings.shade.shadows = ShadowMethod::kOff;
+  const Traffic without = trafficOfPicture(deviceApart(), scene, settings);
+  // Beside texels: the triangles' normals and the lift, for each sample of whole tiles; the shadow maps' 9
+  // faces, and 4 KiB for a tile by which kernels are compiled. A bin is drawn anew where a sample looks
+  // farther there than all before: of samples in a random order that is the k-th with a chance of 1/k, and 1
+  // + 1/2 + … + 1/8 = 2.7.
+  constexpr std::uint64_t kPlanes = 2 * 4 * 112 * 160 * kSamples, kOther = 9 * 48 * kSamples + 4096;
+  EXPECT_LT(with.traffic.bytes_up - without.bytes_up, kSamples / 2 * shadow_bytes->second + kPlanes + kOther);
+  EXPECT_GT(with.traffic.bytes_up - without.bytes_up, shadow_bytes->second);
+}
+
+}  // namespace
+}  // namespace luciole::test
