@@ -99,8 +99,8 @@ TEST_F(SharedFrames, ASecondRunOfTheSamePartIsRefusedAndAnotherPartIsNot) {
       "export SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=2 SLURM_ARRAY_TASK_STEP=1 "
       "SLURM_ARRAY_TASK_ID=";
   for (const auto& [environment, arguments] :
-       {std::pair<std::string, std::string>{task + "2;", "--frames 1-4"},
-        {task + "2;", "--frames 1-4 --resume"},
+       {std::pair<std::string, std::string>{fmt::format("{}2;", task), "--frames 1-4"},
+        {fmt::format("{}2;", task), "--frames 1-4 --resume"},
         {"", "--frames 1-4 --shard 2/2"},
         {"", "--frames 2-4 --shard 1/1"}}) {
     const Outcome second = render(environment, arguments);
@@ -110,7 +110,7 @@ TEST_F(SharedFrames, ASecondRunOfTheSamePartIsRefusedAndAnotherPartIsNot) {
     for (const int frame : {2, 3, 4})
       EXPECT_FALSE(std::filesystem::exists(folder / fmt::format("f.000{}.png", frame))) << frame;
   }
-  const Outcome other = render(task + "1;", "--frames 1-4");
+  const Outcome other = render(fmt::format("{}1;", task), "--frames 1-4");
   EXPECT_EQ(other.status, 0) << other.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "f.0003.png"));
 }

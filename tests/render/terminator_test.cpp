@@ -142,7 +142,7 @@ TEST(TerminatorExact, NoLightLeaksThroughAThinWallThatABallTouches) {
 
 // A G-buffer whose facets aren't smooth says so by a lift of 0, or by none.
 TEST_P(TerminatorOf, FlatShadingHasTheBitsThatItHasWithoutLifts) {
-  const Scene scene = sceneFromJson(ballScene(std::string(kSun) + ", " + kLamp));
+  const Scene scene = sceneFromJson(ballScene(fmt::format("{}, {}", kSun, kLamp)));
   RenderSettings settings = settingsFor(scene, GetParam());
   settings.aovs = {Aov::kShadow};
   settings.shading = Shading::kFlat;
