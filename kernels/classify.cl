@@ -37,8 +37,8 @@ typedef struct {
 INLINE Verdict classify_points(__global const ShadowMap *map, __global const ShadowFace *faces, __global const BoundTexel *texels,
                                uint texel_count, MapPoint point, vec3L p) {
   Verdict verdict;
-  intL sane = point.inside & (abs_lanes(point.x) < 65536.0f) & (abs_lanes(point.y) < 65536.0f) & (point.drift < MOST_DRIFT);
-  floatL x = sane ? point.x : (floatL)(0.0f), y = sane ? point.y : (floatL)(0.0f);
+  intL on_map = point.inside & (abs_lanes(point.x) < 65536.0f) & (abs_lanes(point.y) < 65536.0f) & (point.drift < MOST_DRIFT);
+  floatL x = on_map ? point.x : (floatL)(0.0f), y = on_map ? point.y : (floatL)(0.0f);
   intL column = convert_intL(x), row = convert_intL(y);
   Texels here = texels_of(faces, 0, texel_count, point);
   uintL index = as_uintL(here.first + row * here.width + column);
@@ -51,7 +51,7 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
   floatL steep = abs_lanes(texel.step_x) + abs_lanes(texel.step_y);
   floatL lost = point.rounding + steep * point.drift + 0x1p-22f * (abs_lanes(depth) + steep);
   floatL above = point.depth - plane;
-  intL before_others = sane & (point.depth > texel.others + lost);
+  intL before_others = on_map & (point.depth > texel.others + lost);
 
   // The receiver's distance from the plane, metres. With the plane n·q = D in the face's axes, 1/w is (n·(u, v, 1))/D on it, and
   // the distance w·|D|/|n|·|1/w_plane − 1/w|; under a parallel map the height above it times the cosine of its tilt.
@@ -72,7 +72,7 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
   intL on_plane = (abs_lanes(above) + lost) * metres < tolerance * 0.999f;
   intL behind = (above < 0.0f) & ((-above - lost) * metres > tolerance * 1.001f);
   verdict.lit = before_others & ((!covered) | (above > lost) | on_plane);
-  verdict.dark = sane & covered & behind;
+  verdict.dark = on_map & covered & behind;
   return verdict;
 }
 
@@ -98,13 +98,13 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
       uint first = tile * kTilePixels + row;
       if (!(squares & 1u << SQUARE_OF_PIXEL(first))) continue;
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
-      intL asked = may_light(light, &p, n);
-      if (!any_lane(asked)) continue;
+      intL receives = may_light(light, &p, n);
+      if (!any_lane(receives)) continue;
       // Off the map nothing is sure.
       MapPoint point = LIFT ? lifted_point(map, shadow_faces, p, n, n, load_lanes(lift + first)) : map_point(map, shadow_faces, p, n);
       Verdict verdict = classify_points(map, shadow_faces, texels, texel_count, point, p);
-      lit[row / 32] |= lane_bits(asked & verdict.lit) << row % 32;
-      unsure[row / 32] |= lane_bits(asked & !(verdict.lit | verdict.dark)) << row % 32;
+      lit[row / 32] |= lane_bits(receives & verdict.lit) << row % 32;
+      unsure[row / 32] |= lane_bits(receives & !(verdict.lit | verdict.dark)) << row % 32;
     }
   }
 }

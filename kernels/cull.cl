@@ -18,7 +18,7 @@
 #include "math.clh"
 #include "shared.h"
 
-// What the squares of a tile show, in view space, a lane a square. Squares may be bounded together, 1 << shift pixels of them:
+// What the squares of a tile show, in view space, a lane a square. Squares may be bounded together, 1 << group_log2 pixels of them:
 // the bounds then stand in the first places, and the others, like those of squares that show nothing, have low > high.
 // Background does not count.
 typedef struct {
@@ -39,12 +39,12 @@ INLINE void grow_boxes(vec3L *low, vec3L *high, vec3L p, intL mask) {
   high->z = max_lanes(high->z, mask ? p.z : -inf);
 }
 
-// Puts the bounds of 1 << shift pixels of a tile in place i. position, normal: of the first.
-INLINE void bound_pixels(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+// Puts the bounds of 1 << group_log2 pixels of a tile in place i. position, normal: of the first.
+INLINE void bound_pixels(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                          Bounds *bounds, uint i) {
   floatL inf = INFINITY;
   vec3L low = {inf, inf, inf}, high = {-inf, -inf, -inf}, normal_low = low, normal_high = high;
-  for (uint pixel = 0; pixel < 1u << shift; pixel += LANES) {
+  for (uint pixel = 0; pixel < 1u << group_log2; pixel += LANES) {
     vec3L p = load_vec3(position + pixel, plane_stride), n = load_vec3(normal + pixel, plane_stride);
     intL covered = p.z > -INFINITY;
     grow_boxes(&low, &high, p, covered);
@@ -54,7 +54,7 @@ INLINE void bound_pixels(__global const float *position, __global const float *n
   float4 h = {greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z), 0.0f};
   float4 middle = 0.5f * l + 0.5f * h;
   floatL plane = inf;
-  for (uint pixel = 0; pixel < 1u << shift; pixel += LANES) {
+  for (uint pixel = 0; pixel < 1u << group_log2; pixel += LANES) {
     vec3L p = load_vec3(position + pixel, plane_stride), n = load_vec3(normal + pixel, plane_stride);
     floatL along = dot3(n, (vec3L){p.x - middle.x, p.y - middle.y, p.z - middle.z});
     plane = min_lanes(plane, p.z > -INFINITY ? along : inf);
@@ -232,24 +232,24 @@ INLINE void start_tile(Walk *walk, const Bounds *bounds, __global const float *t
   start_walk(walk, light_count);
 }
 
-// Squares in 1 << shift pixels.
-#define SQUARES_IN(shift) ((1u << (shift)) * kSquaresPerTile / kTilePixels)
+// Squares in 1 << group_log2 pixels.
+#define SQUARES_IN(group_log2) ((1u << (group_log2)) * kSquaresPerTile / kTilePixels)
 
-// How many lights a tile's list holds; the first `room` of them are written to `list`. shift: 4, 6 or 8, what is bounded together,
+// How many lights a tile's list holds; the first `room` of them are written to `list`. group_log2: 4, 6 or 8, what is bounded together,
 // in pixels. tests: kByRange …
-INLINE uint find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+INLINE uint find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                         __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                         uint tests, uint tile, __global ListEntry *list, uint room) {
   floatL inf = INFINITY;
   Bounds nothing = {{inf, inf, inf}, {-inf, -inf, -inf}, {inf, inf, inf}, {-inf, -inf, -inf}, inf};
   Bounds bounds[BOUNDS];
   for (uint i = 0; i < BOUNDS; ++i) bounds[i] = nothing;
-  for (uint i = 0; i < kTilePixels >> shift; ++i) {
-    uint first = tile * kTilePixels + (i << shift);
-    bound_pixels(position + first, normal + first, plane_stride, shift, bounds, i);
+  for (uint i = 0; i < kTilePixels >> group_log2; ++i) {
+    uint first = tile * kTilePixels + (i << group_log2);
+    bound_pixels(position + first, normal + first, plane_stride, group_log2, bounds, i);
   }
   // The squares that the first of the bounds hold.
-  uint group = 0xffffu >> (kSquaresPerTile - SQUARES_IN(shift));
+  uint group = 0xffffu >> (kSquaresPerTile - SQUARES_IN(group_log2));
   Walk walk;
   start_tile(&walk, bounds, tree, tree_stride, light_count);
   uint count = 0;
@@ -259,9 +259,9 @@ INLINE uint find_lights(__global const float *position, __global const float *no
     // Written before it is known to belong there: no branch that nothing can predict.
     if (count < room) {
       uint squares = bits;
-      if (shift != 4) {
+      if (group_log2 != 4) {
         squares = 0;
-        for (uint i = 0; i < kTilePixels >> shift; ++i) squares |= (bits >> i & 1) * group << i * SQUARES_IN(shift);
+        for (uint i = 0; i < kTilePixels >> group_log2; ++i) squares |= (bits >> i & 1) * group << i * SQUARES_IN(group_log2);
       }
       list[count].light = light;
       list[count].squares = squares;
@@ -272,11 +272,11 @@ INLINE uint find_lights(__global const float *position, __global const float *no
 }
 
 // How many lights the list of each tile holds, and the first kFoundPerTile of them.
-__kernel void count_lights(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+__kernel void count_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                            __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                            uint tests, __global ListEntry *found, __global uint *counts) {
   uint tile = get_global_id(0);
-  counts[tile] = find_lights(position, normal, plane_stride, shift, tree, tree_stride, lights, light_count, tests, tile,
+  counts[tile] = find_lights(position, normal, plane_stride, group_log2, tree, tree_stride, lights, light_count, tests, tile,
                              found + tile * kFoundPerTile, kFoundPerTile);
 }
 
@@ -293,7 +293,7 @@ __kernel void scan_lists(uint tiles, __global uint *starts) {
 }
 
 // Writes the lists: what was found before if that is all of it.
-__kernel void fill_lists(__global const float *position, __global const float *normal, uint plane_stride, uint shift,
+__kernel void fill_lists(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                          __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                          uint tests, __global const ListEntry *found, __global const uint *list_starts,
                          __global ListEntry *all_lists) {
@@ -305,7 +305,7 @@ __kernel void fill_lists(__global const float *position, __global const float *n
     return;
   }
   uint again =
-      find_lights(position, normal, plane_stride, shift, tree, tree_stride, lights, light_count, tests, tile, list, count);
+      find_lights(position, normal, plane_stride, group_log2, tree, tree_stride, lights, light_count, tests, tile, list, count);
   // Both passes find the same lights; were a compiler ever to round them apart, this keeps entries valid.
   for (ListEntry none = {0, 0}; again < count; ++again) list[again] = none;
 }

@@ -52,15 +52,15 @@ __kernel void find_needed(uint plane_stride, __global const float *position, __g
       uint first = tile * kTilePixels + row;
       if (!(squares & 1u << SQUARE_OF_PIXEL(first))) continue;
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
-      intL asked = may_light(light, &p, n);
-      if (!any_lane(asked)) continue;
+      intL receives = may_light(light, &p, n);
+      if (!any_lane(receives)) continue;
       // The place does not depend on the facet.
       MapPoint point = receiver_point(map, shadow_faces, p, n, n, LIFT ? load_lanes(lift + first) : (floatL)(0.0f));
-      asked &= point.inside;
+      receives &= point.inside;
       point.face -= (int)map->first_face;
       for (uint face = 0; face < map->face_count; ++face) {
-        intL here = asked & (point.face == (int)face);
-        if (any_lane(here)) add_needed(shadow_faces + map->first_face + face, (int)map->reach, needed, &point, here, &last_noted);
+        intL here = receives & (point.face == (int)face);
+        if (any_lane(here)) add_needed(shadow_faces + map->first_face + face, (int)map->filter_radius, needed, &point, here, &last_noted);
       }
     }
   }

@@ -48,7 +48,7 @@ typedef struct {
 typedef struct {
   intL covered;
   vec3L position, normal;
-  vec3L facet;                 // the triangle's own normal, with SHADOWS
+  vec3L geometric_normal;                 // the triangle's own normal, with SHADOWS
   floatL lift;                 // along the normal to where shadow tests start, with SHADOWS
   vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
@@ -67,8 +67,8 @@ typedef struct {
   vec3L to_light;    // from the surface; unit once multiplied by
   floatL inverse_d;  // 1/m
   floatL n_dot_l;
-  floatL reach;      // falloff × spot effect
-  floatL strength;   // reach × visibility where the surface faces the light, else 0
+  floatL attenuation;  // falloff × spot effect
+  floatL strength;   // attenuation × visibility where the surface faces the light, else 0
   floatL diffuse;    // of the strength, the factor of the diffuse colour,
   floatL highlight;  // of the specular colour,
   floatL grazing;    // and of what that becomes at grazing angles
@@ -95,20 +95,20 @@ INLINE void add_product(vec3L *sum, vec3L a, vec3L b) {
   sum->z = fma_lanes(a.z, b.z, sum->z);
 }
 
-INLINE void meet_light(Pair *pair, const Pixels *pixels, __global const ShadeLight *light) {
+INLINE void incident_light(Pair *pair, const Pixels *pixels, __global const ShadeLight *light) {
   if (IS(DIRECTIONAL_LIGHTS, PLACED_LIGHTS, light->kind == kDirectionalLight)) {
     pair->to_light = all_lanes(light->position);
     pair->inverse_d = 1.0f;
-    pair->reach = 1.0f;
+    pair->attenuation = 1.0f;
   } else {
     vec3L to_light = {light->position.x - pixels->position.x, light->position.y - pixels->position.y,
                       light->position.z - pixels->position.z};
     floatL d2 = SQUARED_LENGTH(to_light.x, to_light.y, to_light.z);
     pair->to_light = to_light;
     pair->inverse_d = rsqrt_lanes(d2);
-    pair->reach = distance_falloff(light, d2, pair->inverse_d);
+    pair->attenuation = distance_falloff(light, d2, pair->inverse_d);
     if (IS(SPOT_LIGHTS, POINT_LIGHTS || DIRECTIONAL_LIGHTS, light->kind == kSpotLight))
-      pair->reach *= spot_falloff(light, to_light, pair->inverse_d);
+      pair->attenuation *= spot_falloff(light, to_light, pair->inverse_d);
   }
   pair->n_dot_l = dot3(pixels->normal, pair->to_light) * pair->inverse_d;
 }
@@ -120,13 +120,13 @@ INLINE floatL visibility(const Pixels *pixels, __global const ShadeLight *light,
     return convert_floatL(((intL)((int)word) >> LANE_NUMBERS) & 1);
   }
   __global const ShadowMap *map = shadows->maps + light->shadow;
-  MapPoint point = receiver_point(map, shadows->faces, pixels->position, pixels->normal, pixels->facet, pixels->lift);
+  MapPoint point = receiver_point(map, shadows->faces, pixels->position, pixels->normal, pixels->geometric_normal, pixels->lift);
   return map_lookup(map, shadows->faces, shadows->texels, shadows->texel_count, point);
 }
 
 // Multiplies the strength of ABREAST pairs by their visibility. One after another, in a loop that stays one: a lookup is as long as
 // all the rest of shading.
-INLINE void cast_shadows(Pair *pairs, Pixels *const *pixels, __global const ShadeLight *const *light, const Shadows *shadows,
+INLINE void apply_shadows(Pair *pairs, Pixels *const *pixels, __global const ShadeLight *const *light, const Shadows *shadows,
                          const uint *entry) {
   floatL strength[ABREAST];
   EACH_ABREAST(k) strength[k] = pairs[k].strength;
@@ -165,13 +165,13 @@ INLINE void reflect(Pair *pairs, Pixels *const *pixels, uint model) {
   }
   EACH_ABREAST(k) pairs[k].grazing = 0.0f;
   // pow_one_minus_half(), a step at a time.
-  floatL spread[ABREAST], log2_cosine[ABREAST];
+  floatL chord2[ABREAST], log2_cosine[ABREAST];
   if (MODEL_IS(BLINN_PHONG, kBlinnPhongModel)) {
-    EACH_ABREAST(k) spread[k] = blinn_spread(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->to_eye, pixels[k]->normal);
+    EACH_ABREAST(k) chord2[k] = blinn_chord2(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->to_eye, pixels[k]->normal);
   } else {
-    EACH_ABREAST(k) spread[k] = phong_spread(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->mirrored_eye);
+    EACH_ABREAST(k) chord2[k] = phong_chord2(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->mirrored_eye);
   }
-  EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(spread[k]);
+  EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(chord2[k]);
   EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels[k]->shininess, log2_cosine[k]);
   if (MODEL_IS(TOON, kToonModel)) {
     EACH_ABREAST(k) pairs[k].highlight = toon_highlight(pairs[k].highlight);
@@ -200,9 +200,9 @@ INLINE void add_pair(LightSums *sums, const Pair *pair, __global const ShadeLigh
   if (long_sums) {
     if (sums->fullest == kSumBlock) close_full_blocks(sums);
     sums->fullest += 1;
-    sums->terms += (LIGHT_AMBIENT ? pair->reach : pair->strength) > 0.0f ? (intL)(1) : (intL)(0);
+    sums->terms += (LIGHT_AMBIENT ? pair->attenuation : pair->strength) > 0.0f ? (intL)(1) : (intL)(0);
   }
-  if (LIGHT_AMBIENT) add_scaled(&sums->part[kAmbientPart], light->ambient, pair->reach);
+  if (LIGHT_AMBIENT) add_scaled(&sums->part[kAmbientPart], light->ambient, pair->attenuation);
   add_scaled(&sums->part[kDiffusePart], light->diffuse, pair->strength * pair->diffuse);
   if (SPECULAR) add_scaled(&sums->part[kSpecularPart], light->specular, pair->strength * pair->highlight);
   if (GRAZING) add_scaled(&sums->part[kGrazingPart], light->specular, pair->strength * pair->grazing);
@@ -221,13 +221,13 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
   Pair pairs[ABREAST];
   EACH_ABREAST(k) {
     Pair *pair = pairs + k;
-    meet_light(pair, pixels[k], light[k]);
-    pair->reach = k < count ? pair->reach : (floatL)(0.0f);
-    pair->strength = pair->n_dot_l > 0.0f ? pair->reach : (floatL)(0.0f);
+    incident_light(pair, pixels[k], light[k]);
+    pair->attenuation = k < count ? pair->attenuation : (floatL)(0.0f);
+    pair->strength = pair->n_dot_l > 0.0f ? pair->attenuation : (floatL)(0.0f);
   }
-  if (SHADOWS) cast_shadows(pairs, pixels, light, shadows, entry);
+  if (SHADOWS) apply_shadows(pairs, pixels, light, shadows, entry);
   intL lit = 0;
-  EACH_ABREAST(k) lit |= (LIGHT_AMBIENT ? pairs[k].reach : pairs[k].strength) > 0.0f;
+  EACH_ABREAST(k) lit |= (LIGHT_AMBIENT ? pairs[k].attenuation : pairs[k].strength) > 0.0f;
   if (!any_lane(lit)) return;
   reflect(pairs, pixels, model);
   EACH_ABREAST(k) add_pair(&pixels[k]->sums, pairs + k, light[k], long_sums);
@@ -236,7 +236,7 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
 // The planes of a G-buffer, from a work-item's first pixel on. Those that a program doesn't use may be anything.
 typedef struct {
   __global const float *position, *normal, *diffuse, *specular, *ambient, *emission;
-  __global const uint *facet;
+  __global const uint *geometric_normal;
   __global const float *lift;
 } Planes;
 
@@ -255,7 +255,7 @@ INLINE void start_row(Pixels *pixels, const ShadeFrame *frame, uint first, const
   start_sums(&pixels->sums, long_sums);
   pixels->normal = load_vec3(planes->normal + first, stride);
   if (SHADOWS) {
-    pixels->facet = unpack_normal(*(__global const intL *)(planes->facet + first));
+    pixels->geometric_normal = unpack_normal(*(__global const intL *)(planes->geometric_normal + first));
     pixels->lift = LIFT ? load_lanes(planes->lift + first) : (floatL)(0.0f);
   }
   if (!SPECULAR) return;
@@ -312,7 +312,7 @@ INLINE void prefetch_rows(uint first, uint stride, const Planes *planes) {
     prefetch_lanes(planes->normal + first, stride, 3, ROWS);
     prefetch_lanes(planes->diffuse + first, stride, 3, ROWS);
   }
-  if (LIT && SHADOWS) prefetch_lanes((__global const float *)planes->facet + first, stride, 1, ROWS);
+  if (LIT && SHADOWS) prefetch_lanes((__global const float *)planes->geometric_normal + first, stride, 1, ROWS);
   if (LIT && SHADOWS && LIFT) prefetch_lanes(planes->lift + first, stride, 1, ROWS);
   if (LIT && SPECULAR) prefetch_lanes(planes->specular + first, stride, 4, ROWS);
   if (AMBIENT) prefetch_lanes(planes->ambient + first, stride, 3, ROWS);
@@ -322,15 +322,15 @@ INLINE void prefetch_rows(uint first, uint stride, const Planes *planes) {
 // Pairs that wait for their turn at most; a single lane takes each as it comes.
 #define QUEUE (LANES == 1 ? 1 : 128)
 
-// facet: by packNormal(); lift: metres. list_starts, list: see cull.cl; an entry of the list indexes `lights`.
+// geometric_normal: by packNormal(); lift: metres. list_starts, list: see cull.cl; an entry of the list indexes `lights`.
 // image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
-                    __global const float *emission, __global const uint *facet, __global const float *lift,
+                    __global const float *emission, __global const uint *geometric_normal, __global const float *lift,
                     __global const ShadeLight *lights, __global const uint *list_starts, __global const ListEntry *list,
                     __global const ShadowMap *shadow_maps, __global const ShadowFace *shadow_faces,
                     __global const ShadowTexel *shadow_texels, __global const uint *pair_bits, __global float *image) {
-  Planes planes = {position, normal, diffuse, specular, ambient, emission, facet, lift};
+  Planes planes = {position, normal, diffuse, specular, ambient, emission, geometric_normal, lift};
   Shadows shadows = {shadow_maps, shadow_faces, shadow_texels, frame.texel_count, pair_bits};
   uint first = get_global_id(0) * (ROWS * LANES), tile = first / kTilePixels;
   uint stride = frame.plane_stride;

@@ -81,8 +81,8 @@ typedef struct {
   uint kind;           // kParallelMap …
   uint first_face;     // index of its first ShadowFace
   uint face_count;
-  float spread;        // the light's size: a blocker that is nearer by a depth of d blurs its shadow by spread·d of u and v
-  float reach;         // texels around a lookup that it may read
+  float penumbra_scale;        // the light's size: a blocker that is nearer by a depth of d blurs its shadow by penumbra_scale·d of u and v
+  float filter_radius;         // texels around a lookup that it may read
   uint pad;
 } ShadowMap;
 SHARED_SIZE(ShadowMap, 80);

@@ -207,7 +207,7 @@ MUTANTS = {
         Mutant("-1e-5f * length", "1e-2f * length"),
         Mutant("1.00001f", "0.9f"),
         Mutant("fma_lanes(lift, n.y, p.y)", "fma_lanes(-lift, n.y, p.y)"),
-        Mutant("fma_lanes(slope_x, from_x - shift_x", "fma_lanes(slope_x, from_x"),
+        Mutant("fma_lanes(slope_x, from_x - offset_x", "fma_lanes(slope_x, from_x"),
         Mutant(", 0x1p-22f * point.depth", ", 0.0f"),
         Mutant("POSITION_ROUNDING 0x1p-22f", "POSITION_ROUNDING 0x1p-40f"),
         Mutant("- point.rounding - tilt", "- point.rounding"),

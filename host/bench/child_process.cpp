@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "figures/stage_figures.hpp"
+#include "render/stats.hpp"
 
 namespace luciole {
 namespace {
@@ -93,15 +93,16 @@ ScratchFolder::~ScratchFolder() {
 
 double runChild(const std::string& program, const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& environment) {
-  Stats stats;
-  const auto [status, message] =
-      timed(stats, "run", [&] { return runToEnd(program, arguments, changedEnvironment(environment)); });
+  Ended ended;
+  const double milliseconds =
+      millisecondsOf([&] { ended = runToEnd(program, arguments, changedEnvironment(environment)); });
+  const auto& [status, message] = ended;
   if (status != 0)
     throw MachineError(fmt::format("{} {}: failed with {} {}: {}", program, fmt::join(arguments, " "),
                                    WIFEXITED(status) ? "exit status" : "signal",
                                    WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status),
                                    message.substr(0, message.find('\n'))));
-  return stageTime(stats, "run");
+  return milliseconds;
 }
 
 }  // namespace luciole

@@ -61,7 +61,7 @@ SpeedTable measureCulledShading(const SpeedInput& input) {
   const auto rounds =
       runInRounds(std::size(kRows), input.repeats, table.name, input.on_progress, [&](std::size_t row) {
         const Stats stats = shadeRow(row, false);
-        const double cull = stageTime(stats, "cull"), shade = stageTime(stats, "shade");
+        const double cull = stageTime(stats, Stage::kCull), shade = stageTime(stats, Stage::kShade);
         return std::vector{cull + shade, cull, shade};
       });
   for (std::size_t row = 0; row < rounds.size(); ++row)

@@ -79,8 +79,8 @@ SpeedTable measureManyLights(const SpeedInput& input) {
   const auto rounds =
       runInRounds(rows.size(), input.repeats, table.name, input.on_progress, [&](std::size_t row) {
         const Stats stats = shadeRow(input.device, rows[row], false);
-        const double prepare = stageTime(stats, "prepare lights"), cull = stageTime(stats, "cull"),
-                     shade = stageTime(stats, "shade");
+        const double prepare = stageTime(stats, Stage::kPrepareLights), cull = stageTime(stats, Stage::kCull),
+                     shade = stageTime(stats, Stage::kShade);
         return std::vector{prepare + cull + shade, prepare, cull, shade};
       });
   for (std::size_t row = 0; row < rounds.size(); ++row)

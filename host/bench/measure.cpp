@@ -29,7 +29,7 @@ Devices openDevices(const std::string& selector, const std::vector<VariantGroup>
 double countedTime(const Stats& stats, const VariantGroup& group) {
   double sum = 0;
   for (const auto& [stage, milliseconds] : stats.stages) {
-    const bool counts = group.stages.empty() ? stage != "compile kernels"
+    const bool counts = group.stages.empty() ? stage != Stage::kCompileKernels
                                              : std::find(group.stages.begin(), group.stages.end(), stage) !=
                                                    group.stages.end();
     if (counts) sum += milliseconds;

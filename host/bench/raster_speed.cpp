@@ -20,17 +20,15 @@ double gbufferMilliseconds(const Scene& scene, glm::ivec2 size) {
   settings.size = size;
   Stats stats;
   rasterizeScene(nullptr, scene, settings, stats);
-  return stageTime(stats, "rasterize");
+  return stageTime(stats, Stage::kRasterize);
 }
 
 double depthMilliseconds(const Scene& scene, glm::ivec2 size) {
   const View view = cameraView(scene.cameras.front(), size);
-  const TriangleRuns runs = findRuns(scene);
-  const std::vector<std::uint32_t> all = allRuns(runs);
+  const Meshlets meshlets = findMeshlets(scene);
+  const std::vector<std::uint32_t> all = allMeshlets(meshlets);
   std::vector<ShadowTexel> texels(std::size_t(size.x) * size.y);
-  Stats stats;
-  timed(stats, "depth", [&] { rasterizeDepth(scene, runs, all, view, {}, texels); });
-  return stageTime(stats, "depth");
+  return millisecondsOf([&] { rasterizeDepth(scene, meshlets, all, view, {}, texels); });
 }
 
 std::uint64_t triangleCount(const Scene& scene) {

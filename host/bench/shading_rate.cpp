@@ -41,12 +41,10 @@ std::vector<ShadeLight> shadeLights(const Scene& scene) {
 
 double launchMilliseconds(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
                           const WorkItems& work) {
-  Stats stats;
-  timed(stats, "launch", [&] {
+  return millisecondsOf([&] {
     launch(device, kernel, arguments, work);
     finish(device);
   });
-  return stats.stages.front().second;
 }
 
 /// A group of planes as the plain kernel takes it: one float4 a pixel.
@@ -143,7 +141,7 @@ double shadeMilliseconds(Device& device, const AllPairs& pairs) {
   settings.shade.culling = Culling::kNone;
   Stats stats;
   shadeGBuffer(device, pairs.scene, pairs.gbuffer, settings, stats);
-  return stageTime(stats, "shade");
+  return stageTime(stats, Stage::kShade);
 }
 
 }  // namespace

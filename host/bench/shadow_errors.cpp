@@ -189,9 +189,9 @@ std::vector<double> timeMaps(Device& device, const Row& row) {
   shadeGBuffer(device, row.judged->scene, row.judged->gbuffer, settings, with);
   settings.shade.shadows = ShadowMethod::kOff;
   shadeGBuffer(device, row.judged->scene, row.judged->gbuffer, settings, without);
-  const double draw = stageTime(with, "find shadow texels") + stageTime(with, "shadow maps");
-  const double look_up = stageTime(with, "classify") + stageTime(with, "trace unsure") +
-                         stageTime(with, "shade") - stageTime(without, "shade");
+  const double draw = stageTime(with, Stage::kFindShadowTexels) + stageTime(with, Stage::kShadowMaps);
+  const double look_up = stageTime(with, Stage::kClassify) + stageTime(with, Stage::kTraceUnsure) +
+                         stageTime(with, Stage::kShade) - stageTime(without, Stage::kShade);
   const double rays = rayMilliseconds(*row.judged, buildRayScene(row.judged->scene, row.judged->rays.origin));
   return {draw, look_up, draw + look_up, rays};
 }

@@ -23,7 +23,7 @@ VariantGroup shadingVariants(int lanes) {
   VariantGroup group{.name = "shading",
                      .chosen_by = "shading",
                      .measured = "culling and shading, against the same G-buffer shaded in double precision",
-                     .stages = {"cull", "shade"},
+                     .stages = {Stage::kCull, Stage::kShade},
                      .variants = {usual}};
   const auto add = [&](const std::string& name, auto&& change) {
     Variant variant = usual;
@@ -46,7 +46,7 @@ VariantGroup modelVariants(int lanes) {
   VariantGroup group{.name = "models",
                      .chosen_by = "models",
                      .measured = "culling and shading, each model against itself in double precision",
-                     .stages = {"cull", "shade"}};
+                     .stages = {Stage::kCull, Stage::kShade}};
   for (const Model model : kAllModels) {
     Variant variant{.name = modelName(model), .lanes = lanes, .is_default = model == ShadeSettings{}.model};
     variant.shade.model = model;
@@ -74,8 +74,8 @@ VariantGroup shadowGroup(const std::string& name, const std::string& truth, Trut
           .chosen_by = "shadows",
           .measured = "shadow maps, culling and shading, against " + truth +
                       " from the same G-buffer in double precision",
-          .stages = {"find shadow texels", "shadow maps", "ray tree", "cull", "classify", "trace unsure",
-                     "shade"},
+          .stages = {Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kRayTree, Stage::kCull,
+                     Stage::kClassify, Stage::kTraceUnsure, Stage::kShade},
           .shadows = shadows};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/features.hpp"
+#include "render/stats.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
@@ -30,10 +31,10 @@ enum class TruthShadows : std::uint8_t {
 /// of one model only.
 struct VariantGroup {
   std::string name;
-  std::string chosen_by{};            ///< the name for people to choose it by; several groups may share one
-  std::string measured{};             ///< what its times cover and what its errors are against, for people
-  std::vector<std::string> stages{};  ///< whose times count (see Stats::stages); empty: all but compiling
-  bool samples = false;               ///< whole pictures, anti-aliased, rather than one G-buffer lit
+  std::string chosen_by{};      ///< the name for people to choose it by; several groups may share one
+  std::string measured{};       ///< what its times cover and what its errors are against, for people
+  std::vector<Stage> stages{};  ///< whose times count (see Stats::stages); empty: all but compiling
+  bool samples = false;         ///< whole pictures, anti-aliased, rather than one G-buffer lit
   TruthShadows shadows = TruthShadows::kNone;
   std::vector<Variant> variants{};
 };

@@ -67,8 +67,8 @@ void castShadows(const PictureOptions& options, Scene& scene) {
   const auto casts = [](const Light& light) { return light.shadow; };
   const bool asked_for = options.shadows_given && options.shadows != "off";
   const bool any_marked = std::any_of(scene.lights.begin(), scene.lights.end(), casts);
-  const bool all = options.cast_shadows.empty() ? asked_for && !any_marked : options.cast_shadows == "all";
-  if (all || options.cast_shadows == "none")
+  const bool all = options.apply_shadows.empty() ? asked_for && !any_marked : options.apply_shadows == "all";
+  if (all || options.apply_shadows == "none")
     for (Light& light : scene.lights) light.shadow = all;
   if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
     scene.warnings.push_back(
@@ -217,7 +217,7 @@ CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const 
 void addCastShadowsOption(CLI::App& command, PictureOptions& options) {
   command
       .add_option(
-          "--cast-shadows", options.cast_shadows,
+          "--cast-shadows", options.apply_shadows,
           "which lights cast shadows: all, none, or those that the scene's file marks (default: marked, "
           "but all where none is marked and --shadows is given)")
       ->check(oneOf({"all", "marked", "none"}));
@@ -340,7 +340,7 @@ void reportStats(const PictureOptions& options, const Stats& stats) {
   std::string stages;
   for (const auto& stage : stats.stages)
     if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
-      stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stage.first, share);
+      stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
   fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {} ms{}{}\n", options.output, stats.width,
              stats.height, stats.triangles, stats.lights, whole(pictureMilliseconds(stats)), stages,
              stages.empty() ? "" : ")");

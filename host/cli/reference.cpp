@@ -171,7 +171,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 /// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
 void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   const Scene scene =
-      timed(stats, "load scene", [&] { return openLitScene(options.scene, options.frame, options); });
+      timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, options.frame, options); });
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
@@ -182,11 +182,11 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   requireMemory(kBytesPerPixel * view.crop_size.x * view.crop_size.y,
                 fmt::format("a reference of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<glm::ivec2> pixels = choosePixels(view.crop_size, options.pixels, options.seed);
-  const GBufferCheck check = timed(stats, "check G-buffer", [&] {
+  const GBufferCheck check = timed(stats, Stage::kCheckGBuffer, [&] {
     const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kPhong, {.lift = true});
     return checkGBuffer(scene, view, gbuffer, pixels);
   });
-  const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
+  const std::vector<glm::dvec3> colors = timed(stats, Stage::kShade, [&] {
     const auto rays = shadowRays(options, scene, settings.camera);
     ProgressLine progress(options.quiet);
     auto shaded = referencePicture(scene, view, settings.shading, settings.samples, pixels,
@@ -201,7 +201,7 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   metadata.emplace_back(kRequest, request);
   metadata.emplace_back(kWindow, fmt::format("{},{},{},{}", piece.window.x, piece.window.y,
                                              piece.window.width, piece.window.height));
-  timed(stats, "write", [&] {
+  timed(stats, Stage::kWrite, [&] {
     writeImage(piece.image, options.output, metadata,
                writeOptions(options, settings.camera, settings.size, {piece.window.x, piece.window.y}));
   });
@@ -216,18 +216,18 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
 /// Shades a G-buffer from a file.
 void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   const Scene scene =
-      timed(stats, "load scene", [&] { return openScene(options.lights, options.frame, options); });
-  const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(options.gbuffer); });
+      timed(stats, Stage::kLoadScene, [&] { return openScene(options.lights, options.frame, options); });
+  const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(options.gbuffer); });
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
-  const std::vector<glm::dvec3> colors = timed(stats, "shade", [&] {
+  const std::vector<glm::dvec3> colors = timed(stats, Stage::kShade, [&] {
     const auto rays = shadowRays(options, scene, gbuffer.camera);
     ProgressLine progress(options.quiet);
     auto shaded = referencePixels(scene, gbuffer, pixels, referenceSettings(options, rays, progress));
     progress.clear();
     return shaded;
   });
-  timed(stats, "write", [&] {
+  timed(stats, Stage::kWrite, [&] {
     writeImage(makePicture(size, pixels, colors, options.exposure), options.output,
                pictureMetadata(stats.command, nullptr), writeOptions(options, gbuffer));
   });

@@ -35,7 +35,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   const Crop window = settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
-    timed(stats, "write", [&] {
+    timed(stats, Stage::kWrite, [&] {
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
                        pictureMetadata(stats.command, &device),
@@ -44,7 +44,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
     });
   };
   renderBands(device, scene, settings, write, stats);
-  timed(stats, "write", [&] { writer->close(); });
+  timed(stats, Stage::kWrite, [&] { writer->close(); });
 }
 
 /// "3, 7-9" for 3 7 8 9.
@@ -169,7 +169,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    Scene scene = timed(stats, "load scene", [&] {
+    Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
     if (choice.is_list) {
@@ -204,17 +204,17 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     const Scene scene =
-        timed(stats, "load scene", [&] { return openLitScene(*scene_path, frame, *options); });
+        timed(stats, Stage::kLoadScene, [&] { return openLitScene(*scene_path, frame, *options); });
     const RenderSettings settings = renderSettings(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;
     const bool lit = settings.shading == Shading::kGouraud;
     if (lit) {
-      timed(stats, "open device", [&] { openDevice(options->device, device); });
+      timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
       stats.device = device.description;
     }
     const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
-    timed(stats, "write", [&] {
+    timed(stats, Stage::kWrite, [&] {
       writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
                    options->format);
     });
@@ -240,11 +240,12 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     Device device;
     startDevice(options->device, device);
-    const Scene scene = timed(stats, "load scene", [&] { return openScene(*scene_path, frame, *options); });
-    const GBuffer gbuffer = timed(stats, "read G-buffer", [&] { return readGBuffer(*gbuffer_path); });
+    const Scene scene =
+        timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
+    const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
-    timed(stats, "write", [&] {
+    timed(stats, Stage::kWrite, [&] {
       writeImage(image, options->output, pictureMetadata(context.command_line, &device),
                  writeOptions(*options, gbuffer));
     });

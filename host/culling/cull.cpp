@@ -13,7 +13,7 @@ std::vector<KernelArgument> withCommon(const CullArguments& arguments, std::vect
   own.insert(own.end(), {{"position", arguments.position},
                          {"normal", arguments.normal},
                          {"plane_stride", uint(arguments.plane_stride)},
-                         {"shift", uint(arguments.shift)},
+                         {"group_log2", uint(arguments.group_log2)},
                          {"tree", arguments.tree},
                          {"tree_stride", uint(arguments.tree_stride)},
                          {"lights", arguments.lights},

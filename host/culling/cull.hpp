@@ -20,7 +20,7 @@ struct CullArguments {
   Buffer<const float> position;  ///< G-buffer planes x, y, z
   Buffer<const float> normal;    ///< likewise
   std::size_t plane_stride;      ///< floats
-  unsigned shift;                ///< 4, 6 or 8: lights are kept apart by squares of 1 << shift pixels
+  unsigned group_log2;           ///< 4, 6 or 8: lights are kept apart by squares of 1 << shift pixels
   Buffer<const ShadeLight> lights;
   std::size_t light_count;
   Buffer<const float> tree;  ///< see LightTree

@@ -2,9 +2,9 @@
 
 namespace luciole {
 
-double stageTime(const Stats& stats, std::string_view stage) {
-  for (const auto& [name, milliseconds] : stats.stages)
-    if (name == stage) return milliseconds;
+double stageTime(const Stats& stats, Stage stage) {
+  for (const auto& [known, milliseconds] : stats.stages)
+    if (known == stage) return milliseconds;
   return 0;
 }
 

@@ -7,7 +7,7 @@
 namespace luciole {
 
 /// Milliseconds of a stage; 0 for one that did not run.
-double stageTime(const Stats& stats, std::string_view stage);
+double stageTime(const Stats& stats, Stage stage);
 
 /// A count of the statistics; 0 for one that isn't there.
 double countOf(const Stats& stats, std::string_view name);

@@ -41,15 +41,15 @@ struct GBuffer {
   int height = 0;  ///< pixels
   int tiles_x = 0;
   int tiles_y = 0;
-  Plane position;       ///< x y z
-  Plane normal;         ///< x y z, unit, turned towards the viewer on double-sided surfaces
-  Plane diffuse;        ///< r g b, linear reflectance
-  Plane specular;       ///< r g b and shininess; optional
-  Plane ambient;        ///< r g b; optional
-  Plane emission;       ///< r g b; optional
-  PackedNormals facet;  ///< the triangle's own, on the side that `normal` was turned to; optional
-  Plane lift;           ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
-  Camera camera;        ///< whose view space this is
+  Plane position;                  ///< x y z
+  Plane normal;                    ///< x y z, unit, turned towards the viewer on double-sided surfaces
+  Plane diffuse;                   ///< r g b, linear reflectance
+  Plane specular;                  ///< r g b and shininess; optional
+  Plane ambient;                   ///< r g b; optional
+  Plane emission;                  ///< r g b; optional
+  PackedNormals geometric_normal;  ///< the triangle's own, on the side that `normal` was turned to; optional
+  Plane lift;     ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
+  Camera camera;  ///< whose view space this is
   bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
@@ -69,7 +69,7 @@ struct PlaneSet {
   bool specular = false;
   bool ambient = false;
   bool emission = false;
-  bool facet = false;
+  bool geometric_normal = false;
   bool lift = false;
 };
 

@@ -130,7 +130,7 @@ class Surface {
     const LayerFile& file = channels.file;
     normal_ = channels.findThree("N", "XYZ");
     position_ = channels.findThree("P", "XYZ");
-    facet_ = channels.findThree("Ng", "XYZ");
+    geometric_normal_ = channels.findThree("Ng", "XYZ");
     depth_ = channels.find("Z");
     if (!isThere(normal_)) throw InputError(file.path + ": channel N.X: missing, expected N.X N.Y N.Z");
     const auto header = readCamera(file.attributes, file.picture_size, file.path,
@@ -176,14 +176,14 @@ class Surface {
     return true;
   }
 
-  bool hasFacets() const { return isThere(facet_); }
+  bool hasGeometricNormals() const { return isThere(geometric_normal_); }
 
   /// The facet of a pixel whose view-space normal is given. What addRow() wrote comes back to the bit, though
   /// world space and float lie between, see packNormal().
-  std::uint32_t facetAt(std::size_t pixel, glm::vec3 normal) const {
-    const glm::vec3 facet = channels_.three(pixel, facet_);
-    if (!isFinite(facet) || facet == glm::vec3(0.0f)) return packNormal(normal);
-    return packNormal(glm::dmat3(world_to_view_) * glm::dvec3(facet));
+  std::uint32_t geometricNormalAt(std::size_t pixel, glm::vec3 normal) const {
+    const glm::vec3 geometric_normal = channels_.three(pixel, geometric_normal_);
+    if (!isFinite(geometric_normal) || geometric_normal == glm::vec3(0.0f)) return packNormal(normal);
+    return packNormal(glm::dmat3(world_to_view_) * glm::dvec3(geometric_normal));
   }
 
  private:
@@ -201,7 +201,7 @@ class Surface {
   const Channels& channels_;
   std::array<int, 3> position_{};
   std::array<int, 3> normal_{};
-  std::array<int, 3> facet_{};
+  std::array<int, 3> geometric_normal_{};
   int depth_ = -1;
   bool in_view_space_ = false;
   glm::dmat4 world_to_view_{1.0};
@@ -249,9 +249,10 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
     }
     if (!gbuffer.ambient.empty()) add(load(gbuffer.ambient, at, stride));
     if (!gbuffer.emission.empty()) add(load(gbuffer.emission, at, stride));
-    if (!gbuffer.facet.empty()) {
+    if (!gbuffer.geometric_normal.empty()) {
       const bool shows = normal != glm::vec3(0.0f);
-      add(shows ? glm::vec3(glm::dmat3(to_world) * unpackNormal(gbuffer.facet[at])) : glm::vec3(0.0f));
+      add(shows ? glm::vec3(glm::dmat3(to_world) * unpackNormal(gbuffer.geometric_normal[at]))
+                : glm::vec3(0.0f));
     }
     if (!gbuffer.lift.empty()) values.push_back(gbuffer.lift[at]);
   }
@@ -293,7 +294,7 @@ GBuffer readGBuffer(const std::string& path) {
   const auto ambient = channels.findThree("ambient", "RGB"), emission = channels.findThree("emission", "RGB");
   const int shininess = channels.find("shininess"), lift = channels.find("lift");
   const std::size_t stride = gbuffer.pixels();
-  if (surface.hasFacets()) gbuffer.facet.resize(stride);
+  if (surface.hasGeometricNormals()) gbuffer.geometric_normal.resize(stride);
   if (lift >= 0) gbuffer.lift.resize(stride);
   for (std::size_t p = 0; p < channels.count(); ++p) {
     glm::vec3 position, normal;
@@ -307,7 +308,7 @@ GBuffer readGBuffer(const std::string& path) {
     if (shininess >= 0) gbuffer.specular[at + 3 * stride] = channels.coefficient(p, shininess);
     store(gbuffer.ambient, at, stride, channels.color(p, ambient, reflectance));
     store(gbuffer.emission, at, stride, channels.color(p, emission, glm::vec3(0.0f)));
-    if (surface.hasFacets()) gbuffer.facet[at] = surface.facetAt(p, normal);
+    if (surface.hasGeometricNormals()) gbuffer.geometric_normal[at] = surface.geometricNormalAt(p, normal);
     if (lift >= 0) gbuffer.lift[at] = channels.coefficient(p, lift);
   }
   return gbuffer;

@@ -20,7 +20,7 @@ void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
       [&] { gbuffer.specular.resize(planes.specular ? 4 * pixels : 0); },
       [&] { gbuffer.ambient.resize(planes.ambient ? 3 * pixels : 0); },
       [&] { gbuffer.emission.resize(planes.emission ? 3 * pixels : 0); },
-      [&] { gbuffer.facet.resize(planes.facet ? pixels : 0); },
+      [&] { gbuffer.geometric_normal.resize(planes.geometric_normal ? pixels : 0); },
       [&] { gbuffer.lift.resize(planes.lift ? pixels : 0); });
 }
 

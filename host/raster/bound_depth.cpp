@@ -10,7 +10,7 @@
 #include "raster/bound_bin.hpp"
 #include "raster/bound_setup.hpp"
 #include "raster/list_items.hpp"
-#include "raster/placed_runs.hpp"
+#include "raster/placed_meshlets.hpp"
 
 namespace luciole {
 namespace {
@@ -31,9 +31,10 @@ void forEachBin(const BoundPiece& piece, const BinGrid& bins, Visit visit) {
 
 }  // namespace
 
-void rasterizeBounds(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+void rasterizeBounds(const Scene& scene, const Meshlets& meshlets, std::span<const std::uint32_t> chosen,
                      const View& view, std::span<const float> farthest, std::span<BoundTexel> texels) {
-  const BoundSetup setup = setupBounds(scene, placeRuns(scene, runs, chosen, view.world_to_view), view);
+  const BoundSetup setup =
+      setupBounds(scene, placeMeshlets(scene, meshlets, chosen, view.world_to_view), view);
   const BinGrid grid = binGrid(view);
   const auto isDrawn = [&](int bin) { return farthest.empty() || std::isfinite(farthest[bin]); };
   const ItemLists lists =

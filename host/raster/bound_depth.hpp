@@ -4,7 +4,7 @@
 #include <span>
 
 #include "kernels/shared.h"
-#include "raster/triangle_runs.hpp"
+#include "raster/meshlets.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 
@@ -25,9 +25,9 @@ constexpr float kPlaneError = 0x1p-23f;
 /// Draws what the texels of a view's crop see for certain, see BoundTexel; row by row into `texels`.
 /// Arguments are those of rasterizeDepth: texels of a bin that isn't drawn are left as they are. Triangles
 /// are what their corners are after transformation in double; those whose corners aren't finite as floats
-/// don't exist. A texel's content does not depend on the crop, on the number of threads, or on runs that
+/// don't exist. A texel's content does not depend on the crop, on the number of threads, or on meshlets that
 /// don't reach it. What reaches behind the near plane inside a texel's square makes `others` infinite there.
-void rasterizeBounds(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+void rasterizeBounds(const Scene& scene, const Meshlets& meshlets, std::span<const std::uint32_t> chosen,
                      const View& view, std::span<const float> farthest, std::span<BoundTexel> texels);
 
 }  // namespace luciole

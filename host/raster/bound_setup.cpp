@@ -174,12 +174,12 @@ void setupTriangle(const std::array<const Vertex*, 3>& vertices, bool masked, co
   setup.pieces.push_back(piece);
 }
 
-void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index, const PlacedObject& object,
-              const Frame& frame, BoundSetup& setup) {
-  std::array<Vertex, 3 * kRunTriangles> vertices;
-  const TriangleRun& run = runs.runs[index];
-  for (std::uint32_t i = 0; i < run.vertex_count; ++i) {
-    const glm::vec3& position = object.mesh->positions[runs.vertices[run.first_vertex + i]];
+void setupMeshlet(const Scene& scene, const Meshlets& meshlets, std::uint32_t index,
+                  const PlacedObject& object, const Frame& frame, BoundSetup& setup) {
+  std::array<Vertex, 3 * kMeshletTriangles> vertices;
+  const Meshlet& meshlet = meshlets.items[index];
+  for (std::uint32_t i = 0; i < meshlet.vertex_count; ++i) {
+    const glm::vec3& position = object.mesh->positions[meshlets.vertices[meshlet.first_vertex + i]];
     const glm::dvec3 seen(object.object_to_view * glm::dvec4(position, 1.0));
     Vertex& vertex = vertices[i];
     vertex.clip = frame.view.projection * glm::dvec4(seen, 1.0);
@@ -187,19 +187,19 @@ void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index,
     vertex.place = vertexPlace(seen, vertex.clip, frame.volume.guard);
     vertex.sums = frame.absolute * glm::dvec4(glm::abs(seen), 1.0);
   }
-  for (std::uint32_t i = 0; i < run.count; ++i) {
-    const std::uint8_t* corners = runs.corners.data() + std::size_t(index) * 3 * kRunTriangles + i;
-    setupTriangle(
-        {&vertices[corners[0]], &vertices[corners[kRunTriangles]], &vertices[corners[2 * kRunTriangles]]},
-        materialOf(scene, object, run.first + i).alpha_cutoff > 0.0f, frame, setup);
+  for (std::uint32_t i = 0; i < meshlet.count; ++i) {
+    const std::uint8_t* corners = meshlets.corners.data() + std::size_t(index) * 3 * kMeshletTriangles + i;
+    setupTriangle({&vertices[corners[0]], &vertices[corners[kMeshletTriangles]],
+                   &vertices[corners[2 * kMeshletTriangles]]},
+                  materialOf(scene, object, meshlet.first + i).alpha_cutoff > 0.0f, frame, setup);
   }
 }
 
 }  // namespace
 
-BoundSetup setupBounds(const Scene& scene, const PlacedRuns& placed, const View& view) {
+BoundSetup setupBounds(const Scene& scene, const PlacedMeshlets& placed, const View& view) {
   const Frame frame = makeFrame(view);
-  constexpr std::size_t kTask = 32;  // runs
+  constexpr std::size_t kTask = 32;  // meshlets
   const std::size_t tasks = (placed.chosen.size() + kTask - 1) / kTask;
   std::vector<std::vector<BoundPiece>> pieces(tasks);
   std::vector<std::uint8_t> unknown(tasks, 0);
@@ -207,7 +207,7 @@ BoundSetup setupBounds(const Scene& scene, const PlacedRuns& placed, const View&
     const std::size_t end = std::min(placed.chosen.size(), (task + 1) * kTask);
     BoundSetup part;
     for (std::size_t i = task * kTask; i < end; ++i)
-      setupRun(scene, placed.runs, placed.chosen[i], placed.object(i), frame, part);
+      setupMeshlet(scene, placed.meshlets, placed.chosen[i], placed.object(i), frame, part);
     pieces[task] = std::move(part.pieces);
     unknown[task] = part.unknown;
   });

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "raster/clip_polygon.hpp"
-#include "raster/placed_runs.hpp"
+#include "raster/placed_meshlets.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 
@@ -22,13 +22,13 @@ struct BoundPiece : Polygon<glm::dvec3, 7> {
 };
 
 struct BoundSetup {
-  std::vector<BoundPiece> pieces;  ///< in the order of runs and triangles
+  std::vector<BoundPiece> pieces;  ///< in the order of meshlets and triangles
   bool unknown = false;            ///< some triangle may be anywhere
 };
 
 /// Projects triangles without rounding them to a grid, and bounds what double precision loses. Triangles with
 /// corners that aren't finite as floats are left out. Unlike setupTriangles it keeps what reaches behind the
 /// near plane, with depths beyond 1.
-BoundSetup setupBounds(const Scene& scene, const PlacedRuns& placed, const View& view);
+BoundSetup setupBounds(const Scene& scene, const PlacedMeshlets& placed, const View& view);
 
 }  // namespace luciole

@@ -43,7 +43,7 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
   const glm::vec3 glow = material.colored_emission ? material.emission * color : material.emission;
   if (!gbuffer.emission.empty()) storePixel(glow, place, stride, gbuffer.emission);
   // A vertex has no triangle of its own.
-  if (!gbuffer.facet.empty()) gbuffer.facet[place] = packNormal(normal);
+  if (!gbuffer.geometric_normal.empty()) gbuffer.geometric_normal[place] = packNormal(normal);
   if (!gbuffer.specular.empty()) {
     storePixel(material.specular, place, stride, gbuffer.specular);
     gbuffer.specular[3 * stride + place] = material.shininess;

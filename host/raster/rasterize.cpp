@@ -12,7 +12,7 @@
 #include "gbuffer/planes.hpp"
 #include "raster/bins.hpp"
 #include "raster/coverage.hpp"
-#include "raster/placed_runs.hpp"
+#include "raster/placed_meshlets.hpp"
 #include "raster/resolve.hpp"
 #include "raster/setup.hpp"
 
@@ -76,11 +76,11 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   return gbuffer;
 }
 
-void rasterizeDepth(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+void rasterizeDepth(const Scene& scene, const Meshlets& meshlets, std::span<const std::uint32_t> chosen,
                     const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels) {
   checkView(view);
-  const PlacedRuns placed = placeRuns(scene, runs, chosen, view.world_to_view);
-  const RasterSetup setup = setupRuns(scene, placed, view);
+  const PlacedMeshlets placed = placeMeshlets(scene, meshlets, chosen, view.world_to_view);
+  const RasterSetup setup = setupMeshlets(scene, placed, view);
   const Bins bins = binTriangles(setup.triangles, view, farthest);
 
   const ViewPlane plane = viewPlane(view);

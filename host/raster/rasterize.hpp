@@ -7,7 +7,7 @@
 
 #include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
-#include "raster/triangle_runs.hpp"
+#include "raster/meshlets.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 
@@ -40,13 +40,12 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
                   RasterCounts* counts = nullptr);
 
-/// Draws a depth map of the given runs (ascending indices into runs.runs): the view's crop row by row into
-/// `texels`. Alpha-masked holes are left open and no face is culled. A texel's content does not depend on the
-/// crop, nor on runs that don't reach it.
-/// `farthest`: one for each bin of kBinSize² texels of the whole picture that the crop touches, row by row:
-/// what has a smaller reversed depth may be missing there, and a bin of infinity isn't drawn at all. Empty:
-/// all is drawn.
-void rasterizeDepth(const Scene& scene, const TriangleRuns& runs, std::span<const std::uint32_t> chosen,
+/// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop row by
+/// row into `texels`. Alpha-masked holes are left open and no face is culled. A texel's content does not
+/// depend on the crop, nor on meshlets that don't reach it. `farthest`: one for each bin of kBinSize² texels
+/// of the whole picture that the crop touches, row by row: what has a smaller reversed depth may be missing
+/// there, and a bin of infinity isn't drawn at all. Empty: all is drawn.
+void rasterizeDepth(const Scene& scene, const Meshlets& meshlets, std::span<const std::uint32_t> chosen,
                     const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels);
 
 /// The vertices of the given objects as a G-buffer of their own, for Gouraud shading by the same kernels that

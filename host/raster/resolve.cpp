@@ -105,7 +105,8 @@ void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, st
   store(values.specular, place, drawn, whole, gbuffer.specular);
   store(values.ambient, place, drawn, whole, gbuffer.ambient);
   store(values.emission, place, drawn, whole, gbuffer.emission);
-  if (!gbuffer.facet.empty()) store(values.facet, drawn, whole, gbuffer.facet.data() + place);
+  if (!gbuffer.geometric_normal.empty())
+    store(values.geometric_normal, drawn, whole, gbuffer.geometric_normal.data() + place);
   if (!gbuffer.lift.empty()) store(values.lift, drawn, whole, gbuffer.lift.data() + place);
 }
 

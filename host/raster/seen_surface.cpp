@@ -34,7 +34,7 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   const Surface& surface = seen.surface;
   const Mesh& mesh = *surface.object->mesh;
   seen.facing_normal = surface.front_facing ? surface.normal : -surface.normal;
-  seen.facet = packNormal(seen.facing_normal);
+  seen.geometric_normal = packNormal(seen.facing_normal);
   seen.normal = normals(surface, seen.facing_normal, input.shading);
   if (input.lifts && input.shading != Shading::kFlat) seen.lift = liftOf(surface, seen.normal);
   const bool mapped =

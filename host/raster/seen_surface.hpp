@@ -21,12 +21,12 @@ struct Interpolant {
 /// A surface with all that its pixels need of its corners.
 struct SeenSurface {
   Surface surface;
-  glm::dvec3 facing_normal{0.0};   ///< its own, on the viewer's side
-  std::uint32_t facet = 0;         ///< that, by packNormal()
-  Interpolant<glm::dvec3> normal;  ///< on the viewer's side, of any length
-  Lift lift;                       ///< where asked for
-  Interpolant<glm::dvec2> uv;      ///< zero where no map needs them
-  bool glows_apart = false;        ///< the emission map is looked up elsewhere:
+  glm::dvec3 facing_normal{0.0};       ///< its own, on the viewer's side
+  std::uint32_t geometric_normal = 0;  ///< that, by packNormal()
+  Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
+  Lift lift;                           ///< where asked for
+  Interpolant<glm::dvec2> uv;          ///< zero where no map needs them
+  bool glows_apart = false;            ///< the emission map is looked up elsewhere:
   Interpolant<glm::dvec2> emission_uv;
   bool colored = false;
   Interpolant<glm::dvec3> color;  ///< where colored: of the vertices, or what light makes of them

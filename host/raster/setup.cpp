@@ -17,7 +17,7 @@ namespace {
 /// Which way round a triangle must go on the picture, y down; the other way it is only there by rounding.
 enum class Winding : std::uint8_t { kAny, kClockwise, kCounterClockwise };
 
-/// What a run of triangles adds to.
+/// What the setup of triangles adds to.
 struct Output {
   std::vector<RasterTriangle> triangles;
   std::uint64_t back_facing = 0;
@@ -161,13 +161,13 @@ RasterSetup join(std::vector<Output> outputs) {
   return setup;
 }
 
-constexpr std::size_t kRunVertices = 3 * kRunTriangles;  ///< at most
+constexpr std::size_t kMeshletVertices = 3 * kMeshletTriangles;  ///< at most
 
-/// A run's vertices, component by component, so that loops over them become vector instructions: the same
+/// A meshlet's vertices, component by component, so that loops over them become vector instructions: the same
 /// values, bit for bit, as those of transformVertex() and emitTriangle().
 struct RunVertices {
   template <class T>
-  using Of = std::array<T, kRunVertices>;
+  using Of = std::array<T, kMeshletVertices>;
   alignas(64) Of<double> view_x, view_y, view_z;  ///< view space
   alignas(64) Of<double> x, y, depth;             ///< as in ScreenVertex
   alignas(64) Of<std::int32_t> snapped_x, snapped_y;
@@ -189,11 +189,11 @@ struct MatrixRow {
 };
 
 /// Returns the places of all together.
-std::uint32_t transformRun(const TriangleRuns& runs, const TriangleRun& run, const PlacedObject& object,
-                           const Frame& frame, RunVertices& out) {
-  const std::size_t count = run.vertex_count;
-  alignas(64) std::array<float, kRunVertices> position_x, position_y, position_z;
-  const std::uint32_t* indices = runs.vertices.data() + run.first_vertex;
+std::uint32_t transformMeshlet(const Meshlets& meshlets, const Meshlet& meshlet, const PlacedObject& object,
+                               const Frame& frame, RunVertices& out) {
+  const std::size_t count = meshlet.vertex_count;
+  alignas(64) std::array<float, kMeshletVertices> position_x, position_y, position_z;
+  const std::uint32_t* indices = meshlets.vertices.data() + meshlet.first_vertex;
   const glm::vec3* positions = object.mesh->positions.data();
   for (std::size_t i = 0; i < count; ++i) {
     const glm::vec3& position = positions[indices[i]];
@@ -241,25 +241,28 @@ std::uint32_t transformRun(const TriangleRuns& runs, const TriangleRun& run, con
   return all;
 }
 
-void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index, const PlacedObject& object,
-              const Frame& frame, Output& output) {
-  const TriangleRun& run = runs.runs[index];
+void setupMeshlet(const Scene& scene, const Meshlets& meshlets, std::uint32_t index,
+                  const PlacedObject& object, const Frame& frame, Output& output) {
+  const Meshlet& meshlet = meshlets.items[index];
   RunVertices vertices;
   constexpr std::uint32_t kUncommon = kBehindNear | kBeyondFar | kOutsideGuard | kUnusable;
-  const std::uint32_t places = transformRun(runs, run, object, frame, vertices);
+  const std::uint32_t places = transformMeshlet(meshlets, meshlet, object, frame, vertices);
 
   // Most triangles are left out here, whole vectors of them at once.
-  const std::uint8_t* corners = runs.corners.data() + index * kRunVertices;
-  const auto corner = [&](std::uint32_t triangle, int c) { return corners[c * kRunTriangles + triangle]; };
-  alignas(64) std::array<std::uint8_t, kRunTriangles> kept{};  // 1: to be drawn, 2: perhaps clipped before
-  for (std::uint32_t i = 0; i < kRunTriangles; ++i) {
+  const std::uint8_t* corners = meshlets.corners.data() + index * kMeshletVertices;
+  const auto corner = [&](std::uint32_t triangle, int c) {
+    return corners[c * kMeshletTriangles + triangle];
+  };
+  alignas(64) std::array<std::uint8_t, kMeshletTriangles>
+      kept{};  // 1: to be drawn, 2: perhaps clipped before
+  for (std::uint32_t i = 0; i < kMeshletTriangles; ++i) {
     const std::uint32_t a = vertices.samples[corner(i, 0)], b = vertices.samples[corner(i, 1)],
                         c = vertices.samples[corner(i, 2)];
     const std::uint32_t differ = (a ^ b) | (b ^ c);
     kept[i] = ((differ & 0xffff) != 0) & (differ >> 16 != 0);
   }
   if (places & kUncommon) {
-    for (std::uint32_t i = 0; i < kRunTriangles; ++i) {
+    for (std::uint32_t i = 0; i < kMeshletTriangles; ++i) {
       const std::uint32_t a = vertices.places[corner(i, 0)], b = vertices.places[corner(i, 1)],
                           c = vertices.places[corner(i, 2)];
       const bool uncommon = (a | b | c) & kUncommon;
@@ -267,9 +270,9 @@ void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index,
       kept[i] = outside ? 0 : uncommon ? 2 : kept[i];
     }
   }
-  std::array<std::uint8_t, kRunTriangles> list;
+  std::array<std::uint8_t, kMeshletTriangles> list;
   std::size_t length = 0;
-  for (std::uint32_t i = 0; i < run.count; ++i) {
+  for (std::uint32_t i = 0; i < meshlet.count; ++i) {
     list[length] = std::uint8_t(i);
     length += kept[i] != 0;
   }
@@ -285,8 +288,8 @@ void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index,
         triangle.x[c] = vertices.snapped_x[at[c]];
         triangle.y[c] = vertices.snapped_y[at[c]];
       }
-      const bool masked = materialOf(scene, object, run.first + i).alpha_cutoff > 0.0f;
-      emitSnapped(triangle, screen, Winding::kAny, object.first_triangle + run.first + i, masked, output);
+      const bool masked = materialOf(scene, object, meshlet.first + i).alpha_cutoff > 0.0f;
+      emitSnapped(triangle, screen, Winding::kAny, object.first_triangle + meshlet.first + i, masked, output);
       continue;
     }
     std::array<glm::dvec3, 3> positions;
@@ -295,7 +298,7 @@ void setupRun(const Scene& scene, const TriangleRuns& runs, std::uint32_t index,
       positions[c] = {vertices.view_x[at[c]], vertices.view_y[at[c]], vertices.view_z[at[c]]};
       own_places[c] = std::uint16_t(vertices.places[at[c]]);
     }
-    setupTriangle(scene, object, run.first + i, {positions.data(), screen.data(), own_places.data()},
+    setupTriangle(scene, object, meshlet.first + i, {positions.data(), screen.data(), own_places.data()},
                   {0, 1, 2}, frame, FaceCulling::kNone, output);
   }
 }
@@ -328,15 +331,15 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
   return join(std::move(outputs));
 }
 
-RasterSetup setupRuns(const Scene& scene, const PlacedRuns& placed, const View& view) {
+RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view) {
   const Frame frame = makeFrame(view);
-  constexpr std::size_t kTask = 512;  // runs; the faces of most lights' maps have fewer
+  constexpr std::size_t kTask = 512;  // meshlets; the faces of most lights' maps have fewer
   const std::span<const std::uint32_t> chosen = placed.chosen;
   std::vector<Output> outputs((chosen.size() + kTask - 1) / kTask);
   tbb::parallel_for(std::size_t(0), outputs.size(), [&](std::size_t task) {
     const std::size_t end = std::min(chosen.size(), (task + 1) * kTask);
     for (std::size_t i = task * kTask; i < end; ++i)
-      setupRun(scene, placed.runs, chosen[i], placed.object(i), frame, outputs[task]);
+      setupMeshlet(scene, placed.meshlets, chosen[i], placed.object(i), frame, outputs[task]);
   });
   return join(std::move(outputs));
 }

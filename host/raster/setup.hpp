@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "raster/geometry.hpp"
-#include "raster/placed_runs.hpp"
+#include "raster/placed_meshlets.hpp"
 
 namespace luciole {
 
@@ -38,8 +38,8 @@ struct RasterSetup {
 RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
                            FaceCulling culling);
 
-/// The same for runs of triangles. No face is culled.
-RasterSetup setupRuns(const Scene& scene, const PlacedRuns& placed, const View& view);
+/// The same for meshlets. No face is culled.
+RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view);
 
 /// The pixels whose samples a triangle may cover: those in its bounding box, `last` included. A sample on the
 /// right or bottom edge belongs to the neighbour.

@@ -22,15 +22,15 @@ struct PlaneMeeting {
 
 PlaneMeeting meetPlane(const Surface& surface, const SquarePlace& place) {
   const glm::dvec3 weight1 = surface.weight1, weight2 = surface.weight2, determinant = surface.determinant;
-  PlaneMeeting meeting;
+  PlaneMeeting candidate;
   for (int i = 0; i < kSquarePixels; ++i) {
     const double x = place.x[i], y = place.y[i];
     const double scale = 1.0 / (determinant.x * x + determinant.y * y + determinant.z);
-    meeting.scale[i] = scale;
-    meeting.weights.second[i] = (weight1.x * x + weight1.y * y + weight1.z) * scale;
-    meeting.weights.third[i] = (weight2.x * x + weight2.y * y + weight2.z) * scale;
+    candidate.scale[i] = scale;
+    candidate.weights.second[i] = (weight1.x * x + weight1.y * y + weight1.z) * scale;
+    candidate.weights.third[i] = (weight2.x * x + weight2.y * y + weight2.z) * scale;
   }
-  return meeting;
+  return candidate;
 }
 
 /// Those of the pixels that see the surface, held inside the triangle; the others' as they are.
@@ -129,14 +129,14 @@ void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
 /// first corner on, and n and d the values at p of two rows, which grow by n' and d' a pixel,
 ///     (n + n') / (d + d') − n / d = (n' − u · d') / (d + d').
 void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& uv, double pixel,
-               const PlaneMeeting& meeting, const Lanes<double>& u, const Lanes<double>& v, Lanes<float>& du,
-               Lanes<float>& dv) {
+               const PlaneMeeting& candidate, const Lanes<double>& u, const Lanes<double>& v,
+               Lanes<float>& du, Lanes<float>& dv) {
   const double weight1 = pixel * surface.weight1[axis], weight2 = pixel * surface.weight2[axis];
   const double determinant = pixel * surface.determinant[axis];
   const glm::dvec2 row = weight1 * uv.to_second + weight2 * uv.to_third;
   const glm::dvec2 first = uv.first;
   for (int i = 0; i < kSquarePixels; ++i) {
-    const double scale = meeting.scale[i];
+    const double scale = candidate.scale[i];
     const float next = 1.0f / float(1.0 + determinant * scale);
     du[i] = float((row.x - (u[i] - first.x) * determinant) * scale) * next;
     dv[i] = float((row.y - (v[i] - first.y) * determinant) * scale) * next;
@@ -145,13 +145,13 @@ void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& 
 }
 
 void setFootprints(const Surface& surface, const Interpolant<glm::dvec2>& uv, const ViewPlane& plane,
-                   const PlaneMeeting& meeting, const SquareWeights& weights, SquareFootprints& result) {
+                   const PlaneMeeting& candidate, const SquareWeights& weights, SquareFootprints& result) {
   result.u = rounded(interpolate(uv, 0, weights));
   result.v = rounded(interpolate(uv, 1, weights));
-  const Lanes<double> u = interpolate(uv, 0, meeting.weights);
-  const Lanes<double> v = interpolate(uv, 1, meeting.weights);
-  stepAlong(0, surface, uv, plane.scale.x, meeting, u, v, result.du_dx, result.dv_dx);
-  stepAlong(1, surface, uv, plane.scale.y, meeting, u, v, result.du_dy, result.dv_dy);
+  const Lanes<double> u = interpolate(uv, 0, candidate.weights);
+  const Lanes<double> v = interpolate(uv, 1, candidate.weights);
+  stepAlong(0, surface, uv, plane.scale.x, candidate, u, v, result.du_dx, result.dv_dx);
+  stepAlong(1, surface, uv, plane.scale.y, candidate, u, v, result.du_dy, result.dv_dy);
 }
 
 void fill(const glm::vec3& value, Lanes3<float>& out) {
@@ -230,8 +230,8 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
                       const LaneMask& sees_it) {
   const Surface& surface = seen.surface;
   SquareValues values;
-  const PlaneMeeting meeting = meetPlane(surface, place);
-  const SquareWeights weights = holdInside(surface, place, sees_it, meeting.weights);
+  const PlaneMeeting candidate = meetPlane(surface, place);
+  const SquareWeights weights = holdInside(surface, place, sees_it, candidate.weights);
   // From the first corner, so that the edges' digits count, not the distance's.
   for (int c = 0; c < 3; ++c)
     values.position[c] = rounded(interpolate(surface.corner[c], surface.edge1[c], surface.edge2[c], weights));
@@ -239,12 +239,12 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
                               interpolate(seen.normal, 2, weights)};
   normalize(normal, seen.facing_normal, values.normal);
   setLift(seen, weights, normal, values.lift);
-  values.facet.fill(seen.facet);
+  values.geometric_normal.fill(seen.geometric_normal);
   setMaterial(input, seen, weights, values);
-  setFootprints(surface, seen.uv, input.plane, meeting, weights, values.footprints);
+  setFootprints(surface, seen.uv, input.plane, candidate, weights, values.footprints);
   values.emission_footprints = values.footprints;
   if (seen.glows_apart)
-    setFootprints(surface, seen.emission_uv, input.plane, meeting, weights, values.emission_footprints);
+    setFootprints(surface, seen.emission_uv, input.plane, candidate, weights, values.emission_footprints);
   return values;
 }
 
@@ -255,7 +255,7 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.specular, sees_it, out.specular);
   put(values.ambient, sees_it, out.ambient);
   put(values.emission, sees_it, out.emission);
-  put(values.facet, sees_it, out.facet);
+  put(values.geometric_normal, sees_it, out.geometric_normal);
   put(values.lift, sees_it, out.lift);
   put(values.reflection_map, sees_it, out.reflection_map);
   put(values.emission_map, sees_it, out.emission_map);

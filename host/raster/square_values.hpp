@@ -16,7 +16,7 @@ struct SquareValues {
   std::array<Lanes<float>, 4> specular;
   Lanes3<float> ambient;
   Lanes3<float> emission;
-  Lanes<std::uint32_t> facet;
+  Lanes<std::uint32_t> geometric_normal;
   Lanes<float> lift;
   /// The maps that are still to be multiplied in.
   Lanes<const TextureUse*> reflection_map;  ///< into diffuse and ambient; null: none

@@ -27,17 +27,18 @@ std::size_t countTriangles(const Scene& scene) {
 
 /// Embree's question after a hit whether it counts.
 void filterMeetings(const RTCFilterFunctionNArguments* arguments) {
-  const auto& passes_through = *static_cast<const PassesThrough*>(arguments->geometryUserPtr);
+  const auto& hit_filter = *static_cast<const HitFilter*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
     RTCRayN* ray = arguments->ray;
     RTCHitN* hit = arguments->hit;
-    const RayMeeting meeting{{RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
-                             RTCHitN_primID(hit, n, i),
-                             RTCHitN_u(hit, n, i),
-                             RTCHitN_v(hit, n, i)};
-    if (passes_through(meeting)) arguments->valid[i] = 0;
+    const CandidateHit candidate{
+        {RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i)},
+        RTCHitN_primID(hit, n, i),
+        RTCHitN_u(hit, n, i),
+        RTCHitN_v(hit, n, i)};
+    if (hit_filter(candidate)) arguments->valid[i] = 0;
   }
 }
 
@@ -116,7 +117,7 @@ void placeCorners(const Scene& scene, RayScene& rays, glm::vec3* corner) {
 
 }  // namespace
 
-RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, PassesThrough passes_through) {
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter) {
   const std::shared_ptr<RTCDeviceTy> device(rtcNewDevice(nullptr), rtcReleaseDevice);
   if (!device) throw MachineError("Embree can't be started");
   RayScene result;
@@ -135,9 +136,9 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, PassesThrou
     throw MachineError(scene.name + ": no memory for its triangles in Embree");
   placeCorners(scene, result, corners);
   for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
-  if (passes_through) {
-    result.passes_through = std::make_shared<const PassesThrough>(std::move(passes_through));
-    rtcSetGeometryUserData(geometry, const_cast<PassesThrough*>(result.passes_through.get()));
+  if (hit_filter) {
+    result.hit_filter = std::make_shared<const HitFilter>(std::move(hit_filter));
+    rtcSetGeometryUserData(geometry, const_cast<HitFilter*>(result.hit_filter.get()));
     rtcSetGeometryIntersectFilterFunction(geometry, filterMeetings);
     rtcSetGeometryOccludedFilterFunction(geometry, filterMeetings);
   }

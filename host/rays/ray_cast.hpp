@@ -15,31 +15,31 @@ struct RTCSceneTy;  // Embree's
 namespace luciole {
 
 /// A ray meets a triangle.
-struct RayMeeting {
+struct CandidateHit {
   glm::dvec3 from;         ///< where the ray starts, in a RayScene's own space
   std::uint32_t triangle;  ///< counted through all objects in order
   double second, third;    ///< shares of its second and third corner
 };
 
 /// Whether the ray goes on as if the triangle were not there. Called by many threads at once.
-using PassesThrough = std::function<bool(const RayMeeting&)>;
+using HitFilter = std::function<bool(const CandidateHit&)>;
 
 /// A scene's triangles, ready for rays: Embree in its robust mode, where no ray slips between two triangles
 /// that share an edge. Its own space is the world moved by −origin, in floats.
 struct RayScene {
   glm::dvec3 origin{0.0};      ///< world
   std::vector<bool> mirrored;  ///< triangles that their object's transform turns over
-  std::shared_ptr<const PassesThrough> passes_through;
+  std::shared_ptr<const HitFilter> hit_filter;
   std::shared_ptr<RTCSceneTy> scene;
 };
 
-/// Without `passes_through` every triangle is solid, whatever its material's holes.
-RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, PassesThrough passes_through = {});
+/// Without `hit_filter` every triangle is solid, whatever its material's holes.
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter = {});
 
 struct RayHit {
   double distance;         ///< metres
   bool front;              ///< the triangle's front was met
-  std::uint32_t triangle;  ///< as in RayMeeting
+  std::uint32_t triangle;  ///< as in CandidateHit
 };
 /// The nearest triangle that the ray meets; `direction` is unit, both are in world space.
 std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction);

@@ -16,11 +16,11 @@ struct Blockers {
   glm::dvec3 eye;
   std::vector<PlacedObject> objects;  ///< in world space
 
-  bool passesThrough(const RayMeeting& meeting) const {
-    const PlacedObject& object = objectOfTriangle(objects, meeting.triangle);
-    const std::uint32_t in_mesh = meeting.triangle - object.first_triangle;
+  bool passesThrough(const CandidateHit& candidate) const {
+    const PlacedObject& object = objectOfTriangle(objects, candidate.triangle);
+    const std::uint32_t in_mesh = candidate.triangle - object.first_triangle;
     const glm::uvec3 corners = object.mesh->triangles[in_mesh];
-    return liesInPlane(object, corners, meeting.from) || isHoleAt(object, in_mesh, corners, meeting);
+    return liesInPlane(object, corners, candidate.from) || isHoleAt(object, in_mesh, corners, candidate);
   }
 
   /// `from`: relative to the eye.
@@ -33,13 +33,13 @@ struct Blockers {
   }
 
   bool isHoleAt(const PlacedObject& object, std::uint32_t in_mesh, const glm::uvec3& corners,
-                const RayMeeting& meeting) const {
+                const CandidateHit& candidate) const {
     Surface surface;
     surface.object = &object;
     surface.material = &materialOf(scene, object, in_mesh);
     surface.corners = corners;
     if (surface.material->alpha_cutoff <= 0) return false;
-    const Weights weights(1 - meeting.second - meeting.third, meeting.second, meeting.third);
+    const Weights weights(1 - candidate.second - candidate.third, candidate.second, candidate.third);
     TexturePlace place{};
     if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
     return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
@@ -51,8 +51,8 @@ struct Blockers {
 RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
   auto blockers = std::make_shared<const Blockers>(
       Blockers{scene, eye, placeObjects(scene, allObjects(scene), glm::dmat4(1))});
-  return buildRayScene(scene, eye,
-                       [blockers](const RayMeeting& meeting) { return blockers->passesThrough(meeting); });
+  return buildRayScene(
+      scene, eye, [blockers](const CandidateHit& candidate) { return blockers->passesThrough(candidate); });
 }
 
 glm::dvec3 shadowStart(const GBuffer& gbuffer, std::size_t place) {

@@ -49,8 +49,8 @@ thread_local std::vector<std::uint32_t> met_triangles;
 
 Tracer makeTracer(const Scene& scene, const View& view) {
   // Every triangle lets the rays through, so that they meet all: which is nearest is decided in double.
-  const PassesThrough note = [](const RayMeeting& meeting) {
-    met_triangles.push_back(meeting.triangle);
+  const HitFilter note = [](const CandidateHit& candidate) {
+    met_triangles.push_back(candidate.triangle);
     return true;
   };
   const glm::dmat4 view_to_world = viewCamera(view).camera_to_world;
@@ -127,11 +127,11 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   if (determinant == 0 || (!front && !material.double_sided)) return std::nullopt;
   const glm::dvec3 t = ray.from - a, q = glm::cross(t, edge1);
   const double second = glm::dot(t, p) / determinant, third = glm::dot(ray.direction, q) / determinant;
-  Meeting meeting;
-  meeting.triangle = triangle;
-  meeting.depth = glm::dot(edge2, q) / determinant - ray.from.z;
-  meeting.position = ray.from + ray.direction * (meeting.depth + ray.from.z);
-  const glm::dvec4 clip = tracer.view.projection * glm::dvec4(meeting.position, 1);
+  Meeting candidate;
+  candidate.triangle = triangle;
+  candidate.depth = glm::dot(edge2, q) / determinant - ray.from.z;
+  candidate.position = ray.from + ray.direction * (candidate.depth + ray.from.z);
+  const glm::dvec4 clip = tracer.view.projection * glm::dvec4(candidate.position, 1);
   if (!(clip.z >= 0 && clip.z <= clip.w)) return std::nullopt;
   if (material.alpha_cutoff > 0 &&
       isHole(tracer.scene, makeSurface(tracer.scene, tracer.geometry.objects, triangle, tracer.plane),
@@ -145,10 +145,10 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   const glm::dvec3 shares(1 - second - third, second, third), sum = of_corners * shares;
   const double length = glm::length(sum);
   const glm::dvec3 own = glm::normalize(glm::cross(edge1, edge2)) * (object.mirrored ? -side : side);
-  meeting.normal = length > 0 ? sum / length : own;
-  meeting.lift =
-      liftAt(meeting.position, shares, {a, b, c}, of_corners, sum, leaningCorners(*object.mesh, corners));
-  return meeting;
+  candidate.normal = length > 0 ? sum / length : own;
+  candidate.lift =
+      liftAt(candidate.position, shares, {a, b, c}, of_corners, sum, leaningCorners(*object.mesh, corners));
+  return candidate;
 }
 
 /// All that the pixel's ray through `at` meets and the picture could show, nearest first.
@@ -162,7 +162,7 @@ std::vector<Meeting> follow(const Tracer& tracer, const glm::dvec2& at, const gl
   met_triangles.erase(std::unique(met_triangles.begin(), met_triangles.end()), met_triangles.end());
   std::vector<Meeting> meetings;
   for (const std::uint32_t triangle : met_triangles)
-    if (const auto meeting = meet(tracer, ray, triangle, pixel)) meetings.push_back(*meeting);
+    if (const auto candidate = meet(tracer, ray, triangle, pixel)) meetings.push_back(*candidate);
   std::sort(meetings.begin(), meetings.end(),
             [](const Meeting& a, const Meeting& b) { return a.depth < b.depth; });
   return meetings;
@@ -213,17 +213,17 @@ Shown shownAt(const GBuffer& gbuffer, const glm::ivec2& pixel) {
           gbuffer.lift.empty() ? std::nullopt : std::optional<double>(gbuffer.lift[i])};
 }
 
-double positionError(const Shown& shown, const Meeting& meeting) {
-  return glm::distance(shown.position, meeting.position) / glm::length(meeting.position);
+double positionError(const Shown& shown, const Meeting& candidate) {
+  return glm::distance(shown.position, candidate.position) / glm::length(candidate.position);
 }
 
 /// The angle, from the chord, which keeps the digits of small ones.
-double normalError(const Shown& shown, const Meeting& meeting) {
-  return 2 * std::asin(std::min(glm::distance(shown.normal, meeting.normal) / 2, 1.0));
+double normalError(const Shown& shown, const Meeting& candidate) {
+  return 2 * std::asin(std::min(glm::distance(shown.normal, candidate.normal) / 2, 1.0));
 }
 
-bool isSame(const Shown& shown, const Meeting& meeting) {
-  return positionError(shown, meeting) <= kSamePlace && normalError(shown, meeting) <= kSameNormal;
+bool isSame(const Shown& shown, const Meeting& candidate) {
+  return positionError(shown, candidate) <= kSamePlace && normalError(shown, candidate) <= kSameNormal;
 }
 
 /// Places around another at a distance of `radius` pixels.
@@ -254,13 +254,13 @@ bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<M
   if (glm::distance(seen, at) > kEdgePixels) return false;
   const auto passesBeside = [&](std::uint32_t triangle) {
     return std::none_of(meetings.begin(), meetings.end(),
-                        [&](const Meeting& meeting) { return meeting.triangle == triangle; });
+                        [&](const Meeting& candidate) { return candidate.triangle == triangle; });
   };
   for (const double radius : {kEdgePixels / 8, kEdgePixels}) {
     for (const glm::dvec2& around : placesAround(seen, radius)) {
-      for (const Meeting& meeting : follow(tracer, around, pixel))
-        if (passesBeside(meeting.triangle) &&
-            distanceToTriangle(cornersOf(tracer.geometry, meeting.triangle), shown.position) <=
+      for (const Meeting& candidate : follow(tracer, around, pixel))
+        if (passesBeside(candidate.triangle) &&
+            distanceToTriangle(cornersOf(tracer.geometry, candidate.triangle), shown.position) <=
                 kSamePlace * glm::length(shown.position))
           return true;
     }
@@ -273,11 +273,11 @@ bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<M
 bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
                   const glm::dvec2& at, const glm::ivec2& pixel) {
   bool met = !shown.surface;
-  for (const Meeting& meeting : meetings) {
-    if (shown.surface && isSame(shown, meeting)) met = true;
+  for (const Meeting& candidate : meetings) {
+    if (shown.surface && isSame(shown, candidate)) met = true;
     const bool in_front =
-        !shown.surface || meeting.depth < -shown.position.z - kSamePlace * glm::length(shown.position);
-    if (in_front && !endsBeside(tracer, meeting.triangle, at, pixel)) return false;
+        !shown.surface || candidate.depth < -shown.position.z - kSamePlace * glm::length(shown.position);
+    if (in_front && !endsBeside(tracer, candidate.triangle, at, pixel)) return false;
   }
   return met || isOnRimBeside(tracer, shown, meetings, at, pixel);
 }
@@ -290,18 +290,18 @@ void checkPixel(const Tracer& tracer, const GBuffer& gbuffer, const glm::ivec2& 
   const std::vector<Meeting> meetings = follow(tracer, at, pixel);
   ++check.pixels;
   if (meetings.empty() && !shown.surface) return;
-  for (const Meeting& meeting : meetings) {
-    if (!shown.surface || !isSame(shown, meeting)) continue;
-    if (meeting.depth - meetings.front().depth > kSamePlace * glm::length(meeting.position)) break;
-    if (&meeting != &meetings.front()) ++check.at_ties;
-    if (distanceToEdges(tracer, meeting.triangle, at) <= kEdgePixels) return;
-    const double error = positionError(shown, meeting);
+  for (const Meeting& candidate : meetings) {
+    if (!shown.surface || !isSame(shown, candidate)) continue;
+    if (candidate.depth - meetings.front().depth > kSamePlace * glm::length(candidate.position)) break;
+    if (&candidate != &meetings.front()) ++check.at_ties;
+    if (distanceToEdges(tracer, candidate.triangle, at) <= kEdgePixels) return;
+    const double error = positionError(shown, candidate);
     if (error > check.position_error && check.unexplained == 0) check.worst_pixel = pixel;
     check.position_error = std::max(check.position_error, error);
-    check.normal_error = std::max(check.normal_error, normalError(shown, meeting));
+    check.normal_error = std::max(check.normal_error, normalError(shown, candidate));
     if (shown.lift)
-      check.lift_error =
-          std::max(check.lift_error, std::abs(*shown.lift - meeting.lift) / glm::length(meeting.position));
+      check.lift_error = std::max(check.lift_error,
+                                  std::abs(*shown.lift - candidate.lift) / glm::length(candidate.position));
     return;
   }
   if (isBesideEdge(tracer, shown, meetings, at, pixel)) {

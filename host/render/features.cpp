@@ -150,7 +150,7 @@ PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular),
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
-          .facet = features.shadows(),
+          .geometric_normal = features.shadows(),
           .lift = features.has(Feature::kLift)};
 }
 

@@ -19,7 +19,7 @@ namespace {
 float4 color4(const glm::vec3& color) { return {color.x, color.y, color.z, 0}; }
 
 /// The pixels of a square as a power of two.
-unsigned shiftOf(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
+unsigned groupLog2(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
 
 ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettings& settings) {
   ShadeFrame frame{};
@@ -93,7 +93,7 @@ void cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& 
        {.position = buffers.position,
         .normal = buffers.normal,
         .plane_stride = pixels,
-        .shift = lighting.shift,
+        .group_log2 = lighting.group_log2,
         .lights = lighting.lights,
         .light_count = lighting.frame.light_count,
         .tree = lighting.tree,
@@ -117,7 +117,7 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
                     const GBufferBuffers& buffers, const LightLists& lists, std::size_t pixels,
                     Stats& stats) {
   ShadowMaps& shadows = lighting.host_shadows;
-  const std::vector<std::uint32_t> needed = timed(stats, "find shadow texels", [&] {
+  const std::vector<std::uint32_t> needed = timed(stats, Stage::kFindShadowTexels, [&] {
     return findNeeded(device, defines,
                       {.plane_stride = pixels,
                        .position = buffers.position,
@@ -130,7 +130,7 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
                        .shadow_faces = lighting.shadow_faces,
                        .bin_count = shadows.bin_count});
   });
-  timed(stats, "shadow maps", [&] {
+  timed(stats, Stage::kShadowMaps, [&] {
     giveBack(lighting.shadow_faces);
     giveBack(lighting.shadow_texels);
     giveBack(lighting.shadow_bounds);
@@ -148,7 +148,7 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
 PairBits decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
                        const std::string& defines, const GBuffer& gbuffer, const GBufferBuffers& buffers,
                        const LightLists& lists, std::uint64_t& traced, Stats& stats) {
-  PairBits bits = timed(stats, "classify", [&] {
+  PairBits bits = timed(stats, Stage::kClassify, [&] {
     return classify(device, defines,
                     {.plane_stride = gbuffer.pixels(),
                      .position = buffers.position,
@@ -162,7 +162,7 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
                      .texels = lighting.shadow_bounds,
                      .texel_count = std::max<std::size_t>(lighting.host_shadows.bounds.size(), 1)});
   });
-  traced = timed(stats, "trace unsure", [&] {
+  traced = timed(stats, Stage::kTraceUnsure, [&] {
     return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, bits);
   });
   return bits;
@@ -206,18 +206,19 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   lighting.math_defines = mathDefines(settings);
   lighting.unlit = !scene.lighting;
   lighting.frame = makeFrame(scene, camera, settings);
-  lighting.shift = shiftOf(settings.tile_size);
+  lighting.group_log2 = groupLog2(settings.tile_size);
   if (features.shadows())
-    lighting.host_shadows = timed(stats, "shadow maps", [&] {
+    lighting.host_shadows = timed(stats, Stage::kShadowMaps, [&] {
       return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits);
     });
   if (features.has(Feature::kExact)) {
     lighting.order = spatialOrder(scene.lights);
-    lighting.shadow_rays = timed(
-        stats, "ray tree", [&] { return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3])); });
+    lighting.shadow_rays = timed(stats, Stage::kRayTree, [&] {
+      return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3]));
+    });
   }
-  timed(stats, "wait for device", [&] { awaitDevice(device); });
-  timed(stats, "prepare lights", [&] {
+  timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
+  timed(stats, Stage::kPrepareLights, [&] {
     if (scene.lighting) lighting.host_lights = prepareLights(scene, camera, lighting.host_shadows);
     lighting.host_tree = buildLightTree(lighting.host_lights);
     uploadLighting(device, lighting);
@@ -232,19 +233,19 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   const std::string defines = featureDefines(features) + lighting.math_defines;
   const std::string lookup_defines = featureDefines(lookupFeatures(features));
   PackedNormals packed;
-  if (features.shadows() && gbuffer.facet.empty()) packed = packNormals(gbuffer);
-  const PackedNormals& facet = packed.empty() ? gbuffer.facet : packed;
+  if (features.shadows() && gbuffer.geometric_normal.empty()) packed = packNormals(gbuffer);
+  const PackedNormals& geometric_normal = packed.empty() ? gbuffer.geometric_normal : packed;
   Plane level;  // for a G-buffer that lies on its facets
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
   const Plane& lift = level.empty() ? gbuffer.lift : level;
-  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, facet, lift, lighting.unlit);
+  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
   LitPlanes lit;
   const bool culled = features.has(Feature::kLightLists);
   const LightLists none;
   const LightLists& lists = culled ? lighting.lists : none;
   if (culled) {
     const unsigned tests = kByCone | (features.has(Feature::kLightAmbient) ? 0 : kByFacing);
-    timed(stats, "cull", [&] { cullLights(device, lighting, buffers, pixels, tests, lighting.lists); });
+    timed(stats, Stage::kCull, [&] { cullLights(device, lighting, buffers, pixels, tests, lighting.lists); });
     lit.list_entries = lists.entries;
   }
   if (features.shadows() && !lighting.host_shadows.maps.empty())
@@ -259,7 +260,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(shadows.texels.size(), 1));
   lit.color.resize(pixels * (features.has(Feature::kOutputShadow) ? 4 : 3));
   const Buffer<float> image = borrowedForOutput(device, lit.color);
-  timed(stats, "shade", [&] {
+  timed(stats, Stage::kShade, [&] {
     shade(device, defines,
           {.frame = frame,
            .gbuffer = buffers,
@@ -271,13 +272,13 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
            .pair_bits = pair_bits,
            .image = image});
   });
-  timed(stats, "read back", [&] { download(device, image, lit.color); });
+  timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
   if (counts.in_range || counts.evaluated || counts.list_length)
-    timed(stats, "count lights",
+    timed(stats, Stage::kCountLights,
           [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, counts, lit); });
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             facet.size() + lift.size() + lit.color.size();
+                             geometric_normal.size() + lift.size() + lit.color.size();
   stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
                                                         shadows.texels.size() * sizeof(ShadowTexel) +
                                                         shadows.bounds.size() * sizeof(BoundTexel) +
@@ -295,7 +296,7 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   empty.specular.assign(4 * kTilePixels, 0.0f);
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
-  lighting.shift = shiftOf(settings.tile_size);
+  lighting.group_log2 = groupLog2(settings.tile_size);
   // A map of nothing, so that its kernel is compiled too.
   if (features.shadows()) {
     lighting.host_shadows.maps.emplace_back();

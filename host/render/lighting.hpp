@@ -22,7 +22,7 @@ struct Lighting {
   FeatureSet features;
   std::string math_defines;  ///< as by mathDefines
   ShadeFrame frame{};        ///< all but plane_stride
-  unsigned shift = 0;        ///< see CullArguments
+  unsigned group_log2 = 0;   ///< see CullArguments
   bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
   LightArray host_lights;
   LightTree host_tree;

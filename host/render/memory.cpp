@@ -17,7 +17,8 @@ std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step 
 std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
                           const Scene& scene) {
   const std::size_t gbuffer = 9 + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
-                              (planes.emission ? 3 : 0) + (planes.facet ? 1 : 0) + (planes.lift ? 1 : 0);
+                              (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
+                              (planes.lift ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
   const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
   const std::size_t channels = channelCount(settings, planes);

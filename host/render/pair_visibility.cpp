@@ -20,7 +20,7 @@ std::vector<float> pairVisibility(Device& device, const std::string& defines, co
   }
   const std::size_t slots = first_of_row.size() * lanes, stride = gbuffer.pixels();
   Plane points(3 * slots), normals(3 * slots), lifts(slots), seen(slots);
-  PackedNormals facets(slots);
+  PackedNormals geometric_normals(slots);
   std::vector<uint> map_of_row;
   for (std::size_t row = 0; row < first_of_row.size(); ++row) {
     map_of_row.push_back(pairs[first_of_row[row]].map);
@@ -31,7 +31,7 @@ std::vector<float> pairVisibility(Device& device, const std::string& defines, co
         points[c * slots + slot] = gbuffer.position[c * stride + pixel];
         normals[c * slots + slot] = gbuffer.normal[c * stride + pixel];
       }
-      facets[slot] = gbuffer.facet[pixel];
+      geometric_normals[slot] = gbuffer.geometric_normal[pixel];
       if (!gbuffer.lift.empty()) lifts[slot] = gbuffer.lift[pixel];
     }
   }

@@ -50,8 +50,9 @@ std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
                                      const std::vector<std::uint32_t>& objects, const View& view,
                                      Lighting& lighting, Stats& stats) {
   const FeatureSet features = vertexFeatures(lighting.features);
-  const GBuffer vertices = timed(
-      stats, "gather vertices", [&] { return gatherVertices(scene, objects, view, neededPlanes(features)); });
+  const GBuffer vertices = timed(stats, Stage::kGatherVertices, [&] {
+    return gatherVertices(scene, objects, view, neededPlanes(features));
+  });
   const LitPlanes lit = lightGBuffer(device, scene, lighting, features, vertices, {}, stats);
   std::vector<glm::vec3> colors(vertices.pixels());
   for (std::size_t i = 0; i < colors.size(); ++i)
@@ -117,10 +118,10 @@ std::future<double> startCompiling(Device& device, const std::vector<FeatureSet>
 }
 
 void awaitKernels(std::future<double>& compiling, Device& device, Stats& stats) {
-  const double milliseconds = timed(stats, "wait for kernels", [&] { return compiling.get(); });
-  addStage(stats, "compile kernels", milliseconds);
-  addStage(stats, "open device", std::exchange(device.milliseconds_to_open, 0));
-  stats.beside = {"compile kernels", "open device"};
+  const double milliseconds = timed(stats, Stage::kWaitForKernels, [&] { return compiling.get(); });
+  addStage(stats, Stage::kCompileKernels, milliseconds);
+  addStage(stats, Stage::kOpenDevice, std::exchange(device.milliseconds_to_open, 0));
+  stats.beside = {Stage::kCompileKernels, Stage::kOpenDevice};
   stats.device = device.description;
 }
 
@@ -173,7 +174,7 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
   Plane sum;
   for (int sample = 0; sample < settings.samples; ++sample) {
     view.sample = samplePoint(sample, settings.samples);
-    GBuffer gbuffer = timed(stats, "rasterize", [&] {
+    GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
       return rasterize(scene, prepared.objects, view, settings.shading, prepared.planes,
                        prepared.vertex_colors, &triangles);
     });
@@ -181,7 +182,7 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
     LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
                                  wantedCounts(settings, sample), stats);
     countPass(gbuffer, lit, settings.count_lights, stats);
-    timed(stats, "resolve", [&] {
+    timed(stats, Stage::kResolve, [&] {
       if (sample == 0) {
         picture = startPicture(gbuffer, lit, settings);
         sum = std::move(lit.color);
@@ -208,7 +209,7 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
     if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);
 }
 
-void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const TakeRows& take,
+void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
                  Stats& stats) {
   const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
@@ -287,7 +288,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
     vertex_colors = lightVertices(*device, scene, objects, view, lighting, stats);
   }
   RasterCounts triangles;
-  GBuffer gbuffer = timed(stats, "rasterize", [&] {
+  GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
     const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
     return rasterize(scene, objects, view, settings.shading, {true, true, true, true, smooth}, vertex_colors,
                      &triangles);
@@ -319,7 +320,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   countShadows(lighting.host_shadows, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
-  return timed(stats, "resolve", [&] {
+  return timed(stats, Stage::kResolve, [&] {
     Image picture = startPicture(gbuffer, lit, one_sample);
     setColors(gbuffer, lit.color, one_sample, picture);
     return picture;

@@ -48,12 +48,12 @@ struct RenderSettings {
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
 /// Takes the next rows of a picture, from the top down.
-using TakeRows = std::function<void(const Image& rows)>;
+using RowSink = std::function<void(const Image& rows)>;
 
 /// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G
 /// B, then the layers), band by band. Fills in the statistics. Throws InputError for a crop outside the
 /// picture, MachineError, and what `take` throws.
-void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const TakeRows& take,
+void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
                  Stats& stats);
 
 /// The same as one picture.

@@ -4,7 +4,7 @@
 
 namespace luciole {
 
-GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet,
+GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
                                const Plane& lift, bool unlit) {
   // One buffer for both: what two do to the same host memory, OpenCL leaves undefined.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
@@ -14,7 +14,7 @@ GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const Pac
           .specular = borrowed(device, gbuffer.specular),
           .ambient = unlit ? diffuse : borrowed(device, gbuffer.ambient),
           .emission = borrowed(device, gbuffer.emission),
-          .facet = borrowed(device, facet),
+          .geometric_normal = borrowed(device, geometric_normal),
           .lift = borrowed(device, lift)};
 }
 

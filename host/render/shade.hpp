@@ -11,13 +11,13 @@ namespace luciole {
 /// A G-buffer's groups on the device. Absent groups are small dummies.
 struct GBufferBuffers {
   Buffer<const float> position, normal, diffuse, specular, ambient, emission;
-  Buffer<const uint> facet;
+  Buffer<const uint> geometric_normal;
   Buffer<const float> lift;
 };
 
 /// The planes of a G-buffer, its triangles' normals and its lift. unlit: the diffuse colour takes the place
 /// of ambient.
-GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& facet,
+GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
                                const Plane& lift, bool unlit);
 
 struct ShadeArguments {

@@ -1,23 +1,43 @@
 #include "render/stats.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/peak_memory.hpp"
 #include "cl/kernel_cache.hpp"
 
 namespace luciole {
-void addStage(Stats& stats, const std::string& name, double milliseconds) {
-  for (auto& [stage, sum] : stats.stages) {
-    if (stage == name) {
+
+const char* stageName(Stage stage) {
+  static constexpr const char* kNames[]{
+      "load scene",      "read G-buffer",    "open device",  "compile kernels",
+      "wait for device", "wait for kernels", "ray tree",     "prepare lights",
+      "gather vertices", "rasterize",        "cull",         "find shadow texels",
+      "shadow maps",     "classify",         "trace unsure", "shade",
+      "read back",       "resolve",          "count lights", "check G-buffer",
+      "write",
+  };
+  static_assert(std::size(kNames) == std::size_t(Stage::kWrite) + 1);
+  return kNames[std::size_t(stage)];
+}
+
+bool isStart(Stage stage) {
+  return stage == Stage::kOpenDevice || stage == Stage::kCompileKernels || stage == Stage::kWaitForDevice ||
+         stage == Stage::kWaitForKernels;
+}
+
+void addStage(Stats& stats, Stage stage, double milliseconds) {
+  for (auto& [known, sum] : stats.stages) {
+    if (known == stage) {
       sum += milliseconds;
       return;
     }
   }
-  stats.stages.emplace_back(name, milliseconds);
+  stats.stages.emplace_back(stage, milliseconds);
 }
 
-double ownShare(const Stats& stats, const std::pair<std::string, double>& stage) {
+double ownShare(const Stats& stats, const std::pair<Stage, double>& stage) {
   const bool is_beside =
       std::find(stats.beside.begin(), stats.beside.end(), stage.first) != stats.beside.end();
   return is_beside ? 0 : stage.second;
@@ -38,11 +58,12 @@ std::string statsJson(const Stats& stats) {
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();
-  for (const auto& stage : stats.stages) {
-    const auto& [name, milliseconds] = stage;
-    json["stages"].push_back(
-        {{"name", name}, {"milliseconds", milliseconds}, {"wall_milliseconds", ownShare(stats, stage)}});
-    if (name == "open device" || name == "compile kernels") cold_start += milliseconds;
+  for (const auto& timed : stats.stages) {
+    const auto& [stage, milliseconds] = timed;
+    json["stages"].push_back({{"name", stageName(stage)},
+                              {"milliseconds", milliseconds},
+                              {"wall_milliseconds", ownShare(stats, timed)}});
+    if (stage == Stage::kOpenDevice || stage == Stage::kCompileKernels) cold_start += milliseconds;
   }
   json["counts"] = nlohmann::ordered_json::object();
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;

@@ -10,6 +10,37 @@
 
 namespace luciole {
 
+/// The steps to a picture that are timed, roughly in their order.
+enum class Stage : std::uint8_t {
+  kLoadScene,
+  kReadGBuffer,
+  kOpenDevice,
+  kCompileKernels,
+  kWaitForDevice,
+  kWaitForKernels,
+  kRayTree,
+  kPrepareLights,
+  kGatherVertices,
+  kRasterize,
+  kCull,
+  kFindShadowTexels,
+  kShadowMaps,
+  kClassify,
+  kTraceUnsure,
+  kShade,
+  kReadBack,
+  kResolve,
+  kCountLights,
+  kCheckGBuffer,
+  kWrite,
+};
+
+/// As --stats, bench and scale call it.
+const char* stageName(Stage stage);
+
+/// Whether it is done once a program, and so is no work on the picture: the device's and the kernels' start.
+bool isStart(Stage stage);
+
 /// What a picture cost: the content of --stats.
 struct Stats {
   std::string command;
@@ -19,10 +50,10 @@ struct Stats {
   std::vector<std::string> features;
   std::vector<std::string> warnings;  ///< see Scene::warnings
   int width = 0, height = 0, samples = 1;
-  std::vector<std::pair<std::string, double>>
+  std::vector<std::pair<Stage, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
   /// Of the stages, those that ran in threads of their own while others did
-  std::vector<std::string> beside;
+  std::vector<Stage> beside;
   double began = 0;  ///< when the picture was begun, in milliseconds since the process's start
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< measured ones, where a command measures any
@@ -31,27 +62,35 @@ struct Stats {
   Traffic traffic;  ///< of the whole picture, compiling its kernels included
 };
 
-/// Adds `milliseconds` to the stage of that name.
-void addStage(Stats& stats, const std::string& name, double milliseconds);
+/// Adds `milliseconds` to the stage.
+void addStage(Stats& stats, Stage stage, double milliseconds);
+
+/// The milliseconds of the clock that a function takes.
+template <class Function>
+double millisecondsOf(Function&& function) {
+  const auto start = std::chrono::steady_clock::now();
+  function();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// Runs a stage and adds the time it took.
 template <class Function>
-auto timed(Stats& stats, const char* name, Function&& function) {
+auto timed(Stats& stats, Stage stage, Function&& function) {
   struct Timer {
     Stats& stats;
-    const char* name;
+    Stage stage;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     ~Timer() {
-      addStage(stats, name,
+      addStage(stats, stage,
                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
-  } timer{stats, name};
+  } timer{stats, stage};
   return function();
 }
 
 /// How much of the picture's time passed in a stage: what it took, or nothing of one that ran beside others.
 /// Of all stages that adds up to the picture's time at most.
-double ownShare(const Stats& stats, const std::pair<std::string, double>& stage);
+double ownShare(const Stats& stats, const std::pair<Stage, double>& stage);
 
 /// Milliseconds since the picture was begun.
 double pictureMilliseconds(const Stats& stats);

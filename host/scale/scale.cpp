@@ -202,12 +202,6 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   return check;
 }
 
-/// What isn't work on the picture: it is done once a program.
-bool isStart(const std::string& stage) {
-  return stage == "open device" || stage == "compile kernels" || stage == "wait for device" ||
-         stage == "wait for kernels";
-}
-
 PointRun timePoint(Bench& bench, std::size_t index) {
   setLights(bench, index);
   malloc_trim(0);  // what earlier points took is not this one's
@@ -216,7 +210,7 @@ PointRun timePoint(Bench& bench, std::size_t index) {
   renderScene(bench.device, bench.scene, bench.experiment.tasks[index].settings, stats);
   PointRun run{.stages = {}, .device_bytes = stats.device_bytes, .peak_bytes = peakBytes()};
   for (const auto& [stage, milliseconds] : stats.stages)
-    if (!isStart(stage)) run.stages.emplace_back(stage, milliseconds);
+    if (!isStart(stage)) run.stages.emplace_back(stageName(stage), milliseconds);
   return run;
 }
 

@@ -20,7 +20,7 @@ struct MovingNode {
 };
 
 /// An object, camera or light that hangs on a node: its place in the world is the node's · after.
-struct Hanging {
+struct Attachment {
   std::uint32_t index = 0;  ///< in Scene::objects, cameras or lights
   std::uint32_t node = 0;   ///< in Animation::nodes
   glm::dmat4 after{1.0};
@@ -55,7 +55,7 @@ struct Animation {
   double frame_rate = 24;  ///< frames a second, for files that tell time in seconds: frame 1 is time 0
   std::vector<Curve> curves;
   std::vector<MovingNode> nodes;  ///< parents first
-  std::vector<Hanging> objects, hanging_cameras, hanging_lights;
+  std::vector<Attachment> objects, attached_cameras, attached_lights;
   std::vector<CameraMotion> cameras;
   std::vector<LightMotion> lights;
   int no_mesh = -1;  ///< in Scene::meshes: the empty one that flattened objects show; -1: nothing hangs

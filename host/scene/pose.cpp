@@ -70,24 +70,24 @@ glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const 
 void poseScene(Scene& scene, double frame) {
   const Animation& animation = scene.animation;
   const std::vector<glm::dmat4> worlds = nodeTransforms(scene, frame);
-  const auto placeOf = [&](const Hanging& hanging) {
-    const glm::dmat4 place = worlds[hanging.node] * hanging.after;
+  const auto placeOf = [&](const Attachment& attachment) {
+    const glm::dmat4 place = worlds[attachment.node] * attachment.after;
     if (!isFinite(place)) fail(scene, frame, "what hangs on a moving node", "its transform is not finite");
     return place;
   };
-  for (const Hanging& hanging : animation.objects) {
-    Object& object = scene.objects[hanging.index];
-    object.object_to_world = placeOf(hanging);
+  for (const Attachment& attachment : animation.objects) {
+    Object& object = scene.objects[attachment.index];
+    object.object_to_world = placeOf(attachment);
     object.mesh =
-        isFlat(object.object_to_world) ? static_cast<std::uint32_t>(animation.no_mesh) : hanging.mesh;
+        isFlat(object.object_to_world) ? static_cast<std::uint32_t>(animation.no_mesh) : attachment.mesh;
   }
-  for (const Hanging& hanging : animation.hanging_cameras) {
-    const std::string fault = hangCamera(placeOf(hanging), scene.cameras[hanging.index]);
-    if (!fault.empty()) fail(scene, frame, cameraName(scene, hanging.index), fault);
+  for (const Attachment& attachment : animation.attached_cameras) {
+    const std::string fault = hangCamera(placeOf(attachment), scene.cameras[attachment.index]);
+    if (!fault.empty()) fail(scene, frame, cameraName(scene, attachment.index), fault);
   }
-  for (const Hanging& hanging : animation.hanging_lights) {
-    const std::string fault = hangLight(placeOf(hanging), scene.lights[hanging.index]);
-    if (!fault.empty()) fail(scene, frame, fmt::format("light {}", hanging.index), fault);
+  for (const Attachment& attachment : animation.attached_lights) {
+    const std::string fault = hangLight(placeOf(attachment), scene.lights[attachment.index]);
+    if (!fault.empty()) fail(scene, frame, fmt::format("light {}", attachment.index), fault);
   }
   for (const CameraMotion& motion : animation.cameras) {
     const std::string fault = poseCamera(motion, frame, scene.cameras[motion.camera]);
@@ -100,7 +100,7 @@ void poseScene(Scene& scene, double frame) {
   checkPlaces(scene);
 }
 
-void hang(Scene& scene, const Hanging& object) {
+void attach(Scene& scene, const Attachment& object) {
   int& no_mesh = scene.animation.no_mesh;
   if (no_mesh < 0) {
     no_mesh = static_cast<int>(scene.meshes.size());

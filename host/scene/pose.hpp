@@ -18,7 +18,7 @@ glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const 
 void poseScene(Scene& scene, double frame);
 
 /// Makes an object hang on a node, from the next pose on.
-void hang(Scene& scene, const Hanging& object);
+void attach(Scene& scene, const Attachment& object);
 
 /// The same as poseScene for one camera or light; what is wrong, or "".
 std::string poseCamera(const CameraMotion& motion, double frame, Camera& camera);

@@ -77,9 +77,9 @@ void withFields(T& node, Visit&& visit) {
   auto& [parent, before, translate, rotate, quaternion, scale] = node;
   visit(parent, before, translate, rotate, quaternion, scale);
 }
-template <Is<Hanging> T, class Visit>
-void withFields(T& hanging, Visit&& visit) {
-  auto& [index, node, after, mesh] = hanging;
+template <Is<Attachment> T, class Visit>
+void withFields(T& attachment, Visit&& visit) {
+  auto& [index, node, after, mesh] = attachment;
   visit(index, node, after, mesh);
 }
 template <Is<CameraMotion> T, class Visit>
@@ -96,16 +96,16 @@ void withFields(T& motion, Visit&& visit) {
 }
 template <Is<Animation> T, class Visit>
 void withFields(T& animation, Visit&& visit) {
-  auto& [frame_rate, curves, nodes, objects, hanging_cameras, hanging_lights, cameras, lights, no_mesh] =
+  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, no_mesh] =
       animation;
-  visit(frame_rate, curves, nodes, objects, hanging_cameras, hanging_lights, cameras, lights, no_mesh);
+  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, no_mesh);
 }
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
-  auto& [name, warnings, missing_textures, textures, materials, meshes, objects, lights, cameras, size, background,
-         ambient, fog, says_light, lighting, animation] = scene;
-  visit(name, warnings, missing_textures, textures, materials, meshes, objects, lights, cameras, size, background,
-        ambient, fog, says_light, lighting, animation);
+  auto& [name, warnings, missing_textures, textures, materials, meshes, objects, lights, cameras, size,
+         background, ambient, fog, says_light, lighting, animation] = scene;
+  visit(name, warnings, missing_textures, textures, materials, meshes, objects, lights, cameras, size,
+        background, ambient, fog, says_light, lighting, animation);
 }
 
 }  // namespace luciole

@@ -8,7 +8,7 @@
 
 #include "raster/bound_depth.hpp"
 #include "raster/rasterize.hpp"
-#include "shadow/runs_seen.hpp"
+#include "shadow/meshlets_seen.hpp"
 
 namespace luciole {
 namespace {
@@ -84,12 +84,12 @@ void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std
       bins.farthest.push_back(task.moves || task.fresh[bin] ? face.farthest[bin] : kNever);
     }
   }
-  const std::vector<std::uint32_t> seen = runsSeen(maps.runs, view, bins, scene.lights[face.light]);
+  const std::vector<std::uint32_t> seen = meshletsSeen(maps.meshlets, view, bins, scene.lights[face.light]);
   if (maps.method == ShadowMethod::kExact)
-    rasterizeBounds(scene, maps.runs, seen, view, bins.farthest,
+    rasterizeBounds(scene, maps.meshlets, seen, view, bins.farthest,
                     std::span(maps.bounds).subspan(place, area(face.count)));
   else
-    rasterizeDepth(scene, maps.runs, seen, view, bins.farthest,
+    rasterizeDepth(scene, maps.meshlets, seen, view, bins.farthest,
                    std::span(maps.texels).subspan(place, area(face.count)));
 }
 

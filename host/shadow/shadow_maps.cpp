@@ -33,7 +33,7 @@ ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMet
       result.planned.push_back({.light = static_cast<std::uint32_t>(i), .view = view, .farthest = {}});
     result.planned_texels += map.views.size() * std::size_t(size) * size;
   }
-  if (!result.maps.empty()) result.runs = findRuns(scene);
+  if (!result.maps.empty()) result.meshlets = findMeshlets(scene);
   return result;
 }
 

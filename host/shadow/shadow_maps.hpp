@@ -6,7 +6,7 @@
 
 #include "base/array_memory.hpp"
 #include "kernels/shared.h"
-#include "raster/triangle_runs.hpp"
+#include "raster/meshlets.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 #include "shadow/shadow_method.hpp"
@@ -38,7 +38,7 @@ struct ShadowMaps {
   /// In place of texels for ShadowMethod::kExact.
   std::vector<BoundTexel, RawArrayAllocator<BoundTexel>> bounds;
   ShadowMethod method = ShadowMethod::kOff;
-  TriangleRuns runs;
+  Meshlets meshlets;
   std::size_t bin_count = 0;         ///< of all faces
   std::size_t planned_texels = 0;    ///< if all of every face were drawn
   std::uint64_t reduced_lights = 0;  ///< lights whose maps the memory made coarser than wanted

@@ -92,8 +92,8 @@ PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
       toFloat4(glm::row(rotation, 2) * depth_a_metre + glm::dvec4(0, 0, 0, (eye.z - low) * depth_a_metre));
   planned.lookup.depth_scale = float(depth_a_metre * depth_a_metre);
   planned.lookup.depth_offset = float(depth_a_metre);
-  planned.lookup.spread = float(std::tan(light.half_angle) / depth_a_metre);
-  planned.lookup.reach = float(border);
+  planned.lookup.penumbra_scale = float(std::tan(light.half_angle) / depth_a_metre);
+  planned.lookup.filter_radius = float(border);
   planned.lookup.kind = kParallelMap;
   return planned;
 }
@@ -108,8 +108,8 @@ void addFace(const Light& light, const PlanInput& input, const glm::dmat4& world
       perspectiveProjection(2 * std::atan(half / scale), 1.0, reach * kNearShare, reach);
   planned.lookup.depth_scale = float(projection[3][2]);
   planned.lookup.depth_offset = float(-projection[2][2]);
-  planned.lookup.spread = float(light.radius / projection[3][2]);
-  planned.lookup.reach = float(border);
+  planned.lookup.penumbra_scale = float(light.radius / projection[3][2]);
+  planned.lookup.filter_radius = float(border);
   planned.views.push_back(squareView(world_to_light, projection, size));
   planned.faces.push_back(emptyFace(scale, {half, half}, size, border));
 }

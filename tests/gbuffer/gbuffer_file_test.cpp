@@ -67,7 +67,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
   for (Plane* plane : {&g.position, &g.normal, &g.diffuse, &g.ambient, &g.emission})
     plane->assign(3 * stride, 0.0f);
   g.specular.assign(4 * stride, 0.0f);
-  g.facet.assign(stride, 0);
+  g.geometric_normal.assign(stride, 0);
   g.lift.assign(stride, 0.0f);
   std::fill(g.position.begin() + std::ptrdiff_t(2 * stride), g.position.end(), -kInf);
   for (int y = 0; y < height; ++y) {
@@ -80,7 +80,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
       const glm::dvec2 screen{((x + 0.5) / width * 2 - 1) * width / height, 1 - (y + 0.5) / height * 2};
       setThree(g.position, at, stride, glm::vec3(screen.x * half, screen.y * half, -depth));
       setThree(g.normal, at, stride, glm::normalize(glm::vec3(0.1f * float(i % 7), 0.3f, 1.0f)));
-      g.facet[at] = packNormal(glm::dvec3(i % 5 - 2, i % 3 - 0.3, 0.1 * (i % 101)));
+      g.geometric_normal[at] = packNormal(glm::dvec3(i % 5 - 2, i % 3 - 0.3, 0.1 * (i % 101)));
       g.lift[at] = i % 4 == 0 ? 0.0f : 1e-3f * float(i % 97);
       setThree(g.diffuse, at, stride, glm::vec3(0.1f, 0.01f * float(i % 90), 0.7f));
       setThree(g.specular, at, stride, glm::vec3(0.3f, 0.2f, 0.1f * float(i % 5)));
@@ -150,7 +150,7 @@ TEST(GBufferFile, EveryPlaneSurvivesBitForBit) {
     EXPECT_TRUE(sameBits(read.specular, written.specular));
     EXPECT_TRUE(sameBits(read.ambient, written.ambient));
     EXPECT_TRUE(sameBits(read.emission, written.emission));
-    EXPECT_EQ(read.facet, written.facet);
+    EXPECT_EQ(read.geometric_normal, written.geometric_normal);
     EXPECT_TRUE(sameBits(read.lift, written.lift));
   }
 }
@@ -158,7 +158,7 @@ TEST(GBufferFile, EveryPlaneSurvivesBitForBit) {
 TEST(GBufferFile, FacetsAreOptional) {
   const TemporaryFolder folder;
   GBuffer without = somePicture(3, 2, someCamera());
-  without.facet.clear();
+  without.geometric_normal.clear();
   writeGBuffer(without, folder / "g.exr", {});
   EXPECT_TRUE(readGBuffer(folder / "g.exr").facet.empty());
 
@@ -169,10 +169,10 @@ TEST(GBufferFile, FacetsAreOptional) {
     return c < 6 || x == 0 ? values[c] : x == 1 ? 0.0f : kInf;
   });
   const GBuffer g = readGBuffer(folder / "g.exr");
-  ASSERT_EQ(g.facet.size(), g.pixels());
-  EXPECT_EQ(unpackNormal(g.facet[g.index(0, 0)]), glm::dvec3(0, 1, 0));
-  EXPECT_EQ(unpackNormal(g.facet[g.index(1, 0)]), glm::dvec3(0, 0, 1));
-  EXPECT_EQ(unpackNormal(g.facet[g.index(2, 0)]), glm::dvec3(0, 0, 1));
+  ASSERT_EQ(g.geometric_normal.size(), g.pixels());
+  EXPECT_EQ(unpackNormal(g.geometric_normal[g.index(0, 0)]), glm::dvec3(0, 1, 0));
+  EXPECT_EQ(unpackNormal(g.geometric_normal[g.index(1, 0)]), glm::dvec3(0, 0, 1));
+  EXPECT_EQ(unpackNormal(g.geometric_normal[g.index(2, 0)]), glm::dvec3(0, 0, 1));
 }
 
 TEST(GBufferFile, LiftsAreOptionalAndNeverNegative) {
@@ -431,8 +431,9 @@ TEST(GBufferFile, PicturesCarryTheCameraAsGBuffersDo) {
   gbuffer.picture_size = {20, 10};
   gbuffer.crop_origin = {5, 2};
   writeGBuffer(gbuffer, folder / "g.exr", {});
-  writeImage({4, 3, {"R", "G", "B"}, std::vector<float>(36, 0.5f)}, folder / "p.exr", {},
-             {.picture_size = {20, 10}, .crop_origin = {5, 2}, .exr = cameraAttributes(someCamera(), {20, 10})});
+  writeImage(
+      {4, 3, {"R", "G", "B"}, std::vector<float>(36, 0.5f)}, folder / "p.exr", {},
+      {.picture_size = {20, 10}, .crop_origin = {5, 2}, .exr = cameraAttributes(someCamera(), {20, 10})});
   const auto g = OIIO::ImageInput::open(folder / "g.exr"), p = OIIO::ImageInput::open(folder / "p.exr");
   ASSERT_TRUE(g && p);
   const OIIO::TypeDesc matrix(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44);

@@ -115,14 +115,15 @@ TEST(PackedNormal, PixelsHaveTheirTrianglesNormalOnTheViewersSide) {
   for (const bool turned : {false, true}) {
     const Scene scene = tiltedScene(turned ? -normal : normal);
     for (const Shading shading : {Shading::kFlat, Shading::kPhong}) {
-      const GBuffer gbuffer = draw(scene, cameraView(frontCamera(), {7, 9}), shading, {.facet = true});
-      ASSERT_EQ(gbuffer.facet.size(), gbuffer.pixels());
+      const GBuffer gbuffer =
+          draw(scene, cameraView(frontCamera(), {7, 9}), shading, {.geometric_normal = true});
+      ASSERT_EQ(gbuffer.geometric_normal.size(), gbuffer.pixels());
       for (int y = 0; y < 9; ++y)
         for (int x = 0; x < 7; ++x) {
           ASSERT_TRUE(isCovered(gbuffer, x, y));
-          const glm::dvec3 facet = unpackNormal(gbuffer.facet[gbuffer.index(x, y)]);
+          const glm::dvec3 geometric_normal = unpackNormal(gbuffer.geometric_normal[gbuffer.index(x, y)]);
           ASSERT_LE(angleBetween(facet, normal), 2 * kLargestError) << "rounding of the corners, too";
-          ASSERT_GT(glm::dot(facet, glm::dvec3(valueAt(gbuffer.normal, gbuffer, x, y))), 0.0);
+          ASSERT_GT(glm::dot(geometric_normal, glm::dvec3(valueAt(gbuffer.normal, gbuffer, x, y))), 0.0);
         }
     }
   }
@@ -131,12 +132,12 @@ TEST(PackedNormal, PixelsHaveTheirTrianglesNormalOnTheViewersSide) {
 TEST(PackedNormal, VerticesHaveTheirOwnNormal) {
   const Scene scene = tiltedScene({0.0, 0.0, 1.0});
   const GBuffer gbuffer =
-      gatherVertices(scene, allObjects(scene), cameraView(frontCamera(), {8, 8}), {.facet = true});
+      gatherVertices(scene, allObjects(scene), cameraView(frontCamera(), {8, 8}), {.geometric_normal = true});
   const std::size_t n = gbuffer.pixels();
-  ASSERT_EQ(gbuffer.facet.size(), n);
+  ASSERT_EQ(gbuffer.geometric_normal.size(), n);
   for (int i = 0; i < 4; ++i) {
     const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]);
-    EXPECT_LE(angleBetween(unpackNormal(gbuffer.facet[i]), normal), 2 * kLargestError);
+    EXPECT_LE(angleBetween(unpackNormal(gbuffer.geometric_normal[i]), normal), 2 * kLargestError);
   }
 }
 

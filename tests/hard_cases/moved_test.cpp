@@ -44,7 +44,7 @@ Scene movedScene(const glm::dvec3& offset) {
 /// √3: 3√3, by √3 for the vector 9; the object's with one sum more 12). Eye and target 7.3 m apart turn the
 /// camera by 2√3 / 7.3, which moves points 12 m away, the farthest here, by 6: 31 in all. Lights come by the
 /// inverse of a matrix, whose entries have twice the operations: 60.
-double shiftOf(double largest) { return 60 * 0x1p-53 * largest; }
+double groupLog2(double largest) { return 60 * 0x1p-53 * largest; }
 
 /// By how much the colours of a pixel may change, before rounding, where its position moves by `moved`, its
 /// normal by `turned` and the lights by `shift`: how steep each factor of the lighting equation is. Fading by
@@ -142,7 +142,7 @@ class Moved : public testing::TestWithParam<double> {
   /// Along the sun's rays: across them, cascades have their texels elsewhere after a way that is not of whole
   /// texels.
   const glm::dvec3 offset{0.55 * distance, distance, 0.75 * distance};
-  const double shift = shiftOf(distance + 10);
+  const double shift = groupLog2(distance + 10);
 };
 
 TEST_P(Moved, KeepsItsPicture) {

@@ -74,7 +74,7 @@ void lightPicture(unsigned number) {
   for (std::uint32_t pixel = 0; pixel < 37; ++pixel)
     pairs.push_back({pixel, pixel / 9 % std::uint32_t(shadows.maps.size())});
   GBuffer with_facets = gbuffer;
-  with_facets.facet.resize(gbuffer.pixels());
+  with_facets.geometric_normal.resize(gbuffer.pixels());
   pairVisibility(device, featureDefines(features) + mathDefines(settings), with_facets, shadows, pairs);
 }
 

@@ -52,14 +52,14 @@ struct Lists {
 
 /// By buffers that may have held other lists.
 Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<const ShadeLight> lights,
-               unsigned shift, unsigned tests) {
+               unsigned group_log2, unsigned tests) {
   Device& device = deviceWithLanes(lanes);
   const LightTree tree = buildLightTree(lights);
   cull(device,
        {.position = borrowed(device, points.position),
         .normal = borrowed(device, points.normal),
         .plane_stride = points.count(),
-        .shift = shift,
+        .group_log2 = shift,
         .lights = borrowed(device, lights),
         .light_count = lights.size(),
         .tree = borrowed(device, tree.planes),
@@ -90,14 +90,14 @@ Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<con
   return result;
 }
 
-Lists cullWith(int lanes, const Points& points, std::span<const ShadeLight> lights, unsigned shift,
+Lists cullWith(int lanes, const Points& points, std::span<const ShadeLight> lights, unsigned group_log2,
                unsigned tests) {
   LightLists lists;
   return cullInto(lists, lanes, points, lights, shift, tests);
 }
 
 /// By every width, which give the same.
-Lists cullEverywhere(const Points& points, std::span<const ShadeLight> lights, unsigned shift,
+Lists cullEverywhere(const Points& points, std::span<const ShadeLight> lights, unsigned group_log2,
                      unsigned tests) {
   const Lists lists = cullWith(1, points, lights, shift, tests);
   for (const int lanes : {4, 8, 16})
@@ -203,7 +203,7 @@ struct Tally {
 };
 
 /// Every list against its points and its bounds.
-void judge(const Points& points, std::span<const ShadeLight> lights, unsigned shift, unsigned tests,
+void judge(const Points& points, std::span<const ShadeLight> lights, unsigned group_log2, unsigned tests,
            const Lists& lists, Tally& tally) {
   for (std::size_t list = 0; list + 1 < lists.starts.size(); ++list) {
     const auto begin = lists.list.begin() + lists.starts[list],
@@ -297,7 +297,7 @@ TEST_P(CullKernels, ListsHoldWhatLightsAPointAndNothingThatCannot) {
   const Points points = randomPoints(GetParam() > 1000 ? 4 : 12, random);
   std::vector<ShadeLight> lights;
   while (int(lights.size()) < GetParam()) lights.push_back(randomLight(points, random));
-  for (const unsigned shift : kShifts) {
+  for (const unsigned group_log2 : kShifts) {
     Tally tally;
     for (const unsigned tests : kTests) {
       const Lists lists = cullEverywhere(points, lights, shift, tests);
@@ -344,7 +344,7 @@ TEST(CullKernels, LightsAHairAboveTheSurfaceStayIn) {
     const ShadeLight lights[] = {
         pointLight({0, 0, above}, INFINITY), pointLight({-40 * depth, 3 * depth, above}, INFINITY),
         spotLight({depth, depth, above}, INFINITY, {-1, 0, 0}, 0.01), directionalLight({1, 0, 1e-30})};
-    for (const unsigned shift : kShifts) {
+    for (const unsigned group_log2 : kShifts) {
       const Lists lists = cullEverywhere(points, lights, shift, kByFacing);
       for (std::size_t list = 0; list < std::size_t(kTilePixels) >> shift; ++list)
         for (std::uint32_t light = 0; light < std::size(lights); ++light)
@@ -422,7 +422,7 @@ TEST(CullKernels, NoLightsAndNoPixelsMakeEmptyLists) {
   Random random(9);
   const Points points = randomPoints(3, random), background(3);
   const std::vector<ShadeLight> lights(33, pointLight({0, 0, -5}, INFINITY));
-  for (const unsigned shift : kShifts) {
+  for (const unsigned group_log2 : kShifts) {
     EXPECT_EQ(cullEverywhere(points, {}, shift, kByFacing).starts,
               std::vector<cl_uint>(3 * kSquaresPerTile + 1, 0));
     EXPECT_EQ(cullEverywhere(background, lights, shift, kByFacing).starts,
@@ -439,7 +439,7 @@ TEST(CullKernels, PaddingOfTheTreeIsNeverListed) {
     points.set(i, {coordinates[i % 4], coordinates[i / 4 % 4], coordinates[i / 16]}, {0, 0, 1});
   for (int i = 64; i < kTilePixels; ++i) points.set(i, {0, 0, -1e-3f}, {0, 0, 1});
   const ShadeLight light = pointLight({0, 0, 1}, INFINITY);
-  for (const unsigned shift : kShifts)
+  for (const unsigned group_log2 : kShifts)
     for (const cl_uint entry : cullEverywhere(points, {&light, 1}, shift, kByCone).list) EXPECT_EQ(entry, 0u);
 }
 

@@ -13,9 +13,9 @@ namespace luciole::test {
 namespace {
 
 std::vector<BoundTexel> bounds(const Scene& scene, const View& view, std::span<const float> farthest = {}) {
-  const TriangleRuns runs = findRuns(scene);
+  const Meshlets meshlets = findMeshlets(scene);
   std::vector<BoundTexel> texels(std::size_t(view.crop_size.x) * view.crop_size.y, {7, 7, 7, 7});
-  rasterizeBounds(scene, runs, allRuns(runs), view, farthest, texels);
+  rasterizeBounds(scene, meshlets, allMeshlets(meshlets), view, farthest, texels);
   return texels;
 }
 

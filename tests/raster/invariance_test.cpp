@@ -82,7 +82,7 @@ TEST(Invariance, ACropIsACutOutBitForBit) {
         expect_same(part.specular, whole.specular, 4);
         expect_same(part.ambient, whole.ambient, 3);
         expect_same(part.emission, whole.emission, 3);
-        ASSERT_EQ(part.facet[i], whole.facet[j]);
+        ASSERT_EQ(part.geometric_normal[i], whole.geometric_normal[j]);
         ASSERT_EQ(part.lift[i], whole.lift[j]);
         ASSERT_TRUE(sameTexel(part_depth[std::size_t(y) * crop.z + x],
                               whole_depth[std::size_t(y + crop.y) * 211 + x + crop.x]))
@@ -109,7 +109,7 @@ TEST(Invariance, TheNumberOfThreadsChangesNothing) {
     EXPECT_EQ(one.specular, many.specular);
     EXPECT_EQ(one.ambient, many.ambient);
     EXPECT_EQ(one.emission, many.emission);
-    EXPECT_EQ(one.facet, many.facet);
+    EXPECT_EQ(one.geometric_normal, many.geometric_normal);
     EXPECT_EQ(one.lift, many.lift);
     EXPECT_TRUE(std::ranges::equal(one_depth, many_depth, sameTexel));
     EXPECT_EQ(one_outside, many_outside);
@@ -143,7 +143,7 @@ TEST(Invariance, PlanesNobodyAsksForAreEmpty) {
   EXPECT_TRUE(gbuffer.specular.empty());
   EXPECT_TRUE(gbuffer.ambient.empty());
   EXPECT_TRUE(gbuffer.emission.empty());
-  EXPECT_TRUE(gbuffer.facet.empty());
+  EXPECT_TRUE(gbuffer.geometric_normal.empty());
   EXPECT_TRUE(gbuffer.lift.empty());
 }
 

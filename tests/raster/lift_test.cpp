@@ -23,7 +23,7 @@ Scene primitiveScene(PrimitiveKind kind, int segments, const glm::dmat4& place) 
 glm::dmat4 at(const glm::dvec3& place) { return glm::translate(glm::dmat4(1), place); }
 
 GBuffer drawLifts(const Scene& scene, const Camera& camera = frontCamera()) {
-  return draw(scene, cameraView(camera, {90, 80}), Shading::kPhong, {.facet = true, .lift = true});
+  return draw(scene, cameraView(camera, {90, 80}), Shading::kPhong, {.geometric_normal = true, .lift = true});
 }
 
 template <class Visit>

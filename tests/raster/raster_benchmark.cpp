@@ -45,8 +45,8 @@ void picture(benchmark::State& state) {
 
 void depthOnly(benchmark::State& state) {
   const View view = cameraView(scene().cameras.front(), {1024, 1024});
-  const TriangleRuns runs = findRuns(scene());
-  const std::vector<std::uint32_t> all = allRuns(runs);
+  const Meshlets meshlets = findMeshlets(scene());
+  const std::vector<std::uint32_t> all = allMeshlets(meshlets);
   std::vector<ShadowTexel> texels(std::size_t(view.size.x) * view.size.y);
   measure(state, [&](std::span<const std::uint32_t>) {
     rasterizeDepth(scene(), runs, all, view, {}, texels);

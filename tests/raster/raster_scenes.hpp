@@ -92,10 +92,10 @@ inline GBuffer draw(const Scene& scene, const View& view, Shading shading = Shad
 
 /// The depth map of the whole scene: the view's crop, row by row.
 inline std::vector<ShadowTexel> depthOf(const Scene& scene, const View& view) {
-  const TriangleRuns runs = findRuns(scene);
+  const Meshlets meshlets = findMeshlets(scene);
   // Not cleared, so that a texel that isn't drawn shows.
   std::vector<ShadowTexel> texels(std::size_t(view.crop_size.x) * view.crop_size.y, {-1.0f, 0xffffffffu});
-  rasterizeDepth(scene, runs, allRuns(runs), view, {}, texels);
+  rasterizeDepth(scene, meshlets, allMeshlets(meshlets), view, {}, texels);
   return texels;
 }
 

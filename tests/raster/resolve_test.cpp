@@ -330,7 +330,7 @@ TEST(DepthMap, PackedSlopesAreTheNearestOfEightPlaces) {
   EXPECT_GT(largest, 0.99 * kSlopeRounding);  // the bound is no wider than it must be
 }
 
-TEST(DepthMap, RunsThatDontReachTheViewChangeNothing) {
+TEST(DepthMap, MeshletsThatDontReachTheViewChangeNothing) {
   // A grid of 40·40 cells in many runs; the view sees a corner of it.
   constexpr std::uint32_t kCells = 40;
   std::mt19937 random(4);
@@ -340,13 +340,13 @@ TEST(DepthMap, RunsThatDontReachTheViewChangeNothing) {
       positions.push_back({float(x), float(y), -50.0f + 0.01f * float(random() % 1000)});
   const Scene scene = meshScene(positions, gridTriangles(kCells));
   const View view = pixelView({17, 13});  // x to 8.5 and y to 6.5
-  const TriangleRuns runs = findRuns(scene);
+  const Meshlets meshlets = findMeshlets(scene);
   std::vector<std::uint32_t> near;
-  for (std::uint32_t i = 0; i < runs.runs.size(); ++i)
-    if (runs.runs[i].low.x < 9 && runs.runs[i].low.y < 7) near.push_back(i);
-  ASSERT_LT(near.size(), runs.runs.size() / 2);
+  for (std::uint32_t i = 0; i < meshlets.items.size(); ++i)
+    if (meshlets.items[i].low.x < 9 && meshlets.items[i].low.y < 7) near.push_back(i);
+  ASSERT_LT(near.size(), meshlets.items.size() / 2);
   std::vector<ShadowTexel> few(17 * 13);
-  rasterizeDepth(scene, runs, near, view, {}, few);
+  rasterizeDepth(scene, meshlets, near, view, {}, few);
   EXPECT_TRUE(std::ranges::equal(few, depthOf(scene, view), sameTexel));
 }
 

@@ -82,8 +82,8 @@ TEST(View, ImpossibleSizesAndCropsAreRefused) {
     view.crop_origin = origin;
     view.crop_size = crop;
     EXPECT_THROW(draw(scene, view), InputError);
-    const TriangleRuns runs = findRuns(scene);
-    EXPECT_THROW(rasterizeDepth(scene, runs, allRuns(runs), view, {}, {}), InputError);
+    const Meshlets meshlets = findMeshlets(scene);
+    EXPECT_THROW(rasterizeDepth(scene, meshlets, allMeshlets(meshlets), view, {}, {}), InputError);
   };
   refused({0, 32}, {0, 0}, {0, 32});
   refused({32, 40000}, {0, 0}, {32, 32});

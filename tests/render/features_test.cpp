@@ -23,9 +23,7 @@ std::string withLight(const std::string& light, const std::string& more = "") {
   return R"({"objects": [{"primitive": "box"}], "lights": [)" + light + "]" + more + "}";
 }
 
-TEST(Features, EmptySceneNeedsNone) {
-  EXPECT_EQ(featuresOf(withLight("")), FeatureSet());
-}
+TEST(Features, EmptySceneNeedsNone) { EXPECT_EQ(featuresOf(withLight("")), FeatureSet()); }
 
 TEST(Features, PlainLightsNeedOnlyTheirKind) {
   EXPECT_EQ(featuresOf(withLight(R"({"type": "point", "position": [0, 1, 0]})")),
@@ -96,9 +94,7 @@ TEST(Features, ShadowsStartAboveFacetsOnlyWhereAMeshIsSmooth) {
 }
 
 TEST(Features, FogNeedsItsModeAndChannelsOnly) {
-  const auto fog = [](const std::string& text) {
-    return featuresOf(withLight("", R"(, "fog": )" + text));
-  };
+  const auto fog = [](const std::string& text) { return featuresOf(withLight("", R"(, "fog": )" + text)); };
   EXPECT_EQ(fog(R"({"mode": "exp", "density": 0.1})"), setOf({Feature::kFogExp}));
   EXPECT_EQ(fog(R"({"mode": "exp2", "density": [0.1, 0.2, 0.3]})"),
             setOf({Feature::kFogExp2, Feature::kFogPerChannel}));
@@ -116,13 +112,13 @@ TEST(Features, TableNamesEveryFeatureOnce) {
 
 TEST(Features, GBufferGroupsFollowTheFeatures) {
   const PlaneSet none = neededPlanes(FeatureSet());
-  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.facet || none.lift);
+  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.geometric_normal || none.lift);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kSpecular})).specular);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kAmbient})).ambient);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kEmission})).emission);
   for (const Feature shadows :
        {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows})
-    EXPECT_TRUE(neededPlanes(setOf({shadows})).facet);
+    EXPECT_TRUE(neededPlanes(setOf({shadows})).geometric_normal);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kLift})).lift);
 }
 

@@ -51,7 +51,7 @@ void expectBytesPerPixel(const Scene& scene, RenderSettings settings) {
   settings.shade.shadow_layer = wants(settings, Aov::kShadow);
   const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
   PlaneSet planes = neededPlanes(features);
-  if (wants(settings, Aov::kMaterial)) planes = {true, true, true, planes.facet};
+  if (wants(settings, Aov::kMaterial)) planes = {true, true, true, planes.geometric_normal};
   const double stated = double(bytesPerPixel(settings, planes, features, scene));
   const glm::ivec2 small(256), large(1024, 2048);
   const auto bytes = [&](glm::ivec2 size) {
@@ -91,7 +91,7 @@ TEST(Memory, BytesPerPixelOfSeveralSamplesWithStatisticsAreAsStated) {
 
 TEST(Memory, BytesPerPixelOfAllLayersAreAsStated) {
   RenderSettings settings;
-  settings.aovs = {Aov::kPosition, Aov::kNormal,     Aov::kDepth, Aov::kDiffuse,
+  settings.aovs = {Aov::kPosition, Aov::kNormal,     Aov::kDepth,      Aov::kDiffuse,
                    Aov::kMaterial, Aov::kLightCount, Aov::kListLength, Aov::kShadow};
   expectBytesPerPixel(sceneFromJson(floorScene(kSun)), settings);
 }

@@ -57,7 +57,7 @@ void renderPicture(benchmark::State& state, const std::string& name) {
   stats.stages.clear();
   for (auto _ : state) renderScene(device(), scene, settings, stats);
   for (const auto& [stage, milliseconds] : stats.stages)
-    state.counters[stage] = benchmark::Counter(milliseconds, benchmark::Counter::kAvgIterations);
+    state.counters[stageName(stage)] = benchmark::Counter(milliseconds, benchmark::Counter::kAvgIterations);
   reportError(state, scene);
 }
 
@@ -101,7 +101,7 @@ void shadeEveryPair(benchmark::State& state) {
     stats.stages.clear();
     lightGBuffer(device(), scene, lighting, features, gbuffer, {}, stats);
     for (const auto& [stage, milliseconds] : stats.stages)
-      if (stage == "shade") state.SetIterationTime(milliseconds / 1000);
+      if (stage == Stage::kShade) state.SetIterationTime(milliseconds / 1000);
   }
   state.SetItemsProcessed(state.iterations() * kPixels * kLights);
 }

@@ -80,7 +80,7 @@ TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {
     EXPECT_EQ(countNamed(stats, "pixel_lights_evaluated").has_value(), asked);
     EXPECT_EQ(countNamed(stats, "pixel_lights_in_range").has_value(), asked);
     EXPECT_EQ(std::any_of(stats.stages.begin(), stats.stages.end(),
-                          [](const auto& stage) { return stage.first == "count lights"; }),
+                          [](const auto& stage) { return stage.first == Stage::kCountLights; }),
               asked);
   }
 }

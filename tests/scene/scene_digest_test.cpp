@@ -97,8 +97,8 @@ Scene fullScene() {
   animation.curves = {curve};
   animation.nodes.resize(1);
   animation.objects.resize(1);
-  animation.hanging_cameras.resize(1);
-  animation.hanging_lights.resize(1);
+  animation.attached_cameras.resize(1);
+  animation.attached_lights.resize(1);
   animation.cameras = {{0, false, curve, curve, glm::dvec3(0), curve}};
   LightMotion& motion = animation.lights.emplace_back();
   for (Curve* moved :

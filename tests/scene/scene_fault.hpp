@@ -46,9 +46,9 @@ inline std::string sceneFault(const Scene& scene) {
   for (const Object& object : scene.objects) {
     if (object.mesh >= scene.meshes.size()) return "an object's mesh is out of range";
   }
-  for (const Hanging& hanging : scene.animation.objects) {
-    if (hanging.index >= scene.objects.size()) return "a hanging object is out of range";
-    if (hanging.node >= scene.animation.nodes.size()) return "a hanging object's node is out of range";
+  for (const Attachment& attachment : scene.animation.objects) {
+    if (attachment.index >= scene.objects.size()) return "a attachment object is out of range";
+    if (attachment.node >= scene.animation.nodes.size()) return "a attachment object's node is out of range";
   }
   return "";
 }

@@ -162,8 +162,8 @@ void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Sc
     if (placed.moving < 0 && isFlat(placed.to_world)) continue;
     scene.objects.push_back({mesh, placed.to_world, -1});
     if (placed.moving < 0) continue;
-    hang(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
-                 static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
+    attach(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
+                   static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
   }
   addGltfMaterials(model, materials, scene);
 }
@@ -193,8 +193,8 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   }
   if (!(camera.near > 0 && camera.far > camera.near)) failGltf(model, place, "expected 0 < znear < zfar");
   if (placed.moving >= 0)
-    scene.animation.hanging_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
-                                               static_cast<std::uint32_t>(placed.moving), placed.since});
+    scene.animation.attached_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
+                                                static_cast<std::uint32_t>(placed.moving), placed.since});
   scene.cameras.push_back(camera);
 }
 
@@ -243,8 +243,8 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
   const std::string fault = hangLight(placed.to_world, light);
   if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
   if (placed.moving >= 0)
-    scene.animation.hanging_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
-                                              static_cast<std::uint32_t>(placed.moving), placed.since});
+    scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
+                                               static_cast<std::uint32_t>(placed.moving), placed.since});
   scene.lights.push_back(light);
 }
 

@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::size_t kMostObjects = 10'000'000;
 
-/// What a mesh file shows, placed as the file says; its nodes and hanging objects count from 0.
+/// What a mesh file shows, placed as the file says; its nodes and attachment objects count from 0.
 struct LoadedFile {
   std::vector<Object> objects;
   std::vector<MovingNode> nodes;
-  std::vector<Hanging> hanging;
+  std::vector<Attachment> attachment;
 };
 
 /// What has been loaded so far, by what would make it the same.
@@ -171,16 +171,16 @@ const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& sce
   LoadedFile& file = it->second;
   file.objects = cutFrom(scene.objects, first_object);
   file.nodes = cutFrom(animation.nodes, first_node);
-  file.hanging = cutFrom(animation.objects, first_hanging);
+  file.attachment = cutFrom(animation.objects, first_hanging);
   for (MovingNode& node : file.nodes) node.parent -= node.parent < 0 ? 0 : static_cast<int>(first_node);
-  for (Hanging& hanging : file.hanging) {
-    hanging.index -= static_cast<std::uint32_t>(first_object);
-    hanging.node -= static_cast<std::uint32_t>(first_node);
+  for (Attachment& attachment : file.attachment) {
+    attachment.index -= static_cast<std::uint32_t>(first_object);
+    attachment.node -= static_cast<std::uint32_t>(first_node);
   }
   scene.lights.resize(light_count);
   scene.cameras.resize(camera_count);
-  animation.hanging_lights.clear();  // a scene file has none of its own
-  animation.hanging_cameras.clear();
+  animation.attached_lights.clear();  // a scene file has none of its own
+  animation.attached_cameras.clear();
   return file;
 }
 
@@ -199,18 +199,18 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
     animation.nodes.push_back(node);
   }
   std::vector<bool> hangs(file.objects.size(), false);
-  for (Hanging hanging : file.hanging) {
-    hangs[hanging.index] = true;
-    hanging.index += static_cast<std::uint32_t>(first);
-    hanging.node += static_cast<std::uint32_t>(first_node);
-    animation.objects.push_back(hanging);
+  for (Attachment attachment : file.attachment) {
+    hangs[attachment.index] = true;
+    attachment.index += static_cast<std::uint32_t>(first);
+    attachment.node += static_cast<std::uint32_t>(first_node);
+    animation.objects.push_back(attachment);
   }
   if (placement.node < 0) return;
   for (std::size_t i = 0; i < file.objects.size(); ++i) {
     const Object& part = file.objects[i];
     if (!hangs[i])
-      hang(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
-                   part.object_to_world, part.mesh});
+      attach(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
+                     part.object_to_world, part.mesh});
   }
 }
 

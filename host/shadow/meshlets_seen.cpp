@@ -1,4 +1,4 @@
-#include "shadow/runs_seen.hpp"
+#include "shadow/meshlets_seen.hpp"
 
 #include <algorithm>
 #include <array>
@@ -53,19 +53,19 @@ bool mayMatter(const glm::dmat4& world_to_clip, const glm::ivec2& size, const Wa
 
 }  // namespace
 
-std::vector<std::uint32_t> runsSeen(const TriangleRuns& runs, const View& view, const WantedBins& bins,
-                                    const Light& light) {
+std::vector<std::uint32_t> meshletsSeen(const Meshlets& meshlets, const View& view, const WantedBins& bins,
+                                        const Light& light) {
   const auto planes = cropPlanes(view);
   const glm::dmat4 world_to_clip = view.projection * view.world_to_view;
   const auto seen = [&](const glm::dvec3& low, const glm::dvec3& high) {
     return mayShow(planes, low, high, light) && mayMatter(world_to_clip, view.size, bins, low, high);
   };
   std::vector<std::uint32_t> result;
-  for (std::uint32_t group = 0; group < runs.groups.size(); ++group) {
-    if (!seen(runs.groups[group].low, runs.groups[group].high)) continue;
-    const std::uint32_t end = std::min<std::uint32_t>((group + 1) * kRunsPerGroup, runs.runs.size());
-    for (std::uint32_t run = group * kRunsPerGroup; run < end; ++run)
-      if (seen(runs.runs[run].low, runs.runs[run].high)) result.push_back(run);
+  for (std::uint32_t group = 0; group < meshlets.groups.size(); ++group) {
+    if (!seen(meshlets.groups[group].low, meshlets.groups[group].high)) continue;
+    const std::uint32_t end = std::min<std::uint32_t>((group + 1) * kMeshletsPerGroup, meshlets.items.size());
+    for (std::uint32_t meshlet = group * kMeshletsPerGroup; meshlet < end; ++meshlet)
+      if (seen(meshlets.items[meshlet].low, meshlets.items[meshlet].high)) result.push_back(meshlet);
   }
   return result;
 }

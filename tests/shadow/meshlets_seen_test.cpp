@@ -1,4 +1,4 @@
-#include "shadow/runs_seen.hpp"
+#include "shadow/meshlets_seen.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,15 +13,15 @@ namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-/// What the crop of a face shows of some runs.
-std::vector<ShadowTexel> drawn(const Scene& scene, const TriangleRuns& runs, const View& view,
+/// What the crop of a face shows of some meshlets.
+std::vector<ShadowTexel> drawn(const Scene& scene, const Meshlets& meshlets, const View& view,
                                const std::vector<std::uint32_t>& chosen) {
   std::vector<ShadowTexel> texels(std::size_t(view.crop_size.x) * view.crop_size.y);
-  rasterizeDepth(scene, runs, chosen, view, {}, texels);
+  rasterizeDepth(scene, meshlets, chosen, view, {}, texels);
   return texels;
 }
 
-TEST(RunsSeen, WhatIsLeftOutDoesNotShowInTheCrop) {
+TEST(MeshletsSeen, WhatIsLeftOutDoesNotShowInTheCrop) {
   const Scene scene = terrainScene();
   const ShadowMaps maps = planFor(scene);
   std::size_t left_out = 0;
@@ -34,25 +34,25 @@ TEST(RunsSeen, WhatIsLeftOutDoesNotShowInTheCrop) {
     if (view.crop_size.x <= 0) continue;
     WantedBins bins{binGrid(view), {}};
     bins.farthest.assign(bins.size(), 0.0f);
-    const std::vector<std::uint32_t> seen = runsSeen(maps.runs, view, bins, light);
+    const std::vector<std::uint32_t> seen = meshletsSeen(maps.meshlets, view, bins, light);
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
-    left_out += maps.runs.runs.size() - seen.size();
-    EXPECT_TRUE(
-        sameBits(drawn(scene, maps.runs, view, seen), drawn(scene, maps.runs, view, allRuns(maps.runs))));
+    left_out += maps.meshlets.items.size() - seen.size();
+    EXPECT_TRUE(sameBits(drawn(scene, maps.meshlets, view, seen),
+                         drawn(scene, maps.meshlets, view, allMeshlets(maps.meshlets))));
   }
-  EXPECT_GT(left_out, maps.runs.runs.size());
+  EXPECT_GT(left_out, maps.meshlets.items.size());
 }
 
-TEST(RunsSeen, NothingMattersWhereNoBinIsWanted) {
+TEST(MeshletsSeen, NothingMattersWhereNoBinIsWanted) {
   const Scene scene = terrainScene();
   const ShadowMaps maps = planFor(scene);
   const PlannedFace& cascade = maps.planned.front();
   WantedBins bins{binGrid(cascade.view), {}};
   bins.farthest.assign(bins.size(), kNever);
-  EXPECT_TRUE(runsSeen(maps.runs, cascade.view, bins, scene.lights[cascade.light]).empty());
+  EXPECT_TRUE(meshletsSeen(maps.meshlets, cascade.view, bins, scene.lights[cascade.light]).empty());
 }
 
-TEST(RunsSeen, NothingBeyondALightsRangeMatters) {
+TEST(MeshletsSeen, NothingBeyondALightsRangeMatters) {
   const Scene scene = terrainScene();
   const ShadowMaps maps = planFor(scene);
   const PlannedFace& spot = maps.planned.back();
@@ -60,7 +60,7 @@ TEST(RunsSeen, NothingBeyondALightsRangeMatters) {
   light.range = 1.0f;  // it hangs 4 m high
   WantedBins bins{binGrid(spot.view), {}};
   bins.farthest.assign(bins.size(), 0.0f);
-  EXPECT_TRUE(runsSeen(maps.runs, spot.view, bins, light).empty());
+  EXPECT_TRUE(meshletsSeen(maps.meshlets, spot.view, bins, light).empty());
 }
 
 }  // namespace

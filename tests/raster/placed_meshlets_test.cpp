@@ -1,4 +1,4 @@
-#include "raster/placed_runs.hpp"
+#include "raster/placed_meshlets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace luciole::test {
 namespace {
 
-/// Three objects of the same mesh of 150 triangles: three runs each.
+/// Three objects of the same mesh of 150 triangles: three meshlets each.
 Scene threeObjects() {
   Scene scene = meshScene({{0, 0, -5}, {1, 0, -5}, {0, 1, -5}}, std::vector<glm::uvec3>(150, {0, 1, 2}));
   scene.objects.resize(3, scene.objects.front());
@@ -18,21 +18,22 @@ Scene threeObjects() {
   return scene;
 }
 
-TEST(PlacedRuns, EachRunHasItsObjectWhichIsPlacedOnce) {
+TEST(PlacedMeshlets, EachMeshletHasItsObjectWhichIsPlacedOnce) {
   const Scene scene = threeObjects();
-  const TriangleRuns runs = findRuns(scene);
+  const Meshlets meshlets = findMeshlets(scene);
   const std::vector<std::uint32_t> chosen{0, 2, 7, 8};  // of the first object and of the last
-  const PlacedRuns placed = placeRuns(scene, runs, chosen, glm::dmat4(1.0));
+  const PlacedMeshlets placed = placeMeshlets(scene, meshlets, chosen, glm::dmat4(1.0));
   EXPECT_EQ(placed.objects.size(), 2u);
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    EXPECT_EQ(placed.object(i).object_to_view, scene.objects[runs.runs[chosen[i]].object].object_to_world)
+    EXPECT_EQ(placed.object(i).object_to_view,
+              scene.objects[meshlets.items[chosen[i]].object].object_to_world)
         << i;
 }
 
-TEST(PlacedRuns, NoRunsNeedNoObjects) {
+TEST(PlacedMeshlets, NoMeshletsNeedNoObjects) {
   const Scene scene = threeObjects();
-  const TriangleRuns runs = findRuns(scene);
-  EXPECT_TRUE(placeRuns(scene, runs, {}, glm::dmat4(1.0)).objects.empty());
+  const Meshlets meshlets = findMeshlets(scene);
+  EXPECT_TRUE(placeMeshlets(scene, meshlets, {}, glm::dmat4(1.0)).objects.empty());
 }
 
 }  // namespace
