@@ -32,7 +32,7 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
           {"specular", gbuffer.specular},
           {"ambient", gbuffer.ambient},
           {"emission", gbuffer.emission},
-          {"facet", gbuffer.facet},
+          {"geometric_normal", gbuffer.geometric_normal},
           {"lift", gbuffer.lift},
           {"lights", arguments.lights},
           {"list_starts", arguments.lists.starts},

@@ -37,8 +37,8 @@ __kernel void report_shadow_map(__global uint *out) {
   *out++ = OFFSET(kind);
   *out++ = OFFSET(first_face);
   *out++ = OFFSET(face_count);
-  *out++ = OFFSET(spread);
-  *out++ = OFFSET(reach);
+  *out++ = OFFSET(penumbra_scale);
+  *out++ = OFFSET(filter_radius);
   *out++ = OFFSET(pad);
 }
 

@@ -55,7 +55,7 @@ TEST(StructLayout, ShadowMap) {
       {sizeof(ShadowMap), offsetof(ShadowMap, to_map_x), offsetof(ShadowMap, to_map_y),
        offsetof(ShadowMap, to_map_z), offsetof(ShadowMap, depth_scale), offsetof(ShadowMap, depth_offset),
        offsetof(ShadowMap, kind), offsetof(ShadowMap, first_face), offsetof(ShadowMap, face_count),
-       offsetof(ShadowMap, spread), offsetof(ShadowMap, reach), offsetof(ShadowMap, pad)});
+       offsetof(ShadowMap, penumbra_scale), offsetof(ShadowMap, filter_radius), offsetof(ShadowMap, pad)});
 }
 
 TEST(StructLayout, ShadowFace) {

@@ -160,7 +160,7 @@ TEST(GBufferFile, FacetsAreOptional) {
   GBuffer without = somePicture(3, 2, someCamera());
   without.geometric_normal.clear();
   writeGBuffer(without, folder / "g.exr", {});
-  EXPECT_TRUE(readGBuffer(folder / "g.exr").facet.empty());
+  EXPECT_TRUE(readGBuffer(folder / "g.exr").geometric_normal.empty());
 
   // Of any length, and the shading normal where they are none.
   const std::vector<std::string> channels{"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Ng.X", "Ng.Y", "Ng.Z"};

@@ -59,7 +59,7 @@ Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<con
        {.position = borrowed(device, points.position),
         .normal = borrowed(device, points.normal),
         .plane_stride = points.count(),
-        .group_log2 = shift,
+        .group_log2 = group_log2,
         .lights = borrowed(device, lights),
         .light_count = lights.size(),
         .tree = borrowed(device, tree.planes),
@@ -74,7 +74,7 @@ Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<con
   EXPECT_EQ(starts[0], 0u);
   EXPECT_EQ(starts.back(), entries.size());
   Lists result{{0}, {}};
-  const unsigned squares = (1u << shift) * kSquaresPerTile / kTilePixels, whole = (1u << squares) - 1;
+  const unsigned squares = (1u << group_log2) * kSquaresPerTile / kTilePixels, whole = (1u << squares) - 1;
   for (std::size_t tile = 0; tile < lists.tiles; ++tile) {
     EXPECT_LE(starts[tile], starts[tile + 1]);
     for (unsigned first = 0; first < kSquaresPerTile * squares; first += squares) {
@@ -93,15 +93,15 @@ Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<con
 Lists cullWith(int lanes, const Points& points, std::span<const ShadeLight> lights, unsigned group_log2,
                unsigned tests) {
   LightLists lists;
-  return cullInto(lists, lanes, points, lights, shift, tests);
+  return cullInto(lists, lanes, points, lights, group_log2, tests);
 }
 
 /// By every width, which give the same.
 Lists cullEverywhere(const Points& points, std::span<const ShadeLight> lights, unsigned group_log2,
                      unsigned tests) {
-  const Lists lists = cullWith(1, points, lights, shift, tests);
+  const Lists lists = cullWith(1, points, lights, group_log2, tests);
   for (const int lanes : {4, 8, 16})
-    EXPECT_EQ(cullWith(lanes, points, lights, shift, tests), lists) << lanes << " lanes";
+    EXPECT_EQ(cullWith(lanes, points, lights, group_log2, tests), lists) << lanes << " lanes";
   return lists;
 }
 
@@ -210,9 +210,9 @@ void judge(const Points& points, std::span<const ShadeLight> lights, unsigned gr
                end = lists.list.begin() + lists.starts[list + 1];
     ASSERT_EQ(std::adjacent_find(begin, end, std::greater_equal<>()), end) << "indices ascend, none twice";
     ASSERT_TRUE(begin == end || *(end - 1) < lights.size());
-    const std::size_t in_tile = list % kSquaresPerTile << shift;
+    const std::size_t in_tile = list % kSquaresPerTile << group_log2;
     const std::size_t first = list / kSquaresPerTile * kTilePixels + in_tile;
-    const std::size_t last = in_tile < kTilePixels ? first + (std::size_t(1) << shift) : first;
+    const std::size_t last = in_tile < kTilePixels ? first + (std::size_t(1) << group_log2) : first;
     const Bounds bounds(points, first, last);
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
       bool lit = false;
@@ -300,9 +300,9 @@ TEST_P(CullKernels, ListsHoldWhatLightsAPointAndNothingThatCannot) {
   for (const unsigned group_log2 : kShifts) {
     Tally tally;
     for (const unsigned tests : kTests) {
-      const Lists lists = cullEverywhere(points, lights, shift, tests);
-      ASSERT_NO_FATAL_FAILURE(judge(points, lights, shift, tests, lists, tally))
-          << "shift " << shift << ", tests " << tests;
+      const Lists lists = cullEverywhere(points, lights, group_log2, tests);
+      ASSERT_NO_FATAL_FAILURE(judge(points, lights, group_log2, tests, lists, tally))
+          << "group_log2 " << group_log2 << ", tests " << tests;
     }
     if (GetParam() > 100) {
       EXPECT_GT(tally.lit, std::size_t(GetParam())) << "the case tests something";
@@ -345,10 +345,10 @@ TEST(CullKernels, LightsAHairAboveTheSurfaceStayIn) {
         pointLight({0, 0, above}, INFINITY), pointLight({-40 * depth, 3 * depth, above}, INFINITY),
         spotLight({depth, depth, above}, INFINITY, {-1, 0, 0}, 0.01), directionalLight({1, 0, 1e-30})};
     for (const unsigned group_log2 : kShifts) {
-      const Lists lists = cullEverywhere(points, lights, shift, kByFacing);
-      for (std::size_t list = 0; list < std::size_t(kTilePixels) >> shift; ++list)
+      const Lists lists = cullEverywhere(points, lights, group_log2, kByFacing);
+      for (std::size_t list = 0; list < std::size_t(kTilePixels) >> group_log2; ++list)
         for (std::uint32_t light = 0; light < std::size(lights); ++light)
-          EXPECT_TRUE(lists.has(list, light)) << depth << " m, shift " << shift << ", light " << light;
+          EXPECT_TRUE(lists.has(list, light)) << depth << " m, group_log2 " << group_log2 << ", light " << light;
     }
   }
 }
@@ -423,9 +423,9 @@ TEST(CullKernels, NoLightsAndNoPixelsMakeEmptyLists) {
   const Points points = randomPoints(3, random), background(3);
   const std::vector<ShadeLight> lights(33, pointLight({0, 0, -5}, INFINITY));
   for (const unsigned group_log2 : kShifts) {
-    EXPECT_EQ(cullEverywhere(points, {}, shift, kByFacing).starts,
+    EXPECT_EQ(cullEverywhere(points, {}, group_log2, kByFacing).starts,
               std::vector<cl_uint>(3 * kSquaresPerTile + 1, 0));
-    EXPECT_EQ(cullEverywhere(background, lights, shift, kByFacing).starts,
+    EXPECT_EQ(cullEverywhere(background, lights, group_log2, kByFacing).starts,
               std::vector<cl_uint>(3 * kSquaresPerTile + 1, 0));
   }
 }
@@ -440,7 +440,7 @@ TEST(CullKernels, PaddingOfTheTreeIsNeverListed) {
   for (int i = 64; i < kTilePixels; ++i) points.set(i, {0, 0, -1e-3f}, {0, 0, 1});
   const ShadeLight light = pointLight({0, 0, 1}, INFINITY);
   for (const unsigned group_log2 : kShifts)
-    for (const cl_uint entry : cullEverywhere(points, {&light, 1}, shift, kByCone).list) EXPECT_EQ(entry, 0u);
+    for (const cl_uint entry : cullEverywhere(points, {&light, 1}, group_log2, kByCone).list) EXPECT_EQ(entry, 0u);
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST(MathKernels, UnpackedNormalsAreTheHosts) {
     for (const int x : steps) packed.push_back(std::uint32_t(x & 0xffff) | std::uint32_t(y) << 16);
   for (const int lanes : kAllLanes) {
     const auto out = probe(deviceWithLanes(lanes), "math_probe.cl", "probe_unpack_normal",
-                           {Column(packed.size())}, 3, {bytesOf(packed)});
+                           {Column(packed.size())}, 3, {{"packed", packed}});
     double difference = 0;
     for (std::size_t i = 0; i < packed.size(); ++i)
       difference = std::max(

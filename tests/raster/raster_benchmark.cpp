@@ -49,7 +49,7 @@ void depthOnly(benchmark::State& state) {
   const std::vector<std::uint32_t> all = allMeshlets(meshlets);
   std::vector<ShadowTexel> texels(std::size_t(view.size.x) * view.size.y);
   measure(state, [&](std::span<const std::uint32_t>) {
-    rasterizeDepth(scene(), runs, all, view, {}, texels);
+    rasterizeDepth(scene(), meshlets, all, view, {}, texels);
     return texels.data();
   });
 }

@@ -331,7 +331,7 @@ TEST(DepthMap, PackedSlopesAreTheNearestOfEightPlaces) {
 }
 
 TEST(DepthMap, MeshletsThatDontReachTheViewChangeNothing) {
-  // A grid of 40·40 cells in many runs; the view sees a corner of it.
+  // A grid of 40·40 cells in many meshlets; the view sees a corner of it.
   constexpr std::uint32_t kCells = 40;
   std::mt19937 random(4);
   std::vector<glm::vec3> positions;

@@ -37,9 +37,9 @@ inline std::optional<TexelPlace> placeOf(const ShadowMaps& maps, const ShadowMap
     const PlannedFace& face = maps.planned[i];
     const auto texel = texelOn(face, point);
     if (!texel) continue;
-    const double limit = face.view.size.x - int(map.reach);
+    const double limit = face.view.size.x - int(map.filter_radius);
     const double inside =
-        std::min(std::min(texel->x, texel->y) - int(map.reach), limit - std::max(texel->x, texel->y));
+        std::min(std::min(texel->x, texel->y) - int(map.filter_radius), limit - std::max(texel->x, texel->y));
     if (inside < 0) continue;
     const glm::dvec4 seen = face.view.world_to_view * glm::dvec4(point, 1);
     const glm::dvec4 clip = face.view.projection * seen;
