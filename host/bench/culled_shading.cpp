@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "bench/speed_scenes.hpp"
-#include "figures/stage_figures.hpp"
 #include "render/render.hpp"
+#include "render/stats.hpp"
 
 namespace luciole {
 namespace {
@@ -46,17 +46,18 @@ SpeedTable measureCulledShading(const SpeedInput& input) {
                                {"lights_in_range_per_pixel", "in range per pixel", 2}}};
   for (std::size_t i = 0; i < std::size(kRows); ++i) {
     const Stats stats = shadeRow(i, true);  // compiles, too
-    const double evaluated = countOf(stats, "pixel_lights_evaluated"),
-                 in_range = countOf(stats, "pixel_lights_in_range");
-    table.rows.push_back({kRows[i].name,
-                          {{},
-                           {},
-                           {},
-                           countOf(stats, "list_entries"),
-                           1e-6 * evaluated,
-                           1e-6 * in_range,
-                           quotient(evaluated, in_range, "no light is in range of a pixel"),
-                           quotient(in_range, countOf(stats, "pixels_lit"), "no pixel shows a surface")}});
+    const double evaluated = double(countOf(stats, "pixel_lights_evaluated")),
+                 in_range = double(countOf(stats, "pixel_lights_in_range"));
+    table.rows.push_back(
+        {kRows[i].name,
+         {{},
+          {},
+          {},
+          double(countOf(stats, "list_entries")),
+          1e-6 * evaluated,
+          1e-6 * in_range,
+          quotient(evaluated, in_range, "no light is in range of a pixel"),
+          quotient(in_range, double(countOf(stats, "pixels_lit")), "no pixel shows a surface")}});
   }
   const auto rounds =
       runInRounds(std::size(kRows), input.repeats, table.name, input.on_progress, [&](std::size_t row) {

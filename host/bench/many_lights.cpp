@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "bench/speed_scenes.hpp"
-#include "figures/stage_figures.hpp"
 #include "render/render.hpp"
+#include "render/stats.hpp"
 
 namespace luciole {
 namespace {
@@ -63,18 +63,20 @@ SpeedTable measureManyLights(const SpeedInput& input) {
   for (const Row& row : rows) {
     if (input.on_progress) input.on_progress(table.name + ": counts", table.rows.size(), rows.size());
     const Stats stats = shadeRow(input.device, row, true);  // compiles, too
-    const double entries = countOf(stats, "list_entries"), in_range = countOf(stats, "pixel_lights_in_range");
-    table.rows.push_back({row.name,
-                          {double(row.scene.lights.size()),
-                           {},
-                           {},
-                           {},
-                           {},
-                           entries,
-                           listBytes(*row.gbuffer, entries),
-                           1e-6 * countOf(stats, "pixel_lights_evaluated"),
-                           1e-6 * in_range,
-                           quotient(in_range, countOf(stats, "pixels_lit"), "no pixel shows a surface")}});
+    const double entries = double(countOf(stats, "list_entries")),
+                 in_range = double(countOf(stats, "pixel_lights_in_range"));
+    table.rows.push_back(
+        {row.name,
+         {double(row.scene.lights.size()),
+          {},
+          {},
+          {},
+          {},
+          entries,
+          listBytes(*row.gbuffer, entries),
+          1e-6 * double(countOf(stats, "pixel_lights_evaluated")),
+          1e-6 * in_range,
+          quotient(in_range, double(countOf(stats, "pixels_lit")), "no pixel shows a surface")}});
   }
   const auto rounds =
       runInRounds(rows.size(), input.repeats, table.name, input.on_progress, [&](std::size_t row) {

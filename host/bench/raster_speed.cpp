@@ -5,9 +5,9 @@
 #include <tbb/info.h>
 
 #include "bench/speed_scenes.hpp"
-#include "figures/stage_figures.hpp"
 #include "raster/rasterize.hpp"
 #include "render/render.hpp"
+#include "render/stats.hpp"
 
 namespace luciole {
 namespace {

@@ -8,8 +8,8 @@
 #include "base/embedded_files.hpp"
 #include "cl/kernel_source.hpp"
 #include "cl/launch.hpp"
-#include "figures/stage_figures.hpp"
 #include "render/render.hpp"
+#include "render/stats.hpp"
 
 namespace luciole {
 namespace {

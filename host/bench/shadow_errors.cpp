@@ -9,12 +9,12 @@
 #include "bench/shadow_scenes.hpp"
 #include "bench/shadow_truth.hpp"
 #include "bench/variants.hpp"
-#include "figures/stage_figures.hpp"
 #include "raster/rasterize.hpp"
 #include "rays/shadow_rays.hpp"
 #include "render/lighting.hpp"
 #include "render/pair_visibility.hpp"
 #include "render/render.hpp"
+#include "render/stats.hpp"
 
 namespace luciole {
 namespace {

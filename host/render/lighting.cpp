@@ -112,23 +112,26 @@ void uploadLighting(Device& device, Lighting& lighting) {
   lighting.shadow_bounds = borrowed(device, lighting.host_shadows.bounds);
 }
 
+Lookups lookupsOf(const Lighting& lighting, const GBufferBuffers& buffers, const LightLists& lists,
+                  std::size_t pixels) {
+  return {.plane_stride = pixels,
+          .position = buffers.position,
+          .normal = buffers.normal,
+          .lift = buffers.lift,
+          .lights = lighting.lights,
+          .light_count = lighting.frame.light_count,
+          .lists = lists,
+          .shadow_maps = lighting.shadow_maps,
+          .shadow_faces = lighting.shadow_faces};
+}
+
 /// Draws what shading the G-buffer will look at of the scene's shadow maps and isn't there yet.
 void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, const std::string& defines,
                     const GBufferBuffers& buffers, const LightLists& lists, std::size_t pixels,
                     Stats& stats) {
   ShadowMaps& shadows = lighting.host_shadows;
   const std::vector<std::uint32_t> needed = timed(stats, Stage::kFindShadowTexels, [&] {
-    return findNeeded(device, defines,
-                      {.plane_stride = pixels,
-                       .position = buffers.position,
-                       .normal = buffers.normal,
-                       .lift = buffers.lift,
-                       .lights = lighting.lights,
-                       .light_count = lighting.frame.light_count,
-                       .lists = lists,
-                       .shadow_maps = lighting.shadow_maps,
-                       .shadow_faces = lighting.shadow_faces,
-                       .bin_count = shadows.bin_count});
+    return findNeeded(device, defines, lookupsOf(lighting, buffers, lists, pixels), shadows.bin_count);
   });
   timed(stats, Stage::kShadowMaps, [&] {
     giveBack(lighting.shadow_faces);
@@ -149,18 +152,8 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
                        const std::string& defines, const GBuffer& gbuffer, const GBufferBuffers& buffers,
                        const LightLists& lists, std::uint64_t& traced, Stats& stats) {
   PairBits bits = timed(stats, Stage::kClassify, [&] {
-    return classify(device, defines,
-                    {.plane_stride = gbuffer.pixels(),
-                     .position = buffers.position,
-                     .normal = buffers.normal,
-                     .lift = buffers.lift,
-                     .lights = lighting.lights,
-                     .light_count = lighting.frame.light_count,
-                     .lists = lists,
-                     .shadow_maps = lighting.shadow_maps,
-                     .shadow_faces = lighting.shadow_faces,
-                     .texels = lighting.shadow_bounds,
-                     .texel_count = std::max<std::size_t>(lighting.host_shadows.bounds.size(), 1)});
+    return classify(device, defines, lookupsOf(lighting, buffers, lists, gbuffer.pixels()),
+                    lighting.shadow_bounds, std::max<std::size_t>(lighting.host_shadows.bounds.size(), 1));
   });
   traced = timed(stats, Stage::kTraceUnsure, [&] {
     return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, bits);

@@ -43,6 +43,18 @@ double ownShare(const Stats& stats, const std::pair<Stage, double>& stage) {
   return is_beside ? 0 : stage.second;
 }
 
+double stageTime(const Stats& stats, Stage stage) {
+  for (const auto& [known, milliseconds] : stats.stages)
+    if (known == stage) return milliseconds;
+  return 0;
+}
+
+std::uint64_t countOf(const Stats& stats, std::string_view name) {
+  for (const auto& [known, count] : stats.counts)
+    if (known == name) return count;
+  return 0;
+}
+
 double pictureMilliseconds(const Stats& stats) { return millisecondsSinceStart() - stats.began; }
 
 std::string statsJson(const Stats& stats) {

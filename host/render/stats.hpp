@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -91,6 +92,12 @@ auto timed(Stats& stats, Stage stage, Function&& function) {
 /// How much of the picture's time passed in a stage: what it took, or nothing of one that ran beside others.
 /// Of all stages that adds up to the picture's time at most.
 double ownShare(const Stats& stats, const std::pair<Stage, double>& stage);
+
+/// Milliseconds of a stage; 0 for one that did not run.
+double stageTime(const Stats& stats, Stage stage);
+
+/// A count of the statistics; 0 for one that isn't there.
+std::uint64_t countOf(const Stats& stats, std::string_view name);
 
 /// Milliseconds since the picture was begun.
 double pictureMilliseconds(const Stats& stats);

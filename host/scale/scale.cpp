@@ -13,11 +13,11 @@
 #include "base/error.hpp"
 #include "base/peak_memory.hpp"
 #include "base/random.hpp"
-#include "figures/stage_figures.hpp"
 #include "image/compare.hpp"
 #include "image/heat_map.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference_picture.hpp"
+#include "render/stats.hpp"
 #include "scale/scale_log.hpp"
 #include "scene/lights/light_range.hpp"
 
@@ -177,10 +177,10 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   ImageDifference difference = compareImages(findTruth(bench, settings), colors);
   fillCells(bench.checked, difference);
 
-  PointCheck check{.pairs_evaluated = std::uint64_t(countOf(stats, "pixel_lights_evaluated")),
-                   .pairs_in_range = std::uint64_t(countOf(stats, "pixel_lights_in_range")),
-                   .pixels_lit = std::uint64_t(countOf(stats, "pixels_lit")),
-                   .list_entries = std::uint64_t(countOf(stats, "list_entries")),
+  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated"),
+                   .pairs_in_range = countOf(stats, "pixel_lights_in_range"),
+                   .pixels_lit = countOf(stats, "pixels_lit"),
+                   .list_entries = countOf(stats, "list_entries"),
                    .pixels = difference.pixels,
                    .mean_abs = difference.mean_abs,
                    .max_abs = difference.max_abs,

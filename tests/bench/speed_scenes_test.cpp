@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "bench/shading_rate.hpp"
-#include "figures/stage_figures.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/shade_bounds.hpp"
 #include "render/render.hpp"
+#include "render/stats.hpp"
 
 namespace luciole::test {
 namespace {
@@ -17,7 +17,7 @@ double lightsInRangePerPixel(const Scene& scene, const GBuffer& gbuffer) {
   settings.count_lights = true;
   Stats stats;
   shadeGBuffer(deviceWithLanes(16), scene, gbuffer, settings, stats);
-  return countOf(stats, "pixel_lights_in_range") / countOf(stats, "pixels_lit");
+  return double(countOf(stats, "pixel_lights_in_range")) / double(countOf(stats, "pixels_lit"));
 }
 
 /// Lights whose sphere touches the box around a tile's points, on average over the tiles.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cl/launch.hpp"
-#include "cl/messages.hpp"
+#include "messages.hpp"
 
 namespace luciole::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cl/messages.hpp"
+#include "messages.hpp"
 
 namespace luciole::test {
 namespace {

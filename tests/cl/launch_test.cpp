@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cl/kernel_source.hpp"
-#include "cl/messages.hpp"
+#include "messages.hpp"
 
 namespace luciole::test {
 namespace {

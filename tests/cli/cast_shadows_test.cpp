@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 #include "scene/gltf/gltf_file.hpp"
 
 namespace luciole::test {
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A floor, a board above it, and a light of glTF's straight above both.
-class CastShadows : public testing::Test {
+class CastShadows : public ProgramTest {
  protected:
   CastShadows() {
     GltfFile file = triangleFile();
@@ -41,18 +41,12 @@ class CastShadows : public testing::Test {
         "lights": [{"type": "directional", "direction": [0, -1, 0], "shadow": true},
                    {"type": "directional", "direction": [1, -1, 0]}]})");
   }
-  Outcome run(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome;
-  }
   void render(const std::string& options, const std::string& output) {
     EXPECT_EQ(run("luciole render " + options + " --size 64x36 --quiet -o " + output).err, "") << options;
   }
   bool areEqual(const std::string& a, const std::string& b) {
     return runLine(folder, "luciole compare " + a + " " + b + " --max-abs 0").status == 0;
   }
-  const TemporaryFolder folder;
 };
 
 TEST_F(CastShadows, AskedForAllCastWhereNoneIsMarked) {

@@ -11,29 +11,19 @@
 #include <sstream>
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 #include "image/image.hpp"
 
 namespace luciole::test {
 namespace {
 
-class CommandLine : public testing::Test {
+class CommandLine : public ProgramTest {
  protected:
   CommandLine() { writeText(folder / "scene.json", kSmallScene); }
 
-  /// Expects success and returns what was printed on standard output.
-  std::string succeed(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome.out;
-  }
-
-  /// Expects one line on standard error that mentions `what`, this exit status, and no file but the scene.
+  /// The same, and that no file was made.
   void refuse(const std::string& line, int status, const std::string& what) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, status) << line << "\n" << outcome.err;
-    EXPECT_TRUE(isOneLine(outcome.err)) << line << "\n" << outcome.err;
-    EXPECT_NE(outcome.err.find(what), std::string::npos) << line << "\n" << outcome.err;
+    ProgramTest::refuse(line, status, what);
     EXPECT_EQ(fileCount("out"), 0) << line;
   }
 
@@ -46,8 +36,6 @@ class CommandLine : public testing::Test {
     }
     return count;
   }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(CommandLine, RenderWritesAPictureOfTheScenesSize) {
@@ -401,31 +389,6 @@ TEST_F(CommandLine, OptionsOfLightsTakeNoMoreThanTheirNumbers) {
                             "0,0,0,1,1,1"));
   EXPECT_NE(succeed("luciole generate lights --count 30 --color 1,0,0 --color 0,1,0 scene.json").find("fog"),
             std::string::npos);
-}
-
-TEST_F(CommandLine, GeneratedDensityIsWhatThePictureCounts) {
-  succeed(
-      "luciole generate lights scene.json --shape clusters --count 2000 --density 5 -o lit.json && luciole "
-      "render lit.json --quiet --aov depth,light_count -o out.exr");
-  const Image image = readImage(folder / "out.exr");
-  const auto channel = [&](const char* name) {
-    return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) -
-                       image.channels.begin());
-  };
-  const std::size_t depth = channel("Z"), lights = channel("light_count"), step = image.channels.size();
-  ASSERT_LT(std::max(depth, lights), step);
-  double pixels = 0, sum = 0, squares = 0;
-  for (std::size_t i = 0; i < image.pixels.size(); i += step) {
-    if (std::isinf(image.pixels[i + depth])) continue;
-    const double count = image.pixels[i + lights];
-    pixels += 1;
-    sum += count;
-    squares += count * count;
-  }
-  const double mean = sum / pixels;
-  // It was set at 1000 of these pixels: five standard errors of their mean.
-  EXPECT_NEAR(mean, 5, 5 * std::sqrt((squares / pixels - mean * mean) / 1000));
-  EXPECT_GT(pixels, 1000);
 }
 
 TEST_F(CommandLine, OptionsOfLightsThatContradictAreRefusedInOneLine) {

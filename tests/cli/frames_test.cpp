@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 
 namespace luciole::test {
 namespace {
@@ -38,15 +38,10 @@ constexpr const char* kThirdFrame = R"({
              {"type": "spot", "position": [-1.5, 4, 0.25], "target": [0, 0, 0], "cutoff": 30, "shadow": true, "intensity": 1.5}]
 })";
 
-class Frames : public testing::Test {
+class Frames : public ProgramTest {
  protected:
   Frames() { writeText(folder / "scene.json", kMovingScene); }
 
-  std::string succeed(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome.err;
-  }
   void expectEqual(const std::string& a, const std::string& b) {
     succeed(fmt::format("luciole compare {} {} --max-abs 0", a, b));
   }
@@ -60,14 +55,9 @@ class Frames : public testing::Test {
     return {names.begin(), names.end()};
   }
   void refuse(const std::string& line, const std::string& what) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 2) << line;
-    EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr(what)) << line;
+    ProgramTest::refuse(line, 2, what);
     EXPECT_TRUE(files("f.").empty()) << line;
   }
-
-  TemporaryFolder folder;
 };
 
 using Names = std::vector<std::string>;
@@ -160,7 +150,7 @@ TEST_F(Frames, ListsAreResumedAndSharedByTheirOrder) {
   const std::string line = "luciole render scene.json --size 8x8 --frames 9,1,4-8x2 -o f.#.png ";
   succeed(line + "--shard 1/2");
   EXPECT_EQ(files("f."), (Names{"f.4.png", "f.8.png", "f.9.png"}));
-  EXPECT_THAT(succeed(line + "--resume"), StartsWith("there already: 3 of 5 frames\n"));
+  EXPECT_THAT(told(line + "--resume"), StartsWith("there already: 3 of 5 frames\n"));
   EXPECT_EQ(files("f.").size(), 5u);
 }
 
@@ -211,7 +201,7 @@ TEST_F(Frames, ResumeMakesTheMissingAndTouchesNoOther) {
       "f.4.exr");
   const auto written = std::filesystem::last_write_time(folder / "f.2.exr");
   const std::string text = readText(folder / "f.2.exr");
-  const std::string said = succeed("luciole render scene.json --frames 1-6 -o f.#.exr --resume");
+  const std::string said = told("luciole render scene.json --frames 1-6 -o f.#.exr --resume");
   EXPECT_THAT(said, StartsWith("there already: 2 of 6 frames\n"));
   EXPECT_EQ(files("f.").size(), 6u);
   EXPECT_EQ(std::filesystem::last_write_time(folder / "f.2.exr"), written);
@@ -220,7 +210,7 @@ TEST_F(Frames, ResumeMakesTheMissingAndTouchesNoOther) {
     succeed(fmt::format("luciole render scene.json --frames {} -o alone.exr", frame));
     expectEqual(fmt::format("f.{}.exr", frame), "alone.exr");
   }
-  EXPECT_EQ(succeed("luciole render scene.json --frames 1-6 -o f.#.exr --resume --quiet"), "");
+  EXPECT_EQ(told("luciole render scene.json --frames 1-6 -o f.#.exr --resume --quiet"), "");
 }
 
 TEST_F(Frames, KilledAndResumedTheyAreWhatTheyWouldHaveBeen) {
@@ -241,7 +231,7 @@ TEST_F(Frames, ShardsShareThem) {
   succeed(line + "1/3 && " + line + "3/3");
   EXPECT_EQ(files("f.").size(), 5u);
   succeed("rm f.*");
-  EXPECT_EQ(succeed(line + "7/7 --quiet"), "") << "there are only five frames";
+  EXPECT_EQ(told(line + "7/7 --quiet"), "") << "there are only five frames";
   EXPECT_TRUE(files("f.").empty());
 }
 
@@ -250,9 +240,9 @@ TEST_F(Frames, TasksOfASlurmArrayShareThemAndSaySo) {
       "export SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=2 SLURM_ARRAY_TASK_STEP=1 "
       "SLURM_ARRAY_TASK_ID=";
   const std::string line = "; luciole render scene.json --frames 1-4 -o f.#.png";
-  EXPECT_THAT(succeed(slurm + "2" + line), StartsWith("shard 2/2 of the frames"));
+  EXPECT_THAT(told(slurm + "2" + line), StartsWith("shard 2/2 of the frames"));
   EXPECT_EQ(files("f."), (Names{"f.2.png", "f.4.png"}));
-  EXPECT_EQ(succeed(slurm + "1" + line + " --quiet"), "");
+  EXPECT_EQ(told(slurm + "1" + line + " --quiet"), "");
   EXPECT_EQ(files("f.").size(), 4u);
   succeed("rm f.*");
   succeed(slurm + "1; luciole render scene.json --frames 3 -o f.#.png");

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 #include "image/image.hpp"
 #include "load/load_scene.hpp"
 
@@ -52,7 +52,7 @@ constexpr const char* kBoxes = R"({"objects": [{"primitive": "plane", "scale": [
   {"primitive": "sphere", "translate": [-1, 1, 2]}], "size": [320, 180],
   "lights": [{"type": "point", "position": [0, 5, 0]}]})";
 
-class Generate : public testing::Test {
+class Generate : public ProgramTest {
  protected:
   Generate() {
     writeText(folder / "hall.obj", hallObj());
@@ -65,15 +65,9 @@ class Generate : public testing::Test {
     writeText(folder / "lamps.csv", csv);
   }
 
-  std::string succeed(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome.out;
-  }
-
   /// Of the lights in range of each pixel that shows something.
   struct Count {
-    double mean, deviation;
+    double pixels, mean, deviation;
   };
   Count lightsInRange(const std::string& scene) {
     succeed("luciole render " + scene + " --quiet --aov depth,light_count -o counted.exr");
@@ -92,11 +86,17 @@ class Generate : public testing::Test {
       squares += count * count;
     }
     const double mean = sum / pixels;
-    return {mean, std::sqrt(std::max(squares / pixels - mean * mean, 0.0))};
+    return {pixels, mean, std::sqrt(std::max(squares / pixels - mean * mean, 0.0))};
   }
-
-  TemporaryFolder folder;
 };
+
+TEST_F(Generate, DensityIsWhatThePictureCounts) {
+  succeed("luciole generate lights small.json --shape clusters --count 2000 --density 5 -o lit.json");
+  const Count count = lightsInRange("lit.json");
+  // It was set at 1000 of these pixels: five standard errors of their mean.
+  EXPECT_NEAR(count.mean, 5, 5 * count.deviation / std::sqrt(1000));
+  EXPECT_GT(count.pixels, 1000);
+}
 
 TEST_F(Generate, EveryShapeHasItsDensityInThePictureOfAMeshAndOfAScene) {
   for (const char* scene : {"hall.obj", "small.json", "boxes.json"}) {

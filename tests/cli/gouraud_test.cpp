@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 
 namespace luciole::test {
 namespace {
@@ -17,7 +17,7 @@ constexpr const char* kWarning =
     "luciole: warning: coarse.json: --shading gouraud lights the corners of triangles, "
     "and some, up to 14.1 m wide, are much larger";
 
-class GouraudWarning : public testing::Test {
+class GouraudWarning : public ProgramTest {
  protected:
   GouraudWarning() {
     for (const char* segments : {"1", "64"})
@@ -27,12 +27,6 @@ class GouraudWarning : public testing::Test {
                     std::string(segments) + R"(}],
                 "lights": [{"type": "spot", "position": [0.5, 4, 1], "direction": [0, -1, 0], "cutoff": 15}]})");
   }
-  std::string told(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome.err;
-  }
-  TemporaryFolder folder;
 };
 
 TEST_F(GouraudWarning, IsOneLineWhereTrianglesAreMuchLargerThanTheirLights) {

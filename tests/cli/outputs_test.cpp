@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 #include "gbuffer/gbuffer_file.hpp"
 #include "image/image.hpp"
 #include "image/srgb.hpp"
@@ -21,24 +21,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class Outputs : public testing::Test {
+class Outputs : public ProgramTest {
  protected:
   Outputs() { writeText(folder / "scene.json", kSmallScene); }
-
-  std::string succeed(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome.out;
-  }
-
-  void refuse(const std::string& line, int status, const std::string& what) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, status) << line << "\n" << outcome.err;
-    EXPECT_TRUE(isOneLine(outcome.err)) << line << "\n" << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr(what)) << line;
-  }
-
-  TemporaryFolder folder;
 };
 
 TEST_F(Outputs, FifosAreWrittenThrough) {

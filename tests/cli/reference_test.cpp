@@ -4,34 +4,23 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 #include "image/image.hpp"
 
 namespace luciole::test {
 namespace {
 
-class ReferenceCommand : public testing::Test {
+class ReferenceCommand : public ProgramTest {
  protected:
   ReferenceCommand() { writeText(folder / "scene.json", kSmallScene); }
-  void expectDone(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-  }
-  void expectRefused(const std::string& line, const std::string& why) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 2) << line;
-    EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
-    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
-  }
   std::vector<float> pixels(const std::string& name) { return readImage(folder / name).pixels; }
-  TemporaryFolder folder;
 };
 
 TEST_F(ReferenceCommand, IsThePictureWithoutShadows) {
-  expectDone("luciole reference scene.json --shadows off -o truth.exr");
-  expectDone("luciole render scene.json --shadows off -o ours.exr");
+  succeed("luciole reference scene.json --shadows off -o truth.exr");
+  succeed("luciole render scene.json --shadows off -o ours.exr");
   // The promise is 1e-5 of the maximum, which is below 4 in this scene.
-  expectDone("luciole compare truth.exr ours.exr --max-abs 4e-5");
+  succeed("luciole compare truth.exr ours.exr --max-abs 4e-5");
 }
 
 TEST_F(ReferenceCommand, SaysHowTheGBufferDid) {
@@ -46,15 +35,15 @@ TEST_F(ReferenceCommand, SaysHowTheGBufferDid) {
 }
 
 TEST_F(ReferenceCommand, ShadesAGBufferFromAFile) {
-  expectDone("luciole reference scene.json -o scene.exr");
-  expectDone("luciole gbuffer scene.json -o gbuffer.exr");
-  expectDone("luciole reference --gbuffer gbuffer.exr --scene scene.json -o file.exr");
+  succeed("luciole reference scene.json -o scene.exr");
+  succeed("luciole gbuffer scene.json -o gbuffer.exr");
+  succeed("luciole reference --gbuffer gbuffer.exr --scene scene.json -o file.exr");
   EXPECT_EQ(pixels("scene.exr"), pixels("file.exr"));
 }
 
 TEST_F(ReferenceCommand, CropIsACutOut) {
-  expectDone("luciole reference scene.json -o whole.exr");
-  expectDone("luciole reference scene.json --crop 20,10,30,20 -o part.exr");
+  succeed("luciole reference scene.json -o whole.exr");
+  succeed("luciole reference scene.json --crop 20,10,30,20 -o part.exr");
   const Image whole = readImage(folder / "whole.exr"), part = readImage(folder / "part.exr");
   ASSERT_EQ(part.width, 30);
   ASSERT_EQ(part.height, 20);
@@ -64,14 +53,14 @@ TEST_F(ReferenceCommand, CropIsACutOut) {
 }
 
 TEST_F(ReferenceCommand, GrowsCropByCrop) {
-  expectDone("luciole reference scene.json -o whole.exr");
-  expectDone("luciole reference scene.json --crop 0,0,96,20 -o parts.exr");
-  expectDone("luciole reference scene.json --crop 0,15,96,20 -o parts.exr");
-  expectRefused("luciole reference scene.json --crop 0,40,96,14 -o parts.exr", "0,0,96,35");
-  expectDone("luciole reference scene.json --crop 0,35,96,19 -o parts.exr");
+  succeed("luciole reference scene.json -o whole.exr");
+  succeed("luciole reference scene.json --crop 0,0,96,20 -o parts.exr");
+  succeed("luciole reference scene.json --crop 0,15,96,20 -o parts.exr");
+  refuse("luciole reference scene.json --crop 0,40,96,14 -o parts.exr", 2, "0,0,96,35");
+  succeed("luciole reference scene.json --crop 0,35,96,19 -o parts.exr");
   EXPECT_EQ(pixels("parts.exr"), pixels("whole.exr"));
   // A part of another picture is not added to this one, but replaces it.
-  expectDone("luciole reference scene.json --model blinn-phong --crop 0,0,96,10 -o parts.exr");
+  succeed("luciole reference scene.json --model blinn-phong --crop 0,0,96,10 -o parts.exr");
   EXPECT_EQ(readImage(folder / "parts.exr").height, 10);
 }
 
@@ -91,7 +80,7 @@ TEST_F(ReferenceCommand, APartOfAnotherStateOfATextureOrMeshIsNotGrownButReplace
     "materials": {"m": {"diffuse_map": "map.png"}}, "objects": [{"mesh": "roof.obj", "material": "m"}],
     "lights": [{"type": "directional", "direction": [0, 0, -1]}]})");
   const auto heightAfter = [&](const std::string& crop) {
-    expectDone("luciole reference parts.json --crop " + crop + " -o parts.exr");
+    succeed("luciole reference parts.json --crop " + crop + " -o parts.exr");
     return readImage(folder / "parts.exr").height;
   };
   EXPECT_EQ(heightAfter("0,0,32,5"), 5);
@@ -108,8 +97,8 @@ TEST_F(ReferenceCommand, APartOfAnotherStateOfATextureOrMeshIsNotGrownButReplace
 }
 
 TEST_F(ReferenceCommand, SomePixelsAreThoseOfTheWhole) {
-  expectDone("luciole reference scene.json -o whole.exr");
-  expectDone("luciole reference scene.json --pixels 100 --seed 4 -o some.exr");
+  succeed("luciole reference scene.json -o whole.exr");
+  succeed("luciole reference scene.json --pixels 100 --seed 4 -o some.exr");
   const Image whole = readImage(folder / "whole.exr"), some = readImage(folder / "some.exr");
   ASSERT_EQ(some.channels.size(), 4u);
   EXPECT_EQ(some.channels[3], "sampled");
@@ -120,22 +109,21 @@ TEST_F(ReferenceCommand, SomePixelsAreThoseOfTheWhole) {
     for (int c = 0; c < 3; ++c) ASSERT_EQ(some.pixels[4 * i + c], whole.pixels[3 * i + c]);
   }
   EXPECT_EQ(sampled, 100);
-  expectDone("luciole reference scene.json --pixels 100 --seed 5 -o other.exr");
+  succeed("luciole reference scene.json --pixels 100 --seed 5 -o other.exr");
   EXPECT_NE(pixels("some.exr"), pixels("other.exr"));
-  expectDone("luciole render scene.json --shadows off -o ours.exr");
-  expectDone("luciole reference scene.json --shadows off --pixels 100 -o some.exr");
-  expectDone("luciole compare some.exr ours.exr --max-abs 4e-5");
+  succeed("luciole render scene.json --shadows off -o ours.exr");
+  succeed("luciole reference scene.json --shadows off --pixels 100 -o some.exr");
+  succeed("luciole compare some.exr ours.exr --max-abs 4e-5");
 }
 
 TEST_F(ReferenceCommand, RefusesWhatDoesNotGoTogether) {
-  expectRefused("luciole reference -o a.exr", "expected a scene");
-  expectRefused("luciole reference scene.json --gbuffer g.exr --scene scene.json -o a.exr",
-                "expected a scene");
-  expectRefused("luciole reference --gbuffer g.exr -o a.exr", "go together");
-  expectRefused("luciole reference --gbuffer g.exr --scene scene.json --size 2x2 -o a.exr", "already");
-  expectRefused("luciole reference scene.json --pixels 5 -o a.png", ".exr");
-  expectRefused("luciole reference scene.json --shadows pcf -o a.exr", "--shadows");
-  expectRefused("luciole reference scene.json --crop 90,0,10,10 -o a.exr", "--crop");
+  refuse("luciole reference -o a.exr", 2, "expected a scene");
+  refuse("luciole reference scene.json --gbuffer g.exr --scene scene.json -o a.exr", 2, "expected a scene");
+  refuse("luciole reference --gbuffer g.exr -o a.exr", 2, "go together");
+  refuse("luciole reference --gbuffer g.exr --scene scene.json --size 2x2 -o a.exr", 2, "already");
+  refuse("luciole reference scene.json --pixels 5 -o a.png", 2, ".exr");
+  refuse("luciole reference scene.json --shadows pcf -o a.exr", 2, "--shadows");
+  refuse("luciole reference scene.json --crop 90,0,10,10 -o a.exr", 2, "--crop");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 
 namespace luciole::test {
 namespace {
@@ -32,7 +32,7 @@ std::size_t countOf(const std::string& text, const std::string& part) {
   return count;
 }
 
-class Warnings : public testing::Test {
+class Warnings : public ProgramTest {
  protected:
   Warnings() {
     writeText(folder / "triangle.gltf", kTriangle);
@@ -40,13 +40,6 @@ class Warnings : public testing::Test {
         "objects": [{"mesh": "triangle.gltf"}, {"mesh": "triangle.gltf", "translate": [1, 0, 0]}],
         "lights": [{"type": "directional", "direction": [0, 0, -1]}]})");
   }
-  /// What a line that succeeds says on standard error.
-  std::string told(const std::string& line) {
-    const Outcome outcome = runLine(folder, line);
-    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-    return outcome.err;
-  }
-  TemporaryFolder folder;
 };
 
 TEST_F(Warnings, AreToldOnceByEveryCommandThatLoadsAScene) {

@@ -302,10 +302,7 @@ TEST(HardLights, ListsAsLongAsAllLightsHoldThemAll) {
     RenderSettings settings;
     Stats stats;
     const Image tiles = shadeGBuffer(deviceWithLanes(16), scene, gbuffer, settings, stats);
-    std::uint64_t entries = 0;
-    for (const auto& [name, count] : stats.counts)
-      if (name == "list_entries") entries = count;
-    EXPECT_EQ(entries, lights.size() * (range == kInfinity ? 4 : 1));
+    EXPECT_EQ(countOf(stats, "list_entries"), lights.size() * (range == kInfinity ? 4 : 1));
     settings.shade.culling = Culling::kNone;
     ASSERT_EQ(tiles.pixels, shadeGBuffer(deviceWithLanes(16), scene, gbuffer, settings, stats).pixels);
     const std::vector<glm::ivec2> some{{0, 0}, {15, 0}, {16, 0}, {63, 0}};

@@ -64,20 +64,6 @@ std::string bytesOf(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-template <class Error, class Action>
-std::string messageOf(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  } catch (const std::exception& error) {
-    ADD_FAILURE() << "threw something else: " << error.what();
-    return "";
-  }
-  ADD_FAILURE() << "threw nothing";
-  return "";
-}
-
 TEST(Image, EveryEightBitCodeSurvivesARoundTrip) {
   const TemporaryFolder folder;
   Image image{256, 1, {"R", "G", "B"}, {}};

@@ -74,11 +74,7 @@ TEST(Gouraud, OtherShadingsAndShadowsKeepTheTwoTriangles) {
   picture(spotOn(kPlane), Shading::kPhong, &phong);
   picture(spotOn(kPlane), Shading::kFlat, &flat);
   picture(spotOn(kPlane), Shading::kGouraud, &gouraud);
-  const auto submitted = [](const Stats& stats) {
-    for (const auto& [name, count] : stats.counts)
-      if (name == "triangles_submitted") return count;
-    return std::uint64_t(0);
-  };
+  const auto submitted = [](const Stats& stats) { return countOf(stats, "triangles_submitted"); };
   EXPECT_EQ(submitted(phong), 2u + 12u);
   EXPECT_EQ(submitted(flat), 2u + 12u);
   EXPECT_EQ(submitted(gouraud), 64u * 64 * 2 + 6u * 16 * 16 * 2);

@@ -61,13 +61,6 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
   }
 }
 
-/// A count of the statistics; empty where nobody counted.
-std::optional<std::uint64_t> countNamed(const Stats& stats, const std::string& name) {
-  for (const auto& [known, count] : stats.counts)
-    if (known == name) return count;
-  return std::nullopt;
-}
-
 TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {
   const Scene scene = sceneFromJson(kScene);
   RenderSettings settings;
@@ -77,8 +70,8 @@ TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {
     settings.count_lights = asked;
     Stats stats;
     renderScene(testDevice(), scene, settings, stats);
-    EXPECT_EQ(countNamed(stats, "pixel_lights_evaluated").has_value(), asked);
-    EXPECT_EQ(countNamed(stats, "pixel_lights_in_range").has_value(), asked);
+    EXPECT_EQ(countOf(stats, "pixel_lights_evaluated") > 0, asked);
+    EXPECT_EQ(countOf(stats, "pixel_lights_in_range") > 0, asked);
     EXPECT_EQ(std::any_of(stats.stages.begin(), stats.stages.end(),
                           [](const auto& stage) { return stage.first == Stage::kCountLights; }),
               asked);
@@ -107,7 +100,7 @@ TEST(Render, ListLengthLayerHoldsWhatIsEvaluatedAndAtLeastWhatIsInRange) {
         evaluated += length;
         largest = std::max<double>(largest, length);
       }
-      EXPECT_EQ(countNamed(stats, "pixel_lights_evaluated"), evaluated);
+      EXPECT_EQ(countOf(stats, "pixel_lights_evaluated"), evaluated);
       if (culling == Culling::kNone) {
         EXPECT_EQ(evaluated, 60.0 * 64 * 48);
       } else {

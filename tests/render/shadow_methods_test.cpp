@@ -60,15 +60,10 @@ TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
   settings.shade.shadow_limits.bytes = std::size_t(64) << 20;
   Stats stats;
   renderScene(testDevice(), scene, settings, stats);
-  const auto count = [&](const std::string& name) {
-    for (const auto& [known, value] : stats.counts)
-      if (known == name) return value;
-    return ~std::uint64_t(0);
-  };
-  EXPECT_EQ(count("shadow_lights"), 1003u);
-  EXPECT_GT(count("shadow_lights_reduced"), 0u);
-  EXPECT_GT(count("shadow_bytes"), 0u);
-  EXPECT_LE(count("shadow_bytes"), std::uint64_t(64) << 20);
+  EXPECT_EQ(countOf(stats, "shadow_lights"), 1003u);
+  EXPECT_GT(countOf(stats, "shadow_lights_reduced"), 0u);
+  EXPECT_GT(countOf(stats, "shadow_bytes"), 0u);
+  EXPECT_LE(countOf(stats, "shadow_bytes"), std::uint64_t(64) << 20);
 }
 
 std::string nameOf(const testing::TestParamInfo<ShadowMethod>& test) {
