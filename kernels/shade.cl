@@ -26,7 +26,7 @@
 #define EACH_ROW(row) _Pragma("unroll") for (uint row = 0; row < ROWS; ++row)
 
 // The picture's model is this one.
-#define MODEL_IS(compiled, number) IS(compiled, MODELS > 1, model == (number))
+#define MODEL_IS(number) IS(HAS_MODEL(number), MODELS & (MODELS - 1), model == (number))
 
 // What a row of pixels gets from the lights, by the colour of the material that each part will be multiplied with. Parts that a
 // program doesn't use are never touched.
@@ -48,7 +48,7 @@ typedef struct {
 typedef struct {
   intL covered;
   vec3L position, normal;
-  vec3L geometric_normal;                 // the triangle's own normal, with SHADOWS
+  vec3L geometric_normal;      // the triangle's own, with SHADOWS
   floatL lift;                 // along the normal to where shadow tests start, with SHADOWS
   vec3L to_eye, mirrored_eye;  // unit; mirrored at the normal
   floatL shininess;
@@ -64,14 +64,14 @@ typedef struct {
 // from the light's place to its highlight. A core looks some 200 instructions ahead, which is two pairs: one pair after another
 // it would wait half of the time.
 typedef struct {
-  vec3L to_light;    // from the surface; unit once multiplied by
-  floatL inverse_d;  // 1/m
+  vec3L to_light;      // from the surface; unit once multiplied by
+  floatL inverse_d;    // 1/m
   floatL n_dot_l;
   floatL attenuation;  // falloff × spot effect
-  floatL strength;   // attenuation × visibility where the surface faces the light, else 0
-  floatL diffuse;    // of the strength, the factor of the diffuse colour,
-  floatL highlight;  // of the specular colour,
-  floatL grazing;    // and of what that becomes at grazing angles
+  floatL strength;     // attenuation × visibility where the surface faces the light, else 0
+  floatL diffuse;      // of the strength, the factor of the diffuse colour,
+  floatL highlight;    // of the specular colour,
+  floatL grazing;      // and of what that becomes at grazing angles
 } Pair;
 
 // The shadow maps of a picture's lights, or with EXACT what is known of each entry of the lists (classify.cl).
@@ -147,13 +147,13 @@ INLINE void apply_shadows(Pair *pairs, Pixels *const *pixels, __global const Sha
 // What the model makes of ABREAST pairs: all that it has to say. Any finite value will do where the surface faces away, for the
 // strength is 0 there.
 INLINE void reflect(Pair *pairs, Pixels *const *pixels, uint model) {
-  if (MODEL_IS(TOON, kToonModel)) {
+  if (MODEL_IS(kToonModel)) {
     EACH_ABREAST(k) pairs[k].diffuse = toon(pairs[k].n_dot_l);
   } else {
     EACH_ABREAST(k) pairs[k].diffuse = max_lanes(pairs[k].n_dot_l, (floatL)(0.0f));
   }
   if (!SPECULAR) return;
-  if (MODEL_IS(COOK_TORRANCE, kCookTorranceModel)) {
+  if (MODEL_IS(kCookTorranceModel)) {
     EACH_ABREAST(k) {
       const Pixels *at = pixels[k];
       vec3L to_light = scale3(pairs[k].to_light, pairs[k].inverse_d);
@@ -166,14 +166,14 @@ INLINE void reflect(Pair *pairs, Pixels *const *pixels, uint model) {
   EACH_ABREAST(k) pairs[k].grazing = 0.0f;
   // pow_one_minus_half(), a step at a time.
   floatL chord2[ABREAST], log2_cosine[ABREAST];
-  if (MODEL_IS(BLINN_PHONG, kBlinnPhongModel)) {
+  if (MODEL_IS(kBlinnPhongModel)) {
     EACH_ABREAST(k) chord2[k] = blinn_chord2(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->to_eye, pixels[k]->normal);
   } else {
     EACH_ABREAST(k) chord2[k] = phong_chord2(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->mirrored_eye);
   }
   EACH_ABREAST(k) log2_cosine[k] = log2_one_minus_half(chord2[k]);
   EACH_ABREAST(k) pairs[k].highlight = exp2_product(pixels[k]->shininess, log2_cosine[k]);
-  if (MODEL_IS(TOON, kToonModel)) {
+  if (MODEL_IS(kToonModel)) {
     EACH_ABREAST(k) pairs[k].highlight = toon_highlight(pairs[k].highlight);
   }
 }

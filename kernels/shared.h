@@ -3,6 +3,8 @@
 #ifndef LUCIOLE_SHARED_H
 #define LUCIOLE_SHARED_H
 
+#include "models.h"
+
 #ifdef __cplusplus
 namespace luciole {
 typedef unsigned int uint;
@@ -137,7 +139,10 @@ enum { kPairWords = 2 * kTilePixels / 32 };
 // In place of the depth of the farthest point that looks at a bin, as a float's bits: nothing looks at it.
 #define kNotNeeded 0xffffffffu
 
-enum { kPhongModel = 0, kBlinnPhongModel = 1, kToonModel = 2, kCookTorranceModel = 3 };
+// kPhongModel …
+#define MODEL_NUMBER(name, typed, shown, meaning) k##name##Model,
+enum { EACH_MODEL(MODEL_NUMBER) };
+#undef MODEL_NUMBER
 
 enum { kNoFog = 0, kFogLinear = 1, kFogExp = 2, kFogExp2 = 3 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace luciole {
 namespace {
@@ -84,11 +85,11 @@ Reflected reflectedLight(Model model, const Directions& at, const glm::dvec3& sp
     case Model::kToon:
       return {toonTone(cosine), specular * toonHighlight(phongLobe(at, shininess))};
     case Model::kCookTorrance:
-      break;
+      return {cosine,
+              {cookTorrance(at, specular.r, shininess), cookTorrance(at, specular.g, shininess),
+               cookTorrance(at, specular.b, shininess)}};
   }
-  glm::dvec3 glint;
-  for (int c = 0; c < 3; ++c) glint[c] = cookTorrance(at, specular[c], shininess);
-  return {cosine, glint};
+  throw std::logic_error("a model without a reference");
 }
 
 }  // namespace luciole

@@ -21,11 +21,10 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"SMOOTH_WINDOW", "smooth window", "ranges that fade as (1 - (d/r)^4)^2"},
     {"KHR_WINDOW", "KHR window", "ranges that fade as 1 - (d/r)^4"},
     {"SPECULAR", "specular", "highlights"},
-    {"PHONG", "Phong", "the model with highlights of (R.V)^n"},
-    {"BLINN_PHONG", "Blinn-Phong", "the model with highlights of (N.H)^n"},
-    {"TOON", "toon", "the model that lights in flat steps"},
-    {"COOK_TORRANCE", "Cook-Torrance", "the model of rough surfaces, D G F / (4 N.L N.V)"},
-    {"AMBIENT", "ambient", "ambient reflection"},
+#define MODEL_ROW(name, typed, shown, meaning) {"k" #name "Model", shown, meaning},
+    EACH_MODEL(MODEL_ROW)
+#undef MODEL_ROW
+        {"AMBIENT", "ambient", "ambient reflection"},
     {"LIGHT_AMBIENT", "light ambient", "ambient light of single lights"},
     {"EMISSION", "emission", "surfaces that glow"},
     {"PARALLEL_SHADOWS", "parallel shadows", "shadow maps of directional lights"},
@@ -56,20 +55,6 @@ SurfaceTraits materialTraits(const Scene& scene) {
       std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; });
   traits.smooth = shadows && hasBentCorners(scene);
   return traits;
-}
-
-Feature featureOf(Model model) {
-  switch (model) {
-    case Model::kPhong:
-      return Feature::kPhong;
-    case Model::kBlinnPhong:
-      return Feature::kBlinnPhong;
-    case Model::kToon:
-      return Feature::kToon;
-    case Model::kCookTorrance:
-      break;
-  }
-  return Feature::kCookTorrance;
 }
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
@@ -155,9 +140,14 @@ PlaneSet neededPlanes(const FeatureSet& features) {
 }
 
 std::string featureDefines(const FeatureSet& features) {
-  std::string options;
-  for (std::size_t i = 0; i < kFeatureCount; ++i)
-    options += fmt::format("-D{}={} ", kFeatureTable[i].define, int(features.has(static_cast<Feature>(i))));
+  unsigned models = 0;
+  for (const Model model : kAllModels) models |= unsigned(features.has(featureOf(model))) << unsigned(model);
+  std::string options = fmt::format("-DMODELS={}u ", models);
+  for (std::size_t i = 0; i < kFeatureCount; ++i) {
+    const auto feature = static_cast<Feature>(i);
+    if (!isModel(feature))
+      options += fmt::format("-D{}={} ", kFeatureTable[i].define, int(features.has(feature)));
+  }
   return options;
 }
 

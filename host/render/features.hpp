@@ -22,10 +22,9 @@ enum class Feature : unsigned {
   kSmoothWindow,
   kKhrWindow,
   kSpecular,
-  kPhong,
-  kBlinnPhong,
-  kToon,
-  kCookTorrance,
+#define MODEL_FEATURE(name, typed, shown, meaning) k##name,
+  EACH_MODEL(MODEL_FEATURE)  // by Model
+#undef MODEL_FEATURE
   kAmbient,
   kLightAmbient,
   kEmission,
@@ -51,8 +50,8 @@ inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::k
 
 /// The feature table: row i describes Feature i. kernels/features.clh has a fallback for each define.
 struct FeatureRow {
-  const char* define;   ///< the kernels' macro, 0 or 1
-  const char* name;     ///< in --stats
+  const char* define;  ///< the kernels' macro, 0 or 1; of a model its number, by which it has a bit of MODELS
+  const char* name;    ///< in --stats
   const char* meaning;  ///< what the compiled code does
 };
 extern const std::array<FeatureRow, kFeatureCount> kFeatureTable;
@@ -82,7 +81,11 @@ SurfaceTraits materialTraits(const Scene& scene);
 enum class Culling : std::uint8_t { kNone, kTiles };
 
 /// What a program of this model compiles.
-Feature featureOf(Model model);
+constexpr Feature featureOf(Model model) { return Feature(unsigned(Feature::kPhong) + unsigned(model)); }
+
+constexpr bool isModel(Feature feature) {
+  return feature >= Feature::kPhong && unsigned(feature) < unsigned(Feature::kPhong) + kModelNames.size();
+}
 
 /// How to light a G-buffer, apart from the scene.
 struct ShadeSettings {
@@ -109,7 +112,7 @@ FeatureSet lookupFeatures(const FeatureSet& features);
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);
 
-/// -D options for every row of the table.
+/// -D options for every row of the table; models share one.
 std::string featureDefines(const FeatureSet& features);
 
 /// -D options for what the settings choose beside features: degrees of polynomials, the width of PCF.

@@ -38,8 +38,6 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettin
 }
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
               int(FogMode::kExp2) == kFogExp2);
-static_assert(int(Model::kPhong) == kPhongModel && int(Model::kBlinnPhong) == kBlinnPhongModel &&
-              int(Model::kToon) == kToonModel && int(Model::kCookTorrance) == kCookTorranceModel);
 
 /// The square that a place in the planes belongs to.
 std::size_t squareOf(std::size_t place) {

@@ -4,15 +4,23 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/models.h"
+
 namespace luciole {
 
-/// How surfaces reflect light. No scene says which; a picture's settings do.
-enum class Model : std::uint8_t { kPhong, kBlinnPhong, kToon, kCookTorrance };
+/// How surfaces reflect light, by kernels/models.h: kPhong … No scene says which; a picture's settings do.
+#define MODEL_ENUMERATOR(name, typed, shown, meaning) k##name,
+enum class Model : std::uint8_t { EACH_MODEL(MODEL_ENUMERATOR) };
+#undef MODEL_ENUMERATOR
 
-inline constexpr Model kAllModels[] = {Model::kPhong, Model::kBlinnPhong, Model::kToon, Model::kCookTorrance};
+#define MODEL_VALUE(name, typed, shown, meaning) Model::k##name,
+inline constexpr Model kAllModels[] = {EACH_MODEL(MODEL_VALUE)};
+#undef MODEL_VALUE
 
 /// By Model, as people type them.
-inline constexpr std::array kModelNames{"phong", "blinn-phong", "toon", "cook-torrance"};
+#define MODEL_NAME(name, typed, shown, meaning) typed,
+inline constexpr std::array kModelNames{EACH_MODEL(MODEL_NAME)};
+#undef MODEL_NAME
 
 inline constexpr const char* modelName(Model model) { return kModelNames[std::size_t(model)]; }
 

@@ -195,7 +195,8 @@ TEST(HardNumbers, NoNaNOrInfinityLeavesAKernelWhateverGoesIn) {
     for (const int lanes : {1, 16})
       for (const Culling culling : {Culling::kNone, Culling::kTiles})
         for (const glm::vec3& color :
-             shadedPoints(lanes, scene, points, {.model = kAllModels[round % 4], .culling = culling}))
+             shadedPoints(lanes, scene, points,
+                          {.model = kAllModels[round % std::size(kAllModels)], .culling = culling}))
           for (int c = 0; c < 3; ++c)
             ASSERT_TRUE(std::isfinite(color[c])) << "round " << round << ": " << color[c];
   }

@@ -56,7 +56,7 @@ void lightPicture(unsigned number) {
   settings.shadows = static_cast<ShadowMethod>((number + number / 3) % 5);
   settings.shadow_layer = true;
   settings.shadow_limits.size = 64;
-  settings.model = kAllModels[(number + number / 4) % 4];
+  settings.model = kAllModels[(number + number / 4) % std::size(kAllModels)];
   settings.culling = number % 4 == 1 ? Culling::kNone : Culling::kTiles;
 
   GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <stdexcept>
 
 #include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
@@ -175,9 +176,9 @@ inline ReflectedInterval reflectedInterval(Model model, const glm::dvec3& normal
       return {toonInterval(cosine, toonTone),
               toonInterval(lobe(mirrorCosine(normal, way, to_eye)), toonHighlight) * f0};
     case Model::kCookTorrance:
-      break;
+      return {cosine, cookTorranceInterval(normal, way, to_eye, shininess, f0)};
   }
-  return {cosine, cookTorranceInterval(normal, way, to_eye, shininess, f0)};
+  throw std::logic_error("a model without an interval");
 }
 
 inline Interval fogInterval(const Fog& fog, double density, double distance) {

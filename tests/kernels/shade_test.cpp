@@ -81,7 +81,7 @@ TEST_P(ShadeKernel, MatchesTheReference) {
         Scene scene = randomScene(camera, lights, random);
         scene.fog = randomFog(fog, random);
         scene.lighting = round % 11 != 5;
-        const Model model = kAllModels[round % 4];
+        const Model model = kAllModels[round % std::size(kAllModels)];
         const GBuffer gbuffer = randomGBuffer(camera, size.x, size.y, 0.1, random);
         SCOPED_TRACE(testing::Message() << size.x << "x" << size.y << ", " << lights << " lights, fog "
                                         << int(fog) << ", round " << round);

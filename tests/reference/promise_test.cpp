@@ -63,8 +63,7 @@ TEST_P(PromiseOfModel, PictureIsTheReferences) {
                 model == Model::kToon ? 32 : 1);
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, PromiseOfModel,
-                         testing::Combine(testing::Values(Model::kBlinnPhong, Model::kToon,
-                                                          Model::kCookTorrance),
+                         testing::Combine(testing::ValuesIn(std::begin(kAllModels) + 1, std::end(kAllModels)),
                                           testing::Values("spheres", "cornell")));
 
 class PromiseForShared : public testing::TestWithParam<const char*> {};

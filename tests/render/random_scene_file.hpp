@@ -152,7 +152,7 @@ inline SceneJson randomSceneFile(unsigned seed) {
   SceneKind kind = kSceneKinds[seed % std::size(kSceneKinds)];
   const bool free = seed >= kFirstFreeSeed;
   if (free)
-    kind = {random.chance(0.3), kAllModels[random.below(4)],
+    kind = {random.chance(0.3), kAllModels[random.below(int(std::size(kAllModels)))],
             std::array{"", "linear", "exp", "exp2"}[random.below(4)], random.chance(0.5), random.chance(0.5)};
   SceneJson scene;
   scene["camera"] = camera(kind.orthographic, random);
