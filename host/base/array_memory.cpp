@@ -11,7 +11,8 @@ namespace luciole {
 namespace {
 
 constexpr std::size_t kCacheLine = 128, kLargePage = std::size_t(2) << 20, kAskedFor = std::size_t(32) << 20;
-/// Left for smaller arrays, which nobody asks for, and for those that were given out and not touched yet.
+/// Bytes kept free for smaller arrays, which are not checked, and for memory that is allocated but not
+/// touched yet.
 constexpr std::size_t kReserve = std::size_t(64) << 20;
 
 struct Block {
@@ -34,7 +35,7 @@ void* allocateBlock(const Block& block) {
   return memory;
 }
 
-/// Makes the system keep what it has promised.
+/// Writes to every page, so that the system commits the memory here rather than fails later.
 void touchPages(void* memory, std::size_t bytes) {
   constexpr std::size_t kSmallestPage = 4096;
   for (std::size_t i = 0; i < bytes; i += kSmallestPage) static_cast<volatile char*>(memory)[i] = 0;
@@ -46,8 +47,9 @@ void* allocateArray(std::size_t bytes) {
   const Block block = blockFor(bytes);
   if (block.bytes < bytes) throw std::bad_alloc();  // rounding up went beyond the largest size
   if (bytes < kAskedFor) return allocateBlock(block);
-  // What the system hands out may be more than it can keep. Memory this large takes longer to fill than
-  // asking. Where little is left, two threads must not be promised the same.
+  // The system may promise more memory than it has, so large arrays are checked; that takes less time than
+  // filling one. Where little is left, the pages are touched under the lock, so that two threads are not
+  // promised the same memory.
   static std::mutex asking;
   const std::lock_guard lock(asking);
   requireMemory(double(bytes + kReserve), "an array, with a reserve,");

@@ -6,13 +6,14 @@
 
 namespace luciole {
 
-/// Memory for arrays of so many bytes, on whole cache lines, so that a row of up to 16 float lanes is one
-/// aligned load and OpenCL can use the memory in place. Where it is much, it comes in the system's larger
-/// kind of pages, which take a tenth of the time to hand out. Throws std::bad_alloc, and MachineError
-/// where so much is more than this process may take.
+/// Allocates `bytes` bytes, aligned to at least 128 bytes, so that a row of up to 16 floats is one aligned
+/// load and OpenCL can use the memory in place. From 1 MiB on it is whole huge pages of 2 MiB where the
+/// system has them, which take a tenth of the time to get. The content is undefined; the caller frees it with
+/// freeArray. Throws std::bad_alloc, and MachineError for 32 MiB or more where less than that is left (see
+/// memoryRoom).
 void* allocateArray(std::size_t bytes);
 
-/// Frees what allocateArray(bytes) gave.
+/// Frees what allocateArray(bytes) returned; `bytes` must be the same.
 void freeArray(void* memory, std::size_t bytes);
 
 /// allocateArray for containers.
@@ -27,7 +28,8 @@ struct ArrayAllocator {
   bool operator==(const ArrayAllocator&) const { return true; }
 };
 
-/// The same for elements that are written before they are read: resizing a container leaves them as they are.
+/// An ArrayAllocator that leaves new elements uninitialized: they must be written before they are read.
+/// Resizing a container doesn't spend time on clearing them.
 template <class T>
 struct RawArrayAllocator : ArrayAllocator<T> {
   template <class U>

@@ -5,7 +5,7 @@
 
 namespace luciole {
 
-/// A file that travels inside the program, as it was when the program was built.
+/// A file compiled into the program. Views of static memory: they are valid as long as the program runs.
 struct EmbeddedFile {
   std::string_view name;
   std::string_view text;
@@ -14,13 +14,13 @@ struct EmbeddedFile {
 /// The files of the folder kernels/.
 const std::vector<EmbeddedFile>& embeddedKernels();
 
-/// The kernels of tests/kernels that `luciole bench` holds ours against.
+/// The kernels of tests/kernels that `luciole bench` compares ours with.
 const std::vector<EmbeddedFile>& yardstickKernels();
 
-/// What experimentPage makes its page of: host/scale/page/.
+/// The files of host/scale/page/, of which experimentPage makes its page.
 const std::vector<EmbeddedFile>& pageFiles();
 
-/// The text of one of them. Throws std::logic_error for a name that isn't there.
+/// The text of the file of that name. Throws std::logic_error if there is none.
 std::string_view embeddedText(const std::vector<EmbeddedFile>& files, std::string_view name);
 
 }  // namespace luciole

@@ -4,8 +4,9 @@
 
 namespace luciole {
 
-/// Elements of an array: `rows` runs of `count` elements, of which the first begins at element `first` and
-/// each other `pitch` elements after the one before. One run is a plain range.
+/// A rectangle of array elements: `rows` runs of `count` elements. The first run begins at element `first`,
+/// each other one `pitch` elements after the run before. With one run it is a plain range, and `pitch` is not
+/// used.
 struct IndexRange {
   std::size_t first = 0, count = 0;
   std::size_t rows = 1, pitch = 0;

@@ -36,7 +36,7 @@ double numberAfter(const std::string& path, const std::string& word) {
   return 0;
 }
 
-/// Whether a list with commas holds a name.
+/// Whether a comma-separated list holds a name.
 bool names(const std::string& list, const std::string& name) {
   std::istringstream entries(list);
   for (std::string entry; std::getline(entries, entry, ',');)
@@ -44,7 +44,7 @@ bool names(const std::string& list, const std::string& name) {
   return false;
 }
 
-/// What the files of one kind of control groups are called.
+/// Files of one version of control groups; `droppable` is a field of memory.stat.
 struct GroupFiles {
   const char *limit, *use, *droppable;
 };
@@ -58,7 +58,7 @@ double roomInGroup(const std::string& folder, const GroupFiles& files) {
   return *limit - std::max(used - numberAfter(folder + "/memory.stat", files.droppable), 0.0);
 }
 
-/// In a group and all above it.
+/// Narrows `room` to what a control group and all groups above it leave.
 void narrow(MemoryRoom& room, const std::string& mount, std::string group, const GroupFiles& files) {
   for (;; group.erase(group.rfind('/'))) {
     const double left = roomInGroup(mount + group, files);
@@ -67,7 +67,8 @@ void narrow(MemoryRoom& room, const std::string& mount, std::string group, const
   }
 }
 
-/// In a resource limit of which `used` kB are taken, as /proc/self/status says.
+/// Narrows `room` to what a resource limit leaves. `used`: the field of /proc/self/status that says, in kB,
+/// how much of it is in use.
 void narrow(MemoryRoom& room, __rlimit_resource_t resource, const char* used, const char* name) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
@@ -75,7 +76,7 @@ void narrow(MemoryRoom& room, __rlimit_resource_t resource, const char* used, co
   if (left < room.bytes) room = {left, name};
 }
 
-/// Of a new thread.
+/// Stack size of a new thread, bytes; 0 if unknown.
 double stackBytes() {
   pthread_attr_t attributes;
   std::size_t bytes = 0;
@@ -92,7 +93,7 @@ std::string inWords(double bytes) {
 
 void require(double bytes, MemoryRoom room, const std::string& what) {
   room.bytes = std::max(room.bytes, 0.0);
-  // Written so that what is no number, as a product of sizes may be, is refused.
+  // The comparison is negated so that NaN, which a product of sizes may be, is refused.
   if (!(bytes <= room.bytes))
     throw MachineError(fmt::format("{} needs {} of memory, and may use {} ({})", what, inWords(bytes),
                                    inWords(room.bytes), room.limited_by));

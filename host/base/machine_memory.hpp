@@ -4,31 +4,35 @@
 
 namespace luciole {
 
-/// Bytes of memory that the machine has.
+/// Bytes of physical memory of the machine.
 double machineMemory();
 
-/// What this process may still take.
+/// How much more memory this process may take.
 struct MemoryRoom {
   double bytes;            ///< ≥ 0
   std::string limited_by;  ///< "the machine", "the control group /a/b", "ulimit -v" or "ulimit -d"
 };
 
-/// Beside what it has: the least of what nine tenths of the machine's memory, its control groups and its
-/// resource limits leave.
+/// The least of what these leave: nine tenths of the machine's memory, the control groups of this process,
+/// and its resource limits RLIMIT_AS and RLIMIT_DATA. What this process has in use already is subtracted.
+/// Reads /proc and /sys/fs/cgroup at every call.
 MemoryRoom memoryRoom();
 
-/// What the control groups that a process is in leave, by the text of its /proc/PID/cgroup and the folder
-/// where their hierarchies are mounted: a group's limit less what the group has in use, files that the kernel
-/// can drop left out. Version 1 (`memory/…/memory.limit_in_bytes`) and 2 (`…/memory.max`); a group above
-/// counts as well. Infinite where nothing limits it. A container sees its own group as the topmost, under
-/// another path than the text says; groups that aren't there are passed over.
+/// What the control groups of a process leave. `groups` is the text of its /proc/PID/cgroup, `mount` the
+/// folder where the hierarchies are mounted. A group leaves its limit less its use, where files that the
+/// kernel can drop don't count as use. Both version 1 (`memory/…/memory.limit_in_bytes`) and version 2
+/// (`…/memory.max`) are read, for each group and all above it. Infinite where nothing limits it. Groups
+/// without a folder are skipped: a container sees its own group as the topmost, under another path than the
+/// text says.
 MemoryRoom controlGroupRoom(const std::string& groups, const std::string& mount);
 
-/// Throws MachineError where `bytes` are more than this process may still take; `what` is what needs them.
+/// Throws MachineError where `bytes` are more than memoryRoom() leaves; `what` names in the message what
+/// needs them.
 void requireMemory(double bytes, const std::string& what);
 
-/// The same for what libraries map and hardly touch: addresses, which `ulimit -v` limits, and those of them
-/// that may be written, which `ulimit -d` does. Comes on top: the stacks of `threads` threads.
+/// The same for a library that maps much memory and touches little of it. `addresses`: bytes of address
+/// space, which `ulimit -v` limits. `writable`: how many of them may be written, which `ulimit -d` limits.
+/// The stacks of `threads` threads are added to both.
 void requireMappings(double addresses, double writable, unsigned threads, const std::string& what);
 
 }  // namespace luciole

@@ -16,8 +16,8 @@
 namespace luciole {
 namespace {
 
-/// Makes a hidden file in a folder by `make`, which is given a name and returns < 0 for failed; the name is
-/// one that no file has.
+/// Makes a file in a folder under a hidden name that no file has. `make` takes the name and returns < 0 for
+/// failure, with errno; so does this.
 template <class Make>
 int makeHidden(const std::string& folder, std::string& name, Make make) {
   for (unsigned serial = 0;; ++serial) {
@@ -113,12 +113,12 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
 
 void OutputFile::putInPlace() {
   if (path_ == "-") return;
-  // Some file systems can't sync; what they hold is as safe as it gets.
+  // Some file systems can't sync, which is no error.
   if (!is_stream_ && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
   if (!is_stream_ && !has_name_) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
-    // A link can't take the place of a file, as a renamed one can.
+    // linkat() can't replace a file, rename() can: the file gets a hidden name first.
     if (makeHidden(folderOf(place_), beside_, [&](const char* name) {
           return linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);
         }) != 0)

@@ -7,46 +7,50 @@
 
 namespace luciole {
 
-/// A file that appears at its path whole or not at all: it has no name until it is put in place (where the
-/// file system can't do that, a hidden one beside it), so however the program ends, nothing is left of it.
-/// Symbolic links stay, and what they lead to is replaced. "-" is standard output, and that and whatever else
-/// is no regular file (a device, a FIFO) get what is written at once, from front to end.
+/// A file that appears at its path whole or not at all. Until putInPlace() it has no name, so nothing is left
+/// of it however the program ends. Where the file system has no files without a name, it is a hidden file
+/// beside the path, which the destructor removes. Symbolic links stay; the file that they lead to is
+/// replaced.
+/// The path "-" is standard output. Standard output, and any path that is neither a regular file nor a folder
+/// (a device, a FIFO), is a stream: bytes reach it at once and in order.
 class OutputFile {
  public:
-  /// Waits for the reader of a FIFO. Throws InputError (no such folder, read-only folder) or MachineError.
+  /// Opening a FIFO waits until it has a reader. Throws InputError (no such folder, read-only folder) or
+  /// MachineError.
   explicit OutputFile(const std::string& path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Whether pieces must come in their order.
+  /// Whether each writeAt() must begin where the one before ended.
   bool isStream() const { return is_stream_; }
 
-  /// Throws MachineError: the disk is full, or an offset that a stream has passed already.
+  /// Throws MachineError where the disk is full or `offset` is not a stream's end.
   void writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
 
-  /// The last call: gives the file its name, in place of any that was there.
+  /// The last call: syncs the file and gives it its name, in place of any file there. Throws MachineError
+  /// (disk full) or InputError (the name can't be given).
   void putInPlace();
 
  private:
   std::string name() const { return path_ == "-" ? "standard output" : path_; }
 
   std::string path_;
-  std::string place_;      ///< where its links lead
-  std::string beside_;     ///< its name until it is in place
-  bool has_name_ = false;  ///< whether there is a file of that name
+  std::string place_;      ///< the path with its symbolic links followed
+  std::string beside_;     ///< the hidden name beside it
+  bool has_name_ = false;  ///< whether the hidden name exists
   bool is_stream_ = false;
   int descriptor_ = -1;
-  std::uint64_t size_ = 0;  ///< bytes that a stream has got
+  std::uint64_t size_ = 0;  ///< bytes written
 };
 
-/// Throws MachineError where a picture of `bytes` bytes might become a file larger than this process may
-/// write. Some encoders then lose pixels without a word or end the program; none needs twice the bytes of the
-/// pixels.
+/// Throws MachineError where a picture of `bytes` bytes of pixels might become a file larger than this
+/// process may write (RLIMIT_FSIZE). Beyond that limit some encoders lose pixels silently and others end the
+/// program. No encoder needs more than twice the bytes of the pixels and a header. `name` is for the message.
 void checkSizeLimit(std::uint64_t bytes, const std::string& name);
 
-/// Whether writing to the path goes straight through: standard output ("-"), or what is there and is neither
-/// a regular file nor a folder.
+/// Whether the path is a stream (see OutputFile): "-", or something that exists and is neither a regular file
+/// nor a folder.
 bool leadsToStream(const std::string& path);
 
 /// Where a file of this path lies or would lie: at the end of its symbolic links. Throws InputError where
@@ -56,7 +60,7 @@ std::string followLinks(const std::string& path);
 /// The folder a file lies in, "." for a bare name.
 std::string folderOf(const std::string& path);
 
-/// The reason of the last system call to fail.
+/// The message of errno: why the last system call failed.
 std::string systemReason();
 
 }  // namespace luciole

@@ -5,7 +5,7 @@
 
 namespace luciole {
 
-// Not by getrusage, whose figure starts at what the process that started this one had.
+// VmHWM rather than ru_maxrss of getrusage, which starts at what the parent process had.
 std::uint64_t peakBytes() {
   std::ifstream status("/proc/self/status");
   std::uint64_t kibibytes = 0;

@@ -2,8 +2,8 @@
 
 namespace luciole {
 
-/// Pixels a side of the largest picture that is made or read. Its edge functions fit 32 bits (see
-/// raster/coverage.cpp), and all its pixels are 2³⁰.
+/// Pixels a side of the largest picture that is made or read, so at most 2³⁰ pixels. Up to this size edge
+/// functions fit 32 bits (see raster/coverage.cpp).
 inline constexpr int kLargestSide = 1 << 15;
 
 }  // namespace luciole

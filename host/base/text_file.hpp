@@ -10,14 +10,15 @@ namespace luciole {
 /// of thousands of characters, for which std::filesystem throws.
 bool isFile(const std::filesystem::path& path);
 
-/// The whole file. Throws InputError where it can't be read.
+/// All bytes of a file. Throws InputError where it can't be read, MachineError where it doesn't fit into
+/// memory.
 std::string readFile(const std::string& path);
 
-/// Words from a file or a library made fit for a one-line message: control characters become blanks, trailing
-/// blanks go, and what is longer than 200 characters is cut.
+/// Text from a file or a library, made fit for a one-line message: control characters become blanks, trailing
+/// blanks are removed, and at most 200 bytes are kept.
 std::string forMessage(std::string_view words);
 
-/// ASCII letters alone.
+/// Whether two texts are equal if the case of ASCII letters is ignored.
 bool equalIgnoringCase(std::string_view a, std::string_view b);
 
 }  // namespace luciole

@@ -5,8 +5,8 @@
 
 namespace luciole {
 
-/// Puts a file in place, whole or not at all; "-" is standard output. Throws InputError (no such folder,
-/// read-only folder) or MachineError (disk full).
+/// Writes a file whole or not at all (see OutputFile); "-" is standard output. Throws InputError (no such
+/// folder, read-only folder) or MachineError (disk full).
 void writeTextFile(const std::string& path, std::string_view text);
 
 /// Throws the InputError that writing any file to `path` would meet, before any work is done: no such folder,
