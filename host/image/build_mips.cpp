@@ -63,7 +63,7 @@ MipLevel encode(const LinearLevel& linear) {
   return level;
 }
 
-/// The mean over a rectangle of fine texels.
+/// The mean over a rectangle of fine texels: R G B A to `mean`.
 void average(const LinearLevel& fine, const Footprint& across, const Footprint& down, float* mean) {
   float color[3]{}, weighted[3]{}, alpha = 0;
   for (int y = 0; y < down.count; ++y) {

@@ -15,8 +15,7 @@ namespace luciole {
 namespace {
 
 // OpenImageIO's own compare() takes infinities of both signs for equal, counts what is not finite into its
-// means, and knows no bias, percentiles or sampled pixels. Where it says the same, tests hold the figures to
-// it.
+// means, and knows no bias, percentiles or sampled pixels. Tests compare the figures that both define alike.
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kSampled = "sampled";
@@ -89,8 +88,8 @@ double signedDifference(double a, double b) {
   return b - a;
 }
 
-/// The smallest value that at least the share `p` of all values does not exceed. Reorders them; there is one
-/// at least.
+/// The smallest value that at least the share `p` of all values does not exceed. Reorders `values`, which
+/// must not be empty. O(n) on average.
 double percentile(std::vector<double>& values, double p) {
   const auto rank = std::size_t(std::ceil(p * double(values.size())));
   const auto place = values.begin() + std::ptrdiff_t(std::max<std::size_t>(rank, 1) - 1);

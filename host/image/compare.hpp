@@ -9,11 +9,10 @@
 
 namespace luciole {
 
-/// How B differs from A, over the compared pixels and channels, in linear units unless said otherwise.
-/// Equal values, infinities of one sign and NaN with NaN among them, differ by 0. Values of which one is not
-/// finite and the other isn't the same count in `nonfinite` and as an infinite difference in max_abs, the
-/// percentiles and `over`; means leave them out, and are infinite where
-/// nothing else is left.
+/// How B differs from A, over the compared pixels and channels, in linear units unless said otherwise. Equal
+/// values differ by 0; so do infinities of the same sign, and two NaNs. Other pairs with a value that is not
+/// finite count in `nonfinite`, and as an infinite difference in max_abs, the percentiles and `over`. The
+/// means leave them out, and are infinite where no other pair is left.
 struct ImageDifference {
   std::vector<std::string> channels;  ///< compared
   std::uint64_t pixels = 0;           ///< compared
@@ -21,15 +20,15 @@ struct ImageDifference {
   double mean_abs = 0;
   double max_relative = 0;  ///< max_abs / the largest magnitude of A's finite compared values
   double mean_relative = 0;
-  double mean_signed = 0;  ///< mean of B − A: a bias hides from every other figure
+  double mean_signed = 0;  ///< mean of B − A: a bias, which no other figure shows
   double rmse = 0;
-  double psnr = 0;     ///< dB, peak 1; infinite for equal pictures
-  double relmse = 0;   ///< mean of (B − A)² / (A² + 10⁻²)
-  double p99_abs = 0;  ///< over pixels, of the largest difference of a pixel's channels: the smallest d such
-                       ///< that 99 % of the pixels differ by at most d
-  double p999_abs = 0;
+  double psnr = 0;      ///< dB, peak 1; infinite for equal pictures
+  double relmse = 0;    ///< mean of (B − A)² / (A² + 10⁻²)
+  double p99_abs = 0;   ///< over pixels, of the largest difference of a pixel's channels: the smallest d such
+                        ///< that 99 % of the pixels differ by at most d
+  double p999_abs = 0;  ///< the same for 99.9 %
   std::uint64_t nonfinite =
-      0;  ///< values that are NaN or infinite in one picture and not the same in the other
+      0;  ///< pairs of values, one of them NaN or infinite at least, that are not the same value
   std::array<std::uint64_t, 3> over{};  ///< pixels with any channel differing by more than kOverLimits[i]
   std::array<int, 2> worst_pixel{};     ///< x, y of max_abs
   int width = 0;

@@ -36,7 +36,7 @@ struct Source {
   }
 };
 
-/// Bytes that a value takes, by its type. The library reads so many whatever length the file states, and
+/// Bytes of a value, by its type. The OpenEXR library reads that many whatever length the file states, and
 /// would take what follows for the next attribute.
 const std::map<std::string, std::int64_t> kLengths{
     {"box2i", 16},      {"box2f", 16},   {"chromaticities", 32},
@@ -48,14 +48,15 @@ const std::map<std::string, std::int64_t> kLengths{
     {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
     {"v3f", 12},        {"v3i", 12}};
 
-/// Bytes up to the end of a list of channels, each a name and 16 bytes, ended by an empty name.
+/// Length in bytes of the list of channels that starts here: each a name and 16 bytes, then an empty name. −1
+/// where the file ends first.
 std::int64_t channelListLength(Source& source) {
   const std::int64_t before = source.left();
   while (source.file && !source.text().empty()) source.file.seekg(16, std::ios::cur);
   return source.file ? before - source.left() : -1;
 }
 
-/// Whether texts, each after its length, fill exactly so many bytes.
+/// Whether texts, each preceded by its length, fill exactly `length` bytes.
 bool isTextList(Source& source, std::int64_t length) {
   while (source.file && length >= 4) {
     const std::int64_t of_text = source.number<std::int32_t>();

@@ -11,12 +11,12 @@ struct FileFormat {
   int max_channels;  ///< 3: R G B; 4: and A; more: any channels under any names
 };
 
-/// The format of a file to write: `named`, an extension, or where that is empty by the path's own; PNG for
-/// "-". What only OpenImageIO knows is taken for 8-bit R G B. Throws InputError for one that it doesn't
-/// write.
+/// The format of a file to write. `named` is an extension; where it is empty the path's own counts, and for
+/// "-" PNG. A format that only OpenImageIO knows is taken for 8-bit R G B. Throws InputError for one that
+/// OpenImageIO doesn't write.
 FileFormat outputFormat(const std::string& path, const std::string& named = "");
 
-/// Whether OpenImageIO makes files of this extension.
+/// Whether OpenImageIO writes files of this extension (lower case, no dot).
 bool openImageIOWrites(const std::string& extension);
 
 }  // namespace luciole

@@ -20,8 +20,8 @@ using OIIO::ROI;
 using OIIO::ImageBufAlgo::TextAlignX;
 using Color = std::array<float, 3>;
 
-// All linear, as OpenImageIO's maps are: its viridis begins at what sRGB calls 68 1 84 and ends at 253
-// 231 37.
+// Linear, as the colours of OpenImageIO's color_map are: its viridis runs from 68 1 84 to 253 231 37 in 8-bit
+// sRGB.
 constexpr Color kZeroColor{0.0f, 0.0f, 0.0f};
 constexpr Color kNotComparedColor{0.05f, 0.05f, 0.05f};
 constexpr Color kNotFiniteColor{1.0f, 0.0f, 0.0f};
@@ -49,10 +49,10 @@ struct Swatch {
 /// What a map shows.
 struct Content {
   int width, height;
-  const std::vector<double>& values;  ///< row-major; those that aren't on the scale have a swatch's colour
+  const std::vector<double>& values;  ///< row-major; values off the scale have a swatch's colour
   Scale scale;
   std::string title, figures;
-  double mark;  ///< a value that the scale names, 0: none
+  double mark;  ///< a value to label on the scale; 0: none
   std::string mark_name;
   std::vector<Swatch> swatches;
 };
@@ -74,12 +74,12 @@ Scale errorScale(const std::vector<double>& differences) {
   return scale;
 }
 
-/// 0 at the low end, 1 at the high end, and beyond.
+/// Position of a value on the scale: 0 at its low end, 1 at its high end; < 0 or > 1 off the scale.
 double placeOn(const Scale& scale, double value) {
   return (std::log10(value) - scale.low) / (scale.high - scale.low);
 }
 
-/// The map's colours of values in [0,1].
+/// False colours of values in [0,1].
 ImageBuf falseColors(int width, int height, std::vector<float>& values) {
   const ImageBuf source(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT), values.data());
   return OIIO::ImageBufAlgo::color_map(source, 0, "viridis");
@@ -123,12 +123,13 @@ struct Panel {
     return box.defined() ? double(box.width()) / text_size : 0;
   }
 
-  /// Upper and lower edges are rounded alike wherever things meet, widths are the same everywhere.
+  /// In y both edges are rounded, so that neighbours meet without a gap. In x the width is rounded, so that
+  /// equal widths stay equal.
   void fill(double x, double y, double across, double down, const Color& color) const {
     const int left = pixels(x), right = left + pixels(across);
     OIIO::ImageBufAlgo::fill(canvas, color, ROI(left, right, top + pixels(y), top + pixels(y + down)));
   }
-  /// A label that can't be drawn is left out: the colours are worth having without.
+  /// Without a font labels are left out; the colours are of use without them.
   void write(double x, double baseline, const std::string& text, TextAlignX align) const {
     if (font.empty()) return;
     OIIO::ImageBufAlgo::render_text(canvas, pixels(x), top + pixels(baseline), text, text_size, font, kInk,
@@ -180,8 +181,9 @@ void drawPanel(const Panel& panel, const Content& content) {
   }
 }
 
-/// How many pixels a side of the map a pixel becomes. A wide picture fills the map's width exactly, so that
-/// one can be laid over the other; a tall one becomes no taller than the map need be wide.
+/// The whole factor that a picture is enlarged by. A wide picture fills the map's width exactly, so that maps
+/// and pictures can be overlaid. A tall one becomes at most kMinWidth high, or keeps its height if that is
+/// more.
 int enlargement(int width, int height) {
   return width >= height ? std::max(1, (kMinWidth + width - 1) / width) : std::max(1, kMinWidth / height);
 }

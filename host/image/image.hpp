@@ -20,7 +20,7 @@ struct Image {
 /// "ImageDescription" …).
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/// What an EXR's header says beside that, and other formats have no place for.
+/// Attributes of an EXR's header that other formats can't store.
 struct ExrAttributes {
   Metadata texts;
   std::vector<std::pair<std::string, glm::mat4>> matrices;
@@ -28,7 +28,7 @@ struct ExrAttributes {
 
 /// How a picture is written.
 struct WriteOptions {
-  std::string format = {};     ///< an extension that stands for the path's own, empty: none does
+  std::string format = {};     ///< an extension that overrides the path's own; empty: doesn't
   bool dither = false;         ///< integer formats, see dither.hpp
   glm::ivec2 picture_size{0};  ///< of the whole picture where this is a crop; 0: this is the whole
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
@@ -37,7 +37,8 @@ struct WriteOptions {
 
 /// Reads any picture OpenImageIO reads; 8- and 16-bit integer files are taken as sRGB and linearized (alpha
 /// apart), unless the file says that it is linear. Colours are as the file has them: never multiplied or
-/// divided by alpha. Sizes are checked before anything is allocated. Throws InputError.
+/// divided by alpha. Sizes are checked before anything is allocated. Throws InputError, or MachineError where
+/// the picture doesn't fit into memory.
 Image readImage(const std::string& path);
 
 /// A text attribute stored with a picture; empty where it has none of that name. Throws as readImage does.
@@ -52,8 +53,8 @@ std::string readAttribute(const std::string& path, const std::string& name);
 void writeImage(const Image& image, const std::string& path, const Metadata& metadata,
                 const WriteOptions& options = {});
 
-/// The same for a picture that comes in pieces: whole rows, from the top down. Of most formats what has come
-/// takes no memory any more (see PictureFile).
+/// Writes like writeImage a picture that comes in pieces: whole rows, from the top down. Most formats need no
+/// memory for the rows written before (see PictureFile). Without close() no file appears.
 class ImageWriter {
  public:
   /// Throws as writeImage does.
@@ -61,7 +62,7 @@ class ImageWriter {
               const Metadata& metadata, const WriteOptions& options = {});
   ~ImageWriter();
 
-  /// The next rows: a piece of the picture's width, with its channels. Throws MachineError.
+  /// The next rows; `rows` has the picture's width and channels. Throws MachineError.
   void write(const Image& rows);
 
   /// After the last row: puts the file in place. Throws as writeImage does.

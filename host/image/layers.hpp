@@ -9,17 +9,17 @@
 
 namespace luciole {
 
-/// All channels of a file as float, as it has them: no colour is converted.
+/// All channels of a file as float, without any conversion of colours.
 struct LayerFile {
   std::string path;
   glm::ivec2 size{0};
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   std::vector<std::string> channels;
-  /// size.x × size.y × channels, row-major, channels interleaved. Made unwritten, so that what a damaged file
-  /// promises and doesn't hold takes no memory.
+  /// size.x × size.y × channels, row-major, channels interleaved. Allocated uninitialized, so that rows that
+  /// a damaged file claims but doesn't hold take no memory.
   std::unique_ptr<float[]> values;
-  ExrAttributes attributes;  ///< texts and 4 × 4 float matrices; what other programs wrote in any case
+  ExrAttributes attributes;  ///< texts and 4 × 4 float matrices; upper and lower case of names vary
 };
 
 /// Reads the first part of a file, of any format that OpenImageIO reads. Sizes are checked before anything is

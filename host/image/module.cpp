@@ -12,13 +12,14 @@
 namespace luciole {
 namespace {
 
-/// Beside the program. Not left to the loader's search path, which it loses under the address sanitizer.
+/// The module lies beside the program. The path is absolute, because the loader loses its search path under
+/// the address sanitizer.
 std::string modulePath() {
   return std::filesystem::read_symlink("/proc/self/exe").replace_filename(LUCIOLE_IMAGE_MODULE);
 }
 
-/// What OpenImageIO and the libraries that it brings take at the least: under `ulimit -v` of 440 MiB they
-/// hung, under 480 to 540 they weren't loaded, well under 580, of which this program took 80.
+/// The least that OpenImageIO and its libraries need. Measured by `ulimit -v`: with 440 MiB loading hung,
+/// with 480 to 540 MiB it failed, with 580 MiB it worked; 80 MiB of each were this program's own.
 constexpr double kModuleBytes = 32 << 20, kModuleAddresses = 500 << 20, kModuleData = 64 << 20;
 
 const ImageFunctions& load() {

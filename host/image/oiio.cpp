@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 31;
 // Deflate, the best compressor of these formats on a constant picture, reaches 1 : 1032; JPEG's progressive
-// mode can do better on empty pictures. A header that promises more than this has been made up.
+// mode can do better on empty pictures. A header that claims more than this is damaged.
 constexpr std::uint64_t kMaxCompression = 65536;
 
 }  // namespace
@@ -70,7 +70,7 @@ std::string messageAbout(std::string message, const std::string& path, const std
   return oneLine(std::move(message));
 }
 
-/// Some decoders throw at what they didn't expect: what the standard library says then helps nobody.
+/// Some decoders let exceptions of the standard library escape, whose messages don't help a user.
 template <class Function>
 auto decoded(const std::string& name, Function&& function) {
   try {
@@ -127,7 +127,7 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
 }
 
 void readValues(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, void* values) {
-  // Some decoders report a truncated file, fill the rest with grey and call it a success.
+  // Of a truncated file some decoders fill the rest with grey and return success, with an error message.
   const bool read =
       decoded(name, [&] { return input.read_image(0, 0, 0, input.spec().nchannels, type, values); });
   const std::string message = input.geterror();

@@ -9,14 +9,15 @@
 
 #include "image/file_format.hpp"
 
-// What the sources of this folder share of OpenImageIO. Nothing outside the folder includes this.
+// OpenImageIO helpers that the sources of this folder share. Nothing outside the folder includes this.
 namespace luciole {
 
-/// A nameless file in memory that any library can open by its path. Formats OpenImageIO can't read from or
-/// write to memory work through it.
+/// A nameless file in memory that any library can open by its path, as long as this object lives. For formats
+/// that OpenImageIO can't read from memory or write to it.
 class MemoryFile {
  public:
   MemoryFile();  ///< throws MachineError
+  /// Holds a copy of `content`. Throws MachineError.
   explicit MemoryFile(std::span<const std::byte> content);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
@@ -31,9 +32,10 @@ class MemoryFile {
 /// An OpenImageIO message as one line.
 std::string oneLine(std::string message);
 
-/// Opens the first picture of a file whose colours are not to be multiplied by its alpha, and checks its size
-/// (kLargestSide of the pixels and of the whole picture that they are part of, 2³¹ values, no more than a
-/// file of its length can hold) before anything is allocated. `name` is for messages. Throws InputError.
+/// Opens the first picture of a file, with colours that are not multiplied by alpha. Before anything is
+/// allocated it checks the size: kLargestSide for the pixels and for the whole picture that they are part of,
+/// at most 2³¹ values, and no more than a file of this length can hold. `name` is for messages. Throws
+/// InputError.
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std::string& name);
 
 /// Reads the open picture as `type` into `values`, width × height × channels of them. Throws InputError.

@@ -20,8 +20,8 @@
 namespace luciole {
 namespace {
 
-/// Carries what an encoder writes to a file, at once. The encoder is told that all is well, since some lose
-/// errors and others end the program; the first error is kept.
+/// Passes what an encoder writes on to a file, at once. Write errors are hidden from the encoder, since some
+/// encoders lose them and others end the program; the first one is kept for throwError().
 class Stream : public OIIO::Filesystem::IOProxy {
  public:
   explicit Stream(OutputFile& file) : IOProxy("", Write), file_(file) {}
@@ -81,9 +81,9 @@ struct PictureFile::State {
   OutputFile file;
   Stream stream{file};
   std::optional<MemoryFile> memory;           ///< where the format can't be streamed
-  std::unique_ptr<OIIO::ImageOutput> output;  ///< goes first, as it may write its last bytes then
+  std::unique_ptr<OIIO::ImageOutput> output;  ///< destroyed before `stream`: may write its last bytes then
   int next_row;
-  std::vector<std::byte> waiting;  ///< all rows of a format that takes no rows, but tiles
+  std::vector<std::byte> waiting;  ///< all rows, for a format that takes tiles only
 
   bool isTiled() const { return output->spec().tile_width > 0; }
 

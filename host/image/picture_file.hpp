@@ -10,8 +10,9 @@
 namespace luciole {
 
 /// A file that OpenImageIO writes. Where it can write a format through a stream of ours, rows go to the disk
-/// as they come; the others are encoded in memory first, and so is what goes to a FIFO, a device or standard
-/// output, where no encoder can go back to what it wrote.
+/// as they come. Other formats are encoded in memory first. So is what goes to a FIFO, a device or standard
+/// output, where no encoder can go back to what it wrote. Formats that take tiles only keep all rows in
+/// memory until close().
 class PictureFile : public RowFile {
  public:
   /// `extension`: the format's. Throws as writeImage does.

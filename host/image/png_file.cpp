@@ -67,8 +67,8 @@ class PngFile : public RowFile {
   }
 
  private:
-  /// tEXt where it can be, which every reader knows: its bytes are Latin-1, of which ASCII is the part that
-  /// UTF-8 writes alike. Text beyond is UTF-8 in iTXt, or bytes that stay what they are.
+  /// ASCII goes into a tEXt chunk, which every reader knows; its text is Latin-1, which agrees with UTF-8 on
+  /// ASCII. Other UTF-8 goes into iTXt. Bytes that are no UTF-8 go into tEXt unchanged.
   void addText(const std::string& name, const std::string& value) {
     std::string key = name == "ImageDescription" ? "Description" : name;  // PNG's own word for it
     std::string content = value;
@@ -80,15 +80,15 @@ class PngFile : public RowFile {
     call([&] { png_set_text(png_, info_, &text, 1); });
   }
 
-  /// Runs `use`, which calls the library, and throws what went wrong in it. No exception goes through the
-  /// library, which is C: an error of its own jumps back to here, past nothing that has a destructor.
+  /// Runs `use`, which calls the library, and throws the error that it met. No exception passes through the
+  /// library, which is C. The library's own errors jump back to here, over no object that has a destructor.
   template <class Use>
   void call(const Use& use) {
     if (setjmp(png_jmpbuf(png_)) == 0) use();
     if (error_) std::rethrow_exception(error_);
   }
 
-  /// The library can't go on after an error of its own: of a picture that fits its rows, lack of memory.
+  /// libpng can't go on after its own errors. With rows that fit the header the only one is lack of memory.
   [[noreturn]] static void onError(png_structp png, png_const_charp message) {
     keepError(png, message);
     png_longjmp(png, 1);
@@ -101,10 +101,10 @@ class PngFile : public RowFile {
         std::make_exception_ptr(MachineError(fmt::format("{}: can't encode: {}", self->path_, message)));
   }
 
-  /// The library's own would print it.
+  /// libpng's own handler would print the warning.
   static void onWarning(png_structp, png_const_charp) {}
 
-  /// Keeps the first error of the disk until the library, which is not to be left in the middle, returns.
+  /// Keeps the first write error until libpng, which must not be left by an exception, has returned.
   static void writeBytes(png_structp png, png_bytep bytes, std::size_t count) {
     PngFile* self = static_cast<PngFile*>(png_get_io_ptr(png));
     if (self->error_) return;

@@ -114,8 +114,8 @@ class PngInput : public OIIO::ImageInput {
     });
   }
 
-  /// Runs `use`, which calls the library; false where that met an error, which has jumped back to here past
-  /// nothing that has a destructor.
+  /// Runs `use`, which calls the library. Returns false where it met an error, which jumps back to here over
+  /// no object that has a destructor.
   template <class Use>
   bool call(const Use& use) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
@@ -130,7 +130,7 @@ class PngInput : public OIIO::ImageInput {
   static void keepError(png_structp png, png_const_charp message) {
     static_cast<PngInput*>(png_get_error_ptr(png))->errorfmt("{}", message);
   }
-  /// What the library can go on after, it does.
+  /// libpng goes on after warnings; its own handler would print them.
   static void onWarning(png_structp, png_const_charp) {}
 
   static void readBytes(png_structp png, png_bytep bytes, std::size_t count) {
@@ -143,7 +143,7 @@ class PngInput : public OIIO::ImageInput {
   png_infop info_ = nullptr;
   int passes_ = 1;
   int next_row_ = 0;
-  std::vector<png_byte> rows_;  ///< all, of an interlaced picture
+  std::vector<png_byte> rows_;  ///< all rows of an interlaced picture
 };
 
 bool isPng(const std::string& path) {

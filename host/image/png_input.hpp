@@ -7,9 +7,10 @@
 
 namespace luciole {
 
-/// Opens a PNG file, by what is in it; empty where it is none. libpng reads it, told to keep its errors:
-/// under OpenImageIO's own reader it prints them. Pixels, channels, colour space and texts are what that
-/// reader gives of colours that are not multiplied by alpha. Throws InputError that begins with `name`.
+/// Opens a PNG file, which is recognized by its signature; null for any other file. It calls libpng itself,
+/// because under OpenImageIO's reader libpng prints its errors. Pixels, channels, colour space and texts are
+/// those of OpenImageIO's reader where colours are not multiplied by alpha. Throws InputError, whose message
+/// begins with `name`.
 std::unique_ptr<OIIO::ImageInput> openPng(const std::string& path, const std::string& name);
 
 }  // namespace luciole

@@ -37,7 +37,7 @@ std::array<int, 4> channelPlaces(const OIIO::ImageSpec& spec, const std::string&
 std::uint16_t toCode(float unit) { return std::uint16_t(unit * 65535.0f + 0.5f); }
 float clampUnit(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
 
-/// Float pictures, and integer ones that say they are linear.
+/// The texels of float pictures, and of integer ones that are marked as linear.
 std::vector<std::uint16_t> texelsOfLinear(OIIO::ImageInput& input, const std::string& name,
                                           const std::array<int, 4>& places) {
   const OIIO::ImageSpec& spec = input.spec();

@@ -8,9 +8,9 @@
 
 namespace luciole {
 
-/// Reads a texture and builds its mip chain (box-filtered in linear light). Any format and channel count
-/// OpenImageIO reads: grey is spread over RGB, alpha is 1 where missing, float pictures are clamped to [0,1]
-/// and sRGB-encoded. Throws InputError naming the file, or MachineError.
+/// Reads a texture and builds its mip chain (box-filtered in linear light), from any format that OpenImageIO
+/// reads, with one or at least three colour channels. Grey is spread over RGB, alpha is 1 where missing,
+/// float pictures are clamped to [0,1] and sRGB-encoded. Throws InputError naming the file, or MachineError.
 Texture readTexture(const std::string& path);
 
 /// The same for a file's bytes in memory, such as an image inside a GLB. `name` is for messages.

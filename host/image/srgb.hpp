@@ -17,10 +17,11 @@ inline float encodeSrgb(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-/// Linear values of all 65536 codes of 16 bits. An 8-bit code c is the 16-bit code 257 c.
+/// Linear values of all 65536 16-bit sRGB codes (256 KiB, made at the first call). An 8-bit code c is the
+/// 16-bit code 257 c.
 const std::vector<float>& linearOfSrgb16();
 
-/// The linear value of a 16-bit code of its square root: as fine as sRGB, and a product to decode.
+/// The linear value of a 16-bit code for its square root: about as fine as sRGB, and decoded by one product.
 inline float linearOfRoot16(std::int32_t code) {
   const float root = float(code) * (1.0f / 65535.0f);
   return root * root;
