@@ -7,7 +7,7 @@ namespace {
 template <class Visit>
 void forEachBin(const RasterTriangle& triangle, const BinGrid& bins, Visit visit) {
   const PixelBox box = pixelBox(triangle);
-  // Division by a shift, since it must round down for pixels left of the picture too.
+  // A shift rounds down for negative pixels, left of the picture, too; division doesn't.
   static_assert(kBinSize == 1 << 6);
   const glm::ivec2 first = glm::max((box.first >> 6) - bins.first, glm::ivec2(0));
   const glm::ivec2 last = glm::min((box.last >> 6) - bins.first, bins.count - 1);

@@ -22,6 +22,7 @@ struct BinGrid {
   /// The bin's top left pixel, in the whole picture.
   glm::ivec2 origin(int bin) const { return (first + glm::ivec2(bin % count.x, bin / count.x)) * kBinSize; }
 };
+/// The bins that a view's crop touches.
 BinGrid binGrid(const View& view);
 
 /// For each row of a bin's pixels, as far as it lies in the crop, calls visit(in_bin, in_crop, count): where
@@ -36,11 +37,11 @@ void forEachRow(const View& view, const glm::ivec2& bin_origin, Visit visit) {
           end.x - first.x);
 }
 
-/// For every bin, the triangles whose bounding boxes touch it: the opaque ones in order, then those with
-/// holes, which are looked for only where nothing nearer is.
+/// For every bin, the triangles whose bounding boxes touch it. Opaque triangles come first, in order. Those
+/// with holes follow, so that opacity is looked up only where they are the nearest.
 struct Bins : BinGrid {
   ItemLists
-      lists;  ///< indices into the triangles given; of each bin two lists: opaque triangles, then others
+      lists;  ///< indices into the triangles given; two lists a bin: opaque triangles, then those with holes
 
   std::span<const std::uint32_t> list(int bin) const {
     const std::size_t start = lists.starts[2 * std::size_t(bin)],
@@ -49,8 +50,9 @@ struct Bins : BinGrid {
   }
 };
 
-/// `farthest`: one a bin, the smallest reversed depth that matters there: triangles that stay below it are
-/// left out. Empty: all matter.
+/// Puts triangles into the bins of the view's crop. `farthest`: one a bin, row by row, the smallest reversed
+/// depth that matters there. Triangles that are farther away everywhere are left out. Empty: all matter.
+/// O(triangles · bins that each touches), in parallel.
 Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view,
                   std::span<const float> farthest = {});
 

@@ -12,7 +12,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Half a grown texel's side. A hair more than promised, for the rounding of cut corners below (2⁻³⁶ texels).
+/// Half the side of a texel's grown square. 2⁻²⁴ texels more than BoundTexel needs, which covers the rounding
+/// of cut corners below (2⁻³⁶ texels).
 constexpr double kHalf = 0.5 + kBoundGrowth + 0x1p-24;
 
 /// The part of a polygon with sign · (p[axis] − limit) ≤ 0. New corners lie on the limit, and their depths
@@ -29,7 +30,8 @@ void cut(const TexelPolygon& polygon, double limit, TexelPolygon& kept) {
       kept);
 }
 
-/// The texels whose grown squares a span of places touches; places beyond the picture may be far beyond.
+/// The texels of a bin, along one axis, whose grown squares an interval of places touches. Places are clamped
+/// to the bin as doubles, since they may be far outside the range of an int.
 struct Range {
   int first, last;
 };
@@ -44,7 +46,8 @@ double planeMargin(const BoundTexel& texel) {
          (std::abs(double(texel.depth)) + std::abs(double(texel.step_x)) + std::abs(double(texel.step_y)));
 }
 
-/// Whether a polygon, which lies in the texel's grown square, may be nearer than its plane anywhere.
+/// Whether a polygon inside a texel's grown square may be nearer than the texel's plane anywhere. (x, y) is
+/// the texel's centre.
 bool mayBeInFront(const TexelPolygon& polygon, const BoundPiece& piece, const BoundTexel& texel, double x,
                   double y) {
   const double margin = planeMargin(texel) + piece.depth_error +
@@ -90,7 +93,8 @@ void drawPlane(const BoundPiece& piece, BoundBin& bin) {
       }
       if (!covers) continue;
       const double depth = piece.depth + piece.step_x * (x - base.x) + piece.step_y * (y - base.y);
-      // In the rounding of the far plane, and behind the near plane, nothing is certain.
+      // Close to the far plane the error is too large for the depth, and behind the near plane nothing is
+      // drawn: there covering isn't certain.
       if (!(3 * piece.depth_error <= 0x1p-24 * depth && depth + drop <= 1.0)) continue;
       const int at = row * kBinSize + column;
       BoundTexel texel = steps;
@@ -107,7 +111,7 @@ void drawPlane(const BoundPiece& piece, BoundBin& bin) {
 
 void drawOther(const BoundPiece& piece, BoundBin& bin) {
   const Range rows = texelsTouched(piece.low.y, piece.high.y, bin.origin.y);
-  // Whether a texel's bounds leave out something of the piece that reaches `highest`.
+  // Whether a piece whose nearest depth is `highest` may change a texel's bounds.
   const auto matters = [&](int at, double highest) {
     return highest > bin.texels[at].others && highest >= bin.lowest[at] && bin.covering[at] != &piece;
   };

@@ -9,30 +9,31 @@
 
 namespace luciole {
 
-/// Two sides of a row and two of a column cut a piece: at most 7, 10, 15, 22, 33 corners, see clipPolygon.
+/// A piece cut by the two sides of a row and the two of a column: at most 7, 10, 15, 22, 33 corners (see
+/// clipPolygon).
 using TexelPolygon = Polygon<glm::dvec3, 33>;
 
-/// A bin of texels on its way.
+/// A bin of texels while it is drawn. Arrays are row by row, one entry a texel.
 struct BoundBin {
   glm::ivec2 origin;  ///< its top left texel, in the whole picture
   std::array<BoundTexel, kBinSize * kBinSize> texels;
-  std::array<const BoundPiece*, kBinSize * kBinSize> covering;  ///< whose plane it is, if any
-  std::array<double, kBinSize * kBinSize> lowest;  ///< of the plane: what is below is certainly behind it
+  std::array<const BoundPiece*, kBinSize * kBinSize> covering;  ///< whose plane a texel has; null: none
+  std::array<double, kBinSize * kBinSize> lowest;               ///< least depth of a texel's plane
   std::array<TexelPolygon, 4> polygons;  ///< for drawOther, which would else clear their room for every piece
 };
 
-/// Nothing drawn yet. unknown: some triangle may be anywhere, so `others` are infinite.
+/// Empties a bin. `unknown`: some triangle may be anywhere, so `others` become infinite.
 void clearBin(const glm::ivec2& origin, bool unknown, BoundBin& bin);
 
-/// Takes the plane of a piece that is `covering`, wherever the piece covers a texel and lies higher than what
-/// was there. The piece must outlive the bin. O(texels of its box).
+/// Draws a piece that is `covering`: a texel whose whole square it covers takes its plane, if that is nearer
+/// than the plane there. The bin keeps a pointer to the piece. O(texels of its box).
 void drawPlane(const BoundPiece& piece, BoundBin& bin);
 
-/// Raises `others` wherever a piece may be in front of the plane. To be called for every piece once all
-/// planes are drawn. O(texels of its box), and less where it is far behind.
+/// Raises `others` of the texels where a piece may be in front of the plane. To be called for every piece
+/// once all planes are drawn. O(texels of its box); texels where it is hidden cost one comparison.
 void drawOther(const BoundPiece& piece, BoundBin& bin);
 
-/// The float at or next above a value.
+/// The smallest float that is not below a value.
 float roundUp(double value);
 
 }  // namespace luciole

@@ -14,17 +14,18 @@
 namespace luciole {
 namespace {
 
-/// Triangles that reach behind the light or far beyond the picture are cut so many texels outside of it.
+/// Texels outside the picture where triangles are cut that reach behind the light or far beyond the picture.
 constexpr double kBeyond = 2.0;
 
-/// What a corner may have lost, relative to the largest of the numbers it was added up from: 2⁻⁵¹ for a
-/// product of a matrix and a point, less than 2⁻⁵¹ for each of four cuts, and 2⁻⁵¹ for division and viewport.
+/// Bound for a corner's rounding error, relative to the sum of the magnitudes it was added up from: 2⁻⁵¹ for
+/// the product of matrix and point, less than 2⁻⁵¹ for each of four cuts, and 2⁻⁵¹ for division and viewport.
 constexpr double kCornerError = 0x1p-48;
 
-/// Of places, in texels: more and nothing is known of a triangle; it is less than growth has room for.
+/// Largest error of a corner's place, in texels. A triangle with a larger one counts as unknown: it may be
+/// anywhere. It is less than kBoundGrowth.
 constexpr double kWorstPlace = 0x1p-10;
-/// More and a triangle doesn't count as covering. A plane's error inside a polygon is at most three times
-/// that of its corners (see setPlane), which leaves 2⁻²⁴ steps.
+/// Largest error of the corners' places, in texels, with which a triangle counts as covering. A plane's error
+/// inside a polygon is at most three times that of its corners (see setPlane), so less than 2⁻²⁴ steps.
 constexpr double kWorstCoveringPlace = 0x1p-26;
 
 /// a·b − c·d within 1.5 units in its last place (Kahan; Jeannerod, Louvet & Muller 2013).
@@ -37,10 +38,10 @@ double twiceArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) 
   return differenceOfProducts(b.x - a.x, c.y - a.y, b.y - a.y, c.x - a.x);
 }
 
-/// The plane through the three corners that span most. No other corner lies beyond the parallel of a side
-/// through the third corner, so weights are −1 to 1 and errors inside the polygon at most three times those
-/// of a corner. Differences of places and depths are rounded to 2⁻⁵³, which is a corner's error of 2⁻⁵³ · 2¹⁶
-/// texels' steps at most.
+/// Sets the plane through the three corners that span the largest area. Then no other corner lies beyond the
+/// parallel to a side through the third corner. So barycentric weights are −1 to 1 inside the polygon, and
+/// the plane's error there is at most three times that of a corner. Differences of places and depths are
+/// rounded to 2⁻⁵³; that equals a corner's error of at most 2⁻⁵³ · 2¹⁶ texels' steps.
 void setPlane(BoundPiece& piece) {
   double largest = 0;
   std::array<int, 3> best{0, 1, 2};
@@ -52,13 +53,13 @@ void setPlane(BoundPiece& piece) {
         largest = area;
         best = {i, j, k};
       }
-  // What contains a square of one texel has an area of 1 at least, and some triangle of a convex polygon's
-  // corners takes up 3√3 / 4π = .413 of it (Sas 1939).
+  // A polygon that contains a square of one texel has an area of at least 1, and the largest triangle of a
+  // convex polygon's corners takes up at least 3√3 / 4π = .413 of it (Sas 1939). `largest` is twice an area.
   if (std::abs(largest) < 0.8) {
     piece.covering = false;
     return;
   }
-  if (largest < 0) {  // edges below must have the inside on one side
+  if (largest < 0) {  // drawPlane needs the inside on one side of all edges
     std::reverse(piece.corners.begin(), piece.corners.begin() + piece.count);
     for (int& i : best) i = piece.count - 1 - i;
     std::swap(best[0], best[2]);
@@ -71,13 +72,13 @@ void setPlane(BoundPiece& piece) {
   piece.step_y = differenceOfProducts(b.x - a.x, c.z - a.z, b.z - a.z, c.x - a.x) / largest;
 }
 
-/// What holds for all triangles of a view.
+/// What all triangles of a view share.
 struct Frame {
   const View& view;
   glm::dmat4 absolute;  ///< the projection's magnitudes
   ClipVolume volume;
-  glm::dvec2 reach;        ///< of the picture and kBeyond, in units of w
-  glm::dvec2 first, last;  ///< texels of the picture, grown
+  glm::dvec2 reach;        ///< half the picture and kBeyond, in units of w
+  glm::dvec2 first, last;  ///< box of the picture, grown by one texel
 };
 
 Frame makeFrame(const View& view) {
@@ -101,8 +102,8 @@ struct Vertex {
 /// Four planes make at most 3, 4, 6, 9, 13 corners, see clipPolygon.
 using CutTriangle = Polygon<glm::dvec4, 13>;
 
-/// Cuts a triangle in clip space so that |x| ≤ reach.x · w and |y| ≤ reach.y · w, and with that w ≥ 0. In
-/// doubt, by rounding of numbers as large as `sums`, a corner is kept.
+/// Cuts a triangle in clip space so that |x| ≤ reach.x · w and |y| ≤ reach.y · w, and so w ≥ 0. A corner
+/// within the rounding error of numbers as large as `sums` is kept.
 CutTriangle cutSides(const std::array<glm::dvec4, 3>& triangle, const glm::dvec2& reach,
                      const glm::dvec4& sums) {
   CutTriangle polygon{{triangle[0], triangle[1], triangle[2]}, 3}, kept;
@@ -118,10 +119,11 @@ CutTriangle cutSides(const std::array<glm::dvec4, 3>& triangle, const glm::dvec2
   return polygon;
 }
 
-/// Adds a corner and what is unknown of it; false: nothing is known.
+/// Adds a corner and its error bounds. False where its place is not known well enough.
 bool addCorner(const glm::dvec4& clip, const ScreenVertex& screen, const glm::dvec4& sums, const Frame& frame,
                BoundPiece& piece) {
-  // A convex polygon gains one corner a side; of one that rounding dented more, nothing is said.
+  // Cutting a convex polygon adds at most one corner a side, so there is room for 7. One that rounding has
+  // dented may have more: it counts as unknown.
   if (!(clip.w > 0.0) || piece.count == int(piece.corners.size())) return false;
   const glm::dvec2 half = 0.5 * glm::dvec2(frame.view.size);
   const double scale = kCornerError / clip.w;
@@ -148,8 +150,8 @@ void setupTriangle(const std::array<const Vertex*, 3>& vertices, bool masked, co
   piece.high = -piece.low;
   piece.place_error = piece.depth_error = 0;
   bool known = true;
-  // A corner behind the eye is outside of the guard band too. One that is only behind the near plane has its
-  // place and a depth beyond 1.
+  // A corner behind the eye is outside the guard band too. One between the eye and the near plane keeps its
+  // place, and has a depth beyond 1.
   if (any & kOutsideGuard) {
     const glm::dvec4 sums = glm::max(glm::max(a->sums, b->sums), c->sums);
     const CutTriangle clipped = cutSides({a->clip, b->clip, c->clip}, frame.reach, sums);

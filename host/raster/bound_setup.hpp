@@ -10,11 +10,12 @@
 
 namespace luciole {
 
-/// A triangle as far as it is near the picture: convex, nothing of it left out for its size or its way round.
-/// Corners are x and y in texels from the centre of the whole picture's texel (0,0), and reversed depth.
+/// The part of a triangle in or near the picture: a convex polygon of either winding. Small triangles and
+/// back faces are kept. Corners are x and y in texels from the centre of the whole picture's texel (0,0), and
+/// reversed depth.
 struct BoundPiece : Polygon<glm::dvec3, 7> {
   glm::dvec3 low, high;  ///< the box of its corners
-  double place_error;    ///< of its corners, texels in x and in y
+  double place_error;    ///< bound for its corners, texels in x and in y
   double depth_error;
   bool covering;  ///< it may cover whole texels: solid, large enough, and known well enough. Then:
   double depth, step_x, step_y;  ///< its plane: depth at corner `base`, and steps a texel
@@ -26,9 +27,9 @@ struct BoundSetup {
   bool unknown = false;            ///< some triangle may be anywhere
 };
 
-/// Projects triangles without rounding them to a grid, and bounds what double precision loses. Triangles with
-/// corners that aren't finite as floats are left out. Unlike setupTriangles it keeps what reaches behind the
-/// near plane, with depths beyond 1.
+/// Projects triangles without snapping their corners, and bounds the rounding errors of double precision.
+/// Triangles with corners that aren't finite as floats are left out. Unlike setupTriangles it keeps what
+/// reaches behind the near plane, with depths beyond 1.
 BoundSetup setupBounds(const Scene& scene, const PlacedMeshlets& placed, const View& view);
 
 }  // namespace luciole

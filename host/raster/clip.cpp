@@ -8,7 +8,7 @@ namespace {
 
 enum Side { kNear, kFar, kLeft, kRight, kBottom, kTop, kSides };
 
-/// ≥ 0 inside.
+/// Signed distance in clip space, not normalized; ≥ 0 inside.
 double distance(const glm::dvec4& p, Side side, const ClipVolume& volume) {
   switch (side) {
     case kNear:
@@ -26,12 +26,13 @@ double distance(const glm::dvec4& p, Side side, const ClipVolume& volume) {
   }
 }
 
-/// The new corner of a cut edge, in the plane. Always computed from the inside out, so that it does not
-/// depend on the way round a triangle goes.
+/// The new corner of a cut edge, in the clip plane. Always computed from the corner inside to the one
+/// outside, so that triangles that run along the edge in opposite directions get the same bits.
 glm::dvec4 crossing(const glm::dvec4& a, double da, const glm::dvec4& b, double db, Side side,
                     const ClipVolume& volume) {
   glm::dvec4 p = da >= 0.0 ? edgeCrossing(a, da, b, db) : edgeCrossing(b, db, a, da);
-  // Rounding may put the new corner beside the plane, or, where lengths differ by 10¹⁶, behind the eye.
+  // Rounding may put the new corner beside the plane, or, where lengths differ by a factor of 10¹⁶, behind
+  // the eye.
   p.w = std::max(p.w, volume.near_w);
   if (side == kNear) p.z = p.w = volume.near_w;
   if (side == kFar) p.z = 0.0;
@@ -50,7 +51,8 @@ ClipVolume clipVolume(const View& view) {
 }
 
 ClipPolygon clipTriangle(const std::array<glm::dvec4, 3>& triangle, const ClipVolume& volume) {
-  // Backwards until the end: so its first corner stays the first for as long as nothing cuts it off.
+  // clipPolygon puts a new corner on the last edge first. So the corners are clipped in reverse order: then
+  // the first corner stays at the end, which becomes the front.
   ClipPolygon polygon{{triangle[2], triangle[1], triangle[0]}, 3}, kept;
   for (int i = 0; i < kSides; ++i) {
     const Side side = Side(i);

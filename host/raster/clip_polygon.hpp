@@ -4,9 +4,9 @@
 
 namespace luciole {
 
-/// A polygon's corners, one after another around it. A convex one gains one corner by each plane that cuts it.
-/// But rounding may dent it, and of n corners in any order a plane makes 3n/2 at most.
-/// kRoom must hold so many.
+/// A polygon's corners, in order around it. Each plane that cuts a convex polygon adds at most one corner.
+/// But rounding may dent a polygon, and a plane turns n arbitrary corners into at most 3n/2; kRoom must hold
+/// that many.
 template <class Corner, int kRoom>
 struct Polygon {
   std::array<Corner, kRoom> corners;
@@ -15,8 +15,8 @@ struct Polygon {
   void add(const Corner& corner) { corners[count++] = corner; }
 };
 
-/// The point between corners a and b where a distance that is da at a and db at b is 0. It depends on the
-/// order of a and b, by rounding.
+/// The point between corners a and b where a distance that is da at a and db at b is 0. Swapping a and b may
+/// change its rounding.
 template <class Corner>
 Corner edgeCrossing(const Corner& a, double da, const Corner& b, double db) {
   return a + (b - a) * (da / (da - db));
@@ -24,9 +24,9 @@ Corner edgeCrossing(const Corner& a, double da, const Corner& b, double db) {
 
 /// One step of I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Communications of the ACM 17
 /// (1974). `kept` becomes the part of a polygon where distance(corner) ≥ 0, corners in the same order.
-/// crossing(a, da, b, db) makes the new corner on the edge from a to b, of which one is inside. Edges are
-/// visited from that between the last and the first corner on, so a new corner on that one comes first.
-/// `kept` may not be `polygon`.
+/// crossing(a, da, b, db) makes the new corner on the edge from a to b, one of which is inside. The edge from
+/// the last corner to the first is visited first, so a new corner on it comes first. `kept` must not be
+/// `polygon`. O(corners).
 template <class Corner, int kRoom, class Distance, class Crossing>
 void clipPolygon(const Polygon<Corner, kRoom>& polygon, Distance distance, Crossing crossing,
                  Polygon<Corner, kRoom>& kept) {

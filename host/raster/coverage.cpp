@@ -8,7 +8,7 @@
 namespace luciole {
 namespace {
 
-/// What a sample remembers of the triangle that it sees.
+/// What a sample's label says of the triangle that it sees: its number, or its slopes of depth.
 enum class Label : std::uint8_t { kTriangle, kSlopes };
 
 template <Label kLabel>
@@ -17,7 +17,7 @@ std::uint32_t labelOf(const RasterTriangle& triangle) {
                                     : packSlopes(float(triangle.depth_dx), float(triangle.depth_dy));
 }
 
-constexpr int kLanes = 16;  ///< pixels that are drawn side by side; a row of one holds several such groups
+constexpr int kLanes = 16;  ///< pixels of a row that are drawn together, as SIMD lanes
 
 /// Three functions, each ≥ 0 at the samples on the inner side of an edge, those on the edge itself only where
 /// it is a left or a top edge, so that triangles sharing the edge never both cover a sample (Pineda, "A
@@ -64,7 +64,8 @@ struct Target {
             edges.origin[1] + edges.step_x[1] * x + edges.step_y[1] * y,
             edges.origin[2] + edges.step_x[2] * x + edges.step_y[2] * y};
   }
-  /// The depth there; the pixels of a group add float steps to it, which their nearness keeps exact enough.
+  /// The depth there. The pixels of a group add float steps to it: at most 15, so few that float is exact
+  /// enough.
   float depthAt(int x, int y) const {
     return float(triangle.depth + triangle.depth_dx * (bin_origin.x + x) +
                  triangle.depth_dy * (bin_origin.y + y));
@@ -80,11 +81,11 @@ struct Group {
   std::uint32_t* label;
 };
 
-constexpr int kRows = 16;     ///< that are looked at side by side
-constexpr int kFewRows = 12;  ///< to draw so many in vain costs less than to find out which are
+constexpr int kRows = 16;     ///< tested together, as SIMD lanes
+constexpr int kFewRows = 12;  ///< up to here drawing all rows costs less than testing which are covered
 
-/// Of the groups one below the other from (x, y) on, which the triangle may cover a sample of: a bit a row,
-/// all in one piece, since every edge cuts some off at one end.
+/// Which of the kRows groups one below the other from (x, y) on the triangle may cover a sample of: a bit a
+/// row. The bits set are contiguous, since each edge cuts off rows at one end only.
 std::uint32_t rowsReached(const Target& target, int x, int y) {
   const auto [e0, e1, e2] = target.edgesAt(x, y);
   const std::int32_t* step_x = target.edges.step_x;
@@ -122,7 +123,7 @@ void forEachGroup(const Target& target, const PixelBox& box, BinPixels& pixels, 
   }
 }
 
-/// Draws an opaque triangle to a box of the bin's pixels; returns whether it covers a sample.
+/// Draws an opaque triangle to a box of the bin's pixels. Returns whether it covers a sample, visible or not.
 template <Label kLabel>
 bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
@@ -157,7 +158,7 @@ std::uint32_t holesIn(const HoleTest& holes, const Surface& surface, std::uint32
   return found;
 }
 
-/// The same for a triangle with holes, which are looked for where nothing nearer was drawn before.
+/// The same for a triangle with holes. Its opacity is looked up only at samples where it is the nearest.
 template <Label kLabel>
 bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
@@ -178,7 +179,8 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
       z[lane] = std::min(std::max(group.start + step * float(lane), low), high);
       covered |= inside;
       std::int32_t nearer = z[lane] > group.depth[lane];
-      // Opaque triangles were drawn before their turn, and a depth of 0 is nothing.
+      // Opaque triangles are drawn first, out of order, so at equal depth the lower number must win here. A
+      // depth of 0 is nothing.
       if (kLabel == Label::kTriangle)
         nearer |= (z[lane] == group.depth[lane]) & (number < group.label[lane]) & (z[lane] > 0.0f);
       nearest |= std::uint32_t(inside & nearer) << lane;
@@ -204,7 +206,7 @@ void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, 
   const glm::ivec2 origin = bins.origin(bin);
   const std::span<const std::uint32_t> list = bins.list(bin);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    // Far enough ahead for the memory to answer.
+    // Far enough ahead to hide the latency of memory.
     if (i + 8 < list.size()) __builtin_prefetch(&triangles[list[i + 8]]);
     const RasterTriangle& triangle = triangles[list[i]];
     const PixelBox whole = pixelBox(triangle);
@@ -213,7 +215,7 @@ void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, 
     const Target target{triangle, edgeFunctions(triangle, origin), origin};
     const bool covered = triangle.masked ? drawMasked<kLabel>(target, box, holes, pixels)
                                          : drawOpaque<kLabel>(target, box, pixels);
-    // Several bins may say so at once.
+    // Several bins may write it at once.
     if (kLabel == Label::kTriangle && covered)
       std::atomic_ref(covering[triangle.triangle]).store(1, std::memory_order_relaxed);
   }
@@ -222,7 +224,7 @@ void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, 
 }  // namespace
 
 std::uint32_t packSlopes(float dx, float dy) {
-  // Half of what is cut off is added first. Steps are below 10³⁰, so nothing overflows.
+  // Adding half of the part cut off rounds to nearest. Steps are below 10³⁰, so nothing overflows.
   const std::uint32_t high = std::bit_cast<std::uint32_t>(dx) + 0x8000u;
   const std::uint32_t low = std::bit_cast<std::uint32_t>(dy) + 0x8000u;
   return (high & 0xffff0000u) | low >> 16;

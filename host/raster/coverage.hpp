@@ -17,7 +17,7 @@ struct BinPixels {
   alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> label;  ///< the triangle, or its slopes
 };
 
-/// What it takes to look for holes in triangles.
+/// What the test for holes of alpha-masked triangles needs.
 struct HoleTest {
   const Scene& scene;
   const std::vector<PlacedObject>& objects;
@@ -25,8 +25,9 @@ struct HoleTest {
 };
 
 /// Draws a bin's triangles: the nearer wins, and at equal depth the one with the lower number. Labels are the
-/// triangles' numbers, or kNoTriangle. Samples beyond the crop are drawn too, at whim. `covering` has one
-/// entry a triangle, which is set to 1 where the triangle covers a sample, seen or not.
+/// triangles' numbers, or kNoTriangle. Samples of the bin outside the crop may be drawn too; their content
+/// means nothing. `covering` has one entry a triangle, which is set to 1 where the triangle covers a sample,
+/// seen or not.
 void drawBin(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
              std::span<std::uint8_t> covering, BinPixels& pixels);
 

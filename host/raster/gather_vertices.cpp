@@ -42,7 +42,7 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
   if (!gbuffer.ambient.empty()) storePixel(material.ambient * color, place, stride, gbuffer.ambient);
   const glm::vec3 glow = material.colored_emission ? material.emission * color : material.emission;
   if (!gbuffer.emission.empty()) storePixel(glow, place, stride, gbuffer.emission);
-  // A vertex has no triangle of its own.
+  // A vertex belongs to several triangles: its own normal stands for theirs.
   if (!gbuffer.geometric_normal.empty()) gbuffer.geometric_normal[place] = packNormal(normal);
   if (!gbuffer.specular.empty()) {
     storePixel(material.specular, place, stride, gbuffer.specular);

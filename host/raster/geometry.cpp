@@ -12,8 +12,9 @@
 namespace luciole {
 namespace {
 
-/// The matrix that carries normals: the inverse transpose times the absolute determinant (its cofactors),
-/// which a matrix that flattens the object has too.
+/// The matrix that transforms normals: the inverse transpose times the absolute value of the determinant. Up
+/// to its sign that is the matrix of cofactors, which exists for a singular matrix too, one that flattens the
+/// object.
 glm::dmat3 normalMatrix(const glm::dmat3& m, double determinant) {
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return determinant < 0.0 ? -cofactors : cofactors;

@@ -13,7 +13,8 @@
 
 namespace luciole {
 
-/// An object among those to draw. Vertices and triangles are numbered through all of them, in order.
+/// An object among those to draw. Vertices and triangles are numbered through all of these objects, in order.
+/// It refers to the scene's mesh.
 struct PlacedObject {
   const Mesh* mesh = nullptr;
   int material = -1;  ///< as in Object
@@ -24,11 +25,12 @@ struct PlacedObject {
   glm::dmat3 normal_to_view{1.0};  ///< gives the direction, not the length
 };
 
-/// In the place of a triangle's number: none.
+/// Stands for no triangle, in place of a number.
 constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
-/// `lit_vertices`: for colours that are lit at vertices, by meshes' divided forms (Mesh::divided). Throws
-/// InputError where triangles are more than a 32-bit number can tell apart.
+/// Places the given objects (indices into scene.objects) in view space. `lit_vertices`: take the meshes'
+/// divided forms (Mesh::divided), for colours that are lit at vertices. The result refers to the scene.
+/// O(objects). Throws InputError where there are too many triangles for 32-bit numbers.
 std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::uint32_t> objects,
                                        const glm::dmat4& world_to_view, bool lit_vertices = false);
 
@@ -40,7 +42,7 @@ struct ScreenVertex {
   double depth;
 };
 
-/// Where a vertex lies.
+/// Where a vertex lies relative to the view volume; bits to be combined.
 enum VertexPlace : std::uint16_t {
   kBehindNear = 1,
   kBeyondFar = 2,
@@ -70,8 +72,8 @@ inline ScreenVertex toScreen(const glm::dvec4& clip, const View& view) {
 }
 
 /// VertexPlace bits of a vertex at `position` in view space and `clip` in clip space; `guard`: see
-/// ClipVolume; a vertex that isn't `placed` is said to lie outside of it. Without branches, so that loops
-/// over vertices become vector instructions.
+/// ClipVolume. A vertex that isn't `placed` counts as outside it. Without branches, so that loops over
+/// vertices are vectorized.
 inline std::uint32_t vertexPlace(const glm::dvec3& position, const glm::dvec4& clip, const glm::dvec2& guard,
                                  bool placed = true) {
   const double largest = std::abs(position.x) + std::abs(position.y) + std::abs(position.z);
@@ -86,21 +88,22 @@ inline std::uint32_t vertexPlace(const glm::dvec3& position, const glm::dvec4& c
          (outside_guard ? kOutsideGuard : 0) | (usable ? 0 : kUnusable);
 }
 
-/// `lit_vertices`: as in placeObjects.
+/// Transforms all vertices of the given objects, in parallel. `lit_vertices` and errors: as in placeObjects.
+/// 50 bytes a vertex.
 Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                           bool lit_vertices = false);
 
-/// The object that a triangle belongs to, by the triangle's number among all.
+/// The object that a triangle belongs to, by the triangle's number among all. O(log objects).
 const PlacedObject& objectOfTriangle(const std::vector<PlacedObject>& objects, std::uint32_t triangle);
 
-/// The material of a mesh's triangle.
+/// The material of triangle `in_mesh` of an object's mesh.
 inline const Material& materialOf(const Scene& scene, const PlacedObject& object, std::uint32_t in_mesh) {
   return scene.materials[object.material >= 0 ? std::uint32_t(object.material)
                                               : object.mesh->triangle_materials[in_mesh]];
 }
 
-/// Whether the eye of a view lies on the side of a plane that its normal points to; `point` lies in the
-/// plane. It holds for triangles that reach behind the eye too (the homogeneous test of Olano and Greer,
+/// Whether the eye lies on the side of a plane that its normal points to, in view space; `point` lies in the
+/// plane. Right for triangles that reach behind the eye too (the homogeneous test of Olano and Greer,
 /// "Triangle scan conversion using 2D homogeneous coordinates", 1997, in view space).
 inline bool eyeInFront(const glm::dvec3& normal, const glm::dvec3& point, bool perspective) {
   return perspective ? glm::dot(normal, point) < 0.0 : normal.z > 0.0;

@@ -10,9 +10,9 @@
 
 namespace luciole {
 
-/// Some lists of items, one list after another.
+/// Lists of items, stored one after another.
 struct ItemLists {
-  std::vector<std::size_t> starts;   ///< of each list, and the end of the last
+  std::vector<std::size_t> starts;   ///< where each list starts in `items`, and the end of the last
   std::vector<std::uint32_t> items;  ///< in ascending order within a list
 
   std::span<const std::uint32_t> list(std::size_t i) const {
@@ -25,8 +25,8 @@ struct ItemLists {
 /// number of threads. O(entries + lists).
 template <class ForEachList>
 ItemLists listItems(std::size_t item_count, std::size_t list_count, ForEachList for_each_list) {
-  // Count, scan, fill, by runs of items: a run's entries of a list follow those of the run before it. The
-  // number of runs does not depend on the machine, and is bounded for the sake of the table of counts.
+  // Count, prefix sum and fill, by runs of items. In each list a run's entries follow those of the run before
+  // it. The number of runs doesn't depend on the machine; it is at most 65, which bounds the table of counts.
   const std::size_t run_size = std::max<std::size_t>(4096, item_count / 64);
   const std::size_t runs = (item_count + run_size - 1) / run_size;
   // [run][list]: first the count, then where to write next

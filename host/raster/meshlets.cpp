@@ -16,7 +16,7 @@ constexpr std::size_t kRoom = 3 * kMeshletTriangles;  ///< vertices that a meshl
 void fillMeshlet(const Scene& scene, Meshlet& meshlet, std::uint32_t* vertices, std::uint8_t* corners) {
   const Object& object = scene.objects[meshlet.object];
   const Mesh& mesh = scene.meshes[object.mesh];
-  // The few vertices used so far, by the low bits of their indices.
+  // A hash table of the vertices used so far, by the low bits of their indices; 0xff: free.
   constexpr std::uint32_t kSlots = 256;
   static_assert(kRoom < kSlots);
   std::array<std::uint8_t, kSlots> slots;

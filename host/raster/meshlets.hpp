@@ -11,13 +11,13 @@ namespace luciole {
 
 constexpr std::uint32_t kMeshletTriangles = 64;
 
-/// Triangles of an object that follow each other in its mesh, which mostly lie close together, with the
-/// vertices that they use.
+/// Consecutive triangles of an object's mesh, which mostly lie close together, and the vertices that they
+/// use.
 struct Meshlet {
   std::uint32_t object;        ///< index into Scene::objects
   std::uint32_t first;         ///< triangle of its mesh
   std::uint32_t count;         ///< 1 to kMeshletTriangles
-  std::uint32_t first_vertex;  ///< of its part of Meshlets::vertices
+  std::uint32_t first_vertex;  ///< where its part of Meshlets::vertices begins
   std::uint32_t vertex_count;  ///< at most 3 · count
   glm::dvec3 low{0.0};         ///< world-space box around its finite corners
   glm::dvec3 high{0.0};
@@ -28,10 +28,9 @@ struct Meshlet {
 ///     groups   box┬box┬…       one for kMeshletsPerGroup meshlets in a row
 ///     items    ┌──┴──┐
 ///              m   m   m   …   objects in order, each one's triangles in order
-///     vertices 0 1 2 7│3 4 …   indices into the mesh, each once a meshlet: 4 bytes each, at most 3 a
-///     triangle corners  000…│121…│223…  the triangles' first corners, second and third, as places in their
-///     meshlet's
-///                              vertices: kMeshletTriangles bytes each
+///     vertices 0 1 2 7│3 4 …   indices into the mesh, each once a meshlet; 4 bytes, at most 3 a triangle
+///     corners  000…│121…│223…  of a meshlet's triangles the first, second and third corners, as places
+///                              among its vertices; each kMeshletTriangles bytes
 struct Meshlets {
   struct Box {
     glm::dvec3 low, high;
@@ -43,6 +42,7 @@ struct Meshlets {
 };
 constexpr std::uint32_t kMeshletsPerGroup = 16;
 
+/// The meshlets of all objects of a scene, in world space at its pose. O(triangles), in parallel.
 Meshlets findMeshlets(const Scene& scene);
 
 /// 0, 1, 2 …: every meshlet.

@@ -14,10 +14,10 @@ float opacityAt(const Scene& scene, const Surface& surface, const Weights& weigh
     opacity *= diffuse.alpha_varies ? lookUp(scene, material.diffuse_map, place, 3)
                                     : diffuse.levels[0].texels[3] / 65535.0f;
   }
-  // Where one map says that nothing is there, the other needn't be looked at.
+  // Where the opacity is 0 already, the second map is not looked up.
   const int alpha = material.alpha_map.texture;
   if (alpha >= 0 && opacity > 0.0f) {
-    // An opacity map in grey is a picture of numbers: its codes count, not the light they would stand for.
+    // A grey opacity map holds plain numbers, not sRGB colours: the code counts, not the linear value.
     opacity *= scene.textures[alpha].alpha_varies ? lookUp(scene, material.alpha_map, place, 3)
                                                   : encodeSrgb(lookUp(scene, material.alpha_map, place, 0));
   }

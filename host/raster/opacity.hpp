@@ -4,12 +4,13 @@
 
 namespace luciole {
 
-/// Of the surface at a point, whose maps are looked up at `place`; nothing but its object, material and
-/// corners is looked at.
+/// The opacity of a surface at a point: the product of its material's alpha, the vertex colour's, and that of
+/// its maps, looked up at `place`. Uses only the surface's object, material and corners.
 float opacityAt(const Scene& scene, const Surface& surface, const Weights& weights,
                 const TexturePlace& place);
 
-/// Whether the surface has a hole where the pixel looks. Its material's alpha_cutoff is > 0.
+/// Whether the surface has a hole at pixel (x, y) of the whole picture: its opacity is below its material's
+/// alpha_cutoff, which must be > 0.
 bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, int x, int y);
 
 }  // namespace luciole

@@ -11,18 +11,19 @@
 
 namespace luciole {
 
-/// Runs of triangles to draw, with the objects that they belong to.
+/// Meshlets to draw, with the objects that they belong to in view space.
 struct PlacedMeshlets {
   const Meshlets& meshlets;
   std::span<const std::uint32_t> chosen;  ///< ascending indices into meshlets.items
-  std::vector<PlacedObject> objects;      ///< each once, in order
+  std::vector<PlacedObject> objects;      ///< those of the chosen meshlets, each once, in order
   std::vector<std::uint32_t> object_of;   ///< one a chosen meshlet: index into `objects`
 
   const PlacedObject& object(std::size_t i) const { return objects[object_of[i]]; }
 };
 
-/// Takes what `meshlets` and `chosen` refer to, which must outlive the result. Triangles are numbered through
-/// the objects, see placeObjects, which may throw.
+/// `chosen`: ascending indices into meshlets.items. The result refers to the scene, to `meshlets` and to what
+/// `chosen` points at; all must outlive it. Triangles are numbered through its objects. Throws as
+/// placeObjects does.
 PlacedMeshlets placeMeshlets(const Scene& scene, const Meshlets& meshlets,
                              std::span<const std::uint32_t> chosen, const glm::dmat4& world_to_view);
 

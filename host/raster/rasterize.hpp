@@ -13,14 +13,16 @@
 
 namespace luciole {
 
+/// Where a surface's normals and colours are evaluated.
 enum class Shading : std::uint8_t {
   kFlat,     ///< the triangle's own normal
   kGouraud,  ///< colours lit at the vertices, interpolated
   kPhong,    ///< normals interpolated
 };
 
-/// Triangles on their way: every one is counted once in `submitted`, and in one of the others at most. The
-/// parts and samples of one picture share their counts: a triangle is outside if it covers no sample of any.
+/// Counts of triangles. Each is counted once in `submitted`, and in at most one of the others. The parts and
+/// samples of a picture that is drawn in several calls share their counts: a triangle is outside if it covers
+/// no sample in any of them.
 struct RasterCounts {
   std::uint64_t submitted = 0;
   std::uint64_t back_facing = 0;
@@ -28,10 +30,11 @@ struct RasterCounts {
   std::vector<std::uint8_t> covering;  ///< one a triangle, 1: it covers a sample
 };
 
-/// Draws the given objects (indices into scene.objects) and resolves what each pixel sees: visibility first,
-/// then attributes once a visible pixel. Back faces are culled unless double-sided. The nearer surface wins;
-/// at equal depth the first in object and triangle order. The result does not depend on the number of threads
-/// or on the crop.
+/// Draws the given objects (indices into scene.objects) into a G-buffer of the view's crop: visibility first,
+/// then attributes once for each visible pixel. Back faces are culled unless double-sided. The nearer surface
+/// wins; at equal depth the first in object and triangle order. The result does not depend on the number of
+/// threads or on the crop. Throws InputError for a view whose size or crop is out of range, and as
+/// placeObjects does.
 ///
 /// `vertex_colors`: empty, or for Shading::kGouraud the lit colours of all vertices of all the given objects,
 /// in order (see gatherVertices). Then meshes are drawn in their divided form, the interpolated colour × the
@@ -40,18 +43,20 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
                   RasterCounts* counts = nullptr);
 
-/// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop row by
-/// row into `texels`. Alpha-masked holes are left open and no face is culled. A texel's content does not
-/// depend on the crop, nor on meshlets that don't reach it. `farthest`: one for each bin of kBinSize² texels
-/// of the whole picture that the crop touches, row by row: what has a smaller reversed depth may be missing
-/// there, and a bin of infinity isn't drawn at all. Empty: all is drawn.
+/// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop, row by
+/// row, into `texels` (8 bytes each). Alpha-masked holes stay open, and no face is culled. A texel's content
+/// does not depend on the crop, nor on meshlets that don't reach it. `farthest`: one for each bin of
+/// kBinSize² texels that the crop touches, row by row. What has a smaller reversed depth may be missing
+/// there; a bin of infinity isn't drawn at all, and its texels keep their content. Empty: all is drawn.
+/// Throws as rasterize does.
 void rasterizeDepth(const Scene& scene, const Meshlets& meshlets, std::span<const std::uint32_t> chosen,
                     const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels);
 
 /// The vertices of the given objects as a G-buffer of their own, for Gouraud shading by the same kernels that
 /// shade pixels: vertex i of all (objects in order, the vertices of each mesh's divided form in order) lies
 /// at index i of every plane. Its material is that of the first triangle that uses it; textures are left out.
-/// Normals of double-sided materials are turned towards the viewer.
+/// Vertices that no triangle uses show nothing. Normals of double-sided materials are turned towards the
+/// viewer.
 GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                        PlaneSet planes);
 

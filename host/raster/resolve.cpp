@@ -19,7 +19,7 @@ struct Part {
   }
 };
 
-/// The triangles that a square's pixels see; none outside the part.
+/// The triangles that a square's pixels see; kNoTriangle outside the part.
 Lanes<std::uint32_t> trianglesSeen(const BinPixels& pixels, const glm::ivec2& bin_origin, const Part& part,
                                    const glm::ivec2& square) {
   const glm::ivec2 in_bin = square - bin_origin;
@@ -51,7 +51,8 @@ LaneMask takeTriangle(Lanes<std::uint32_t>& triangles, int lane) {
   return sees_it;
 }
 
-/// A square one of whose pixels sees something. Those that see nothing get anything.
+/// Resolves a square of which at least one pixel sees something. The values of pixels that see nothing are
+/// arbitrary.
 SquareValues resolveSquare(const ResolveInput& input, const glm::ivec2& first_pixel,
                            Lanes<std::uint32_t> triangles, SurfaceCache& surfaces) {
   const SquarePlace place = squarePlace(input.plane, first_pixel);
@@ -71,7 +72,7 @@ SquareValues resolveSquare(const ResolveInput& input, const glm::ivec2& first_pi
   return values;
 }
 
-/// Into a plane, from `out` on: the pixels that see something.
+/// Stores the values of the pixels that see something into a plane, from `out` on. `whole`: all of them do.
 template <class T>
 void store(const Lanes<T>& values, const LaneMask& mask, bool whole, T* out) {
   if (whole) {
@@ -82,7 +83,7 @@ void store(const Lanes<T>& values, const LaneMask& mask, bool whole, T* out) {
   }
 }
 
-/// Into a group of planes, unless the G-buffer does without it: the pixels that see something.
+/// The same into a group of planes, if the G-buffer has it.
 void store(std::span<const Lanes<float>> values, std::size_t place, const LaneMask& mask, bool whole,
            Plane& group) {
   if (group.empty()) return;
@@ -116,7 +117,8 @@ void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 b
   const glm::ivec2 crop = gbuffer.crop_origin;
   const Part part{glm::max(bin_origin, crop),
                   glm::min(bin_origin + kBinSize, crop + glm::ivec2(gbuffer.width, gbuffer.height))};
-  // Squares, like tiles, count from the crop, and bins from the picture, so a square may lie in several bins.
+  // Squares, like tiles, are aligned to the crop, and bins to the picture. So a square may lie in several
+  // bins.
   const glm::ivec2 first_square = crop + (part.first - crop) / kSquareSize * kSquareSize;
   SurfaceCache surfaces(input);
   for (int y = first_square.y; y < part.end.y; y += kSquareSize) {

@@ -9,7 +9,7 @@
 
 namespace luciole {
 
-/// What a picture's pixels are made of.
+/// What resolving the pixels of a picture needs. It refers to its parts.
 struct ResolveInput {
   const Scene& scene;
   const std::vector<PlacedObject>& objects;
@@ -21,8 +21,8 @@ struct ResolveInput {
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };
 
-/// Fills in a bin's pixels: the attributes, once a pixel, of the triangle that each of them sees.
-/// `bin_origin` counts pixels of the whole picture.
+/// Writes the attributes of the triangle that each pixel of a bin sees to the G-buffer, as far as the bin
+/// lies in the crop. Pixels that see nothing keep their content. `bin_origin`: pixels of the whole picture.
 void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 bin_origin, GBuffer& gbuffer);
 
 }  // namespace luciole

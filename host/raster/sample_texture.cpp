@@ -11,9 +11,10 @@
 namespace luciole {
 namespace {
 
-// What loops over lanes call is free of branches: both sides of every choice are cheap and safe.
+// Functions called in loops over lanes have no branches, so that the loops are vectorized: both sides of each
+// choice are cheap and safe to compute.
 
-/// Brings a coordinate into [0, 1]. The subtractions are exact for any finite float.
+/// Wraps a texture coordinate into [0, 1]; not finite: as 0. The subtractions are exact for any finite float.
 inline double wrapCoordinate(float coordinate, Wrap wrap) {
   const double t = std::abs(coordinate) <= std::numeric_limits<float>::max() ? coordinate : 0.0f;
   const double repeated = t - std::floor(t);
@@ -43,7 +44,7 @@ inline Neighbours neighbours(double wrapped, std::int32_t size, Wrap wrap) {
   return {first < 0 ? before : not_beyond, first < last ? first + 1 : after, float(place - below)};
 }
 
-/// Exact where both are the same.
+/// Gives exactly a where both are equal.
 inline float mix(float a, float b, float share) { return a + (b - a) * share; }
 
 float sampleLevel(const Texture& texture, int level, Wrap wrap_u, Wrap wrap_v, double u, double v,
@@ -67,7 +68,7 @@ inline float footprintSize(double width, double height, const glm::vec2& duv_dx,
   return float(std::max(x0 * x0 + y0 * y0, x1 * x1 + y1 * y1));
 }
 
-/// Of a normal number or infinity: 128.
+/// The base-2 logarithm of a positive normal float; 128 for infinity.
 inline float log2OfPositive(float x) {
   // x = 2^e · m, m from √½ on, and log m = 2 artanh((m − 1) / (m + 1)), whose series is cut off at 2⁻²⁹.
   const std::int32_t bits = std::bit_cast<std::int32_t>(x);
@@ -80,19 +81,20 @@ inline float log2OfPositive(float x) {
   return float(exponent) + kScale * s * series;
 }
 
-/// OpenGL 4.6, equations 8.7 and 8.8: the logarithm of the footprint's longer side in texels.
+/// The mip level, by OpenGL 4.6, equations 8.7 and 8.8: the base-2 logarithm of the footprint's longer side
+/// in texels. `size` is that side's square.
 inline float levelOf(float size, float coarsest) {
   return size > 1.0f ? std::min(0.5f * log2OfPositive(size), coarsest) : 0.0f;
 }
 
-/// What a square's pixels look up, each in a map of its own.
+/// The maps of a square's pixels.
 struct SquareMaps {
   Lanes<const MipLevel*> levels;  ///< the finest
   Lanes<float> coarsest;
   Lanes<Wrap> wrap_u, wrap_v;
 };
 
-/// The map of pixels without one.
+/// A white texture, for pixels without a map.
 const Texture& white() {
   static const Texture texture{"", {{1, 1, {65535, 65535, 65535, 65535}}}, false};
   return texture;
@@ -113,11 +115,11 @@ SquareMaps squareMaps(std::span<const Texture> textures, const Lanes<const Textu
 
 /// The four texels around each of a square's points in one level, and the shares of the right and lower ones.
 struct SquareTexels {
-  Lanes<const std::uint16_t*> top;  ///< of the row's first texel
+  Lanes<const std::uint16_t*> top;  ///< first texel of the row
   Lanes<const std::uint16_t*> bottom;
-  Lanes<std::int32_t> left, right;  ///< values from there
+  Lanes<std::int32_t> left, right;  ///< offsets from there, in values
   Lanes<float> across, down;
-  LaneMask finest;  ///< the level is
+  LaneMask finest;  ///< whether it is level 0
 };
 
 SquareTexels findTexels(const SquareMaps& maps, const Lanes<std::int32_t>& levels, const Lanes<double>& u,
@@ -156,7 +158,7 @@ SquareTexels findTexels(const SquareMaps& maps, const Lanes<std::int32_t>& level
   return result;
 }
 
-/// A texel a pixel, its four codes in one piece.
+/// One texel for each pixel, its four 16-bit codes in one word.
 using Texels = Lanes<std::uint64_t>;
 
 inline std::uint64_t load(const std::uint16_t* texel) {

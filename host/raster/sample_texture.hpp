@@ -14,15 +14,15 @@ namespace luciole {
 float sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 uv, glm::vec2 duv_dx,
                     glm::vec2 duv_dy, int channel);
 
-/// Where a square's pixels look a texture up, as above.
+/// Texture coordinates and footprints of a square's pixels, as above.
 struct SquareFootprints {
   Lanes<float> u, v;
   Lanes<float> du_dx, dv_dx;
   Lanes<float> du_dy, dv_dy;
 };
 
-/// The same lookup, bit for bit, of red, green and blue for a square's pixels, each in its own map: 1 where
-/// it has none (null).
+/// The same lookup, bit for bit, of linear red, green and blue for a square's pixels, each in its own map. 1
+/// for a pixel whose map is null.
 Lanes3<float> sampleTextures(std::span<const Texture> textures, const Lanes<const TextureUse*>& maps,
                              const SquareFootprints& footprints);
 

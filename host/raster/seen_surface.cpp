@@ -19,7 +19,7 @@ Interpolant<glm::dvec3> normals(const Surface& surface, const glm::dvec3& facing
   return {to_view * in_object.first, to_view * in_object.to_second, to_view * in_object.to_third};
 }
 
-/// Of the side that is seen.
+/// The lift on the side that is seen.
 Lift liftOf(const Surface& surface, const Interpolant<glm::dvec3>& normal) {
   const glm::bvec3 bent = bentCorners(*surface.object->mesh, surface.corners);
   return makeLift(bent, {normal.first, normal.first + normal.to_second, normal.first + normal.to_third},
@@ -40,7 +40,7 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   const bool mapped =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   if (mapped && !mesh.uvs.empty()) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
-  // What light made of the vertices is looked up as the diffuse map is.
+  // Lit vertex colours are multiplied by the diffuse map, so they need no other coordinates.
   seen.glows_apart = mapped && !mesh.emission_uvs.empty() && !input.litVertices();
   if (seen.glows_apart) seen.emission_uv = between<glm::dvec2>(mesh.emission_uvs.data(), surface.corners);
   if (input.litVertices()) {

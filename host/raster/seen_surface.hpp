@@ -9,8 +9,8 @@
 
 namespace luciole {
 
-/// A value of a triangle's corners: the first one's, and the ways from there to the others'. At weights b it
-/// is first + b1 · to_second + b2 · to_third.
+/// A value given at a triangle's corners: the first corner's, and the differences of the others from it. At
+/// weights b it is first + b1 · to_second + b2 · to_third.
 template <class T>
 struct Interpolant {
   T first{0.0};
@@ -18,23 +18,24 @@ struct Interpolant {
   T to_third{0.0};
 };
 
-/// A surface with all that its pixels need of its corners.
+/// A surface, and the attributes of its corners that its pixels interpolate.
 struct SeenSurface {
   Surface surface;
-  glm::dvec3 facing_normal{0.0};       ///< its own, on the viewer's side
-  std::uint32_t geometric_normal = 0;  ///< that, by packNormal()
+  glm::dvec3 facing_normal{0.0};       ///< the triangle's normal, unit, on the viewer's side
+  std::uint32_t geometric_normal = 0;  ///< facing_normal, by packNormal()
   Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
-  Lift lift;                           ///< where asked for
+  Lift lift;                           ///< for ResolveInput::lifts
   Interpolant<glm::dvec2> uv;          ///< zero where no map needs them
-  bool glows_apart = false;            ///< the emission map is looked up elsewhere:
+  bool glows_apart = false;            ///< the emission map has texture coordinates of its own:
   Interpolant<glm::dvec2> emission_uv;
   bool colored = false;
-  Interpolant<glm::dvec3> color;  ///< where colored: of the vertices, or what light makes of them
+  Interpolant<glm::dvec3> color;  ///< where colored: the vertices' colours, or their lit colours
 };
+/// The surface of a triangle, by its number. O(log objects).
 SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle);
 
-/// The surfaces of the triangles seen last, by their number's lowest bits: neighbours mostly have numbers
-/// near each other.
+/// A direct-mapped cache of the surfaces seen last, by the lowest bits of the triangle's number: neighbouring
+/// triangles mostly have consecutive numbers. Not safe for several threads.
 class SurfaceCache {
  public:
   explicit SurfaceCache(const ResolveInput& input) : input_(input) { triangles_.fill(kNoTriangle); }

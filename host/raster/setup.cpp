@@ -14,20 +14,21 @@
 namespace luciole {
 namespace {
 
-/// Which way round a triangle must go on the picture, y down; the other way it is only there by rounding.
+/// The winding that a triangle must have on the picture, y down. One that is wound the other way after
+/// snapping is there by rounding only.
 enum class Winding : std::uint8_t { kAny, kClockwise, kCounterClockwise };
 
-/// What the setup of triangles adds to.
+/// What a task of the setup produces.
 struct Output {
   std::vector<RasterTriangle> triangles;
   std::uint64_t back_facing = 0;
 };
 
-/// What holds for all triangles.
+/// What all triangles of a view share.
 struct Frame {
   const View& view;
   ClipVolume volume;
-  glm::dvec2 snap_low;  ///< 1/256 pixel: the guard band
+  glm::dvec2 snap_low;  ///< the guard band, 1/256 pixel
   glm::dvec2 snap_high;
 };
 
@@ -37,8 +38,8 @@ Frame makeFrame(const View& view) {
   return {view, clipVolume(view), middle - reach, middle + reach};
 }
 
-/// A depth plane through the corners before snapping, which is as exact as they are. Where the triangle is
-/// seen edge on no plane is finite, and the nearest corner's depth stands for all.
+/// Sets the depth plane through the corners before snapping, so that snapping doesn't tilt it. A triangle
+/// seen edge on has no finite plane: it takes the depth of its nearest corner.
 void setDepthPlane(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, RasterTriangle& out) {
   const auto [low, high] = std::minmax({a.depth, b.depth, c.depth});
   out.depth_low = float(low);
@@ -48,7 +49,7 @@ void setDepthPlane(const ScreenVertex& a, const ScreenVertex& b, const ScreenVer
   const double inverse_area = 1.0 / (ab.x * ac.y - ab.y * ac.x);
   out.depth_dx = (ab.z * ac.y - ab.y * ac.z) * inverse_area;
   out.depth_dy = (ab.x * ac.z - ab.z * ac.x) * inverse_area;
-  // Beyond this a step across 16 pixels would leave the floats.
+  // With steeper planes 16 steps could overflow a float.
   constexpr double kSteepest = 1e30;
   if (!(std::abs(out.depth_dx) < kSteepest && std::abs(out.depth_dy) < kSteepest)) {
     out.depth_dx = out.depth_dy = 0.0;
@@ -63,7 +64,7 @@ void emitSnapped(RasterTriangle& triangle, const std::array<ScreenVertex, 3>& co
                  std::uint32_t number, bool masked, Output& output) {
   const std::int64_t area = std::int64_t(triangle.x[1] - triangle.x[0]) * (triangle.y[2] - triangle.y[0]) -
                             std::int64_t(triangle.y[1] - triangle.y[0]) * (triangle.x[2] - triangle.x[0]);
-  // A triangle that snapping turned over is dropped: its neighbours overlap where it lies.
+  // A triangle that snapping turned over is dropped: its neighbours cover its place.
   if (area == 0 || (area < 0 && winding == Winding::kClockwise) ||
       (area > 0 && winding == Winding::kCounterClockwise))
     return;
@@ -77,11 +78,10 @@ void emitSnapped(RasterTriangle& triangle, const std::array<ScreenVertex, 3>& co
   output.triangles.push_back(triangle);
 }
 
-/// A place on the picture to 1/256 pixel, ties to even, and into the guard band.
-/// `fine`: in 1/256 pixel, finite.
+/// Rounds a place on the picture to 1/256 pixel, ties to even, and clamps it to the guard band. `fine`: in
+/// 1/256 pixel, finite.
 inline std::int32_t snap(double fine, double low, double high) {
-  // To add and take away this rounds a double below 2⁵¹ to an integer.
-  // Unlike std::lrint it becomes vector instructions.
+  // Adding and subtracting this rounds a double below 2⁵¹ to an integer. Unlike std::lrint it is vectorized.
   constexpr double kRound = 0x1.8p52;
   return std::int32_t((std::min(std::max(fine, low), high) + kRound) - kRound);
 }
@@ -104,7 +104,7 @@ void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame
   emitSnapped(triangle, corners, winding, number, masked, output);
 }
 
-/// Transformed vertices, by whatever index.
+/// Transformed vertices; three arrays with the same index.
 struct Vertices {
   const glm::dvec3* positions;  ///< view space
   const ScreenVertex* screen;
@@ -163,19 +163,19 @@ RasterSetup join(std::vector<Output> outputs) {
 
 constexpr std::size_t kMeshletVertices = 3 * kMeshletTriangles;  ///< at most
 
-/// A meshlet's vertices, component by component, so that loops over them become vector instructions: the same
-/// values, bit for bit, as those of transformVertex() and emitTriangle().
+/// A meshlet's vertices as a structure of arrays, so that loops over them are vectorized. The values are
+/// those of transformObjects() and emitTriangle(), bit for bit.
 struct RunVertices {
   template <class T>
   using Of = std::array<T, kMeshletVertices>;
   alignas(64) Of<double> view_x, view_y, view_z;  ///< view space
   alignas(64) Of<double> x, y, depth;             ///< as in ScreenVertex
   alignas(64) Of<std::int32_t> snapped_x, snapped_y;
-  /// Column (low half) and row of the first sample to the right of the vertex and below it, or at it, from
-  /// the crop's corner, and brought into the crop or one behind its end. So a triangle's box reaches samples
-  /// of the crop where not all of its corners have the same column, nor the same row.
+  /// Column (low 16 bits) and row (high 16 bits) of the first sample at or to the right of the vertex, and at
+  /// or below it. They count from the crop's corner and are clamped to 0 … the crop's size. So a triangle's
+  /// box reaches no sample of the crop where all its corners have the same column, or all the same row.
   alignas(64) Of<std::uint32_t> samples;
-  /// VertexPlace bits; those without a place on the picture are said to lie outside the guard.
+  /// VertexPlace bits. Vertices without a finite place on the picture count as outside the guard band.
   alignas(64) Of<std::uint32_t> places;
 
   ScreenVertex screen(std::size_t i) const { return {x[i], y[i], depth[i]}; }
@@ -188,7 +188,7 @@ struct MatrixRow {
   double times(double a, double b, double c) const { return (x * a + y * b) + (z * c + w); }
 };
 
-/// Returns the places of all together.
+/// Transforms a meshlet's vertices. Returns the VertexPlace bits that any of them has.
 std::uint32_t transformMeshlet(const Meshlets& meshlets, const Meshlet& meshlet, const PlacedObject& object,
                                const Frame& frame, RunVertices& out) {
   const std::size_t count = meshlet.vertex_count;
@@ -209,7 +209,7 @@ std::uint32_t transformMeshlet(const Meshlets& meshlets, const Meshlet& meshlet,
     out.view_y[i] = to_view_y.times(x, y, z);
     out.view_z[i] = to_view_z.times(x, y, z);
   }
-  const View view = frame.view;  // its own, which no store below can change
+  const View view = frame.view;  // a copy, so that the compiler knows that no store below changes it
   const MatrixRow to_x(view.projection, 0), to_y(view.projection, 1), to_z(view.projection, 2),
       to_w(view.projection, 3);
   const glm::dvec2 guard = frame.volume.guard, low = frame.snap_low, high = frame.snap_high;
@@ -248,7 +248,7 @@ void setupMeshlet(const Scene& scene, const Meshlets& meshlets, std::uint32_t in
   constexpr std::uint32_t kUncommon = kBehindNear | kBeyondFar | kOutsideGuard | kUnusable;
   const std::uint32_t places = transformMeshlet(meshlets, meshlet, object, frame, vertices);
 
-  // Most triangles are left out here, whole vectors of them at once.
+  // Most triangles are rejected here, by vectorized loops.
   const std::uint8_t* corners = meshlets.corners.data() + index * kMeshletVertices;
   const auto corner = [&](std::uint32_t triangle, int c) {
     return corners[c * kMeshletTriangles + triangle];

@@ -9,8 +9,8 @@
 
 namespace luciole {
 
-/// A triangle ready to be drawn. Pixels are counted from the sample of the whole picture's pixel (0,0),
-/// whatever the crop, so that a crop computes the same numbers.
+/// A triangle ready to be drawn. Coordinates start at the sample of the whole picture's pixel (0,0), whatever
+/// the crop, so that a crop gives the same numbers. 64 bytes.
 struct RasterTriangle {
   std::int32_t x[3];  ///< corners in 1/256 pixel; clockwise as seen on the picture (y down), area > 0
   std::int32_t y[3];
@@ -34,15 +34,16 @@ struct RasterSetup {
   std::uint64_t back_facing = 0;
 };
 
-/// Culls, clips, projects and snaps. What is left may cover a sample of the view's crop.
+/// Culls, clips, projects and snaps all triangles, in parallel. The bounding boxes of those that are left
+/// reach a sample of the view's crop. O(triangles).
 RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
                            FaceCulling culling);
 
-/// The same for meshlets. No face is culled.
+/// The same for the meshlets chosen, which it transforms itself. No face is culled.
 RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view);
 
-/// The pixels whose samples a triangle may cover: those in its bounding box, `last` included. A sample on the
-/// right or bottom edge belongs to the neighbour.
+/// The pixels whose samples a triangle may cover: those in its bounding box, `last` included. A sample
+/// exactly on the right or bottom edge belongs to the neighbouring triangle.
 struct PixelBox {
   glm::ivec2 first;
   glm::ivec2 last;

@@ -5,8 +5,8 @@
 
 namespace luciole {
 
-/// Pixels are resolved by squares of 4×4, side by side in the order in which a G-buffer stores them, so that
-/// loops over a square's lanes become vector instructions.
+/// Pixels are resolved in squares of 4×4, which are contiguous in a G-buffer's planes. Loops over a square's
+/// pixels (lanes), in the order of the planes, are vectorized.
 constexpr int kSquareSize = 4;
 constexpr int kSquarePixels = kSquareSize * kSquareSize;
 
@@ -17,10 +17,10 @@ using Lanes = std::array<T, kSquarePixels>;
 template <class T>
 using Lanes3 = std::array<Lanes<T>, 3>;
 
-/// Whether each pixel is meant: 0 or 1, as wide as the floats that it chooses.
+/// A choice of pixels: 0 or 1 each, as wide as the floats that it selects, for vectorized loops.
 using LaneMask = Lanes<std::int32_t>;
 
-/// The way from a square's first pixel to each of its pixels.
+/// Offsets from a square's first pixel to each of its pixels, in Z order.
 struct SquareLayout {
   Lanes<int> x{};
   Lanes<int> y{};

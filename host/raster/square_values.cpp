@@ -7,14 +7,14 @@
 namespace luciole {
 namespace {
 
-/// The weights of a surface's second and third corner at a square's pixels; the first one's are the rest
-/// to 1.
+/// Barycentric weights of a surface's second and third corner at a square's pixels. The first corner's are 1
+/// minus both.
 struct SquareWeights {
   Lanes<double> second;
   Lanes<double> third;
 };
 
-/// Where the rays of a square's pixels meet a surface's plane, inside the triangle or not.
+/// Where the rays of a square's pixels intersect a surface's plane, inside the triangle or not.
 struct PlaneMeeting {
   SquareWeights weights;
   Lanes<double> scale;  ///< 1 / dot(determinant row, p)
@@ -33,7 +33,7 @@ PlaneMeeting meetPlane(const Surface& surface, const SquarePlace& place) {
   return candidate;
 }
 
-/// Those of the pixels that see the surface, held inside the triangle; the others' as they are.
+/// The weights with those of the pixels that see the surface moved into the triangle (see weightsInside).
 SquareWeights holdInside(const Surface& surface, const SquarePlace& place, const LaneMask& sees_it,
                          const SquareWeights& in_plane) {
   SquareWeights weights = in_plane;
@@ -55,7 +55,7 @@ SquareWeights holdInside(const Surface& surface, const SquarePlace& place, const
   return weights;
 }
 
-/// One component at the weights.
+/// Interpolates one component.
 Lanes<double> interpolate(double first, double to_second, double to_third, const SquareWeights& weights) {
   Lanes<double> result;
   for (int i = 0; i < kSquarePixels; ++i)
@@ -90,7 +90,7 @@ void normalize(const Lanes3<double>& v, const glm::dvec3& otherwise, Lanes3<floa
   }
 }
 
-/// See lift.hpp; `normal`: the sum of the corners', of any length.
+/// The lifts of a square's pixels in metres, see lift.hpp. `normal`: interpolated, of any length.
 void setLift(const SeenSurface& seen, const SquareWeights& weights, const Lanes3<double>& normal,
              Lanes<float>& out) {
   const Lift& lift = seen.lift;
@@ -110,12 +110,12 @@ void setLift(const SeenSurface& seen, const SquareWeights& weights, const Lanes3
     const double own = std::max(std::max(to_second, to_third), 0.0) - (second * to_second + third * to_third);
     const double length2 = x * x + y * y + z * z;
     const double height = std::min(std::max(own, 0.5 * planes), planes) / std::sqrt(length2);
-    // Normals that cancel have no direction to rise in.
+    // Where the corners' normals cancel there is no direction to lift along.
     out[i] = length2 > 0.0 && height > 0.0 ? float(std::min(height, lift.most)) : 0.0f;
   }
 }
 
-/// A pair of steps is used only where both are finite.
+/// Sets a pair of steps to 0 unless both are finite.
 void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
   constexpr float kLargest = std::numeric_limits<float>::max();
   for (int i = 0; i < kSquarePixels; ++i) {
@@ -125,8 +125,9 @@ void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
   }
 }
 
-/// The steps of texture coordinates to the next pixel along an axis of the picture. With u = n / d from the
-/// first corner on, and n and d the values at p of two rows, which grow by n' and d' a pixel,
+/// The change of texture coordinates from a pixel to the next along an axis of the picture. Relative to the
+/// first corner u = n / d, where n and d are dot products of rows with p (see Surface). They grow by n' and
+/// d' a pixel, so
 ///     (n + n') / (d + d') − n / d = (n' − u · d') / (d + d').
 void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& uv, double pixel,
                const PlaneMeeting& candidate, const Lanes<double>& u, const Lanes<double>& v,
@@ -232,7 +233,7 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   SquareValues values;
   const PlaneMeeting candidate = meetPlane(surface, place);
   const SquareWeights weights = holdInside(surface, place, sees_it, candidate.weights);
-  // From the first corner, so that the edges' digits count, not the distance's.
+  // Relative to the first corner, so that small triangles far from the eye keep their precision.
   for (int c = 0; c < 3; ++c)
     values.position[c] = rounded(interpolate(surface.corner[c], surface.edge1[c], surface.edge2[c], weights));
   const Lanes3<double> normal{interpolate(seen.normal, 0, weights), interpolate(seen.normal, 1, weights),

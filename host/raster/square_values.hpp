@@ -8,7 +8,7 @@
 
 namespace luciole {
 
-/// What a square's pixels show, in the groups of a G-buffer.
+/// The attributes of a square's pixels, in the groups and units of a G-buffer.
 struct SquareValues {
   Lanes3<float> position;
   Lanes3<float> normal;
@@ -18,28 +18,30 @@ struct SquareValues {
   Lanes3<float> emission;
   Lanes<std::uint32_t> geometric_normal;
   Lanes<float> lift;
-  /// The maps that are still to be multiplied in.
+  /// The maps that applyMaps() multiplies in.
   Lanes<const TextureUse*> reflection_map;  ///< into diffuse and ambient; null: none
   Lanes<const TextureUse*> emission_map;
   SquareFootprints footprints;
   SquareFootprints emission_footprints;
 };
 
-/// Where a square's pixels look, as by ViewPlane::at.
+/// ViewPlane::at of a square's pixels.
 struct SquarePlace {
   Lanes<double> x;
   Lanes<double> y;
 };
+/// `first_pixel`: the square's top left one, in the whole picture.
 SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel);
 
-/// What all of a square's pixels would show of a surface's plane, and those that see the surface show of it.
+/// The attributes of a surface at a square's pixels. Pixels that don't see it get those of its plane, which
+/// may lie outside the triangle.
 SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
                       const LaneMask& sees_it);
 
-/// Takes over the values of the pixels that see a surface.
+/// Copies to `out` the values of the pixels for which `sees_it` is 1.
 void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out);
 
-/// Multiplies the maps in.
+/// Multiplies the reflection map into diffuse and ambient, and the emission map into emission.
 void applyMaps(const Scene& scene, SquareValues& values);
 
 }  // namespace luciole

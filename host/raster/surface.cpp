@@ -9,16 +9,17 @@
 namespace luciole {
 namespace {
 
-/// The row of dot(d, v), d the pixel's direction, and v what it is in a view from the origin; in a parallel
-/// view v depends on the ray's origin (x, y), by d·v = d·v0 + slope·(x, y).
+/// The row r for which dot(r, p) is dot(d, v), where d is the direction of the pixel at p (see ViewPlane). In
+/// a perspective view v is constant. In a parallel view it depends on the ray's origin (x, y), so that d·v =
+/// d·v0 + slope·(x, y).
 glm::dvec3 row(const glm::dvec3& v, const glm::dvec2& slope, bool perspective) {
   return perspective ? glm::dvec3(v.x, v.y, -v.z) : glm::dvec3(slope, -v.z);
 }
 
 bool isInside(const Weights& weights) { return weights[0] >= 0.0 && weights[1] >= 0.0 && weights[2] >= 0.0; }
 
-/// The place on the picture nearest to p, which lies outside the triangle, on the line of the edge that it is
-/// farthest outside of. The edge's line is where the corner's weight row vanishes.
+/// For a place p outside the triangle: the nearest place on the line of the edge that p is farthest beyond.
+/// On an edge's line the weight of the opposite corner is 0.
 glm::dvec3 nearestOnEdge(const Surface& surface, const glm::dvec3& p) {
   const std::array<glm::dvec3, 3> rows{surface.determinant - surface.weight1 - surface.weight2,
                                        surface.weight1, surface.weight2};
@@ -89,8 +90,8 @@ Weights weightsInside(const Surface& surface, const glm::dvec3& p) {
   Weights weights = weightsInPlane(surface, p);
   if (isInside(weights)) return weights;
   weights = weightsInPlane(surface, nearestOnEdge(surface, p));
-  // Beyond a corner the weights are still outside, and on an edge they are so by rounding. A triangle seen
-  // edge on may have no finite weights; its middle stands for it then.
+  // Beyond a corner the weights are still outside the triangle, and on an edge they may be so by rounding. A
+  // triangle seen edge on may have no finite weights; then its centre stands for it.
   for (int i = 0; i < 3; ++i) weights[i] = std::clamp(weights[i], 0.0, 1.0);
   const double sum = weights[0] + weights[1] + weights[2];
   return sum > 0.0 ? weights / sum : Weights(1.0 / 3.0);

@@ -8,8 +8,8 @@
 
 namespace luciole {
 
-/// Where pixels look. A perspective view looks from the origin along (x, y, −1), a parallel one from (x, y,
-/// 0) along (0, 0, −1), with (x, y) affine in the pixel.
+/// The rays of pixels, in view space. A perspective view looks from the origin along (x, y, −1), a parallel
+/// one from (x, y, 0) along (0, 0, −1). (x, y) is an affine function of the pixel.
 struct ViewPlane {
   bool perspective;
   glm::dvec2 scale;
@@ -18,12 +18,14 @@ struct ViewPlane {
   /// (x, y, 1) for a pixel of the whole picture.
   glm::dvec3 at(int x, int y) const { return {offset + scale * glm::dvec2(x, y), 1.0}; }
 };
+/// The rays of a view's samples.
 ViewPlane viewPlane(const View& view);
 
-/// A triangle as its pixels see it: uncut, in view space, in double. A pixel's ray meets the triangle's plane
-/// at corner + b1 · edge1 + b2 · edge2 with b = dot(weight row, p) / dot(determinant row, p), p as in
-/// ViewPlane::at (Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, with the ray
-/// taken out). Every row is built of edges, so that a small triangle far away keeps its digits.
+/// A triangle before clipping, in view space, in double, set up for interpolation. A pixel's ray intersects
+/// the triangle's plane at corner + b1 · edge1 + b2 · edge2 with b = dot(weight row, p) / dot(determinant
+/// row, p), p as in ViewPlane::at (Möller and Trumbore, "Fast, minimum storage ray/triangle intersection",
+/// 1997, with the pixel factored out). Every row is built from edges, so that a small triangle far away keeps
+/// its precision.
 struct Surface {
   const PlacedObject* object = nullptr;
   const Material* material = nullptr;
@@ -37,14 +39,16 @@ struct Surface {
   glm::dvec3 normal{0.0};  ///< unit, on the front side; (0, 0, 1) where the triangle has no area
   bool front_facing = true;
 };
-/// `triangle`: its number among those of the objects.
+/// Sets up a triangle by its number among those of the objects. The surface refers to `scene` and `objects`.
+/// O(log objects).
 Surface makeSurface(const Scene& scene, const std::vector<PlacedObject>& objects, std::uint32_t triangle,
                     const ViewPlane& plane);
 
-/// Shares of the three corners in a value at a point.
+/// Barycentric weights of a triangle's three corners.
 using Weights = glm::dvec3;
 
-/// Where the pixel that looks at `p` meets the triangle's plane, inside the triangle or not.
+/// Weights of the point where the ray of the pixel at `p` (see ViewPlane::at) intersects the triangle's
+/// plane, inside the triangle or not. May be not finite for a triangle seen edge on.
 inline Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
   const double scale = 1.0 / glm::dot(surface.determinant, p);
   const double b1 = glm::dot(surface.weight1, p) * scale;
@@ -52,11 +56,12 @@ inline Weights weightsInPlane(const Surface& surface, const glm::dvec3& p) {
   return {1.0 - b1 - b2, b1, b2};
 }
 
-/// What the pixel that looks at `p` sees, on the triangle: snapping lets a triangle cover samples up to 1/256
-/// pixel beside it, which show a point of its edge instead of its plane's continuation.
+/// The same, but inside the triangle: weights are ≥ 0, finite, and their sum is 1. Snapping lets a triangle
+/// cover samples up to 1/256 pixel outside it. They show a point of its edge rather than one of its plane
+/// beyond the edge.
 Weights weightsInside(const Surface& surface, const glm::dvec3& p);
 
-/// Texture coordinates at a point of a surface whose mesh has some.
+/// Texture coordinates at a point of a surface whose mesh has uvs.
 glm::dvec2 interpolateUv(const Surface& surface, const Weights& weights);
 
 /// Texture coordinates at a pixel, and their steps to the next pixel right and down (zero where not finite).
@@ -65,10 +70,11 @@ struct TexturePlace {
   glm::vec2 duv_dx;
   glm::vec2 duv_dy;
 };
+/// `x` and `y`: a pixel of the whole picture; `weights`: of the point that it shows. The mesh must have uvs.
 TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,
                           const Weights& weights);
 
-/// A channel of a map there, as by sampleTexture().
+/// A channel of a map at `place`, as by sampleTexture(); `map` must have a texture.
 float lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place, int channel);
 
 /// The vertex colour at a point; 1 where the mesh has none.

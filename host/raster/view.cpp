@@ -64,7 +64,7 @@ View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>
 }
 
 glm::dvec2 samplePoint(int index, int count) {
-  // Radical inverse in base 2 (van der Corput); both coordinates are moved by half of their finest step.
+  // Radical inverse in base 2 (van der Corput); both coordinates are shifted by half of their finest step.
   double inverse = 0, step = 0.5;
   for (int bits = index; bits > 0; bits >>= 1, step /= 2)
     if (bits & 1) inverse += step;

@@ -11,7 +11,7 @@ namespace luciole {
 struct View {
   glm::dmat4 world_to_view{1.0};  ///< rigid; view space as in Camera
   /// View space to clip space: x and y in [−w, w] inside the picture, y up; z in [0, w] with reversed depth,
-  /// 1 at the near plane and 0 at the far plane, where float has its precision to spare.
+  /// 1 at the near plane and 0 at the far plane, since floats are finest near 0.
   glm::dmat4 projection{1.0};
   glm::ivec2 size{0};         ///< of the whole picture, pixels
   glm::ivec2 crop_origin{0};  ///< top left pixel of the part to draw
@@ -19,12 +19,13 @@ struct View {
   glm::dvec2 sample{0.5};  ///< where in a pixel the sample lies, from its top left corner, in [0,1)²
 };
 
-/// Reversed-depth projections (see View::projection); angles in radians, lengths in metres.
+/// Reversed-depth projections (see View::projection). `fov_y` in radians, `aspect` width / height, lengths in
+/// metres; `near` and `far` are distances ahead.
 glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, double far);
 glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near,
                                   double far);
 
-/// The inverse of camera_to_world, rigid to the last bit.
+/// The inverse of camera_to_world: the transposed rotation, so that no rounding of an inversion enters.
 glm::dmat4 worldToView(const Camera& camera);
 
 /// Part of a picture, in pixels from its top left corner.
@@ -40,7 +41,8 @@ View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>
 /// the centre.
 glm::dvec2 samplePoint(int index, int count);
 
-/// The camera that a view was made of, as far as the view tells: no name, and no shift of the picture.
+/// The camera of a view: the inverse of cameraView, without the name. A shift of the picture (an off-centre
+/// projection) is lost.
 Camera viewCamera(const View& view);
 
 }  // namespace luciole

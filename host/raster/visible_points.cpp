@@ -10,7 +10,7 @@
 namespace luciole {
 namespace {
 
-/// So that a band's G-buffer takes some 200 MB at most.
+/// Pixels that are drawn at once, so that their G-buffer takes at most some 200 MB.
 constexpr int kBandPixels = 1 << 22;
 
 }  // namespace

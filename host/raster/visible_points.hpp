@@ -10,15 +10,16 @@
 
 namespace luciole {
 
-/// Where on the scene's surfaces `count` pixels lie, or all if fewer show something: world space, metres.
-/// They are drawn at random from the picture's, each pixel as likely as another, the same for the same seed.
+/// Points of the scene's surfaces, in world space and metres, that `count` pixels of a picture show; all of
+/// them if fewer show something. Pixels are chosen at random, all equally likely; the same seed gives the
+/// same points. Draws the whole picture. Throws as rasterize does.
 std::vector<glm::dvec3> visiblePoints(const Scene& scene, const Camera& camera, glm::ivec2 size,
                                       std::size_t count, std::uint64_t seed);
 
-/// The part of a scene that is worth lighting: the box from the 5th to the 95th percentile of visible points
-/// along each axis, so that a bit of sky or of far horizon doesn't count, which would make the box of the
-/// whole scene useless. A side shorter than a tenth of the longest, as that of a floor seen alone, grows to
-/// that on the side where the eye is: there light reaches what is seen. `points` not empty.
+/// A box around the part of a scene that is worth lighting, world space, metres: from the 5th to the 95th
+/// percentile of visible points along each axis, so that a little sky or far horizon doesn't enlarge it. A
+/// side shorter than a tenth of the longest, such as the height of a floor seen alone, grows to a tenth
+/// towards the eye, from where light reaches what is seen. `points` must not be empty. O(n log n).
 Bounds seenBox(std::span<const glm::dvec3> points, const glm::dvec3& eye);
 
 }  // namespace luciole
