@@ -83,9 +83,9 @@ std::vector<double> parseNumbers(std::istringstream text, std::size_t count, con
   return numbers;
 }
 
-/// Float matrices of a rotation are orthogonal to a few of their epsilons (6e-8); decimal text in other tools
-/// keeps six digits or so. 1e-4 lets both pass and stops scales and shears, which would bend lengths and with
-/// them the light.
+/// A float matrix of a rotation is orthogonal to within a few 6e-8, and text of other tools to about six
+/// digits. A tolerance of 1e-4 accepts both. Scales and shears are refused: they would change distances, and
+/// so the light.
 void checkRigid(const glm::dmat4& m, const std::string& path, const char* attribute) {
   const glm::dmat3 rotation(m);
   const glm::dmat3 product = glm::transpose(rotation) * rotation;
@@ -131,8 +131,9 @@ void readProjection(const glm::dmat4& to_ndc, CameraHeader& header) {
   const bool parallel = std::abs(to_ndc[2][3]) <= 1e-6 * std::abs(to_ndc[3][3]);
   const int homogeneous = parallel ? 3 : 2;
   const double w = to_ndc[homogeneous][3];
-  // Float matrices times the inverse of a float matrix: a few 1e-7 for a camera near the origin, worse in
-  // proportion to its distance. A thousandth of the picture still is no shift that anyone sets.
+  // The product of a float matrix and a float matrix's inverse has an error of a few 1e-7 for a camera near
+  // the origin, which grows with its distance. A shift below a thousandth of the picture counts as such an
+  // error.
   const bool centred =
       std::abs(to_ndc[homogeneous][0] / w - 0.5) < 1e-3 && std::abs(to_ndc[homogeneous][1] / w - 0.5) < 1e-3;
   const glm::dvec2 half{0.5 * w / to_ndc[0][0], -0.5 * w / to_ndc[1][1]};

@@ -14,30 +14,32 @@
 //   worldToCamera  camera space is left-handed as in RenderMan: x right, y up, +z ahead
 //   worldToNDC     x and y from (0,0) at the display window's top left to (1,1) at its bottom right
 //
-// Both are 32-bit float, for points that are row vectors (point × matrix), which in memory is the same as
-// GLM's column vectors and column-major matrices. Attributes of our own keep what those lose, as text with
-// all digits of a double:
+// Both are 32-bit float, for points as row vectors (point × matrix). Their layout in memory is that of GLM's
+// column-major matrices for column vectors. Attributes of our own keep all digits of a double, as text:
 //
 //   luciole:cameraToWorld  16 numbers, column after column; camera space as in Camera, −z ahead
-//   luciole:projection     "perspective FOV_Y NEAR FAR" or "parallel HALF_HEIGHT NEAR FAR", radians and
-//   metres luciole:cameraName
+//   luciole:projection     "perspective FOV_Y NEAR FAR" or "parallel HALF_HEIGHT NEAR FAR"
+//                          (FOV_Y in radians, lengths in metres)
+//   luciole:cameraName     Camera::name
 namespace luciole {
 
 struct CameraHeader {
   Camera camera;
-  bool is_exact = false;  ///< read from attributes of our own
+  bool is_exact = false;  ///< read from our own attributes, with all digits
   /// Half the whole picture's width and height at distance 1 (perspective) or in metres (parallel view);
-  /// empty where the header does not tell, or not of a projection centred in the picture.
+  /// empty where the header doesn't tell, or the projection isn't centred in the picture.
   std::optional<glm::dvec2> half_extent;
 };
 
-/// picture_size: of the whole picture.
+/// The attributes that describe a camera in a header. `picture_size`: of the whole picture, pixels.
 ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size);
 
-/// Empty where the header has no camera. Some programs let worldToCamera look along −z; the sign of w in
-/// worldToNDC tells which it is, or else where most of `visible_points` (world space; may be none) lie, or
-/// else the handedness, taking the world to be right-handed. Throws InputError for a camera that is no rigid
-/// motion, or text that can't be read. `path` is for messages; names are found in any case.
+/// Reads the camera of a header; empty where there is none. Attributes of our own take precedence. In some
+/// programs' files worldToCamera looks along −z. The sign of w in worldToNDC tells; without that attribute,
+/// the side on which most of `visible_points` lie (world space; may be empty); without these, the handedness
+/// of worldToCamera, for a right-handed world. `picture_size`: of the whole picture. `path` is for messages.
+/// Names of attributes are matched in any case. Throws InputError for a matrix that isn't a rotation (or
+/// mirroring) and a translation, and for text that can't be read.
 std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ivec2 picture_size,
                                        const std::string& path, std::span<const glm::dvec3> visible_points);
 

@@ -12,8 +12,9 @@
 
 namespace luciole {
 
+/// One component or several of a G-buffer, one after another: `pixels()` floats each.
 using Plane = std::vector<float, ArrayAllocator<float>>;
-/// A plane of packNormal()'s.
+/// A plane of normals, packed by packNormal().
 using PackedNormals = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
 
 /// Bits 0 to 3 of v, moved to bits 0, 2, 4 and 6.

@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// The three components that a group holds for one pixel, and back. `at` is GBuffer::index, `stride`
+/// Reads and writes the three components of a pixel in a group. `at` is GBuffer::index, `stride`
 /// GBuffer::pixels.
 glm::vec3 load(const Plane& group, std::size_t at, std::size_t stride) {
   return {group[at], group[at + stride], group[at + 2 * stride]};
@@ -32,7 +32,7 @@ void store(Plane& group, std::size_t at, std::size_t stride, glm::vec3 value) {
   for (int c = 0; c < 3; ++c) group[at + c * stride] = value[c];
 }
 
-/// What rounding a unit vector's components, and making it unit in float, leaves of its length at the most.
+/// How far from 1 the length may be of a vector that was normalized and rounded in float.
 constexpr double kUnitError = 1e-6;
 
 bool isFinite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -93,8 +93,8 @@ struct Channels {
     return {value(pixel, places[0]), value(pixel, places[1]), value(pixel, places[2])};
   }
 
-  /// A reflectance, radiance, exponent or lift: below 0, as filters with negative lobes leave it, is 0. Not
-  /// finite: InputError.
+  /// A reflectance, radiance, exponent or lift. A value below 0, as filters with negative lobes produce,
+  /// becomes 0. Throws InputError where the value isn't finite.
   float coefficient(std::size_t pixel, int place) const {
     const float v = value(pixel, place);
     if (!std::isfinite(v)) {
@@ -123,7 +123,7 @@ std::vector<glm::dvec3> visiblePoints(const Channels& channels, const std::array
   return points;
 }
 
-/// How to find the view-space position and normal of a pixel.
+/// Finds the view-space positions and normals of a file's pixels.
 class Surface {
  public:
   Surface(const Channels& channels, GBuffer& gbuffer) : channels_(channels) {
@@ -166,7 +166,8 @@ class Surface {
     position = isThere(position_) ? channels_.three(pixel, position_) : unproject(pixel);
     if (!isFinite(position)) return false;
     if (in_view_space_) {
-      // Ours are unit already and stay to the bit what they were; other programs may have changed them.
+      // Normals that this program wrote are unit and must keep their bits; another program may have changed
+      // them.
       const double length = glm::length(glm::dvec3(normal));
       if (std::abs(length - 1) > kUnitError) normal = glm::vec3(glm::dvec3(normal) / length);
       return true;
@@ -178,8 +179,8 @@ class Surface {
 
   bool hasGeometricNormals() const { return isThere(geometric_normal_); }
 
-  /// The facet of a pixel whose view-space normal is given. What addRow() wrote comes back to the bit, though
-  /// world space and float lie between, see packNormal().
+  /// The packed geometric normal of a pixel, view space; `normal` where the file has none there. What
+  /// addRow() wrote is restored to the bit, although it went through world space and float (see packNormal).
   std::uint32_t geometricNormalAt(std::size_t pixel, glm::vec3 normal) const {
     const glm::vec3 geometric_normal = channels_.three(pixel, geometric_normal_);
     if (!isFinite(geometric_normal) || geometric_normal == glm::vec3(0.0f)) return packNormal(normal);
@@ -209,7 +210,7 @@ class Surface {
   glm::dvec2 half_extent_{0.0};
 };
 
-/// All groups but facets and lifts, showing nothing.
+/// A G-buffer of a file's size that shows nothing, with all groups but geometric normals and lifts.
 GBuffer emptyGBuffer(const LayerFile& file) {
   GBuffer gbuffer;
   gbuffer.width = file.size.x;
@@ -228,7 +229,7 @@ GBuffer emptyGBuffer(const LayerFile& file) {
   return gbuffer;
 }
 
-/// Adds a row of pixels, channels as channelNames() says.
+/// Appends a row of pixels, channels as in channelNames().
 void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
   const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
   const std::size_t stride = gbuffer.pixels();
@@ -236,7 +237,7 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
   for (int x = 0; x < gbuffer.width; ++x) {
     const std::size_t at = gbuffer.index(x, y);
     const glm::vec3 position = load(gbuffer.position, at, stride), normal = load(gbuffer.normal, at, stride);
-    // Background has no place in the world; its 0 is told from a surface by N = 0 and Z = +inf.
+    // Background has no world position and gets 0; N = 0 and Z = +inf distinguish it from a surface at 0.
     add(isFinite(position) ? glm::vec3(to_world * glm::dvec4(position, 1.0)) : glm::vec3(0.0f));
     add(glm::vec3(glm::dmat3(to_world) * glm::dvec3(normal)));
     values.push_back(-position.z);

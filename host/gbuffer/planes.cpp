@@ -9,7 +9,7 @@ namespace luciole {
 
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
   const std::size_t pixels = gbuffer.pixels();
-  // Side by side, since most of the time goes into the system's clearing of fresh memory.
+  // In parallel, since most of the time goes into the system's clearing of fresh memory.
   tbb::parallel_invoke(
       [&] {
         gbuffer.position.resize(3 * pixels);

@@ -4,10 +4,11 @@
 
 namespace luciole {
 
-/// Gives a G-buffer, whose tiles are set, the groups of planes it needs, showing nothing.
+/// Allocates the groups of planes that `planes` asks for, and position, normal and diffuse. They show nothing
+/// (see GBuffer). tiles_x and tiles_y must be set. Throws as allocateArray does.
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer);
 
-/// Writes a value of three components, at a place as by GBuffer::index.
+/// Writes the three components of a pixel. `place` is GBuffer::index, `stride` GBuffer::pixels.
 inline void storePixel(const glm::vec3& value, std::size_t place, std::size_t stride, Plane& group) {
   group[place] = value.x;
   group[stride + place] = value.y;
