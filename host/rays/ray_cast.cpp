@@ -25,7 +25,7 @@ std::size_t countTriangles(const Scene& scene) {
   return count;
 }
 
-/// Embree's question after a hit whether it counts.
+/// Embree's filter callback: asks the HitFilter about each hit of a packet.
 void filterMeetings(const RTCFilterFunctionNArguments* arguments) {
   const auto& hit_filter = *static_cast<const HitFilter*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
@@ -56,9 +56,9 @@ RTCRay makeRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& 
   return ray;
 }
 
-/// Embree takes origins and directions up to 1.844·10¹⁸ a component, and stops the program where one is
-/// beyond that or no number. Rays for which that is so, in a scene of 10¹⁸ metres or from a point that no
-/// direction leads away from, meet nothing.
+/// Embree takes components of origins and directions up to 1.844·10¹⁸; it ends the program at larger ones and
+/// at NaN. Such rays occur in scenes of 10¹⁸ metres, and from a point to itself. They count as hitting
+/// nothing.
 bool canBeCast(const RTCRay& ray) {
   constexpr float kLargest = 1.8e18f;
   bool valid = !std::isnan(ray.tfar);
@@ -68,10 +68,10 @@ bool canBeCast(const RTCRay& ray) {
 }
 
 constexpr std::size_t kPacketSize = 16;
-/// Packets that a thread takes on at once.
+/// Packets that a task traces.
 constexpr std::size_t kPacketsPerTask = 64;
 
-/// Asks one packet, of 1 to 16 rays.
+/// Traces one packet of 1 to 16 rays.
 void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {
   alignas(64) std::array<int, kPacketSize> valid{};
   RTCRay16 packet{};
@@ -101,7 +101,7 @@ void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span
   for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = packet.tfar[i] < 0;
 }
 
-/// Fills three corners a triangle.
+/// Writes three corners a triangle, relative to rays.origin, and fills rays.mirrored.
 void placeCorners(const Scene& scene, RayScene& rays, glm::vec3* corner) {
   for (const Object& object : scene.objects) {
     const Mesh& mesh = scene.meshes[object.mesh];
@@ -177,7 +177,7 @@ bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& 
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene.scene.get(), &context, &ray);
 #endif
-  return ray.tfar < 0;  // Embree's word for it
+  return ray.tfar < 0;  // Embree sets it to −inf for a hit
 }
 
 void areBlocked(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {

@@ -14,26 +14,29 @@ struct RTCSceneTy;  // Embree's
 
 namespace luciole {
 
-/// A ray meets a triangle.
+/// A hit of a ray on a triangle, which a HitFilter accepts or ignores.
 struct CandidateHit {
   glm::dvec3 from;         ///< where the ray starts, in a RayScene's own space
   std::uint32_t triangle;  ///< counted through all objects in order
-  double second, third;    ///< shares of its second and third corner
+  double second, third;    ///< barycentric weights of its second and third corner
 };
 
-/// Whether the ray goes on as if the triangle were not there. Called by many threads at once.
+/// Returns true to ignore a hit: the ray goes on as if the triangle weren't there. Called by many threads at
+/// once.
 using HitFilter = std::function<bool(const CandidateHit&)>;
 
-/// A scene's triangles, ready for rays: Embree in its robust mode, where no ray slips between two triangles
-/// that share an edge. Its own space is the world moved by −origin, in floats.
+/// A scene's triangles in Embree's tree, in its robust mode: no ray passes between two triangles that share
+/// an edge. Its own space is world space moved by −origin, in float. Copies share the tree.
 struct RayScene {
   glm::dvec3 origin{0.0};      ///< world
-  std::vector<bool> mirrored;  ///< triangles that their object's transform turns over
+  std::vector<bool> mirrored;  ///< one a triangle: its object's transform mirrors it
   std::shared_ptr<const HitFilter> hit_filter;
   std::shared_ptr<RTCSceneTy> scene;
 };
 
-/// Without `hit_filter` every triangle is solid, whatever its material's holes.
+/// Builds the tree over all triangles of the scene at its pose. Corners are copied, so the scene needn't
+/// outlive the result. Without `hit_filter` every triangle is solid, also where its material has holes.
+/// Throws MachineError where Embree can't be started or has no memory for the triangles.
 RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter = {});
 
 struct RayHit {
@@ -41,20 +44,22 @@ struct RayHit {
   bool front;              ///< the triangle's front was met
   std::uint32_t triangle;  ///< as in CandidateHit
 };
-/// The nearest triangle that the ray meets; `direction` is unit, both are in world space.
+/// The nearest hit of the ray; empty where it hits nothing. `from` and `direction` (unit) are in world space.
+/// A ray with coordinates beyond 1.8e18 or NaN hits nothing.
 std::optional<RayHit> castRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction);
 
-/// Whether something is nearer than `distance` metres on the way. Otherwise as castRay.
+/// Whether a triangle lies on the ray within `distance` metres. Otherwise as castRay.
 bool isBlocked(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& direction, double distance);
 
-/// What isBlocked asks.
+/// The arguments of isBlocked.
 struct ShadowRay {
   glm::dvec3 from;       ///< world
   glm::dvec3 direction;  ///< unit, world
   double distance;       ///< metres, ≥ 0; may be infinite
 };
-/// isBlocked of many rays, asked 16 at once by all threads: blocked[i] becomes 1 or 0, one a ray. Fast where
-/// 16 that follow each other start close together and go much the same way; right in any order.
+/// isBlocked for many rays, in packets of 16, by all threads: sets blocked[i] to 1 or 0. `blocked` has the
+/// length of `rays`. The order changes only the speed: packets are fast where their rays start close together
+/// and go in similar directions.
 void areBlocked(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked);
 
 }  // namespace luciole

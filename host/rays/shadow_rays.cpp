@@ -10,7 +10,7 @@
 namespace luciole {
 namespace {
 
-/// What decides whether a triangle blocks a ray.
+/// Decides whether a triangle blocks a ray.
 struct Blockers {
   const Scene& scene;
   glm::dvec3 eye;
@@ -23,7 +23,7 @@ struct Blockers {
     return liesInPlane(object, corners, candidate.from) || isHoleAt(object, in_mesh, corners, candidate);
   }
 
-  /// `from`: relative to the eye.
+  /// Whether a ray's start lies in a triangle's plane, to within its rounding. `from`: relative to the eye.
   bool liesInPlane(const PlacedObject& object, const glm::uvec3& corners, const glm::dvec3& from) const {
     const auto corner = [&](int i) {
       return glm::dvec3(object.object_to_view * glm::dvec4(object.mesh->positions[corners[i]], 1)) - eye;

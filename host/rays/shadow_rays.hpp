@@ -8,16 +8,19 @@
 
 namespace luciole {
 
-/// The scene for rays towards lights, from points that are known to a float's rounding of their distance from
-/// `eye` (world). A triangle in whose plane such a point lies lets its ray through, and so do the holes of a
-/// material's mask, decided at the textures' finest level. It refers to the scene, which must outlive it.
+/// Builds the scene for shadow rays, from points whose coordinates relative to `eye` (world space) were
+/// rounded to float. A triangle in whose plane the start of a ray lies, to within that rounding, doesn't
+/// block it: so no surface shadows itself. Nor do the holes of a material's mask, looked up at the textures'
+/// finest level. The result refers to the scene, which must outlive it. Throws as buildRayScene and
+/// placeObjects do.
 RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye);
 
-/// Where the shadows of what a pixel shows are tested from (see raster/lift.hpp); world space. `place`: as by
+/// The point from which a pixel's shadows are tested (see raster/lift.hpp), world space. `place`: as by
 /// GBuffer::index.
 glm::dvec3 shadowStart(const GBuffer& gbuffer, std::size_t place);
 
-/// From a point to a light's middle; world space.
+/// The ray from a point to a light's centre, world space; infinitely long for a directional light. At the
+/// light's own position it has no direction, and hits nothing.
 ShadowRay shadowRay(const Light& light, const glm::dvec3& point);
 
 }  // namespace luciole
