@@ -17,8 +17,8 @@ namespace luciole {
 namespace {
 
 constexpr double kAspect = 16.0 / 9.0;
-constexpr double kMargin = 1.06;  // how much larger than the scene's box the picture is
-/// Above it the rays that ask what can be seen cost seconds: such a scene is looked at from outside.
+constexpr double kMargin = 1.06;  // the picture's size relative to that of the scene's box
+/// With more triangles the rays that find a room would take seconds; such a scene is framed from outside.
 constexpr std::uint64_t kMostTrianglesToAsk = 8'000'000;
 
 glm::dvec3 centerOf(const Bounds& bounds) { return bounds.low + (bounds.high - bounds.low) / 2.0; }
@@ -45,8 +45,8 @@ std::vector<glm::dvec3> allRound() {
   return directions;
 }
 
-/// Whether nearly everything to be seen from here is the front of a surface: so it is in a room, but neither
-/// inside a solid nor outside everything.
+/// Whether a place is in a room: rays in nearly all directions hit the front of a surface. Inside a solid
+/// they hit backs, and outside everything they hit nothing.
 bool isInRoom(const RayScene& rays, const glm::dvec3& place) {
   static const std::vector<glm::dvec3> kDirections = allRound();
   int fronts = 0;
@@ -57,8 +57,8 @@ bool isInRoom(const RayScene& rays, const glm::dvec3& place) {
   return fronts >= 21 && backs <= 2;  // of 26: a roof may be open, a leaf or a curtain have one side only
 }
 
-/// Middles of 13 × 5 × 13 cells of the box (odd, for the middle of a symmetrical hall), and the places of
-/// lights, where somebody thought of a room.
+/// Candidates for the eye: the centres of 13 × 5 × 13 cells of the box (odd numbers, for the middle of a
+/// symmetrical hall), and the positions of up to 500 lights, which authors put into rooms.
 std::vector<glm::dvec3> placesToStand(const Scene& scene, const Bounds& bounds) {
   constexpr glm::ivec3 kCells{13, 5, 13};
   std::vector<glm::dvec3> places;
@@ -78,7 +78,8 @@ std::vector<glm::dvec3> placesToStand(const Scene& scene, const Bounds& bounds) 
   return places;
 }
 
-/// How much of a picture from afar along `back` shows fronts and backs of surfaces, of 15 × 15 parallel rays.
+/// How many of 15 × 15 parallel rays from outside, against the direction `back`, hit fronts and backs of
+/// surfaces.
 struct Sides {
   int fronts = 0;
   int backs = 0;
@@ -97,8 +98,8 @@ Sides sidesSeen(const RayScene& rays, const Bounds& bounds, const glm::dvec3& ba
   return sides;
 }
 
-/// The side on which walls are left out to look in, as on a stage: the horizontal way that is free from most
-/// of the places in a room.
+/// The side where the wall is left out to look in, as on a stage: the horizontal direction in which rays from
+/// most of the places in a room hit nothing.
 std::optional<glm::dvec3> openSide(const RayScene& rays, const std::vector<glm::dvec3>& places_in_room) {
   for (const glm::dvec3& out :
        {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, -1)}) {
@@ -109,7 +110,7 @@ std::optional<glm::dvec3> openSide(const RayScene& rays, const std::vector<glm::
   return std::nullopt;
 }
 
-/// Where to stand in a room, and the best way to look from there.
+/// A place to stand in a room, and the best direction to look from there.
 struct Stand {
   glm::dvec3 eye{0.0};
   double floor = 0;
@@ -125,7 +126,8 @@ double clearDistance(const RayScene& rays, const Bounds& bounds, const glm::dvec
   return hit ? hit->distance : glm::length(bounds.high - bounds.low);
 }
 
-/// A room of 6 m makes 1.5 m, the height of somebody's eyes; files don't say what their unit is.
+/// Puts the eye at a quarter of the room's height: 1.5 m, eye level, in a room of 6 m. It is relative to the
+/// room, since files don't say their unit.
 Stand standAt(const RayScene& rays, const Bounds& bounds, const glm::dvec3& place) {
   Stand stand;
   stand.floor = std::max(place.y - clearDistance(rays, bounds, place, {0, -1, 0}), bounds.low.y);
@@ -134,7 +136,9 @@ Stand standAt(const RayScene& rays, const Bounds& bounds, const glm::dvec3& plac
   return stand;
 }
 
-/// Chooses the way to look: far, not past something close, and at many things rather than at bare walls.
+/// Chooses the direction with the highest score: clear distance ahead · √(open space in the field of view) ·
+/// number of different triangles that rays hit. So the view goes far, passes nothing close, and shows many
+/// things rather than bare walls.
 void lookAround(const RayScene& rays, const Bounds& bounds, Stand& stand) {
   if (!isInRoom(rays, stand.eye)) return;
   constexpr int kDirections = 16;
@@ -191,7 +195,7 @@ Framing frameFromInside(const Bounds& bounds, const Stand& stand) {
 Framing frameFromOutside(const Bounds& bounds, const glm::dvec3& back) {
   Framing framing;
   const glm::dvec3 center = centerOf(bounds);
-  // A scene of one point has a size too, one that its coordinates can tell apart.
+  // A scene of one point gets a size that its coordinates can resolve.
   const double radius =
       std::max(glm::length(bounds.high - bounds.low) / 2, 1e-6 * std::max(1.0, glm::length(center)));
   const glm::dmat4 rotation = cameraToWorld(back, glm::dvec3(0), {0, 1, 0});
@@ -209,8 +213,9 @@ Framing frameFromOutside(const Bounds& bounds, const glm::dvec3& back) {
   return framing;
 }
 
-/// From the front, from the right, a little from above; from another side where that shows much more fronts.
-/// Flat pictures are looked at straight.
+/// The direction from the scene towards the camera: the front, to the right and a little above, or the
+/// mirrored direction that shows more than twice as many fronts. A scene that is flat in z is seen straight
+/// on.
 glm::dvec3 outsideDirection(const RayScene& rays, const Bounds& bounds) {
   const glm::dvec3 extent = bounds.high - bounds.low;
   std::vector<glm::dvec3> backs;
@@ -256,7 +261,8 @@ Framing frameScene(const Scene& scene) {
   std::erase_if(places, [&](const glm::dvec3& place) { return !isInRoom(rays, place); });
   const glm::dvec3 usual = outsideDirection(rays, bounds);
   const Sides outside = sidesSeen(rays, bounds, usual);
-  // A car has a cabin, but a hall is all rooms, or else has no outside to look at.
+  // A car has a cabin and is still seen from outside. A hall is mostly rooms, or shows mostly backs from
+  // outside.
   const bool is_hall = 2 * places.size() >= tried || (!places.empty() && outside.backs > outside.fronts);
   if (!is_hall) return frameFromOutside(bounds, usual);
   if (const auto open = openSide(rays, places)) return frameFromOutside(bounds, *open);

@@ -22,8 +22,8 @@ Light directionalLight(const glm::dvec3& direction, float strength, bool shadow)
   return light;
 }
 
-/// Daylight from above where the roof lets it in, and lamps down the hall that reach about as far as it is
-/// high.
+/// Adds a directional light from above with shadows, for daylight through openings of the roof, and lamps
+/// along the hall that reach about as far as it is high.
 void lightHall(const Framing& framing, Scene& scene) {
   const glm::dmat4& place = framing.camera.camera_to_world;
   const double height = framing.ceiling - framing.floor;
@@ -40,8 +40,7 @@ void lightHall(const Framing& framing, Scene& scene) {
   scene.ambient = glm::vec3(0.25f);
 }
 
-/// A key light over the camera's left shoulder, which casts shadows, and a weak one from the right, which
-/// doesn't.
+/// Adds a key light over the camera's left shoulder, with shadows, and a weak one from the right, without.
 void lightObject(const glm::dmat4& camera_to_world, Scene& scene) {
   const glm::dmat3 axes{camera_to_world};
   scene.lights.push_back(directionalLight(axes * glm::dvec3(0.5, -0.8, -0.9), 0.8f, true));
@@ -49,14 +48,15 @@ void lightObject(const glm::dmat4& camera_to_world, Scene& scene) {
   scene.ambient = glm::vec3(0.2f);
 }
 
-/// Whether nothing that a scene shows has any light of its own or of others.
+/// Whether a scene that is lit has no light, no ambient light and no emissive material.
 bool isDark(const Scene& scene) {
   const auto glows = [](const Material& material) { return material.emission != glm::vec3(0); };
   return scene.lighting && scene.lights.empty() && scene.ambient == glm::vec3(0) &&
          std::none_of(scene.materials.begin(), scene.materials.end(), glows);
 }
 
-/// Lights that are spread at random say nothing of where to stand: a camera is chosen before there are any.
+/// Expands the light fields. A missing camera is chosen before: frameScene tries the positions of lights, and
+/// random ones say nothing of where to stand.
 void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
   if (fields.empty()) return;
   poseScene(scene, 1);  // the surfaces that lights lie on
