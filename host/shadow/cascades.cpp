@@ -13,7 +13,7 @@ namespace {
 /// How much farther a cascade reaches than the one before.
 constexpr double kCascadeRatio = 3.0;
 
-/// Around the part of a view from `near` to `far` metres ahead.
+/// A sphere around the part of a view from `near` to `far` metres ahead.
 Sphere sphereAround(const View& view, double near, double far) {
   const Corners corners = viewCorners(view);
   // Corners i and i + 4 are the far and the near end of an edge.
@@ -35,7 +35,8 @@ Sphere sphereAround(const View& view, double near, double far) {
     for (const glm::dvec3& p : part) radius = std::max(radius, glm::distance(p, middle));
     return radius;
   };
-  // On the axis, as far from the near corners as from the far ones, unless those alone need more.
+  // The centre lies on the axis, equally far from the near and the far corners. In a wide view that point
+  // lies beyond the far plane; then it is the centre of the far corners.
   const glm::dvec3 a = middleOf(0), b = middleOf(4);
   const double length2 = glm::dot(b - a, b - a);
   const double near2 = glm::dot(part[0] - a, part[0] - a), far2 = glm::dot(part[4] - b, part[4] - b);
@@ -66,7 +67,7 @@ std::vector<Sphere> cascadeSpheres(const View& camera, const Bounds& scene) {
     const Sphere seen = sphereAround(camera, depths.x, depths.y);
     return {seen.radius < all.radius ? seen : all};
   }
-  // In steps, so that a moving camera rarely changes a texel's size.
+  // Rounded up to a power of √2, so that a moving camera rarely changes a texel's size.
   const double farthest = std::exp2(std::ceil(2 * std::log2(depths.y)) / 2);
   std::vector<Sphere> spheres;
   double near = 0;

@@ -8,10 +8,10 @@
 
 namespace luciole {
 
-/// Of a directional light, at most.
+/// The most cascades of a directional light.
 constexpr int kCascades = 4;
 
-/// Metres; in place of 0, where all of a scene is one point. Files may have lengths from here on.
+/// Metres. Takes the place of 0 where a scene is a single point. Scene files can't have smaller lengths.
 constexpr double kSmallestLength = 1e-18;
 
 /// World space, metres.
@@ -20,10 +20,11 @@ struct Sphere {
   double radius;
 };
 
-/// What a directional light's cascades cover, the finest first: parts of the camera's view, or all of the
-/// scene where that is smaller. Under a parallel camera only one. The last reaches to the farthest that the
-/// camera sees of the scene's bounds, each other a third as far as the next. Spheres, so that a camera that
-/// turns changes no radius. Depends on all that the camera sees, whatever its crop.
+/// The parts of the camera's view that a directional light's cascades cover, the finest first; 1 to
+/// kCascades. The last one reaches as far as the camera sees anything of `scene`, the scene's bounds; each
+/// other reaches a third as far as the next. A part larger than the whole scene is replaced by the whole
+/// scene, as the last cascade. An orthographic camera has one. They are spheres, so that turning the camera
+/// changes no radius. Depends on the whole picture, whatever its crop.
 std::vector<Sphere> cascadeSpheres(const View& camera, const Bounds& scene);
 
 }  // namespace luciole

@@ -13,18 +13,18 @@
 namespace luciole {
 namespace {
 
-static_assert(kShadowBin == kBinSize);  // so that a bin is drawn or not
+static_assert(kShadowBin == kBinSize);  // so that lookups and drawing share bins
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// A face that must be drawn to.
 struct Task {
   std::size_t face;
-  bool moves;               ///< its rectangle grows, so it gets a new place and all its bins are drawn
+  bool moves;               ///< its rectangle grows: it gets a new place, where all its bins are drawn
   std::vector<bool> fresh;  ///< bins to draw
 };
 
-/// What of a face must be drawn, if anything; notes it in the face.
+/// What must be drawn of a face, if anything. Updates its depths and its rectangle.
 std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::span<const std::uint32_t> needed,
                            PlannedFace& face) {
   const int side = int(lookup.bins);
@@ -53,7 +53,7 @@ std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::spa
 
 std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; }
 
-/// Adds the texels that a face's task draws. place: as in drawFace.
+/// Appends the texels that a face's task draws. `place`: as in drawFace.
 void addDrawn(const Task& task, const PlannedFace& face, std::size_t place, std::vector<IndexRange>& drawn) {
   if (task.moves) {
     drawn.push_back({place, area(face.count)});
@@ -70,7 +70,7 @@ void addDrawn(const Task& task, const PlannedFace& face, std::size_t place, std:
   }
 }
 
-/// place: of the face's rectangle among the texels.
+/// Draws a task. `place`: the index of the first texel of the face's rectangle.
 void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std::size_t place,
               ShadowMaps& maps) {
   View view = face.view;
@@ -106,8 +106,8 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
       tasks.push_back(std::move(*task));
     }
   }
-  // Rectangles that moved leave their old places empty: where that takes more than was planned, all move
-  // together.
+  // A rectangle that moves leaves its old place unused. Where that would take more texels than planned, all
+  // rectangles get new places and are drawn again.
   if (total > maps.planned_texels) {
     held = 0;
     tasks.clear();

@@ -10,11 +10,12 @@
 
 namespace luciole {
 
-/// Draws the bins that are needed and weren't drawn yet, from the triangles that can be seen there within the
-/// light's range, and no farther away than what looks there. `needed`: one a bin of all faces, the bits of
-/// the smallest reversed depth that matters there, or kNotNeeded (see findNeeded). Brings `faces` and
-/// `planned` up to date. A face whose rectangle grows gets a new place, to which all its bins are drawn
-/// again, with the same texels. Returns the texels that it drew to, of maps.texels or maps.bounds.
+/// Draws the bins of shadow maps that lookups need and that aren't drawn yet, from the meshlets that show
+/// there within the light's range. `needed`: one a bin of all faces, the bits of the smallest reversed depth
+/// that matters there, or kNotNeeded (see findNeeded); what is farther away may be left out. Updates `faces`
+/// and `planned`. A face whose rectangle grows gets a new place, where all its bins are drawn again, with the
+/// same texels. Returns the ranges that it drew of maps.texels, or for ShadowMethod::kExact of maps.bounds.
+/// Faces are drawn in parallel. Throws as rasterizeDepth does.
 std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed,
                                    ShadowMaps& maps);
 

@@ -9,14 +9,14 @@
 namespace luciole {
 namespace {
 
-/// The corners of each face, around it.
+/// The corners of each face, in order around it.
 constexpr std::array<std::array<int, 4>, 6> kFaces{
     {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}}};
 
 /// Six planes make at most 4, 6, 9, 13, 19, 28, 42 corners of a face, see clipPolygon.
 using FacePolygon = Polygon<glm::dvec3, 42>;
 
-/// The planes of a hexahedron's faces, inside where positive.
+/// The planes of a hexahedron's faces, positive inside.
 std::array<glm::dvec4, 6> facePlanes(const Corners& corners) {
   const glm::dvec3 middle = std::accumulate(corners.begin(), corners.end(), glm::dvec3(0)) / 8.0;
   std::array<glm::dvec4, 6> planes;
@@ -30,7 +30,7 @@ std::array<glm::dvec4, 6> facePlanes(const Corners& corners) {
   return planes;
 }
 
-/// Adds the corners of the parts of `of`'s faces that lie in `by`.
+/// Clips the faces of `of` to the inside of `by`, and appends the corners of what is left.
 void appendClippedFaces(const Corners& of, const Corners& by, std::vector<glm::dvec3>& points) {
   const auto planes = facePlanes(by);
   for (const auto& face : kFaces) {

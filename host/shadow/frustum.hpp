@@ -15,12 +15,12 @@ using Corners = std::array<glm::dvec3, 8>;
 
 Corners boxCorners(const Bounds& box);
 
-/// What a view can see, whatever its crop; its axes are those of normalized device coordinates. Depth is
+/// The view volume, whatever the crop; its axes are those of normalized device coordinates. Depth is
 /// reversed, so corners 0 to 3 lie on the far plane and i + 4 on the near plane before i.
 Corners viewCorners(const View& view);
 
-/// Points whose convex hull is what two hexahedra have in common, some of them twice; none where they are
-/// apart.
+/// The intersection of two hexahedra, as points whose convex hull it is. Points may repeat; there are none
+/// where the hexahedra don't intersect.
 std::vector<glm::dvec3> commonCorners(const Corners& a, const Corners& b);
 
 /// The planes around the part of space that a view's crop shows: left, right, bottom, top, near, far. World

@@ -8,7 +8,7 @@
 namespace luciole {
 namespace {
 
-/// Whether a box may reach inside the planes, and to a sphere.
+/// Whether a box may reach inside all planes and, for a light with a position, into its range.
 bool mayShow(const std::array<glm::dvec4, 6>& planes, const glm::dvec3& low, const glm::dvec3& high,
              const Light& light) {
   for (const glm::dvec4& plane : planes) {
@@ -20,7 +20,7 @@ bool mayShow(const std::array<glm::dvec4, 6>& planes, const glm::dvec3& low, con
   return !(glm::distance(glm::clamp(light.position, low, high), light.position) > light.range);
 }
 
-/// Whether a box may show in any of the bins, not beyond what matters there.
+/// Whether a box may show in any of the bins, at a depth that matters there.
 bool mayMatter(const glm::dmat4& world_to_clip, const glm::ivec2& size, const WantedBins& bins,
                const glm::dvec3& low, const glm::dvec3& high) {
   glm::dvec2 first(1e300), last(-1e300);
@@ -35,7 +35,7 @@ bool mayMatter(const glm::dmat4& world_to_clip, const glm::ivec2& size, const Wa
     last = glm::max(last, place);
     nearest = std::max(nearest, clip.z / clip.w);
   }
-  // No whole number is as large as places beside a face can be.
+  // Places beside a face may be outside the range of an int.
   first = glm::clamp(first, glm::dvec2(-2.0 * kBinSize), glm::dvec2(size + 2 * kBinSize));
   last = glm::clamp(last, glm::dvec2(-2.0 * kBinSize), glm::dvec2(size + 2 * kBinSize));
   // A texel more on each side for snapping, and a float's rounding of depth.

@@ -15,9 +15,10 @@ struct WantedBins : BinGrid {
   std::vector<float> farthest;  ///< one a bin, row by row: as in rasterizeDepth
 };
 
-/// The meshlets that may show in any of the bins within a light's range, and not beyond what matters there:
-/// ascending indices into meshlets.items. `view` is the light's.
-/// By boxes: a meshlet that shows is never missing, one that doesn't may be there.
+/// The meshlets that may show in any of the bins, within the light's range and at a depth that matters there:
+/// ascending indices into meshlets.items. `view` is the light's. Conservative, since boxes are tested: no
+/// meshlet that shows is missing, but some that don't may be included. O(groups, and meshlets of the groups
+/// that show).
 std::vector<std::uint32_t> meshletsSeen(const Meshlets& meshlets, const View& view, const WantedBins& bins,
                                         const Light& light);
 

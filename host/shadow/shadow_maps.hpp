@@ -19,34 +19,34 @@ struct PlannedFace {
   std::uint32_t light;  ///< index into Scene::lights
   View view;            ///< of the whole face, from the light
   glm::ivec2 first{0};  ///< of the rectangle of texels that memory holds; whole bins but for the face's rim
-  glm::ivec2 count{0};  ///< of its texels; 0: nothing was drawn yet
+  glm::ivec2 count{0};  ///< of the rectangle; 0: nothing is drawn yet
   std::vector<float> farthest;  ///< one a bin of the face: drawn down to this depth; infinity: not drawn
 };
 
-/// The shadow maps of a scene for one camera: first a plan, then texels where somebody looks.
+/// The shadow maps of a scene for one camera: a plan of all faces, and texels only where lookups need them.
 ///
 ///     map_of_light    light ─► map, or kNoShadow
-///     maps            how lookups get from a view-space point to a face    80 bytes a light
-///     faces, planned  the same face for lookups and for drawing            six a cube, one a cone or a
-///     cascade texels, bounds  drawn rectangles of faces, one after another         8 or 16 bytes a texel
+///     maps            how lookups get from a view-space point to a face   80 bytes a light
+///     faces, planned  a face as lookups and as drawing see it             6 a cube, 1 a cone, 1 a cascade
+///     texels, bounds  drawn rectangles of faces, one after another        8 or 16 bytes a texel
 struct ShadowMaps {
   std::vector<ShadowMap> maps;
   std::vector<std::uint32_t> map_of_light;
   std::vector<ShadowFace> faces;
   std::vector<PlannedFace> planned;
   std::vector<ShadowTexel, RawArrayAllocator<ShadowTexel>> texels;
-  /// In place of texels for ShadowMethod::kExact.
+  /// Instead of `texels` for ShadowMethod::kExact.
   std::vector<BoundTexel, RawArrayAllocator<BoundTexel>> bounds;
   ShadowMethod method = ShadowMethod::kOff;
   Meshlets meshlets;
   std::size_t bin_count = 0;         ///< of all faces
   std::size_t planned_texels = 0;    ///< if all of every face were drawn
-  std::uint64_t reduced_lights = 0;  ///< lights whose maps the memory made coarser than wanted
+  std::uint64_t reduced_lights = 0;  ///< lights whose maps are coarser than wanted, for lack of memory
 };
 
-/// Plans the maps of all lights with a shadow; draws nothing. It depends on the whole picture that the camera
-/// sees, whatever the crop. See cascadeSpheres for what maps cover and chooseSizes for how fine they are.
-/// Throws MachineError where even the coarsest maps exceed limits.bytes.
+/// Plans the maps of all lights with a shadow; draws nothing. The plan is for the camera's whole picture,
+/// whatever the crop. See cascadeSpheres for what maps cover and chooseSizes for how fine they are. Throws
+/// MachineError where even the coarsest maps exceed limits.bytes.
 ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMethod method,
                           const ShadowLimits& limits);
 

@@ -9,8 +9,8 @@ enum class ShadowMethod : std::uint8_t {
   kOff,
   kHard,   ///< the texel that the point falls into
   kPcf,    ///< the nearest texels, weighted (percentage-closer filtering)
-  kSoft,   ///< a disc as wide as the light's size makes the shadow's edge
-  kExact,  ///< as rays to the light's middle: by bounds of depth, and where these leave a doubt by rays
+  kSoft,   ///< a disc as wide as the penumbra that the light's size gives
+  kExact,  ///< as rays to the light's centre: by bounds of depth, and by rays where these don't decide
 };
 
 }  // namespace luciole

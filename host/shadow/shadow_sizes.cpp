@@ -12,8 +12,9 @@
 namespace luciole {
 namespace {
 
-/// Texels a side that make a texel as large as a pixel where the light reaches, halfway to the end of its
-/// reach.
+/// Texels a side with which a texel, halfway to the light's reach, is as large as what a pixel covers at the
+/// light's distance from the camera (at least half the reach). 0 where the light reaches nothing of the
+/// picture.
 double wantedSize(const Light& light, const PlanInput& input) {
   const double reach = lightReach(light, input.bounds);
   const glm::dmat4& projection = input.camera.projection;
@@ -31,14 +32,14 @@ int largestSize(const Light& light, const ShadowLimits& limits) {
   return std::max(usesCubeMap(light) ? limits.size / 2 : limits.size, kSmallestFace);
 }
 
-/// A face's texels a side where `wanted` of them should show something, `largest` at most.
+/// A face's texels a side: `wanted` and the border on both sides, from kSmallestFace to `largest`.
 int withBorder(double wanted, ShadowMethod method, int largest) {
   const double size = std::ceil(std::min(wanted, double(largest)));
   return std::clamp(int(size) + 2 * borderOf(int(size), method), kSmallestFace, largest);
 }
 
-/// What exact maps leave unsure takes rays; half as many texels a side leave twice as much of it, but cost a
-/// quarter, which is less in all.
+/// A factor for texels a side. Exact maps leave some lookups to rays. Half as many texels a side leave twice
+/// as many to rays, but cost a quarter, which is less in all.
 double sizeShare(ShadowMethod method) { return method == ShadowMethod::kExact ? 0.5 : 1.0; }
 
 }  // namespace

@@ -15,21 +15,20 @@ struct ShadowLimits {
   std::size_t bytes = std::size_t(512) << 20;  ///< of all maps together
 };
 
-/// Texels a side: faces have no fewer, and limits ask for no more.
+/// Texels a side: the fewest of a face, and the most that ShadowLimits::size may ask for.
 inline constexpr int kSmallestFace = 16, kLargestFace = 16384;
 
 /// Texels a side of each light's faces; 0: no shadow.
 struct ShadowSizes {
   std::vector<int> sizes;            ///< one a light of the scene
-  std::uint64_t reduced_lights = 0;  ///< have fewer than wanted, since the memory ends
+  std::uint64_t reduced_lights = 0;  ///< lights with fewer than wanted, for lack of memory
 };
 
-/// - Directional lights want as many texels as the limits allow.
-/// - The others want a texel that is about as large as a pixel of the whole picture, whatever the crop,
-/// halfway
-///   to the end of their reach.
-/// Where that exceeds limits.bytes all maps get coarser, down to kSmallestFace texels a side. Throws
-/// MachineError if even that is too much.
+/// Chooses the sizes of all lights' faces. Directional lights get as many texels as the limits allow. For
+/// other lights a texel halfway to their reach is about as large as a pixel of the whole picture there,
+/// whatever the crop. For ShadowMethod::kExact it is half as many texels a side. Where that exceeds
+/// limits.bytes all faces get coarser alike, down to kSmallestFace texels a side. Throws MachineError if even
+/// that is too much.
 ShadowSizes chooseSizes(const Scene& scene, const PlanInput& input, const ShadowLimits& limits);
 
 }  // namespace luciole

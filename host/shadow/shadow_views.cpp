@@ -11,13 +11,13 @@
 namespace luciole {
 namespace {
 
-/// Nearest occluder of a light with a place, as a share of its reach.
+/// The near plane of a light with a position, as a share of its reach.
 constexpr double kNearShare = 5e-4;
 
-/// Radians, the half angle of a cone that one perspective map shows.
+/// Radians: the largest half angle of a cone that one perspective map shows.
 constexpr double kWidestSpot = 60.0 * 3.14159265358979323846 / 180.0;
 
-/// Some rigid view from `eye` along `forward`, with `up` upwards where it can be.
+/// A rigid view from `eye` along `forward` (unit). Where `up` is parallel to it, another axis is up.
 glm::dmat4 lookAlong(const glm::dvec3& eye, const glm::dvec3& forward, glm::dvec3 up) {
   if (glm::length(glm::cross(forward, up)) < 1e-3)
     up = std::abs(forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
@@ -37,7 +37,7 @@ View squareView(const glm::dmat4& world_to_view, const glm::dmat4& projection, i
   return view;
 }
 
-/// A face that nothing was drawn to.
+/// A face to which nothing is drawn yet.
 ShadowFace emptyFace(double scale, const glm::dvec2& middle, int size, int border) {
   ShadowFace face{};
   face.scale = float(scale);
@@ -49,7 +49,7 @@ ShadowFace emptyFace(double scale, const glm::dvec2& middle, int size, int borde
 }
 
 PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
-  // The axes depend on the light alone.
+  // The axes depend on the light alone, so that texels stay where they are while the camera turns.
   const glm::dmat4 world_to_light = lookAlong(glm::dvec3(0), light.direction, glm::dvec3(0, 1, 0));
   double low = 1e300, high = -1e300;  // everything between what is seen and the light casts
   for (const glm::dvec3& corner : boxCorners(input.bounds)) {
@@ -59,8 +59,8 @@ PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
   }
   const glm::dvec3 eye(world_to_light * input.view_to_world[3]);
   const glm::dmat4 rotation = world_to_light * glm::dmat4(glm::dmat3(input.view_to_world));
-  // Room for scenes that are flat: more than what doubles lose far from the origin, 2⁻⁵³ of the distance in
-  // each of some ten operations.
+  // A flat scene gets some depth: more than the rounding of doubles far from the origin, which is 2⁻⁵³ of the
+  // distance in each of some ten operations.
   const double across = glm::distance(input.bounds.low, input.bounds.high);
   const double least =
       std::max({kSmallestLength, 1e-6 * across,
@@ -70,7 +70,7 @@ PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
 
   PlannedMap planned;
   const int border = borderOf(size, input.method);
-  // Even the widest penumbra is to fit into a lookup's reach.
+  // Even the widest penumbra must fit into the border.
   const double least_texel =
       input.method == ShadowMethod::kSoft ? std::tan(light.half_angle) * (high - low) / (border - 2) : 0;
   for (const Sphere& sphere : cascadeSpheres(input.camera, input.bounds)) {
@@ -98,7 +98,7 @@ PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
   return planned;
 }
 
-/// Adds a face that shows tangents up to `tangent`, and the border on each side.
+/// Adds a perspective face. Without the border on each side, the tangent of its half angle is `tangent`.
 void addFace(const Light& light, const PlanInput& input, const glm::dmat4& world_to_light, double tangent,
              int size, PlannedMap& planned) {
   const int border = borderOf(size, input.method);

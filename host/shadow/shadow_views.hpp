@@ -11,7 +11,7 @@
 
 namespace luciole {
 
-/// What maps are planned for.
+/// What maps are planned for. It refers to the camera's view.
 struct PlanInput {
   const View& camera;
   ShadowMethod method;
@@ -32,12 +32,13 @@ bool usesCubeMap(const Light& light);
 /// How many faces a light's map has, at most.
 int facesOf(const Light& light);
 
-/// Texels around a lookup that it may read. So many are drawn around a cone or a cube's face, of `size`
-/// texels a side with them, for their sake. Soft shadows may spread over an eighth of what a face shows.
+/// Width in texels of the border of a face of `size` texels a side, border included: as far around its place
+/// as a lookup may read. For soft shadows that is an eighth of what the face shows, at most 64 texels;
+/// otherwise 4.
 int borderOf(int size, ShadowMethod method);
 
-/// Distance that a light with a place can cast shadows over, in metres: its range, or to the farthest corner
-/// of the scene's bounds where that is less. > 0.
+/// How far a light with a position can cast shadows, in metres, > 0: its range, or a little more than the
+/// distance to the farthest corner of the scene's bounds if that is less.
 double lightReach(const Light& light, const Bounds& scene);
 
 /// The map of a light with a shadow, whose faces have `size` texels a side. A directional light's texels stay
