@@ -8,8 +8,8 @@
 
 namespace luciole {
 
-/// A frame in which things hang: world = parent's world · before · translate · rotate · scale.
-/// Of the three, members of Animation::curves, -1 is none.
+/// A moving coordinate frame: world = parent's world · before · translate · rotate · scale. `translate`,
+/// `rotate` and `scale` are indices into Animation::curves; -1: none.
 struct MovingNode {
   int parent = -1;  ///< an earlier node; -1: the world
   glm::dmat4 before{1.0};
@@ -19,40 +19,40 @@ struct MovingNode {
   int scale = -1;           ///< factors
 };
 
-/// An object, camera or light that hangs on a node: its place in the world is the node's · after.
+/// An object, camera or light that is attached to a node: its transform to world space is the node's · after.
 struct Attachment {
   std::uint32_t index = 0;  ///< in Scene::objects, cameras or lights
   std::uint32_t node = 0;   ///< in Animation::nodes
   glm::dmat4 after{1.0};
-  std::uint32_t mesh = 0;  ///< of an object: what it shows, unless it is flattened
+  std::uint32_t mesh = 0;  ///< of an object: its mesh, unless a scale of 0 flattens it
 };
 
-/// A camera that looks from a moving place at a moving target. Curves have a key at least.
+/// A camera that looks from a moving place at a moving target. `eye` and `target` have at least one key.
 struct CameraMotion {
   std::uint32_t camera = 0;  ///< in Scene::cameras
   bool orbits = false;
   Curve eye;  ///< world, metres; of one that orbits azimuth, elevation (degrees) and distance (orbitEye)
   Curve target;
   glm::dvec3 up{0.0, 1.0, 0.0};
-  Curve fov_y;  ///< degrees; no key: stays
+  Curve fov_y;  ///< degrees; without keys the camera's own stays
 };
 
 /// A light whose members change. A curve without keys leaves the light's own.
 struct LightMotion {
   std::uint32_t light = 0;  ///< in Scene::lights
   Curve position;
-  Curve direction;  ///< any length
-  Curve target;     ///< or what a spot shines at
+  Curve direction;  ///< any length but 0
+  Curve target;     ///< world; instead of `direction`: what a spot shines at
   Curve color;
   Curve intensity;
   Curve range;
-  glm::vec3 ambient{0.0f}, diffuse{0.0f}, specular{0.0f};  ///< without the intensity
+  glm::vec3 ambient{0.0f}, diffuse{0.0f}, specular{0.0f};  ///< the light's colours without the intensity
   float own_intensity = 1.0f;
 };
 
-/// What moves in a scene, and how. Empty where nothing does.
+/// What moves in a scene, and how; empty where nothing moves.
 struct Animation {
-  double frame_rate = 24;  ///< frames a second, for files that tell time in seconds: frame 1 is time 0
+  double frame_rate = 24;  ///< frames a second, for files with times in seconds: frame 1 is time 0
   std::vector<Curve> curves;
   std::vector<MovingNode> nodes;  ///< parents first
   std::vector<Attachment> objects, attached_cameras, attached_lights;

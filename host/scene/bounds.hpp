@@ -12,7 +12,8 @@ struct Bounds {
   glm::dvec3 high{-1e300};
 };
 
-/// The box around one object's vertices, and around all of them.
+/// The box around one object's vertices, and around those of all objects; empty without vertices.
+/// O(vertices).
 Bounds objectBounds(const Scene& scene, const Object& object);
 Bounds sceneBounds(const Scene& scene);
 

@@ -20,14 +20,15 @@ glm::dvec4 hermite(const CurveKey& a, const CurveKey& b, double t) {
          t * t * ((1 + 2 * s) * b.value - h * s * b.slope_in);
 }
 
-/// Steffen's slope at a key within: h and s are length and slope of the interval before (0) and after it (1).
+/// Steffen's slope at an inner key. h and s are length and slope of the interval before it (0) and after it
+/// (1).
 double innerSlope(double h0, double s0, double h1, double s1) {
   if (!(s0 * s1 > 0)) return 0;
   const double parabola = (s0 * h1 + s1 * h0) / (h0 + h1);
   return std::copysign(std::min({2 * std::abs(s0), 2 * std::abs(s1), std::abs(parabola)}), s0);
 }
 
-/// And at an end: 0 is the interval there, 1 the next one.
+/// Steffen's slope at an end key: 0 is the interval there, 1 the next one.
 double endSlope(double h0, double s0, double h1, double s1) {
   const double parabola = s0 + (s0 - s1) * h0 / (h0 + h1);
   if (!(parabola * s0 > 0)) return 0;
@@ -47,7 +48,7 @@ glm::dvec4 valueAt(const Curve& curve, double frame) {
   const double t = (frame - a.frame) / (b.frame - a.frame);
   if (curve.interpolation == Interpolation::kSlerp) return slerp(a.value, b.value, t);
   const glm::dvec4 low = glm::min(a.value, b.value), high = glm::max(a.value, b.value);
-  // Rounding, too, keeps within the two.
+  // Clamped, so that rounding can't leave the interval either.
   if (curve.interpolation == Interpolation::kLinear)
     return glm::clamp((1 - t) * a.value + t * b.value, low, high);
   return hermite(a, b, t);

@@ -6,8 +6,8 @@
 
 namespace luciole {
 
-/// The index in Scene::textures of the picture file `path`, which is added, not decoded yet, where it is new.
-/// A file that many materials name is one texture.
+/// The index in Scene::textures of the picture file `path`. A new file is added without decoding it; a file
+/// that several materials name is one texture. O(textures).
 int addTexture(Scene& scene, const std::string& path);
 
 /// Decodes, in parallel, every texture that addTexture() left without levels. Throws as readTexture does.

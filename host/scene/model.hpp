@@ -8,7 +8,7 @@
 
 namespace luciole {
 
-/// How surfaces reflect light, by kernels/models.h: kPhong … No scene says which; a picture's settings do.
+/// The reflection models of kernels/models.h: kPhong … A picture's settings choose one, not the scene.
 #define MODEL_ENUMERATOR(name, typed, shown, meaning) k##name,
 enum class Model : std::uint8_t { EACH_MODEL(MODEL_ENUMERATOR) };
 #undef MODEL_ENUMERATOR
@@ -17,7 +17,7 @@ enum class Model : std::uint8_t { EACH_MODEL(MODEL_ENUMERATOR) };
 inline constexpr Model kAllModels[] = {EACH_MODEL(MODEL_VALUE)};
 #undef MODEL_VALUE
 
-/// By Model, as people type them.
+/// The models' names in options, by Model.
 #define MODEL_NAME(name, typed, shown, meaning) typed,
 inline constexpr std::array kModelNames{EACH_MODEL(MODEL_NAME)};
 #undef MODEL_NAME

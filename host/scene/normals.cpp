@@ -12,7 +12,7 @@ glm::dvec3 faceNormal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3
   return length > 0 ? normal / length : glm::dvec3(0);
 }
 
-/// The angle between two edges, by atan2 because acos is blind near 0 and π.
+/// The angle between two edges, radians. By atan2, because acos is inexact near 0 and π.
 double angleBetween(const glm::dvec3& u, const glm::dvec3& v) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
@@ -34,7 +34,7 @@ std::vector<glm::vec3> angleWeightedNormals(const std::vector<glm::vec3>& positi
       any[triangle[i]] = normal;
     }
   }
-  // A sum this small is what rounding leaves of faces that cancel: its direction means nothing.
+  // A sum this small is the rounding error of faces that cancel; its direction is arbitrary.
   constexpr double kVanished = 1e-9;
   std::vector<glm::vec3> normals(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {

@@ -14,8 +14,8 @@
 namespace luciole {
 namespace {
 
-/// How far a point lies from the origin along the axis on which that is farthest; infinite where a product of
-/// numbers that were finite has become no number.
+/// The largest magnitude of a point's coordinates; infinite where one is NaN, as products of finite numbers
+/// can give.
 double reachOf(const glm::dvec3& point) {
   double reach = 0;
   for (int i = 0; i < 3; ++i) {
@@ -30,7 +30,7 @@ double reachOf(const glm::dvec3& point) {
                                kLargestNumber));
 }
 
-/// Half a box's sides and its middle, of each mesh.
+/// A mesh's bounding box: its centre and half its sides, object space.
 struct Box {
   glm::dvec3 middle{0.0}, half{0.0};
 };
@@ -51,7 +51,7 @@ std::vector<Box> meshBoxes(const Scene& scene) {
   return boxes;
 }
 
-/// No less than the reach of any vertex.
+/// A bound for reachOf() of any point of the box in world space.
 double reachOfBox(const glm::dmat4& to_world, const Box& box) {
   glm::dvec3 half(0.0);
   for (int i = 0; i < 3; ++i) half += glm::abs(glm::dvec3(to_world[i])) * box.half[i];

@@ -4,12 +4,13 @@
 
 namespace luciole {
 
-/// In magnitude, of any number of a scene: its square is a finite float.
+/// The largest magnitude of a number in a scene; its square is a finite float.
 inline constexpr double kLargestNumber = 1e18;
 
-/// Refuses what lies farther than kLargestNumber from the origin along an axis once everything is placed, and
-/// pictures that are larger: what scene files can't say, mesh files and products of transforms can. Throws
-/// InputError.
+/// Throws InputError where a vertex, a light's position or a camera has a world coordinate beyond
+/// ±kLargestNumber, or half an orthographic picture's height is larger. Numbers of scene files are limited
+/// already, but those of mesh files and products of transforms aren't. O(vertices of the meshes + objects),
+/// and O(vertices) for each object whose bounding box is beyond.
 void checkPlaces(const Scene& scene);
 
 }  // namespace luciole

@@ -12,9 +12,10 @@
 namespace luciole {
 namespace {
 
-/// The least distance that has a direction.
+/// Metres; points that are closer give no direction.
 constexpr double kLeastDistance = 1e-18;
-/// Closer to parallel or opposite, rounding would decide: 10⁻⁸ leaves half of a double's digits.
+/// The least sine of the angle between two directions. Closer to parallel or opposite, rounding would decide:
+/// 10⁻⁸ leaves half of a double's digits.
 constexpr double kLeastSine = 1e-8;
 
 [[noreturn]] void fail(const Scene& scene, double frame, const std::string& thing, const std::string& what) {
@@ -26,7 +27,7 @@ std::string cameraName(const Scene& scene, std::size_t index) {
   return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", name);
 }
 
-/// Neither so short nor so long that its square is no number above 0.
+/// Whether a vector's length is above 0 and finite, and so is its square.
 bool hasDirection(const glm::dvec3& vector) {
   const double length = glm::length(vector);
   return length > 0 && std::isfinite(length);

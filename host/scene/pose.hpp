@@ -7,44 +7,48 @@
 
 namespace luciole {
 
-/// A camera's placement: at `eye`, looking at `target`, with `up` (any length, not along the view) upwards.
+/// The rigid camera-to-world transform of a camera at `eye` that looks at `target`. `up` points upwards: any
+/// length but 0, not parallel to the view.
 glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
 
-/// Puts what moves in a scene where it is at a frame, which may lie between two: sets members of cameras,
-/// lights and objects, and nothing of the rest. The result doesn't depend on earlier poses. Objects that a
-/// scale of 0 flattens show an empty mesh. Throws InputError naming the frame where there is no such pose: a
-/// camera whose up is parallel to its view, a spot at its target, a transform that isn't finite; and what
-/// checkPlaces() does.
+/// Poses a scene at a frame, which may be fractional: sets the members of cameras, lights and objects that
+/// are animated, and nothing else. The result doesn't depend on earlier poses. Objects that a scale of 0
+/// flattens show an empty mesh. Throws InputError naming the frame where a pose doesn't exist (a camera whose
+/// up is parallel to its view, a spot at its target, a transform that isn't finite), and as checkPlaces()
+/// does.
 void poseScene(Scene& scene, double frame);
 
-/// Makes an object hang on a node, from the next pose on.
+/// Attaches an object to a node, from the next poseScene() on.
 void attach(Scene& scene, const Attachment& object);
 
-/// The same as poseScene for one camera or light; what is wrong, or "".
+/// Poses one camera or light at a frame. Returns what is wrong, or "".
 std::string poseCamera(const CameraMotion& motion, double frame, Camera& camera);
 std::string poseLight(const LightMotion& motion, double frame, Light& light);
 
-/// Aims a camera; what is wrong, or "". `up` is unit.
+/// Places a camera at `eye`, looking at `target`; `up` is unit. Returns what is wrong (`eye` is `target`, or
+/// `up` is parallel to the view), or "".
 std::string aimCamera(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, Camera& camera);
-/// Aims a spot from its position; what is wrong, or "".
+/// Aims a spot from its position at a target. Returns what is wrong, or "".
 std::string aimSpot(const glm::dvec3& target, Light& light);
 
-/// Where [azimuth, elevation, distance] (degrees, metres) around a target is: azimuth 0 lies towards +z, 90
-/// towards +x; elevation is the angle above the horizon. Full turns end where they began, to the bit.
+/// The position at [azimuth, elevation, distance] (degrees, metres) around a target. Azimuth 0 lies towards
+/// +z, 90 towards +x; elevation is the angle above the horizon. Azimuths that differ by 360 give the same
+/// bits.
 glm::dvec3 orbitEye(const glm::dvec3& orbit, const glm::dvec3& target);
 
-/// translate · rotate (degrees about x, then y, then z) · scale.
+/// The transform translate · rotate (degrees about x, then y, then z) · scale.
 glm::dmat4 placement(const glm::dvec3& translate, const glm::dvec3& degrees, const glm::dvec3& scale);
 /// The same with a quaternion x, y, z, w of any length but 0.
 glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& rotation,
                                  const glm::dvec3& scale);
 
-/// A camera or light that hangs on a node looks along its −z; what is wrong with that, or "".
+/// Places a camera or light that is attached to a node: it looks along the node's −z. Returns what is wrong,
+/// or "".
 std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera);
 std::string hangLight(const glm::dmat4& node_to_world, Light& light);
 
 bool isFinite(const glm::dmat4& matrix);
-/// Whether a transform leaves nothing to be seen.
+/// Whether a transform's determinant is 0: it flattens objects, so nothing of them shows.
 bool isFlat(const glm::dmat4& matrix);
 
 }  // namespace luciole

@@ -17,9 +17,9 @@ std::uint32_t addVertex(Mesh& mesh, const glm::dvec3& position, const glm::dvec3
   return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
-/// The point at `step` of `steps` around the unit circle: x = sin, y = cos, from −cos at step 0, so that on a
-/// shape around the y axis with (x, z) on this circle a texture's middle faces +z and its u grows to the
-/// right. Step 0 and step `steps` are the same point to the bit, quarters are exact.
+/// The point at `step` of `steps` around the unit circle, from (0, −1) over (−1, 0). On a shape around the y
+/// axis, with (x, z) on this circle, a texture's middle then faces +z and its u grows to the right. Step 0
+/// and step `steps` are the same point to the bit; quarters are exact.
 glm::dvec2 circle(int step, int steps) {
   const int s = step % steps;
   if (s == 0) return {0, -1};
@@ -36,8 +36,8 @@ void addQuad(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std:
   mesh.triangles.emplace_back(a, c, d);
 }
 
-/// A rectangle of n × n squares: `right` and `down` are its sides as a viewer sees them who has the normal
-/// point at him.
+/// Adds a rectangle of n × n squares. `right` and `down` are its sides, as seen by a viewer that the normal
+/// points at.
 void addRectangle(Mesh& mesh, const glm::dvec3& top_left, const glm::dvec3& right, const glm::dvec3& down,
                   int n) {
   const glm::dvec3 normal = glm::normalize(glm::cross(down, right));

@@ -48,7 +48,7 @@ struct Mesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  ///< unit, never missing: loaders make them
   std::vector<glm::vec2> uvs;      ///< optional; v grows downwards: (0,0) is the picture's top left corner
-  std::vector<glm::vec2> emission_uvs;  ///< optional; where given, emission maps are looked up here instead
+  std::vector<glm::vec2> emission_uvs;  ///< optional; emission maps use these instead of `uvs`
   std::vector<glm::vec4> colors;        ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
@@ -66,7 +66,8 @@ struct Object {
 
 enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };
 
-/// How a light with a finite range fades out; d is the distance, r the range. Both are exactly 0 from r on.
+/// How a light with a finite range fades out: a factor of the distance d and the range r, exactly 0 for d ≥
+/// r.
 enum class RangeWindow : std::uint8_t {
   kSmooth,  ///< (1 − (d/r)⁴)²: value and slope reach zero at the range
   kKhr,     ///< 1 − (d/r)⁴, as KHR_lights_punctual recommends
@@ -98,7 +99,7 @@ struct Light {
   bool shadow = false;
   /// The light's size, which gives its shadow a penumbra and changes nothing else. 0: a sharp shadow.
   double radius = 0.0;      ///< point and spot: of a sphere, metres
-  double half_angle = 0.0;  ///< directional: half the angle that it seems wide, radians, 0 to π/4
+  double half_angle = 0.0;  ///< directional: half its angular diameter, radians, 0 to π/4
 };
 
 enum class FogMode : std::uint8_t { kNone, kLinear, kExp, kExp2 };
@@ -129,11 +130,11 @@ struct Camera {
 /// Indices are checked by the loaders; every number is finite unless its comment says otherwise.
 struct Scene {
   std::string name;  ///< the file, for messages and metadata
-  /// What a file asks for and the picture won't show, a line each that begins with the file. Loaders print
-  /// nothing: the command line does.
+  /// What a file asks for and the picture won't show: a line each, which begins with the file's name. The
+  /// command line prints them.
   std::vector<std::string> warnings;
-  /// Pictures that its files name and that aren't there, a line each as above. Materials do without them;
-  /// loadScene() decides whether that is good enough.
+  /// Picture files that the scene names and that don't exist, a line each as above. Materials are loaded
+  /// without them; loadScene() decides whether that is an error.
   std::vector<std::string> missing_textures;
   std::vector<Texture> textures;
   std::vector<Material> materials;
@@ -145,7 +146,7 @@ struct Scene {
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
   Fog fog;
-  bool says_light = false;  ///< its file says what lights it, be that nothing: see completeScene()
+  bool says_light = false;  ///< its file says what lights it, even if that is nothing: see completeScene()
   bool lighting = true;     ///< false: every surface shows its emission + diffuse colour unlit
   Animation animation;      ///< what moves: poseScene() sets cameras, lights and objects by it
 };

@@ -18,7 +18,7 @@ namespace {
 template <class T>
 concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// What is nothing but numbers without padding between them.
+/// Types that consist of numbers without padding, so that their bytes can be hashed.
 template <class T>
 struct IsPacked : std::bool_constant<Number<T> && !std::is_same_v<T, bool>> {};
 template <glm::length_t Count, class T>
@@ -29,7 +29,8 @@ struct IsPacked<glm::mat<Columns, Rows, T>> : std::true_type {};
 struct Digest {
   std::uint64_t state = 0;
 
-  /// What came so far, and eight bytes more. Each step is one to one in either, and every bit of both tells.
+  /// Mixes eight bytes into the state. The new state is a bijection of the word for each old state, and of
+  /// the old state for each word, and every bit of both matters.
   void add(std::uint64_t word) {
     state ^= word;
     state = nextBits(state);

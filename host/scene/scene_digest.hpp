@@ -6,8 +6,9 @@
 
 namespace luciole {
 
-/// A number that changes with every field of the scene, the contents of its textures and meshes included: two
-/// scenes of one digest are the same one. The same on every machine.
+/// A 64-bit hash of all fields of the scene, the contents of its textures and meshes included: scenes with
+/// the same digest may be taken for equal. Not cryptographic. The same on every little-endian machine.
+/// O(bytes of the scene).
 std::uint64_t sceneDigest(const Scene& scene);
 
 }  // namespace luciole

@@ -5,7 +5,7 @@
 
 #include "scene/scene.hpp"
 
-// What walks a scene field by field. Each function below names all members of one plain struct by a
+// For code that visits a scene field by field. Each function below names all members of one plain struct by a
 // structured binding, so a struct that gets a member doesn't compile here until it is named too.
 namespace luciole {
 

@@ -18,7 +18,7 @@ glm::dvec3 polygonNormal(const std::vector<glm::dvec3>& polygon) {
   return normal;
 }
 
-/// The polygon seen from where it is counter-clockwise.
+/// The polygon projected to its plane, seen from the side where it is counter-clockwise.
 std::vector<glm::dvec2> flatten(const std::vector<glm::dvec3>& polygon, const glm::dvec3& normal) {
   const glm::dvec3 w = normal / glm::length(normal);
   const glm::dvec3 helper = std::abs(w.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -37,8 +37,8 @@ double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
 }
 
 /// Whether the corner at `tip` of the remaining polygon can be cut off: it turns left, and no other corner
-/// lies in the triangle. A corner at the same place as one of the three doesn't count: polygons with a hole
-/// repeat corners.
+/// lies in its triangle. Corners at the same place as one of the three are ignored, since polygons with a
+/// hole repeat corners.
 bool isEar(const std::vector<glm::dvec2>& flat, const std::vector<int>& rest, std::size_t tip) {
   const std::size_t n = rest.size();
   const glm::dvec2 a = flat[rest[(tip + n - 1) % n]], b = flat[rest[tip]], c = flat[rest[(tip + 1) % n]];

@@ -4,8 +4,7 @@
 
 namespace luciole {
 
-/// Bits 0 to 20 of v, moved to bits 0, 3, 6 …: a coordinate's part of a place along a Z curve (G. Morton,
-/// 1966).
+/// Spreads bits 0 to 20 of v to bits 0, 3, 6 …: one coordinate's bits of a Morton code (G. Morton, 1966).
 inline std::uint64_t everyThirdBit(std::uint64_t v) {
   v = (v | v << 32) & 0x001f00000000ffff;
   v = (v | v << 16) & 0x001f0000ff0000ff;

@@ -21,14 +21,14 @@ constexpr double kPi = 3.14159265358979323846;
 
 struct PlacedNode {
   int node;
-  glm::dmat4 to_world;    ///< at rest, as the node itself says
-  int moving = -1;        ///< what it hangs on: in Animation::nodes; -1: nothing moves it
-  glm::dmat4 since{1.0};  ///< from there on
+  glm::dmat4 to_world;    ///< without animation
+  int moving = -1;        ///< the node of Animation::nodes that it is attached to; -1: none
+  glm::dmat4 since{1.0};  ///< from the node's space to that of `moving`, or to world space
 };
 
 std::string nodePlace(int node) { return fmt::format("nodes[{}]", node); }
 
-/// What a node says of its own transform: a matrix, or the three parts.
+/// A node's own transform: given as a matrix, or as its three parts.
 struct LocalTransform {
   bool is_matrix = false;
   glm::dmat4 matrix{1.0};
@@ -62,7 +62,7 @@ LocalTransform localTransform(const GltfModel& model, int index) {
   return local;
 }
 
-/// The node of the animation that an animated node becomes; what no curve moves stays as the node says.
+/// The MovingNode of an animated node. Parts that no curve moves keep the node's own value.
 MovingNode movingNode(const LocalTransform& local, const NodeCurves& curves, Animation& animation) {
   const auto orConstant = [&](int curve, const glm::dvec4& value) {
     if (curve >= 0) return curve;
@@ -97,9 +97,9 @@ std::vector<int> rootNodes(const GltfModel& model) {
   return roots;
 }
 
-/// Every node of the scene with its transform, parents first; what moves is added to the animation. A scene
-/// whose roots have no parent and whose nodes have at most one is a forest, so that a walk down from the
-/// roots ends.
+/// Every node of the scene with its transform, parents first. Animated nodes are added to the animation.
+/// Throws InputError unless the nodes form trees (roots without a parent, other nodes with at most one), so
+/// that the walk down from the roots ends.
 std::vector<PlacedNode> placedNodes(const GltfModel& model, Animation& animation) {
   const std::map<int, NodeCurves> curves = readGltfAnimations(model, animation);
   const std::vector<tinygltf::Node>& nodes = model.file.nodes;
@@ -158,7 +158,7 @@ void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Sc
     }
     if (meshes[index] < 0) continue;
     const std::uint32_t mesh = static_cast<std::uint32_t>(meshes[index]);
-    // By a scale of 0, to hide it. What moves may be so for some time.
+    // A scale of 0 hides an object. What moves may have it for a while, and is kept.
     if (placed.moving < 0 && isFlat(placed.to_world)) continue;
     scene.objects.push_back({mesh, placed.to_world, -1});
     if (placed.moving < 0) continue;
@@ -181,7 +181,7 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   if (camera.orthographic) {
     camera.half_height = std::abs(source.orthographic.ymag);
     camera.far = source.orthographic.zfar;
-    // glTF allows 0 here; ours must be above.
+    // glTF allows 0 here; Camera::near must be above 0.
     camera.near = source.orthographic.znear == 0 ? 1e-6 * camera.far : source.orthographic.znear;
     if (!(camera.half_height > 0)) failGltf(model, place, "ymag is 0");
   } else {
@@ -229,7 +229,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
     light.kind = LightKind::kSpot;
     light.falloff = SpotFalloff::kCone;
     light.cutoff = source.spot.outerConeAngle;
-    // Programs write inner = outer for a sharp edge; ours must be below.
+    // Programs write inner = outer for a sharp edge; Light::inner_cone must be below the cutoff.
     light.inner_cone = std::min(source.spot.innerConeAngle, light.cutoff * (1 - 1e-6));
     // π/2 as a decimal may have been rounded up.
     if (light.cutoff > kPi / 2 && light.cutoff < kPi / 2 + 1e-5) light.cutoff = kPi / 2;

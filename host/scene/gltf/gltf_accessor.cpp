@@ -19,7 +19,7 @@ struct Elements {
 };
 
 template <typename T>
-T load(const std::byte* place) {  // the places of a stranger's file need not be aligned
+T load(const std::byte* place) {  // a file's data need not be aligned
   T value;
   std::memcpy(&value, place, sizeof value);
   return value;
@@ -70,7 +70,8 @@ bool isKnownType(int type) {
          type == TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// Finds elements from `offset` in a buffer view on, and makes sure that the last one ends inside it.
+/// Finds `count` ≥ 1 elements from `offset` of a buffer view on. Throws InputError where they don't lie
+/// inside it.
 Elements findElements(const GltfModel& model, int buffer_view, std::size_t offset, std::size_t count,
                       int type, int components, const std::string& place) {
   const std::span<const std::byte> bytes = viewBytes(model, buffer_view, place);

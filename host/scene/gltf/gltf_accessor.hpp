@@ -8,16 +8,17 @@
 
 namespace luciole {
 
-/// The values of an accessor whose elements have `components` numbers each, in one row; sparse parts are
-/// applied. Normalized integers become [0,1] or [−1,1], others the float of the same value. `place` is what
-/// refers to it, for messages. Throws InputError where the accessor has another type or reaches past its
-/// data.
+/// The values of an accessor whose elements have `components` numbers each: element after element, with
+/// sparse parts applied. Normalized integers become [0,1] or [−1,1], others the float of the same value.
+/// `place` names, for messages, what refers to the accessor. Throws InputError where there is no such
+/// accessor, it has another type, or it reaches past its data.
 std::vector<float> readFloats(const GltfModel& model, int accessor, int components, const std::string& place);
 
-/// The values of a scalar accessor of unsigned integers.
+/// The values of a scalar accessor of unsigned integers. Throws as readFloats does.
 std::vector<std::uint32_t> readIndices(const GltfModel& model, int accessor, const std::string& place);
 
-/// The number of components of an accessor's elements: 3 for a VEC3.
+/// The number of components of an accessor's elements: 3 for a VEC3. Throws InputError where there is no such
+/// accessor.
 int accessorComponents(const GltfModel& model, int accessor, const std::string& place);
 
 }  // namespace luciole

@@ -33,7 +33,7 @@ std::vector<float> readTimes(const GltfModel& model, int input, const std::strin
   return times;
 }
 
-/// glTF 2.0, 3.11 and appendix C. Times become frames, and slopes changes a frame.
+/// Reads a sampler (glTF 2.0, 3.11 and appendix C). Times become frames, and slopes become changes per frame.
 Curve readSampler(const GltfModel& model, const tinygltf::AnimationSampler& sampler, bool is_rotation,
                   double frame_rate, const std::string& place) {
   Curve curve;

@@ -15,8 +15,8 @@
 namespace luciole {
 namespace {
 
-/// The decoded pictures by their index in the file, but for those that are missing, and where those that are
-/// drawn went in Scene::textures.
+/// The pictures that materials use, by their index in the file. `decoded` has all that aren't missing;
+/// `in_scene` has the index in Scene::textures of those that are drawn.
 struct Pictures {
   std::map<int, Texture> decoded;
   std::map<int, int> in_scene;
@@ -106,7 +106,8 @@ glm::dvec3 meanCode(const Texture& texture) {
   return sum / (65535.0 * static_cast<double>(texels.size() / 4));
 }
 
-/// A colour factor with the components that the file leaves out.
+/// A colour factor; components that the file leaves out are those of `otherwise`. Throws InputError for one
+/// outside 0 to 1.
 glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, const glm::dvec4& otherwise,
                   const std::string& place) {
   glm::dvec4 result = otherwise;
@@ -158,7 +159,7 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
     failGltf(model, place, "emissiveStrength is negative or too large");
   }
   material.emission_map = textureUse(model, source.emissiveTexture.index, place, pictures, scene);
-  // What glows by a picture that is missing doesn't.
+  // Where the picture of the emission is missing, there is no emission.
   if (source.emissiveTexture.index >= 0 && material.emission_map.texture < 0)
     material.emission = glm::vec3(0);
   if (isUnlit(source)) {

@@ -39,7 +39,7 @@ std::vector<glm::uvec3> readTriangles(const GltfModel& model, const tinygltf::Pr
   return triangles;
 }
 
-/// An attribute's values as vectors, or none where the primitive hasn't got it.
+/// An attribute's values as vectors; empty where the primitive doesn't have it.
 template <typename Vector>
 std::vector<Vector> readAttribute(const GltfModel& model, const tinygltf::Primitive& primitive,
                                   const std::string& name, const std::string& place) {
@@ -96,7 +96,7 @@ void makeFlat(Mesh& mesh) {
   mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
 }
 
-/// Makes normals unit, and takes those without a direction from the faces around them.
+/// Normalizes normals. Those without a direction become the angle-weighted mean of the faces around them.
 void repairNormals(Mesh& mesh) {
   std::vector<glm::vec3> from_faces;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
@@ -110,7 +110,7 @@ void repairNormals(Mesh& mesh) {
   }
 }
 
-/// Texture coordinates as a texture reads them; none where the primitive hasn't got them.
+/// Texture coordinates with the texture's transform applied; empty where the primitive doesn't have them.
 std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& primitive, const GltfUvs& use,
                              const std::string& place) {
   auto uvs = readAttribute<glm::vec2>(model, primitive, fmt::format("TEXCOORD_{}", use.set), place);
@@ -119,7 +119,8 @@ std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& 
   return uvs;
 }
 
-/// A primitive has one material, so that its vertices can carry what its textures make of their coordinates.
+/// A primitive has one material, so the transforms of its textures can be applied to its vertices'
+/// coordinates.
 void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
              Mesh& mesh) {
   const GltfUvs base = baseColorUvs(model, primitive.material),
@@ -163,7 +164,7 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   return mesh;
 }
 
-/// Appends an optional attribute, filling up with `missing` what either side hasn't got.
+/// Appends an optional attribute; where only one side has it, the other's vertices get `missing`.
 template <typename T>
 void appendOptional(std::vector<T>& all, std::size_t count_before, const std::vector<T>& more,
                     std::size_t count_more, const T& missing) {
@@ -176,7 +177,7 @@ void appendOptional(std::vector<T>& all, std::size_t count_before, const std::ve
 void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
   const std::size_t before = mesh.positions.size(), added = more.positions.size();
   if (!mesh.emission_uvs.empty() || !more.emission_uvs.empty()) {
-    // A side without looks everything up at the same place.
+    // A part without emission coordinates uses its base colour's for both.
     if (mesh.emission_uvs.empty()) mesh.emission_uvs = mesh.uvs;
     appendOptional(mesh.emission_uvs, before, more.emission_uvs.empty() ? more.uvs : more.emission_uvs, added,
                    glm::vec2(0));

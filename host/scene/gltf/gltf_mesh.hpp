@@ -8,8 +8,9 @@
 namespace luciole {
 
 /// The triangles of all primitives of a glTF mesh as one mesh; points and lines are left out, and skins and
-/// morph targets keep their rest pose. `materials` are the glTF materials in use, −1 for the default one; new
-/// ones are added, and Mesh::triangle_materials are positions in that list plus `first_material`.
+/// morph targets keep their rest pose. `materials` lists the glTF materials in use, −1 for the default one;
+/// new ones are appended. Mesh::triangle_materials are positions in that list plus `first_material`. `index`
+/// must be in range. The mesh is empty where there is nothing to draw. Throws InputError.
 Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials,
                   std::uint32_t first_material);
 

@@ -40,7 +40,7 @@ bool keepBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int
   return true;
 }
 
-/// Refuses JSON nested so deep that a parser that calls itself would run out of stack.
+/// Throws InputError for JSON nested so deep that a recursive parser would overflow the stack.
 void checkNesting(const std::string& path, std::string_view json) {
   constexpr int kDeepest = 500;
   int depth = 0;
@@ -105,7 +105,8 @@ void parse(GltfModel& model) {
     throw InputError(fmt::format("{}: is not valid glTF: {}", model.path, forMessage(error.what())));
   }
   checkRequiredExtensions(model);  // first: they are a likely reason for what tinygltf finds wrong
-  // tinygltf goes on after members of a wrong type; their defaults would be a different picture, so we don't.
+  // tinygltf goes on after members of a wrong type, with default values. These would give another picture, so
+  // such files are refused.
   if (!ok || !errors.empty()) {
     throw InputError(fmt::format("{}: is not valid glTF: {}", model.path, forMessage(errors)));
   }

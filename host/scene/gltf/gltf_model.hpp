@@ -10,7 +10,7 @@
 
 namespace luciole {
 
-/// A parsed glTF file. What tinygltf read is only parsed, not checked: any index in it may point nowhere.
+/// A parsed glTF file. Its content is not validated: any index in it may be out of range.
 struct GltfModel {
   std::string path;
   tinygltf::Model
@@ -21,7 +21,7 @@ struct GltfModel {
 /// than 2.x, a missing buffer, and a required extension that is not supported.
 GltfModel readGltfModel(const std::string& path);
 
-/// A line for each extension in use that is not supported and that the file doesn't require.
+/// A warning for each extension that the file uses, that it doesn't require, and that is not supported.
 std::vector<std::string> ignoredExtensions(const GltfModel& model);
 
 /// `list[index]`, or an InputError: "`place` refers to `what` `index`, but the file has only …".
@@ -29,18 +29,19 @@ template <typename T>
 const T& element(const GltfModel& model, const std::vector<T>& list, int index, std::string_view place,
                  const char* what);
 
-/// The bytes that a buffer view shows. Throws InputError where it reaches past its buffer.
+/// The bytes of a buffer view, which the model owns. Throws InputError where it reaches past its buffer.
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place);
 
-/// Whether a picture file wasn't there to be read.
+/// Whether an image's file doesn't exist or is empty.
 bool isMissing(const tinygltf::Image& image);
-/// The bytes of one that isn't missing.
+/// The bytes of the picture file of an image that isn't missing; the model owns them.
 std::span<const std::byte> imageBytes(const GltfModel& model, int image);
 
-/// The member of an extension's JSON, as a number; `otherwise` where there is none.
+/// A member of an extension's JSON as a number; `otherwise` where there is none or it isn't a number.
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,
                        double otherwise);
 
+/// Throws InputError "path: place: what".
 [[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);
 
 template <typename T>

@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 bool isHexDigit(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Sees every text of a glTF file go by.
+/// A SAX handler that checks the URIs of a glTF file's buffers and images.
 class UriCheck : public nlohmann::json_sax<Json> {
  public:
   explicit UriCheck(const std::string& path) : path_(path) {}
@@ -51,7 +51,7 @@ class UriCheck : public nlohmann::json_sax<Json> {
   }
 
  private:
-  /// An object or array that the parser is in, and how far it has come.
+  /// An object or array that the parser is in, and its position there.
   struct Level {
     std::string key;        ///< object: of the member being read
     std::size_t index = 0;  ///< array: of the element being read

@@ -25,9 +25,9 @@ glm::dvec2 readPair(const GltfModel& model, const tinygltf::Value& transform, co
   return pair;
 }
 
-/// The specification's matrix is offset · rotation · scale. Its "counter-clockwise" is meant with v growing
-/// downwards, as its example of a picture's lower left quadrant and its test model show; the shader beside
-/// them turns the other way (github.com/KhronosGroup/glTF/issues/1563).
+/// The specification's matrix is offset · rotation · scale. Its "counter-clockwise" holds for v growing
+/// downwards, as its example of a picture's lower left quadrant and its test model show. The shader in the
+/// specification turns the other way (github.com/KhronosGroup/glTF/issues/1563).
 GltfUvs readUvs(const GltfModel& model, const tinygltf::TextureInfo& texture, const std::string& place) {
   GltfUvs uvs;
   if (texture.index < 0) return uvs;

@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-/// Which texture coordinates a texture reads, and what KHR_texture_transform makes of them first.
+/// Which texture coordinates a texture uses, and its KHR_texture_transform: matrix · uv + offset.
 struct GltfUvs {
   int set = -1;  ///< of the TEXCOORD attributes; -1: the material has no such texture
   glm::dmat2 matrix{1.0};
@@ -15,8 +15,8 @@ struct GltfUvs {
   bool operator==(const GltfUvs&) const = default;
 };
 
-/// Of the texture that colours the surface, and of the one that makes it glow, which for KHR_materials_unlit
-/// is the same. `material` −1 is glTF's default material. Throws InputError.
+/// The coordinates of the base colour texture, and of the emissive texture; for KHR_materials_unlit both are
+/// the base colour's. `material` −1 is glTF's default material. Throws InputError.
 GltfUvs baseColorUvs(const GltfModel& model, int material);
 GltfUvs emissionUvs(const GltfModel& model, int material);
 

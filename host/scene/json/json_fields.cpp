@@ -22,7 +22,7 @@ std::string placeOf(const JsonNode& node) {
   return outer.empty() ? key : outer + "." + key;
 }
 
-/// What a message says a value is: "object", "array of 4", or the value itself.
+/// How a message names a value: "an object", "an array of 4", or the value itself.
 std::string describe(const Json& json) {
   if (json.is_object()) return "an object";
   if (json.is_array()) return fmt::format("an array of {}", json.size());

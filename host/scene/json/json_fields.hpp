@@ -30,13 +30,14 @@ struct JsonNode {
 /// "file: place: what".
 std::string messageAt(const JsonNode& node, const std::string& what);
 
-/// Throws it as an InputError.
+/// Throws InputError with messageAt(node, what), as the functions below do for values of another kind.
 [[noreturn]] void refuse(const JsonNode& node, const std::string& what);
 
-/// Parses JSON with // and /* */ comments. Refuses syntax errors (with line and column), a key given twice in
-/// one object, numbers that overflow, and more than 64 levels of nesting. `take` sees every member of a
-/// top-level member (lights[3], cameras.main) as soon as it is complete; where it returns true the value is
-/// dropped, so that a million lights are never in memory as JSON.
+/// Parses JSON with // and /* */ comments. Throws InputError for syntax errors (with line and column), a key
+/// given twice in one object, numbers that overflow, and more than 64 levels of nesting. `take` is called
+/// with every member of a top-level member (lights[3], cameras.main) as soon as it is complete. Where it
+/// returns true the value is dropped, so that a million lights are never in memory as JSON. `file` is the
+/// name for messages.
 Json parseJson(const std::string& text, const std::string& file,
                const std::function<bool(const JsonNode&)>& take);
 
@@ -49,19 +50,21 @@ inline void allowKeys(const JsonNode& object, std::initializer_list<std::string_
 void refuseKeys(const JsonNode& object, std::initializer_list<std::string_view> keys,
                 const std::string& where);
 
-/// The node must be an object (find, need) or an array (element).
+/// A member of an object: find() returns nothing where it is missing, need() throws. element() is a value of
+/// an array, whose index must be in range. Throws InputError where the node is no object (find, need).
 std::optional<JsonNode> find(const JsonNode& object, std::string_view key);
 JsonNode need(const JsonNode& object, std::string_view key);
 JsonNode element(const JsonNode& array, std::size_t index);
 void needObject(const JsonNode& node);
 void needArray(const JsonNode& node);
 
-/// Numbers are finite and at most kLargestNumber in magnitude, so that their squares are finite floats.
+/// A number of magnitude at most kLargestNumber, so that its square is a finite float; in the second form
+/// from `low` to `high`.
 double readNumber(const JsonNode& node);
 double readNumber(const JsonNode& node, double low, double high);
 /// Between 1 / kLargestNumber and kLargestNumber.
 double readPositive(const JsonNode& node);
-/// A whole number from 0 to `largest`; 1e6 counts as one.
+/// A whole number from 0 to `largest`; it may be written as 1e6.
 std::uint64_t readCount(const JsonNode& node, std::uint64_t largest);
 bool readBool(const JsonNode& node);
 std::string readText(const JsonNode& node);

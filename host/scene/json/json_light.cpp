@@ -45,9 +45,8 @@ void readColors(const JsonNode& node, Light& light) {
   light.specular *= intensity;
 }
 
-/// Where a spot shines and how it falls off to the sides. With OpenGL's cutoff of 180° it is a point light,
-/// whatever its exponent and direction; but that it shines somewhere must be said, as for a directional
-/// light.
+/// Reads a spot's direction and its falloff. With OpenGL's cutoff of 180° it becomes a point light, whatever
+/// its exponent and direction; a direction or target is required all the same.
 void readSpot(const JsonNode& node, Light& light) {
   const auto direction = find(node, "direction");
   const auto target = find(node, "target");
@@ -169,11 +168,11 @@ void readList(const JsonNode& csv, const JsonNode& node, const std::string& fold
   field.count = field.list.size();
 }
 
-/// How a light with keys moves; keys of what the light has none of its own are refused.
+/// How a light with keys moves. Refuses keys for members that the light itself doesn't have.
 std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& light) {
   if (!hasKeys(node, {"position", "direction", "target", "color", "intensity", "range"})) return std::nullopt;
   const auto vector = [](const JsonNode& n) { return glm::dvec4(readVector(n), 0); };
-  /// Of a member that only a light with the member `own` has.
+  /// The curve of a member that needs the light's own member `own`.
   const auto curveWith = [&](const char* member, const char* own, const ReadValue& read) {
     return readMotion(node, member, [&](const JsonNode& n) {
       if (!find(node, own)) refuse(n, fmt::format("means nothing for a light without its own \"{}\"", own));

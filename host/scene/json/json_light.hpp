@@ -8,11 +8,12 @@
 
 namespace luciole {
 
-/// Reads an element of "lights" and how it moves into the scene; nothing if it is switched off ("enabled":
-/// false), though it is checked all the same.
+/// Reads an element of "lights", and its motion, into the scene. A light that is switched off ("enabled":
+/// false) is checked but not added. Throws InputError.
 void readLight(const JsonNode& node, Scene& scene);
 
-/// Reads an element of "light_fields", and the file that it may name by a path relative to `folder`.
+/// Reads an element of "light_fields", and the file that it may name by a path relative to `folder`. Throws
+/// InputError.
 LightField readLightField(const JsonNode& node, const std::string& folder);
 
 }  // namespace luciole

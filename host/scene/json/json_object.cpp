@@ -19,14 +19,15 @@ namespace {
 
 constexpr std::size_t kMostObjects = 10'000'000;
 
-/// What a mesh file shows, placed as the file says; its nodes and attachment objects count from 0.
+/// The objects of a mesh file, as the file places them. Indices of its nodes and attached objects count from
+/// 0.
 struct LoadedFile {
   std::vector<Object> objects;
   std::vector<MovingNode> nodes;
   std::vector<Attachment> attachment;
 };
 
-/// What has been loaded so far, by what would make it the same.
+/// What has been loaded so far, by its key, so that nothing is loaded twice.
 struct Loaded {
   std::uint32_t plain_material = 0;               ///< of primitives that name none
   std::map<std::string, int> materials;           ///< name -> index in Scene::materials
@@ -63,7 +64,7 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
     material.emission = glm::vec3(1);  // the map's factor: black would hide it
   }
   if (const auto n = find(node, "emission")) material.emission = readColor(*n);
-  // What glows by a picture that is missing doesn't.
+  // Where the picture of the emission is missing, there is no emission.
   if (find(node, "emission_map") && material.emission_map.texture < 0) material.emission = glm::vec3(0);
   if (const auto n = find(node, "alpha_map")) {
     material.alpha_map = readMap(*n, folder, scene);
@@ -94,8 +95,8 @@ Primitive readPrimitive(const JsonNode& object) {
   const bool is_box = primitive.kind == PrimitiveKind::kBox;
   if (is_box) refuseKeys(object, {"segments"}, "for a box");
   if (!is_plane && !is_box) primitive.segments = 64;
-  // What is flat needs no more triangles than it has sides, but where colours are lit at vertices. A box's
-  // side goes a quarter of the way around.
+  // Flat sides need few triangles, except where colours are lit at vertices. A box has a quarter of 64
+  // squares a side, since a side goes a quarter of the way around.
   if (is_plane && !find(object, "segments")) primitive.lit_segments = 64;
   if (is_box) primitive.lit_segments = 16;
   if (const auto n = find(object, "segments")) {
@@ -121,7 +122,7 @@ glm::dvec3 readScale(const JsonNode& node) {
   return scale;
 }
 
-/// Where an object lies, and if it has keys, the node that it then hangs on.
+/// An object's transform and, if it has keys, the node that it is attached to.
 struct Placement {
   glm::dmat4 still{1.0};
   int node = -1;  ///< in Animation::nodes
@@ -150,7 +151,7 @@ Placement readPlacement(const JsonNode& node, Animation& animation) {
   return result;
 }
 
-/// Cuts off the end of a list from `first` on, and returns it.
+/// Removes the elements of a list from `first` on, and returns them.
 template <class T>
 std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
   std::vector<T> end(std::make_move_iterator(list.begin() + static_cast<std::ptrdiff_t>(first)),
@@ -159,7 +160,7 @@ std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
   return end;
 }
 
-/// A mesh file's objects, which on its first use is loaded into the scene without its lights and cameras.
+/// The objects of a mesh file. At its first use it is loaded into the scene, without its lights and cameras.
 const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& scene) {
   const auto [it, is_new] = loaded.mesh_files.try_emplace(path);
   if (!is_new) return it->second;
@@ -184,7 +185,7 @@ const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& sce
   return file;
 }
 
-/// Places what a file shows; what moves in it goes on doing so where it is placed.
+/// Places a file's objects. Those that move in the file move relative to that place.
 void placeObjects(const LoadedFile& file, const Placement& placement, int material, Scene& scene) {
   Animation& animation = scene.animation;
   const std::size_t first = scene.objects.size();
@@ -236,7 +237,7 @@ void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded,
     const auto [it, is_new] =
         loaded.primitives.try_emplace(primitive, static_cast<std::uint32_t>(scene.meshes.size()));
     if (is_new) {
-      // The object says which material it shows: others may share the mesh.
+      // The material is the object's, since other objects may share the mesh.
       scene.meshes.push_back(makePrimitive(primitive, loaded.plain_material));
     }
     single.objects.push_back({it->second, glm::dmat4(1.0), -1});

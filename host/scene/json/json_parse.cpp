@@ -22,8 +22,8 @@ std::string plainMessage(const Json::exception& error) {
   return forMessage(message);
 }
 
-/// Builds the values that the library's parser announces one after another. (Its own builder with a callback
-/// looks through all of an array's elements whenever one ends, which takes minutes for 200 000.)
+/// Builds JSON values from the events of the library's parser. (The library's own builder with a callback
+/// scans all of an array's elements whenever one ends: minutes for 200 000.)
 class Builder : public nlohmann::json_sax<Json> {
  public:
   Builder(const std::string& file, const std::function<bool(const JsonNode&)>& take)
@@ -55,7 +55,7 @@ class Builder : public nlohmann::json_sax<Json> {
   }
 
  private:
-  /// An object or array that the parser is in, and how far it has come.
+  /// An object or array that the parser is in, and its position there.
   struct Level {
     Json value;
     std::size_t index = 0;  ///< array: of the element being read

@@ -45,7 +45,7 @@ glm::dvec3 readOrbit(const JsonNode& node) {
   return orbit;
 }
 
-/// How a camera with keys moves; `still` is what it has of its own.
+/// How a camera with keys moves; `still` holds the camera's own values.
 void readCameraMotion(const JsonNode& node, const CameraMotion& still, Camera& camera, Scene& scene) {
   if (!hasKeys(node, {still.orbits ? "orbit" : "eye", "target", "fov_y"})) return;
   CameraMotion motion = still;
@@ -132,7 +132,7 @@ Fog readFog(const JsonNode& node) {
   return fog;
 }
 
-/// Whether a scene file says anything of what lights its objects. What glows counts.
+/// Whether a scene file says anything about light: lights, ambient, lighting, or emission of a material.
 bool saysLight(const JsonNode& top) {
   for (const char* key : {"lights", "light_fields", "ambient", "lighting"})
     if (find(top, key)) return true;

@@ -9,7 +9,7 @@
 
 namespace luciole {
 
-/// What a Luciole scene's file says, and no more.
+/// The content of a Luciole scene's file, without what completeScene() adds.
 struct SceneFile {
   Scene scene;
   std::vector<LightField> light_fields;  ///< not among the scene's lights yet

@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// Takes what stands before the next separator, or all, off the front of a text.
+/// Removes the text up to the next separator, or all of it, from the front. Returns it without blanks.
 std::string_view takeUntil(char separator, std::string_view& text) {
   const std::size_t end = text.find(separator);
   const std::string_view part = trimmed(text.substr(0, end));

@@ -28,7 +28,8 @@ std::string vectorText(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]",
 std::string cameraLine(const Camera& camera) {
   const glm::dmat4& place = camera.camera_to_world;
   const glm::dvec3 eye = place[3];
-  // As far away as the eye is from the origin, so that rounding turns the view by 2^-53 or so at any place.
+  // The target is as far from the eye as the eye is from the origin, so that at any place rounding turns the
+  // view by about 2^-53.
   const double away = std::max({1.0, std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)});
   const glm::dvec3 target = eye - away * glm::dvec3(place[2]);
   const std::string lens = camera.orthographic ? fmt::format("\"orthographic\": {}", camera.half_height)
@@ -38,7 +39,7 @@ std::string cameraLine(const Camera& camera) {
       vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near, camera.far);
 }
 
-/// The end of a scene's file.
+/// Appends the lights and the end of a scene's file.
 void appendLights(const std::vector<Light>& lights, std::string& text) {
   text += "  \"lights\": [";
   const auto out = std::back_inserter(text);
@@ -76,7 +77,7 @@ std::string meshWithLights(const std::string& mesh_path, const Camera& camera,
 
 std::string sceneWithLights(const std::string& scene_path, const std::string& folder, const Camera& camera,
                             const std::vector<Light>& lights) {
-  // Ordered, because the first of several cameras is what is seen.
+  // Ordered, because the first of several cameras is the default.
   using OrderedJson = nlohmann::ordered_json;
   OrderedJson scene = OrderedJson::parse(readFile(scene_path), nullptr, true, true);
   scene.erase("lights");

@@ -24,7 +24,7 @@ void appendLights(const LightField& field, const std::function<glm::dvec3(std::u
                   std::vector<Light>& lights) {
   const bool listed = field.shape == FieldShape::kList;
   std::uint64_t place_state = field.seed;
-  // Looks have a stream of their own, so that changing them moves no light.
+  // Looks have their own random stream, so that changing them moves no light.
   std::uint64_t look_state = ~field.seed;
   for (std::uint64_t i = 0; i < field.count; ++i) {
     Light light;

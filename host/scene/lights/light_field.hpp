@@ -15,7 +15,7 @@ namespace luciole {
 enum class FieldShape : std::uint8_t {
   kBox,       ///< uniform in the box from `low` to `high`
   kBall,      ///< uniform in the ball around `center`
-  kSphere,    ///< uniform on its surface
+  kSphere,    ///< uniform on the surface of that ball
   kSurface,   ///< uniform on the scene's triangles, `offset` in front of them
   kClusters,  ///< around `clusters` centres, which are uniform in the box
   kCurve,     ///< along the curve through `points`, uniform in its length
@@ -23,7 +23,8 @@ enum class FieldShape : std::uint8_t {
 };
 
 /// Point lights spread at random. The same seed gives the same lights on every machine, to the bit, and a
-/// smaller count gives the first lights of a larger one. Positions don't depend on the looks.
+/// smaller count gives the first lights of a larger one. Positions don't depend on the looks (colours,
+/// intensities, ranges).
 struct LightField {
   std::uint64_t count = 0;
   std::uint64_t seed = 0;
@@ -31,22 +32,24 @@ struct LightField {
   glm::dvec3 low{0.0};  ///< world, metres; box and clusters
   glm::dvec3 high{1.0};
   glm::dvec3 center{0.0};  ///< ball and sphere
-  /// Metres. Ball and sphere: theirs. Clusters: how far their lights may lie from the centre; most are near
-  /// it. Curve: how far lights may lie from it, evenly in the ball around their place.
+  /// Metres. Ball and sphere: the radius. Clusters: the largest distance of lights from their cluster's
+  /// centre; most are near it. Curve: lights are uniform in a ball of this radius around their place on the
+  /// curve.
   double radius = 1.0;
   double offset = 0.0;  ///< surface: metres along the triangle's normal, towards its front
   std::uint64_t clusters = 1;
   std::vector<glm::dvec3>
       points;               ///< curve: two or more. Catmull-Rom, uniform; ends as if it went on straight
-  std::vector<Light> list;  ///< not fewer than count
-  // Looks. A list has colours and attenuation of its own, and ranges for where none are given here.
+  std::vector<Light> list;  ///< at least `count` lights
+  // Looks. A list's lights have their own colours, and their own ranges unless `range` or `cutoff` gives
+  // some.
   std::vector<glm::vec3> colors{glm::vec3(1.0f)};  ///< each light picks one; never empty
   glm::vec2 intensity{1.0f};                       ///< multiplies the colour; uniform from x to y
   glm::vec2 range{
       std::numeric_limits<float>::infinity()};  ///< metres, uniform from x to y; or infinite, both
   glm::vec3 attenuation{1.0f, 0.0f, 0.0f};
-  /// Unless 0: ranges are as rangeForCutoff says instead, which with an attenuation of (0,0,1) is where the
-  /// light has faded to this.
+  /// If > 0, ranges are those of rangeForCutoff instead. With an attenuation of (0,0,1) a light has faded to
+  /// this value there.
   double cutoff = 0.0;
   bool shadow = false;
 };
@@ -54,18 +57,18 @@ struct LightField {
 /// The most lights a scene may have.
 inline constexpr std::uint64_t kMostLights = 100'000'000;
 
-/// The shapes that people may name: all but the list.
+/// The shapes that scene files and options may name: all but the list.
 inline constexpr std::string_view kFieldShapeNames = "box, ball, sphere, surface, clusters or curve";
 std::optional<FieldShape> fieldShapeNamed(std::string_view name);
 
-/// A field of no lights yet, of a shape that fills or runs through a box: a ball or sphere as wide as the box
-/// on average, 32 clusters, a winding curve. Lights on surfaces lie in front of them by a hundredth of the
-/// box's longest side. Colours are those of lamps and neon.
+/// A field with `count` 0, of a shape that fills or runs through a box: a ball or sphere whose diameter is
+/// the mean of the box's sides, 32 clusters, a winding curve. Lights on surfaces lie in front of them by a
+/// hundredth of the box's longest side. Colours are those of lamps and neon.
 LightField fieldInBox(FieldShape shape, const Bounds& box);
 
-/// Appends the field's lights to the scene's, whose triangles FieldShape::kSurface is about. Throws
-/// InputError when there would be more than kMostLights, or no surface to put them on, MachineError when they
-/// don't fit in memory.
+/// Appends the field's lights to the scene's. FieldShape::kSurface uses the scene's triangles at its pose.
+/// Throws InputError where there would be more than kMostLights or there is no surface to put them on,
+/// MachineError where they don't fit into memory. O(count), and O(triangles) for kSurface.
 void expandLightField(const LightField& field, Scene& scene);
 
 }  // namespace luciole

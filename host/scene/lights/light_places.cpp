@@ -11,7 +11,7 @@
 namespace luciole {
 namespace {
 
-// Only + − × ÷ and the square root below: they round the same way everywhere, sine and logarithm don't.
+// Only + − × ÷ and square roots are used here: they round alike on every machine, sines and logarithms don't.
 
 double between(double low, double high, double u) { return std::min(low + u * (high - low), high); }
 
@@ -41,8 +41,8 @@ glm::dvec3 pointOnSphere(std::uint64_t& state) {
   }
 }
 
-/// The mean of two points of the ball around a centre: densest there, and none beyond the radius. Centres are
-/// made when they are asked for, from a stream of their own.
+/// The mean of two points uniform in the ball around a cluster's centre: densest at the centre, and none
+/// beyond the radius. Centres are computed when needed, from a random stream of their own.
 glm::dvec3 pointInCluster(const LightField& field, std::uint64_t& state) {
   constexpr std::uint64_t kCenterStream = 0x5851f42d4c957f2du;
   const double pick = nextUniform(state) * static_cast<double>(field.clusters);
@@ -54,8 +54,8 @@ glm::dvec3 pointInCluster(const LightField& field, std::uint64_t& state) {
   return center + field.radius * (0.5 * (a + b));
 }
 
-/// Pieces of a whole, such as triangles of a surface, by the running sum of their sizes: the one where a
-/// share u in [0,1) of the whole ends, never one of size 0.
+/// Chooses a piece with a probability in proportion to its size, such as a triangle by its area. `sums`: the
+/// running sums of the sizes; `u`: uniform in [0,1). Never chooses a piece of size 0. O(log pieces).
 std::size_t pieceAt(const std::vector<double>& sums, double u) {
   const auto above = std::upper_bound(sums.begin(), sums.end(), u * sums.back());
   // The product may be rounded up to the whole.
@@ -85,7 +85,7 @@ struct SurfacePlaces {
   const LightField& field;
   const Scene& scene;
   std::vector<double> areas;        ///< running sum of twice the areas of all objects' triangles
-  std::vector<std::size_t> firsts;  ///< each object's first in it
+  std::vector<std::size_t> firsts;  ///< index in `areas` of each object's first triangle
 
   SurfacePlaces(const LightField& field_of, const Scene& scene_of) : field(field_of), scene(scene_of) {
     double sum = 0;
@@ -115,17 +115,17 @@ struct SurfacePlaces {
     }
     const glm::dvec3 cross = triangle.cross();
     const glm::dmat3 axes(object.object_to_world);
-    // Mirroring turns the order of corners round, not what is the front.
+    // Mirroring reverses the order of corners, but the front stays the front.
     const double side = glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0 ? -1 : 1;
     return triangle.corner + u * triangle.edge1 + v * triangle.edge2 +
            side * field.offset / lengthOf(cross) * cross;
   }
 };
 
-/// Catmull and Rom 1974, "A class of local interpolating splines", in chords.
+/// The spline of Catmull and Rom 1974, "A class of local interpolating splines", as chords.
 struct CurvePlaces {
   const LightField& field;
-  std::vector<glm::dvec3> ends;  ///< of the chords, one more than they are
+  std::vector<glm::dvec3> ends;  ///< of the chords: one more than chords
   std::vector<double> lengths;   ///< running sum
 
   explicit CurvePlaces(const LightField& field_of) : field(field_of) {
@@ -154,7 +154,7 @@ struct CurvePlaces {
     const double before = chord == 0 ? 0 : lengths[chord - 1];
     const double length = lengths[chord] - before;
     const double share = length > 0 ? std::min((u * lengths.back() - before) / length, 1.0) : 0;
-    // Drawn in any case, so that a radius moves lights away from the curve and not along it.
+    // Drawn even for a radius of 0, so that changing the radius moves no light along the curve.
     const glm::dvec3 scatter = pointInBall(state);
     return ends[chord] + share * (ends[chord + 1] - ends[chord]) + field.radius * scatter;
   }

@@ -21,10 +21,10 @@ namespace {
 constexpr double kShortestRange = 1e-18;
 constexpr double kLongestRange = 1e18;
 
-/// The wanted distance is that of pair number `wanted` (from 1) in the order of their distances. Lights are
-/// put into blocks of neighbours, so that most pairs of a point and a block are settled by the block's box,
-/// and the squared distances, whose bits are ordered as they are, are sorted into buckets that get finer each
-/// time.
+/// Among the distances of all pairs of a point and a light, the search is for the one with rank `wanted`
+/// (from 1). It is a radix selection over the bits of squared distances, which are ordered as the doubles
+/// are: each pass counts pairs in buckets, and the next pass divides one bucket. Lights are put into blocks
+/// of neighbours, so that for most pairs of a point and a block the block's box decides.
 constexpr std::size_t kBlockLights = 64;
 constexpr int kBucketBits = 14;
 constexpr std::uint64_t kBuckets = std::uint64_t{1} << kBucketBits;
@@ -40,7 +40,7 @@ struct Blocks {
   std::size_t size(std::size_t block) const { return std::min(kBlockLights, x.size() - first(block)); }
 };
 
-/// Along a Z curve through the box around them.
+/// Blocks of lights along a Z curve through the lights' bounding box.
 Blocks makeBlocks(std::span<const Light> lights) {
   glm::dvec3 low(1e300), high(-1e300);
   for (const Light& light : lights) {
@@ -81,8 +81,8 @@ Blocks makeBlocks(std::span<const Light> lights) {
 
 double squaredLength(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
-/// Bounds of the squared distances from a point to a block's lights. Rounding keeps order, and they are made
-/// by the same operations, so no computed distance lies outside.
+/// Bounds of the squared distances from a point to a block's lights. They hold for the computed distances
+/// too: rounding is monotonic, and the operations are the same.
 struct Reach {
   double nearest, farthest;
 };
@@ -118,7 +118,7 @@ Tally tallyPairs(const Blocks& blocks, std::size_t points, std::size_t buckets, 
   return sum;
 }
 
-/// The bucket that holds number `wanted` (from 1), which is reduced by what lies in the buckets before it.
+/// The bucket that holds rank `wanted` (from 1). Subtracts from `wanted` the count of all buckets before it.
 std::uint64_t bucketOf(const Histogram& histogram, std::uint64_t& wanted) {
   std::uint64_t bucket = 0;
   while (wanted > histogram[bucket]) wanted -= histogram[bucket++];
@@ -130,8 +130,8 @@ struct Bracket {
   std::uint64_t low, high;
 };
 
-/// From the boxes alone. Fewer pairs than blocks' nearest points lie below any distance, and more than
-/// farthest.
+/// A first bracket from the boxes alone. Below any distance there are at most as many pairs as pairs whose
+/// block's nearest point is below it, and at least as many as pairs whose block's farthest point is.
 Bracket bracketByBoxes(const Blocks& blocks, std::span<const glm::dvec3> points, std::uint64_t wanted) {
   constexpr int kShift = 48;
   const Tally tally = tallyPairs(blocks, points.size(), std::size_t{1} << (64 - kShift),
@@ -144,7 +144,7 @@ Bracket bracketByBoxes(const Blocks& blocks, std::span<const glm::dvec3> points,
   return {bucketOf(tally.first, by_nearest) << kShift, (bucketOf(tally.second, by_farthest) + 1) << kShift};
 }
 
-/// Counts pairs below the bracket, and in it by buckets of 2^shift keys.
+/// Counts the pairs below the bracket, and those in it by buckets of 2^shift keys.
 Tally tallyBracket(const Blocks& blocks, std::span<const glm::dvec3> points, const Bracket& bracket,
                    int shift) {
   return tallyPairs(blocks, points.size(), kBuckets, [&](std::size_t block, std::size_t point, Tally& to) {
@@ -174,7 +174,7 @@ Tally tallyBracket(const Blocks& blocks, std::span<const glm::dvec3> points, con
   });
 }
 
-/// The smallest range whose square is above this.
+/// The smallest range whose square is above `squared`; at least kShortestRange.
 float rangeBeyond(double squared) {
   float range = static_cast<float>(std::sqrt(squared));
   while (double(range) * range > squared) range = std::nextafter(range, 0.0f);

@@ -7,15 +7,16 @@
 
 namespace luciole {
 
-/// The smallest range with which a point has at least `density` of the lights nearer to it than that, in the
-/// mean over the points; with which every point has every light, if there are fewer. At least 1e-18 m;
-/// infinite where there are no lights or no points. Exact, and the same for any order and number of threads:
-/// a pair counts where the square of its distance, computed in double as dx² + dy² + dz², is below the
-/// range's. Lights have positions, within ±1e18 as the points. `density` > 0.
+/// The smallest range, in metres, with which a point has on average at least `density` lights within the
+/// range; if there are fewer lights, the range with which every point has all. At least 1e-18; infinite where
+/// there are no lights or no points. Exact, and independent of order and number of threads: a pair counts
+/// where the square of its distance, computed in double as dx² + dy² + dz², is below the range's square.
+/// Lights must have positions; positions and points are world space, within ±1e18. `density` > 0. O(lights ·
+/// points) at worst, in parallel.
 float rangeForDensity(std::span<const Light> lights, std::span<const glm::dvec3> points, double density);
 
-/// Where a light that fades with the square of the distance, without a window, has faded to `cutoff` > 0: the
-/// root of its brightest diffuse channel / cutoff. From 1e-18 to 1e18 m.
+/// The distance, in metres, where a light that fades with the square of the distance, without a window, has
+/// faded to `cutoff` > 0: √(brightest diffuse channel / cutoff), from 1e-18 to 1e18.
 float rangeForCutoff(const Light& light, double cutoff);
 
 }  // namespace luciole

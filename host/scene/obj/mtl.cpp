@@ -53,8 +53,8 @@ TextureUse textureUse(const MtlEntry& entry, const char* statement, std::string 
   return use;
 }
 
-/// The values of one material. Statements that the file leaves out get the defaults of our Material, rather
-/// than tinyobjloader's black, by standing before the file's own.
+/// Parses one material. Statements with the defaults of Material stand before the file's own, so that what
+/// the file leaves out isn't tinyobjloader's black.
 tinyobj::material_t parse(const MtlEntry& entry) {
   std::istringstream stream("Ka 0.2 0.2 0.2\nKd 0.8 0.8 0.8\nillum 2\n" + entry.statements);
   std::map<std::string, int> ids;
@@ -109,10 +109,10 @@ Material readMaterial(const MtlEntry& entry, Scene& scene) {
   material.diffuse_map = textureUse(entry, "map_Kd", values.diffuse_texname, values.diffuse_texopt, scene);
   material.emission_map = textureUse(entry, "map_Ke", values.emissive_texname, values.emissive_texopt, scene);
   material.alpha_map = textureUse(entry, "map_d", values.alpha_texname, values.alpha_texopt, scene);
-  // A map_Ke alone is meant to be seen.
+  // With a map_Ke and no Ke the factor is 1, or the map would not be seen.
   const bool only_map = material.emission_map.texture >= 0 && material.emission == glm::vec3(0);
   if (only_map) material.emission = glm::vec3(1);
-  // What glows by a picture that is missing doesn't.
+  // Where the picture of the emission is missing, there is no emission.
   if (!values.emissive_texname.empty() && material.emission_map.texture < 0) material.emission = glm::vec3(0);
   material.double_sided = true;
   return material;

@@ -35,8 +35,8 @@ std::string withSlashes(const std::string& words) {
   return path;
 }
 
-/// The paths that the arguments of an mtllib statement name: one file whose name may hold blanks, or else
-/// several names with blanks between. Files that don't exist are left out: their materials become the default
+/// The paths that the arguments of an mtllib statement name: one file whose name may contain blanks, or else
+/// several names separated by blanks. Files that don't exist are left out; their materials become the default
 /// one.
 std::vector<std::string> materialPaths(const std::filesystem::path& folder, const std::string& arguments) {
   const std::filesystem::path whole = folder / withSlashes(arguments);
@@ -90,7 +90,7 @@ std::vector<Triangle> cutFaces(const ObjFile& file, const std::vector<MtlEntry>&
   return triangles;
 }
 
-/// Makes the file's normals unit; corners whose normal has no direction are left without.
+/// Normalizes the file's normals. Corners whose normal has no direction get none.
 void normalize(ObjFile& file, std::vector<Triangle>& triangles) {
   std::vector<bool> usable;
   for (glm::vec3& normal : file.normals) {
@@ -105,7 +105,7 @@ void normalize(ObjFile& file, std::vector<Triangle>& triangles) {
   }
 }
 
-/// Winds triangles to agree with the file's normals, where all three corners have one.
+/// Reverses triangles that face away from the file's normals, where all three corners have one.
 void windByNormals(const ObjFile& file, std::vector<Triangle>& triangles) {
   for (Triangle& triangle : triangles) {
     auto& [a, b, c] = triangle.corners;
@@ -118,7 +118,7 @@ void windByNormals(const ObjFile& file, std::vector<Triangle>& triangles) {
   }
 }
 
-/// Gives corners without a normal one, smooth within a smoothing group, flat outside any.
+/// Gives a normal to corners without one: smooth within a smoothing group, flat outside of groups.
 void addMissingNormals(ObjFile& file, std::vector<Triangle>& triangles) {
   const auto has_all = [](const Triangle& triangle) {
     return std::all_of(triangle.corners.begin(), triangle.corners.end(),
@@ -153,7 +153,7 @@ void addMissingNormals(ObjFile& file, std::vector<Triangle>& triangles) {
   }
 }
 
-/// Hands out one vertex for each different (position, normal, uv).
+/// Makes one vertex for each distinct (position, normal, uv).
 class VertexMaker {
  public:
   VertexMaker(const ObjFile& file, Mesh& mesh)
@@ -189,7 +189,8 @@ class VertexMaker {
   std::vector<Made> made_;
 };
 
-/// The index in the scene of the material of each entry that a triangle uses; key -1: the default material.
+/// Adds the materials that triangles use. Returns their indices in the scene by entry; key -1: the default
+/// material.
 std::map<int, std::uint32_t> addMaterials(const std::vector<MtlEntry>& entries,
                                           const std::vector<Triangle>& triangles, Scene& scene) {
   std::map<int, std::uint32_t> materials;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostCorners = 255;  // triangulating a polygon of n corners takes up to n³ steps
 
-/// One of the three numbered lists of an OBJ file, and the furthest that a face reaches into it.
+/// One of the three numbered lists of an OBJ file, and the largest index of it that a face uses.
 struct List {
   const char* name;
   std::int64_t count = 0;
@@ -86,7 +86,7 @@ std::optional<float> finiteNumber(std::string_view word) {
   return static_cast<float>(value);
 }
 
-/// The numbers of a v, vt or vn: at least `required`, and up to `most` where they are there, else 0.
+/// The numbers of a v, vt or vn: at least `required`, at most `most`; missing ones are 0.
 glm::vec3 takeNumbers(Reader& reader, List& list, std::string_view& rest, int required, int most) {
   glm::vec3 numbers(0);
   for (int found = 0; found < most; ++found) {
@@ -101,7 +101,7 @@ glm::vec3 takeNumbers(Reader& reader, List& list, std::string_view& rest, int re
   return numbers;
 }
 
-/// The three numbers after a position, where they are there.
+/// The three numbers after a position; empty where they are missing.
 std::optional<glm::vec3> takeColor(std::string_view& rest) {
   glm::vec3 color;
   for (int i = 0; i < 3; ++i) {
@@ -112,8 +112,8 @@ std::optional<glm::vec3> takeColor(std::string_view& rest) {
   return color;
 }
 
-/// An index counted from 1, or from the end where negative, as one counted from 0. It may point at what
-/// comes later in the file.
+/// Converts an index from 1, or a negative one from the end, to one from 0. It may refer to what comes later
+/// in the file.
 int readIndex(Reader& reader, std::string_view word, List& list) {
   std::int64_t index = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
@@ -161,7 +161,7 @@ void readFace(Reader& reader, std::string_view rest) {
   file.faces.push_back(face);
 }
 
-/// "on" is group 1; "off" and what is no number are none.
+/// "on" is group 1; "off" and other words are no group.
 void readSmoothing(Reader& reader, std::string_view group) {
   reader.has_smoothing = true;
   if (group.empty()) return;

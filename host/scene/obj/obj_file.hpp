@@ -21,7 +21,7 @@ struct ObjFace {
   unsigned smoothing;        ///< group; 0: flat
 };
 
-/// What an OBJ file says of surfaces. Every number is finite, every index points into its list.
+/// The surfaces of an OBJ file. Every number is finite, every index is in range.
 struct ObjFile {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> colors;  ///< one a position, or none
@@ -34,8 +34,7 @@ struct ObjFile {
 };
 
 /// Reads the statements v, vt, vn, f, s, usemtl and mtllib, and leaves out all others. In a file without any
-/// "s", all faces are of smoothing group 1. Throws InputError naming the line. Takes time in proportion to
-/// the file's size.
+/// "s", all faces are of smoothing group 1. Throws InputError naming the line. O(bytes of the file).
 ObjFile readObjFile(const std::string& path);
 
 }  // namespace luciole
