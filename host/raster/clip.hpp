@@ -18,6 +18,7 @@ struct ClipVolume {
   glm::dvec2 guard;
   double near_w;  ///< w on the near plane, > 0
 };
+/// The clip volume of a view: its depth range, and the guard band around its picture.
 ClipVolume clipVolume(const View& view);
 
 /// After six planes a triangle has at most 3, 4, 6, 9, 13, 19, 28 corners.

@@ -109,6 +109,7 @@ inline bool eyeInFront(const glm::dvec3& normal, const glm::dvec3& point, bool p
   return perspective ? glm::dot(normal, point) < 0.0 : normal.z > 0.0;
 }
 
+/// Whether a view is perspective; otherwise it is parallel.
 inline bool isPerspective(const View& view) { return view.projection[2][3] != 0.0; }
 
 }  // namespace luciole

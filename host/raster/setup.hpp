@@ -42,8 +42,8 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
 /// The same for the meshlets chosen, which it transforms itself. No face is culled.
 RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view);
 
-/// The pixels whose samples a triangle may cover: those in its bounding box, `last` included. A sample
-/// exactly on the right or bottom edge belongs to the neighbouring triangle.
+/// The pixels whose samples a triangle may cover: those in its bounding box, `last` included; empty where
+/// first > last. A sample exactly on the right or bottom edge belongs to the neighbouring triangle.
 struct PixelBox {
   glm::ivec2 first;
   glm::ivec2 last;

@@ -58,7 +58,7 @@ struct Animation {
   std::vector<Attachment> objects, attached_cameras, attached_lights;
   std::vector<CameraMotion> cameras;
   std::vector<LightMotion> lights;
-  int no_mesh = -1;  ///< in Scene::meshes: the empty one that flattened objects show; -1: nothing hangs
+  int no_mesh = -1;  ///< in Scene::meshes: the empty mesh of flattened objects; -1: nothing is attached
 };
 
 }  // namespace luciole

@@ -47,6 +47,7 @@ glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& 
 std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera);
 std::string hangLight(const glm::dmat4& node_to_world, Light& light);
 
+/// Whether all 16 elements are finite.
 bool isFinite(const glm::dmat4& matrix);
 /// Whether a transform's determinant is 0: it flattens objects, so nothing of them shows.
 bool isFlat(const glm::dmat4& matrix);

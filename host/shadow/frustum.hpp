@@ -13,6 +13,7 @@ namespace luciole {
 /// y, bit 2: z at its high side.
 using Corners = std::array<glm::dvec3, 8>;
 
+/// The corners of an axis-aligned box.
 Corners boxCorners(const Bounds& box);
 
 /// The view volume, whatever the crop; its axes are those of normalized device coordinates. Depth is

@@ -55,6 +55,7 @@ void refuseKeys(const JsonNode& object, std::initializer_list<std::string_view> 
 std::optional<JsonNode> find(const JsonNode& object, std::string_view key);
 JsonNode need(const JsonNode& object, std::string_view key);
 JsonNode element(const JsonNode& array, std::size_t index);
+/// Throw InputError unless the node is an object, or an array.
 void needObject(const JsonNode& node);
 void needArray(const JsonNode& node);
 
@@ -66,6 +67,7 @@ double readNumber(const JsonNode& node, double low, double high);
 double readPositive(const JsonNode& node);
 /// A whole number from 0 to `largest`; it may be written as 1e6.
 std::uint64_t readCount(const JsonNode& node, std::uint64_t largest);
+/// A boolean, and a text.
 bool readBool(const JsonNode& node);
 std::string readText(const JsonNode& node);
 /// The name of a file, relative to `folder`.
@@ -74,6 +76,7 @@ std::string pathOf(const JsonNode& node, const std::string& folder);
 std::string faultOfPath(const std::string& path);
 /// The name of a file that exists, relative to `folder`.
 std::string readPath(const JsonNode& node, const std::string& folder);
+/// [x,y,z], each of magnitude at most kLargestNumber.
 glm::dvec3 readVector(const JsonNode& node);
 /// A vector's direction, unit. Refuses the zero vector.
 glm::dvec3 readDirection(const JsonNode& node);

@@ -59,6 +59,7 @@ inline constexpr std::uint64_t kMostLights = 100'000'000;
 
 /// The shapes that scene files and options may name: all but the list.
 inline constexpr std::string_view kFieldShapeNames = "box, ball, sphere, surface, clusters or curve";
+/// The shape of one of these names; empty for any other name.
 std::optional<FieldShape> fieldShapeNamed(std::string_view name);
 
 /// A field with `count` 0, of a shape that fills or runs through a box: a ball or sphere whose diameter is
