@@ -15,22 +15,22 @@ struct SquareWeights {
 };
 
 /// Where the rays of a square's pixels intersect a surface's plane, inside the triangle or not.
-struct PlaneMeeting {
+struct PlaneCrossing {
   SquareWeights weights;
   Lanes<double> scale;  ///< 1 / dot(determinant row, p)
 };
 
-PlaneMeeting meetPlane(const Surface& surface, const SquarePlace& place) {
+PlaneCrossing crossPlane(const Surface& surface, const SquarePlace& place) {
   const glm::dvec3 weight1 = surface.weight1, weight2 = surface.weight2, determinant = surface.determinant;
-  PlaneMeeting candidate;
+  PlaneCrossing crossing;
   for (int i = 0; i < kSquarePixels; ++i) {
     const double x = place.x[i], y = place.y[i];
     const double scale = 1.0 / (determinant.x * x + determinant.y * y + determinant.z);
-    candidate.scale[i] = scale;
-    candidate.weights.second[i] = (weight1.x * x + weight1.y * y + weight1.z) * scale;
-    candidate.weights.third[i] = (weight2.x * x + weight2.y * y + weight2.z) * scale;
+    crossing.scale[i] = scale;
+    crossing.weights.second[i] = (weight1.x * x + weight1.y * y + weight1.z) * scale;
+    crossing.weights.third[i] = (weight2.x * x + weight2.y * y + weight2.z) * scale;
   }
-  return candidate;
+  return crossing;
 }
 
 /// The weights with those of the pixels that see the surface moved into the triangle (see weightsInside).
@@ -130,14 +130,14 @@ void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
 /// d' a pixel, so
 ///     (n + n') / (d + d') − n / d = (n' − u · d') / (d + d').
 void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& uv, double pixel,
-               const PlaneMeeting& candidate, const Lanes<double>& u, const Lanes<double>& v,
+               const PlaneCrossing& crossing, const Lanes<double>& u, const Lanes<double>& v,
                Lanes<float>& du, Lanes<float>& dv) {
   const double weight1 = pixel * surface.weight1[axis], weight2 = pixel * surface.weight2[axis];
   const double determinant = pixel * surface.determinant[axis];
   const glm::dvec2 row = weight1 * uv.to_second + weight2 * uv.to_third;
   const glm::dvec2 first = uv.first;
   for (int i = 0; i < kSquarePixels; ++i) {
-    const double scale = candidate.scale[i];
+    const double scale = crossing.scale[i];
     const float next = 1.0f / float(1.0 + determinant * scale);
     du[i] = float((row.x - (u[i] - first.x) * determinant) * scale) * next;
     dv[i] = float((row.y - (v[i] - first.y) * determinant) * scale) * next;
@@ -146,13 +146,13 @@ void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& 
 }
 
 void setFootprints(const Surface& surface, const Interpolant<glm::dvec2>& uv, const ViewPlane& plane,
-                   const PlaneMeeting& candidate, const SquareWeights& weights, SquareFootprints& result) {
+                   const PlaneCrossing& crossing, const SquareWeights& weights, SquareFootprints& result) {
   result.u = rounded(interpolate(uv, 0, weights));
   result.v = rounded(interpolate(uv, 1, weights));
-  const Lanes<double> u = interpolate(uv, 0, candidate.weights);
-  const Lanes<double> v = interpolate(uv, 1, candidate.weights);
-  stepAlong(0, surface, uv, plane.scale.x, candidate, u, v, result.du_dx, result.dv_dx);
-  stepAlong(1, surface, uv, plane.scale.y, candidate, u, v, result.du_dy, result.dv_dy);
+  const Lanes<double> u = interpolate(uv, 0, crossing.weights);
+  const Lanes<double> v = interpolate(uv, 1, crossing.weights);
+  stepAlong(0, surface, uv, plane.scale.x, crossing, u, v, result.du_dx, result.dv_dx);
+  stepAlong(1, surface, uv, plane.scale.y, crossing, u, v, result.du_dy, result.dv_dy);
 }
 
 void fill(const glm::vec3& value, Lanes3<float>& out) {
@@ -231,8 +231,8 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
                       const LaneMask& sees_it) {
   const Surface& surface = seen.surface;
   SquareValues values;
-  const PlaneMeeting candidate = meetPlane(surface, place);
-  const SquareWeights weights = holdInside(surface, place, sees_it, candidate.weights);
+  const PlaneCrossing crossing = crossPlane(surface, place);
+  const SquareWeights weights = holdInside(surface, place, sees_it, crossing.weights);
   // Relative to the first corner, so that small triangles far from the eye keep their precision.
   for (int c = 0; c < 3; ++c)
     values.position[c] = rounded(interpolate(surface.corner[c], surface.edge1[c], surface.edge2[c], weights));
@@ -242,10 +242,10 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   setLift(seen, weights, normal, values.lift);
   values.geometric_normal.fill(seen.geometric_normal);
   setMaterial(input, seen, weights, values);
-  setFootprints(surface, seen.uv, input.plane, candidate, weights, values.footprints);
+  setFootprints(surface, seen.uv, input.plane, crossing, weights, values.footprints);
   values.emission_footprints = values.footprints;
   if (seen.glows_apart)
-    setFootprints(surface, seen.emission_uv, input.plane, candidate, weights, values.emission_footprints);
+    setFootprints(surface, seen.emission_uv, input.plane, crossing, weights, values.emission_footprints);
   return values;
 }
 

@@ -26,7 +26,7 @@ std::size_t countTriangles(const Scene& scene) {
 }
 
 /// Embree's filter callback: asks the HitFilter about each hit of a packet.
-void filterMeetings(const RTCFilterFunctionNArguments* arguments) {
+void filterHits(const RTCFilterFunctionNArguments* arguments) {
   const auto& hit_filter = *static_cast<const HitFilter*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
@@ -139,8 +139,8 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter h
   if (hit_filter) {
     result.hit_filter = std::make_shared<const HitFilter>(std::move(hit_filter));
     rtcSetGeometryUserData(geometry, const_cast<HitFilter*>(result.hit_filter.get()));
-    rtcSetGeometryIntersectFilterFunction(geometry, filterMeetings);
-    rtcSetGeometryOccludedFilterFunction(geometry, filterMeetings);
+    rtcSetGeometryIntersectFilterFunction(geometry, filterHits);
+    rtcSetGeometryOccludedFilterFunction(geometry, filterHits);
   }
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(result.scene.get(), geometry);

@@ -73,7 +73,8 @@ void poseScene(Scene& scene, double frame) {
   const std::vector<glm::dmat4> worlds = nodeTransforms(scene, frame);
   const auto placeOf = [&](const Attachment& attachment) {
     const glm::dmat4 place = worlds[attachment.node] * attachment.after;
-    if (!isFinite(place)) fail(scene, frame, "what hangs on a moving node", "its transform is not finite");
+    if (!isFinite(place))
+      fail(scene, frame, "what is attached to a moving node", "its transform is not finite");
     return place;
   };
   for (const Attachment& attachment : animation.objects) {
@@ -83,11 +84,11 @@ void poseScene(Scene& scene, double frame) {
         isFlat(object.object_to_world) ? static_cast<std::uint32_t>(animation.no_mesh) : attachment.mesh;
   }
   for (const Attachment& attachment : animation.attached_cameras) {
-    const std::string fault = hangCamera(placeOf(attachment), scene.cameras[attachment.index]);
+    const std::string fault = attachCamera(placeOf(attachment), scene.cameras[attachment.index]);
     if (!fault.empty()) fail(scene, frame, cameraName(scene, attachment.index), fault);
   }
   for (const Attachment& attachment : animation.attached_lights) {
-    const std::string fault = hangLight(placeOf(attachment), scene.lights[attachment.index]);
+    const std::string fault = attachLight(placeOf(attachment), scene.lights[attachment.index]);
     if (!fault.empty()) fail(scene, frame, fmt::format("light {}", attachment.index), fault);
   }
   for (const CameraMotion& motion : animation.cameras) {
@@ -180,7 +181,7 @@ glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& 
   return glm::scale(glm::translate(glm::dmat4(1.0), translate) * glm::mat4_cast(glm::normalize(turn)), scale);
 }
 
-std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera) {
+std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera) {
   const glm::dvec3 back(node_to_world[2]), up(node_to_world[1]);
   const glm::dvec3 right = glm::cross(up, back);
   if (!hasDirection(right) || !hasDirection(back)) return "its scale leaves a camera no direction";
@@ -190,7 +191,7 @@ std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera) {
   return "";
 }
 
-std::string hangLight(const glm::dmat4& node_to_world, Light& light) {
+std::string attachLight(const glm::dmat4& node_to_world, Light& light) {
   light.position = glm::dvec3(node_to_world[3]);
   if (light.kind == LightKind::kPoint) return "";
   const glm::dvec3 back(node_to_world[2]);

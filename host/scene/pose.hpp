@@ -44,8 +44,8 @@ glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& 
 
 /// Places a camera or light that is attached to a node: it looks along the node's −z. Returns what is wrong,
 /// or "".
-std::string hangCamera(const glm::dmat4& node_to_world, Camera& camera);
-std::string hangLight(const glm::dmat4& node_to_world, Light& light);
+std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera);
+std::string attachLight(const glm::dmat4& node_to_world, Light& light);
 
 /// Whether all 16 elements are finite.
 bool isFinite(const glm::dmat4& matrix);

@@ -21,6 +21,7 @@
 #include "base/error.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
+#include "messages.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

@@ -175,7 +175,7 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   const std::string place = fmt::format("cameras[{}]", node.camera);
   Camera camera;
   camera.name = source.name.empty() ? node.name : source.name;
-  const std::string fault = hangCamera(placed.to_world, camera);
+  const std::string fault = attachCamera(placed.to_world, camera);
   if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
   camera.orthographic = source.type == "orthographic";
   if (camera.orthographic) {
@@ -240,7 +240,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
   } else if (source.type != "point" && source.type != "directional") {
     failGltf(model, place, "type must be point, directional or spot");
   }
-  const std::string fault = hangLight(placed.to_world, light);
+  const std::string fault = attachLight(placed.to_world, light);
   if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
   if (placed.moving >= 0)
     scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),

@@ -24,7 +24,7 @@ constexpr std::size_t kMostObjects = 10'000'000;
 struct LoadedFile {
   std::vector<Object> objects;
   std::vector<MovingNode> nodes;
-  std::vector<Attachment> attachment;
+  std::vector<Attachment> attachments;
 };
 
 /// What has been loaded so far, by its key, so that nothing is loaded twice.
@@ -167,14 +167,14 @@ const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& sce
   Animation& animation = scene.animation;
   const std::size_t first_object = scene.objects.size(), first_node = animation.nodes.size();
   const std::size_t light_count = scene.lights.size(), camera_count = scene.cameras.size();
-  const std::size_t first_hanging = animation.objects.size();
+  const std::size_t first_attached = animation.objects.size();
   loadMeshFile(path, scene);
   LoadedFile& file = it->second;
   file.objects = cutFrom(scene.objects, first_object);
   file.nodes = cutFrom(animation.nodes, first_node);
-  file.attachment = cutFrom(animation.objects, first_hanging);
+  file.attachments = cutFrom(animation.objects, first_attached);
   for (MovingNode& node : file.nodes) node.parent -= node.parent < 0 ? 0 : static_cast<int>(first_node);
-  for (Attachment& attachment : file.attachment) {
+  for (Attachment& attachment : file.attachments) {
     attachment.index -= static_cast<std::uint32_t>(first_object);
     attachment.node -= static_cast<std::uint32_t>(first_node);
   }
@@ -199,9 +199,9 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
     node.parent = node.parent < 0 ? placement.node : first_node + node.parent;
     animation.nodes.push_back(node);
   }
-  std::vector<bool> hangs(file.objects.size(), false);
-  for (Attachment attachment : file.attachment) {
-    hangs[attachment.index] = true;
+  std::vector<bool> attached(file.objects.size(), false);
+  for (Attachment attachment : file.attachments) {
+    attached[attachment.index] = true;
     attachment.index += static_cast<std::uint32_t>(first);
     attachment.node += static_cast<std::uint32_t>(first_node);
     animation.objects.push_back(attachment);
@@ -209,7 +209,7 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
   if (placement.node < 0) return;
   for (std::size_t i = 0; i < file.objects.size(); ++i) {
     const Object& part = file.objects[i];
-    if (!hangs[i])
+    if (!attached[i])
       attach(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
                      part.object_to_world, part.mesh});
   }
