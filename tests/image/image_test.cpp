@@ -27,6 +27,7 @@
 namespace luciole {
 namespace {
 
+using test::messageOf;
 using test::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
