@@ -1,12 +1,16 @@
-// Classifies pairs of a pixel and a light by conservative shadow maps (BoundTexel): lit for certain, dark for certain, or unsure,
-// which rays decide. One work-item goes through a tile's lights.
+// The first step of exact shadows: decides by conservative shadow maps (BoundTexel) which pixels a light certainly reaches (lit),
+// which it certainly doesn't reach (dark), and which are unsure. Rays decide those on the host (host/render/exact_shadows.cpp).
+//
+// In: G-buffer planes (view space, metres), lights, light lists (cull.cl), shadow maps with their faces and BoundTexels.
+// Out: `bits`, 64 bytes for each entry of the lists. Without LIGHT_LISTS every tile has an entry for every light.
+// A work-item takes a tile. It costs one lookup, a texel of 16 bytes, for each pixel and each light with a shadow that may light it.
 #include "features.clh"
 #include "lanes.clh"
 #include "math.clh"
 #include "shadow.clh"
 #include "shared.h"
 
-// A row of texels: of the plane of what covers all of the texel, and of what else may be in it.
+// The BoundTexels of a row of lookups.
 typedef struct {
   floatL depth, step_x, step_y, others;
 } BoundRow;
@@ -25,15 +29,16 @@ INLINE BoundRow gather_bounds(__global const BoundTexel *texels, intL index) {
   return row;
 }
 
-// Masks: neither is unsure.
+// Masks. A lane in neither is unsure.
 typedef struct {
   intL lit, dark;
 } Verdict;
 
-// The farthest that a lookup may be off, for the texel's margin (see rasterizeBounds) to hold all it may mean.
+// By how much the place of a lookup may be wrong, texels: the part of a BoundTexel's margin, kBoundGrowth, that is left for it
+// (host/raster/bound_depth.hpp).
 #define MOST_DRIFT 0x1p-8f
 
-// p: view space.
+// Which of the points are lit, and which are dark. point: where they are looked up; p: view space.
 INLINE Verdict classify_points(__global const ShadowMap *map, __global const ShadowFace *faces, __global const BoundTexel *texels,
                                uint texel_count, MapPoint point, vec3L p) {
   Verdict verdict;
@@ -47,14 +52,15 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
   intL covered = texel.depth > -INFINITY;
   floatL depth = covered ? texel.depth : (floatL)(0.0f);
   floatL plane = depth + texel.step_x * (x - convert_floatL(column) - 0.5f) + texel.step_y * (y - convert_floatL(row) - 0.5f);
-  // What the receiver's depth, its place on the plane and the plane's own floats have lost.
+  // Bound of the rounding errors of `above`: of the receiver's depth, of its place in the texel, and of the plane.
   floatL steep = abs_lanes(texel.step_x) + abs_lanes(texel.step_y);
   floatL lost = point.rounding + steep * point.drift + 0x1p-22f * (abs_lanes(depth) + steep);
   floatL above = point.depth - plane;
   intL before_others = on_map & (point.depth > texel.others + lost);
 
-  // The receiver's distance from the plane, metres. With the plane n·q = D in the face's axes, 1/w is (n·(u, v, 1))/D on it, and
-  // the distance w·|D|/|n|·|1/w_plane − 1/w|; under a parallel map the height above it times the cosine of its tilt.
+  // Metres between the receiver and the plane for a unit of depth between them. In the face's axes let the plane be n·q = D.
+  // On it 1/w = n·(u, v, 1)/D, and the receiver's distance from it is w·|D|/|n|·|1/w_plane − 1/w|. (a, b, c) is n/D.
+  // In a parallel map the distance is the height above the plane times the cosine of its tilt.
   floatL scale = point.scale;
   floatL per_depth = 1.0f / map->depth_scale;
   floatL metres;
@@ -66,7 +72,8 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
     floatL c = (plane - map->depth_offset) * per_depth - a * point.u + b * point.v;
     metres = point.w * per_depth * rsqrt_lanes(a * a + b * b + c * c);
   }
-  // A ray lets the triangle through in whose plane it starts, as far as that can be told of a point.
+  // A shadow ray ignores a triangle in whose plane it starts, up to this distance in metres (host/rays/shadow_rays.cpp). The verdict
+  // has to agree with it, and leaves the distances within 0.1 % of the tolerance to the ray.
   floatL from_eye2 = dot3(p, p);
   floatL tolerance = POINT_ERROR * from_eye2 * rsqrt_lanes(from_eye2);
   intL on_plane = (abs_lanes(above) + lost) * metres < tolerance * 0.999f;
@@ -76,7 +83,9 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
   return verdict;
 }
 
-// bits: kPairWords words for each entry of the lists: first the pixels of the tile that are lit, then those that are unsure.
+// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
+// texels: texel_count ≥ 1. bits: kPairWords words for each entry, a bit for each pixel of the tile. The first half holds the pixels
+// that are lit, the second half those that are unsure. Words of lights without a shadow are 0.
 __kernel void classify(uint plane_stride, __global const float *position, __global const float *normal,
                        __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
                        __global const ListEntry *list, __global const ShadowMap *shadow_maps,
@@ -100,7 +109,7 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
       intL receives = may_light(light, &p, n);
       if (!any_lane(receives)) continue;
-      // Off the map nothing is sure.
+      // Points off the map stay unsure, so a lift that leads off it needs no second lookup (see receiver_point).
       MapPoint point = LIFT ? lifted_point(map, shadow_faces, p, n, n, load_lanes(lift + first)) : map_point(map, shadow_faces, p, n);
       Verdict verdict = classify_points(map, shadow_faces, texels, texel_count, point, p);
       lit[row / 32] |= lane_bits(receives & verdict.lit) << row % 32;

@@ -1,10 +1,14 @@
-// How many lights truly reach each pixel: within range, whatever way the surface faces. For statistics and the light_count
-// layer; shading does not need it.
+// Counts for each pixel the lights in whose range it lies, whichever way its surface faces and wherever a spot points. For
+// statistics and the light_count layer: shading does not need it.
+//
+// In: position planes x y z (view space, metres), lights, and light lists that were culled by range alone (kByRange).
+// Out: `counts`, a float for each pixel; 0 for background.
+// A work-item takes a row of LANES pixels. It costs a squared distance for each light of the row's square.
 #include "falloff.clh"
 #include "lanes.clh"
 #include "shared.h"
 
-// list_starts, list: see cull.cl; lists by range alone. counts: one float a pixel.
+// list_starts, list: see cull.cl.
 __kernel void count_in_range(__global const float *position, uint plane_stride, __global const ShadeLight *lights,
                              __global const uint *list_starts, __global const ListEntry *list, __global float *counts) {
   uint first = get_global_id(0) * LANES;

@@ -1,13 +1,20 @@
-// Light lists: for every tile the lights that may light a point it shows, in the order of light indices, as long as they come,
-// and beside each light which of the tile's squares it may light. Two passes: count, scan, fill.
+// Light lists: for every tile the lights that may light a point it shows, ascending by index, and beside each light which of the
+// tile's squares it may light. A list may be of any length, so the lists are counted before they are written:
 //
 //   count_lights → scan_lists → fill_lists
+//
+// In: position and normal planes of a G-buffer (view space, metres), lights, and a tree over them.
+// Out: `list_starts`, a uint for each tile and one more, and `list`, 8 bytes an entry.
 //
 //   list_starts  0 3 3 7 …          a tile's entries in `list` are [list_starts[i], list_starts[i + 1])
 //   list         4 9 12 | | 0 …     light, squares
 //
-// Lights are found through a tree. They lie sorted in space, so that kTreeArity in a row are near each other and make a node,
-// and as many nodes in a row a node of the level above, up to a level of kTreeArity nodes or fewer:
+// A work-item of count_lights and fill_lists takes a tile, scan_lists is one work-item. A tile costs reading its positions and
+// normals twice (24 bytes a pixel), the rows of kTreeArity nodes on the way to the lights in reach, and a test of its squares for
+// each such light. fill_lists pays that again only for lists of more than kFoundPerTile entries.
+//
+// Lights are found through a tree. They are sorted in space (spatialOrder), so that kTreeArity in a row are near each other and make
+// a node, and as many nodes in a row make a node of the level above, up to a level of kTreeArity nodes or fewer:
 //
 //   level 2   ┌────────────── 0 ──────────────┬────── 1 ── …        `tree`, 7 planes: the box around a node's lights (x y z of
 //   level 1   ┌──── 0 ────┬──── 1 ────┬─ … ───┤                     its low corner, then of its high one) and their least
@@ -18,9 +25,9 @@
 #include "math.clh"
 #include "shared.h"
 
-// What the squares of a tile show, in view space, a lane a square. Squares may be bounded together, 1 << group_log2 pixels of them:
-// the bounds then stand in the first places, and the others, like those of squares that show nothing, have low > high.
-// Background does not count.
+// Bounds of the points that the squares of a tile show, in view space, a lane for each square. Background does not count.
+// Squares may share their bounds, 1 << group_log2 pixels each time; then there are fewer, in the first lanes. Lanes without bounds,
+// and those of squares that show only background, have low > high.
 typedef struct {
   vec3L low, high;                // corners of the box around the points
   vec3L normal_low, normal_high;  // likewise of the normals
@@ -39,7 +46,7 @@ INLINE void grow_boxes(vec3L *low, vec3L *high, vec3L p, intL mask) {
   high->z = max_lanes(high->z, mask ? p.z : -inf);
 }
 
-// Puts the bounds of 1 << group_log2 pixels of a tile in place i. position, normal: of the first.
+// Sets lane i, counted through all of `bounds`, to the bounds of 1 << group_log2 pixels. position, normal: of the first of them.
 INLINE void bound_pixels(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                          Bounds *bounds, uint i) {
   floatL inf = INFINITY;
@@ -91,13 +98,13 @@ INLINE floatL ratio_between(vec3L low, vec3L high, vec3L other_low, vec3L other_
   return SQUARED_LENGTH(dx, dy, dz) * inverse_range2;
 }
 
-// Which of a row of kTreeArity nodes reach a box, by bits.
+// Which of kTreeArity nodes in a row reach a box: bit i for node i.
 INLINE uint nodes_in_reach(__global const float *tree, uint stride, float4 low, float4 high) {
   vec3L l = {(floatL)(low.x), (floatL)(low.y), (floatL)(low.z)}, h = {(floatL)(high.x), (floatL)(high.y), (floatL)(high.z)};
   uint bits = 0;
   for (uint node = 0; node < kTreeArity; node += LANES) {
     vec3L node_low = load_vec3(tree + node, stride), node_high = load_vec3(tree + node + 3 * stride, stride);
-    // NaN (infinitely far × reaches everywhere) stays in.
+    // Infinitely far × 0 for a light that reaches everywhere is NaN: such a node counts as reached.
     intL reached = !(ratio_between(node_low, node_high, l, h, load_lanes(tree + node + 6 * stride)) >= 1.0f);
     bits |= lane_bits(reached) << node;
   }
@@ -120,7 +127,7 @@ INLINE void enter_row(Walk *walk, uint level, uint row) {
   walk->level = level;
   walk->rows[level] = row;
   uint bits = nodes_in_reach(walk->tree + walk->level_starts[level] + row * kTreeArity, walk->stride, walk->low, walk->high);
-  // No padding, which a box without end reaches.
+  // Padding is dropped: a box of infinite size would reach it.
   uint nodes = walk->level_nodes[level] - row * kTreeArity;
   walk->bits[level] = nodes < kTreeArity ? bits & ((1u << nodes) - 1) : bits;
 }
@@ -140,7 +147,7 @@ INLINE void start_walk(Walk *walk, uint light_count) {
   if (light_count > 0 && walk->low.x <= walk->high.x) enter_row(walk, walk->top, 0);
 }
 
-// The next light, or kNoLight.
+// The next light, ascending by index, or kNoLight after the last.
 #define kNoLight 0xffffffffu
 INLINE uint next_light(Walk *walk) {
   for (;;) {
@@ -158,12 +165,13 @@ INLINE uint next_light(Walk *walk) {
   }
 }
 
-// Roundings that the tests below allow for, in terms of lengths: they compute with 2^-24 of the coordinates that they start from,
-// a dozen times, and so does shading.
+// Bound of the rounding errors that the tests below allow for, relative to the lengths that they start from: about a dozen roundings
+// of 2^-24 in the test, and as many in shading.
 #define SLACK 4e-6f
 
-// Whether any of the points may face the light: an upper bound of normal · (light − point), with m the box's middle, is that of
-// normal · (light − m) less the least of normal · (point − m).
+// Mask: whether any point of a box may face the light. With m the box's middle, normal · (light − point) is at most
+// the greatest normal · (light − m) less the least normal · (point − m), which is `plane`. to_light: from m, or towards a
+// directional light.
 INLINE intL may_face(vec3L to_light, vec3L extent, vec3L normal_low, vec3L normal_high, floatL plane) {
   floatL most = max_lanes(to_light.x * normal_low.x, to_light.x * normal_high.x) +
                 max_lanes(to_light.y * normal_low.y, to_light.y * normal_high.y) +
@@ -173,11 +181,11 @@ INLINE intL may_face(vec3L to_light, vec3L extent, vec3L normal_low, vec3L norma
   return !(most - plane <= -SLACK * sizes);
 }
 
-// Whether a spot's cone may touch the ball around a box: the distance from the ball's middle to the cone's side is
-// √(v² − (v·axis)²) cos − (v·axis) sin, with v from the light to the middle (B. Wronski, "Cull that cone!", 2017).
+// Mask: whether a spot's cone may touch the ball around a box. With v from the light to the ball's middle, the distance from there
+// to the cone's side is √(v² − (v·axis)²) cos − (v·axis) sin (B. Wronski, "Cull that cone!", 2017).
 INLINE intL may_touch_cone(vec3L to_light, vec3L extent, __global const ShadeLight *light) {
   float cosine = light->direction.w;
-  // Wider than a half space: no such side.
+  // A cutoff of 90° or more: the formula doesn't hold, and every box counts as touched.
   if (cosine <= 0.0f) return (intL)(1) != (intL)(0);
   float sine = sqrt(1.0f - cosine * cosine);
   floatL v2 = dot3(to_light, to_light), extent2 = dot3(extent, extent);
@@ -185,11 +193,11 @@ INLINE intL may_touch_cone(vec3L to_light, vec3L extent, __global const ShadeLig
   floatL across2 = max_lanes(v2 - along * along, (floatL)(0.0f));
   floatL away = across2 * rsqrt_lanes(across2) * cosine - along * sine;
   floatL radius = extent2 * rsqrt_lanes(extent2);
-  // The root takes a rounding of v² of 2^-24 to one of |v| of 2^-12.
+  // A relative error of 2^-24 in v² becomes one of 2^-12 in |v| where the difference under the root is near 0.
   return !(away > radius + 1e-3f * v2 * rsqrt_lanes(v2));
 }
 
-// Which of LANES squares a light may light: a mask.
+// Mask: which of LANES squares a light may light. tests: kByRange …
 INLINE intL squares_lit(const Bounds *bounds, __global const ShadeLight *light, uint tests) {
   vec3L low = bounds->low, high = bounds->high;
   intL lit = low.x <= high.x;
@@ -201,7 +209,7 @@ INLINE intL squares_lit(const Bounds *bounds, __global const ShadeLight *light, 
     to_light.x -= middle.x;
     to_light.y -= middle.y;
     to_light.z -= middle.z;
-    // The middle rounds, to an end where the box is that small: its farther side counts.
+    // The middle is rounded, in a tiny box up to one of its sides: the farther side counts.
     extent.x = max_lanes(high.x - middle.x, middle.x - low.x);
     extent.y = max_lanes(high.y - middle.y, middle.y - low.y);
     extent.z = max_lanes(high.z - middle.z, middle.z - low.z);
@@ -235,8 +243,8 @@ INLINE void start_tile(Walk *walk, const Bounds *bounds, __global const float *t
 // Squares in 1 << group_log2 pixels.
 #define SQUARES_IN(group_log2) ((1u << (group_log2)) * kSquaresPerTile / kTilePixels)
 
-// How many lights a tile's list holds; the first `room` of them are written to `list`. group_log2: 4, 6 or 8, what is bounded together,
-// in pixels. tests: kByRange …
+// How many lights a tile's list holds. The first `room` of them are written to `list`. group_log2: 4, 6 or 8, for bounds of 1, 4 or
+// 16 squares. tests: kByRange …
 INLINE uint find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                         __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                         uint tests, uint tile, __global ListEntry *list, uint room) {
@@ -248,7 +256,7 @@ INLINE uint find_lights(__global const float *position, __global const float *no
     uint first = tile * kTilePixels + (i << group_log2);
     bound_pixels(position + first, normal + first, plane_stride, group_log2, bounds, i);
   }
-  // The squares that the first of the bounds hold.
+  // Bits of the squares that share the first bounds.
   uint group = 0xffffu >> (kSquaresPerTile - SQUARES_IN(group_log2));
   Walk walk;
   start_tile(&walk, bounds, tree, tree_stride, light_count);
@@ -256,7 +264,7 @@ INLINE uint find_lights(__global const float *position, __global const float *no
   for (uint light = next_light(&walk); light != kNoLight; light = next_light(&walk)) {
     uint bits = 0;
     for (uint i = 0; i < BOUNDS; ++i) bits |= lane_bits(squares_lit(bounds + i, lights + light, tests)) << i * LANES;
-    // Written before it is known to belong there: no branch that nothing can predict.
+    // Written even if it lights no square: the next light then overwrites it. That saves a branch that no processor can predict.
     if (count < room) {
       uint squares = bits;
       if (group_log2 != 4) {
@@ -271,7 +279,7 @@ INLINE uint find_lights(__global const float *position, __global const float *no
   return count;
 }
 
-// How many lights the list of each tile holds, and the first kFoundPerTile of them.
+// How many lights the list of each tile holds, and in `found`, kFoundPerTile entries for each tile, the first of them.
 __kernel void count_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                            __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                            uint tests, __global ListEntry *found, __global uint *counts) {
@@ -280,8 +288,8 @@ __kernel void count_lights(__global const float *position, __global const float 
                              found + tile * kFoundPerTile, kFoundPerTile);
 }
 
-// Exclusive prefix sum of the counts in place, by one work-item; starts[tiles] becomes the total.
-// The total saturates at 2³² − 1, which the host refuses.
+// Exclusive prefix sum in place, by one work-item. starts: tiles + 1; in: the counts; out: where each list starts, then the total.
+// Sums saturate at 2³² − 1, a total that the host refuses.
 __kernel void scan_lists(uint tiles, __global uint *starts) {
   ulong sum = 0;
   for (uint tile = 0; tile < tiles; ++tile) {
@@ -292,7 +300,7 @@ __kernel void scan_lists(uint tiles, __global uint *starts) {
   starts[tiles] = (uint)min(sum, (ulong)0xffffffffu);
 }
 
-// Writes the lists: what was found before if that is all of it.
+// Writes the lists: copied from `found` where that holds all of a list, otherwise found again.
 __kernel void fill_lists(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                          __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                          uint tests, __global const ListEntry *found, __global const uint *list_starts,
@@ -306,6 +314,6 @@ __kernel void fill_lists(__global const float *position, __global const float *n
   }
   uint again =
       find_lights(position, normal, plane_stride, group_log2, tree, tree_stride, lights, light_count, tests, tile, list, count);
-  // Both passes find the same lights; were a compiler ever to round them apart, this keeps entries valid.
+  // Both passes find the same lights. Should a compiler ever round them differently, the rest are entries without squares.
   for (ListEntry none = {0, 0}; again < count; ++again) list[again] = none;
 }

@@ -1,24 +1,29 @@
-// Finds which bins of each shadow map face the lookups of a G-buffer may read, so that only those are drawn, and how far away the
-// farthest is that looks there: what lies beyond it casts no shadow. One work-item goes through a tile's lights.
+// Finds which bins of each shadow map the lookups of a G-buffer may read, so that only those are drawn, and for each bin the
+// reversed depth of the point farthest from the light that looks there: what lies beyond casts no shadow on any.
+//
+// In: G-buffer planes (view space, metres), lights, light lists (cull.cl), shadow maps and their faces.
+// Out: `needed`, a uint for each bin of all faces.
+// A work-item takes a tile. It costs the place of a lookup for each pixel and each light with a shadow that may light it.
 #include "features.clh"
 #include "lanes.clh"
 #include "math.clh"
 #include "shadow.clh"
 #include "shared.h"
 
-// The bin that was noted last: the rows of a tile mostly fall into the same one.
+// The bin that was noted last. The rows of a tile mostly fall into the same one, and then need no atomic operation.
 typedef struct {
   uint bin, depth;
 } LastNoted;
 
-// Notes a row of lookups, those in the mask, which are on this face.
+// Notes the bins around a row of lookups, those in the mask; all of them are on this face. reach: texels that a lookup may read
+// around its place.
 INLINE void add_needed(__global const ShadowFace *face, int reach, __global uint *needed, const MapPoint *point, intL mask,
                        LastNoted *last_noted) {
-  // Lookups on faces lie within them, so these are small whole numbers.
+  // A lookup that is on a face lies within it, so its texel fits into an int.
   intL x = convert_intL(point->x), y = convert_intL(point->y), none = 0x7fffffff;
   int low_x = smallest_lane(mask ? x : none) - reach, high_x = largest_lane(mask ? x : -none) + reach;
   int low_y = smallest_lane(mask ? y : none) - reach, high_y = largest_lane(mask ? y : -none) + reach;
-  // Floats that aren't negative are in order as integers too.
+  // The bits of floats ≥ 0, as integers, are in the same order.
   uint depth = (uint)smallest_lane(mask ? as_intL(max_lanes(point->depth, (floatL)(0.0f))) : none);
   int last = (int)face->bins - 1;
   for (int y = max(low_y, 0) / kShadowBin; y <= min(max(high_y, 0) / kShadowBin, last); ++y) {
@@ -32,7 +37,8 @@ INLINE void add_needed(__global const ShadowFace *face, int reach, __global uint
   }
 }
 
-// needed: one a bin, by ShadowFace::first_bin; kNotNeeded before the first tile.
+// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
+// needed: a bin's least depth ≥ 0 as a float's bits, at ShadowFace::first_bin and on. It has to start as kNotNeeded everywhere.
 __kernel void find_needed(uint plane_stride, __global const float *position, __global const float *normal,
                           __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
                           __global const ListEntry *list, __global const ShadowMap *shadow_maps,
@@ -54,7 +60,7 @@ __kernel void find_needed(uint plane_stride, __global const float *position, __g
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
       intL receives = may_light(light, &p, n);
       if (!any_lane(receives)) continue;
-      // The place does not depend on the facet.
+      // Where a lookup goes does not depend on the geometric normal, so n takes its place.
       MapPoint point = receiver_point(map, shadow_faces, p, n, n, LIFT ? load_lanes(lift + first) : (floatL)(0.0f));
       receives &= point.inside;
       point.face -= (int)map->first_face;

@@ -1,5 +1,5 @@
-// The shading models, once for host and kernels: X(name in code, as people type it, as --stats shows it, what it does). A picture
-// has one; no scene says which.
+// The table of shading models, shared by host and kernels: X(name in code, as people type it, as --stats shows it, what it does).
+// A picture has one model, which the command line chooses: no scene file says which.
 #ifndef LUCIOLE_MODELS_H
 #define LUCIOLE_MODELS_H
 

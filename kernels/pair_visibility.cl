@@ -1,12 +1,16 @@
-// What shadow maps say of single points and lights: for measuring how often they are wrong.
+// Looks up shadow maps for single pairs of a point and a map, as shading does: to measure how often maps are wrong.
+//
+// In: points (view space, metres) in rows of LANES, the map that each row looks up, and the shadow maps with their texels.
+// Out: `visibility`, a float for each point, in [0, 1].
+// A work-item takes a row, and costs one lookup: see shadow.clh.
 #include "features.clh"
 #include "lanes.clh"
 #include "math.clh"
 #include "shadow.clh"
 #include "shared.h"
 
-// position, normal: planes of `stride` floats, x y z, view space; geometric_normal, lift: see shade.cl. A row of LANES points shares its light, whose map is
-// map_of_row. visibility: one float a point, in [0, 1].
+// position, normal: planes x y z of `stride` floats. geometric_normal, lift: see shade.cl. map_of_row: an index into `maps` for each
+// row. texel_count: ≥ 1.
 __kernel void pair_visibility(uint stride, __global const float *position, __global const float *normal,
                               __global const uint *geometric_normal, __global const float *lift, __global const uint *map_of_row, __global const ShadowMap *maps,
                               __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,

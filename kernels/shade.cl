@@ -1,14 +1,17 @@
-// Lights a G-buffer.
+// Shading: lights a G-buffer.
 //
 //   I = ambient·Ka + Σ lights falloff·spot·( Ia·Ka + visibility·( Id·Kd·max(N·L,0) + Is·Ks·(R·V)ⁿ ) ) + emission
 //
-// or what another model than Phong's puts in the inner brackets (reflect()), seen through fog. The sums over the lights leave the
-// material out, which is multiplied once at the end.
+// seen through fog. Other models than Phong's change the inner brackets (reflect()). The sums over the lights leave the material
+// out: it is multiplied once at the end.
 //
-// In: the planes of a G-buffer, tile by tile, and for each tile the list of its lights (cull.cl). Out: planes of colour.
-// A work-item shades ROWS rows of LANES pixels. The pixels of a row share their lights, those that the list has for their 4×4
-// square. Pairs of a row and a light are taken ABREAST at a time, whatever row they belong to. A pair of a light without shadow
-// costs some 130 instructions for its LANES pixels.
+// In: the planes of a G-buffer, tile by tile (view space, metres, linear colours), and for each tile the list of its lights
+// (cull.cl).
+// Out: 3 planes of linear colour, a float for each pixel, and one more with OUTPUT_SHADOW.
+// A work-item shades ROWS rows of LANES pixels. The pixels of a row share their lights: those that the list has for their 4×4
+// square. Pairs of a row and a light are taken ABREAST at a time, whatever row they belong to.
+// Cost: some 130 instructions for a pair of LANES pixels and a light without a shadow. A lookup in a shadow map costs about as much
+// again for each texel that it reads.
 // A light that culling may leave out adds exactly zero: the picture does not depend on whether a list holds it.
 #include "cook_torrance.clh"
 #include "falloff.clh"
@@ -25,11 +28,11 @@
 #define ROWS ROWS_PER_ITEM(LANES, LIGHT_LISTS)
 #define EACH_ROW(row) _Pragma("unroll") for (uint row = 0; row < ROWS; ++row)
 
-// The picture's model is this one.
+// Whether the picture's model is this one: known at compile time where the program has only one model.
 #define MODEL_IS(number) IS(HAS_MODEL(number), MODELS & (MODELS - 1), model == (number))
 
-// What a row of pixels gets from the lights, by the colour of the material that each part will be multiplied with. Parts that a
-// program doesn't use are never touched.
+// The light that a row of pixels reflects, in one sum for each of the material's colours, which multiply the sums at the end. Sums
+// that a program doesn't use are never touched.
 enum { kAmbientPart, kDiffusePart, kSpecularPart, kGrazingPart, kParts };
 #define USES_PART(part)                                                                                              \
   ((part) == kDiffusePart || ((part) == kAmbientPart && LIGHT_AMBIENT) || ((part) == kSpecularPart && SPECULAR) || \
@@ -40,8 +43,8 @@ typedef struct {
   vec3L part[kParts];
   // With LONG_SUMS the parts above are the open blocks of these sums.
   LongSum closed[kParts];
-  intL terms;    // in the open blocks
-  uint fullest;  // no lane has more terms than this
+  intL terms;    // how many terms each lane's open block has
+  uint fullest;  // upper bound of `terms` over the lanes
 } LightSums;
 
 // A row of pixels on its way through the lights. View space, metres.
@@ -54,7 +57,7 @@ typedef struct {
   floatL shininess;
   Gloss gloss;
   LightSums sums;
-  floatL visible, shadow_lights;  // with OUTPUT_SHADOW: how many lights' worth is visible, of how many
+  floatL visible, shadow_lights;  // with OUTPUT_SHADOW: sum of visibilities, and of how many lights with shadows
   uint place;                     // of the first pixel in its tile
 } Pixels;
 
@@ -64,17 +67,18 @@ typedef struct {
 // from the light's place to its highlight. A core looks some 200 instructions ahead, which is two pairs: one pair after another
 // it would wait half of the time.
 typedef struct {
-  vec3L to_light;      // from the surface; unit once multiplied by
-  floatL inverse_d;    // 1/m
+  vec3L to_light;      // from the surface to the light, metres; unit for directional lights
+  floatL inverse_d;    // the reciprocal of its length
   floatL n_dot_l;
   floatL attenuation;  // falloff × spot effect
   floatL strength;     // attenuation × visibility where the surface faces the light, else 0
-  floatL diffuse;      // of the strength, the factor of the diffuse colour,
-  floatL highlight;    // of the specular colour,
-  floatL grazing;      // and of what that becomes at grazing angles
+  floatL diffuse;      // factors of the strength: for the diffuse colour,
+  floatL highlight;    // for the specular colour,
+  floatL grazing;      // and for the specular colour at grazing angles (grazing_color)
 } Pair;
 
-// The shadow maps of a picture's lights, or with EXACT what is known of each entry of the lists (classify.cl).
+// The shadow maps of a picture's lights, or with EXACT the bits of each entry of the lists (classify.cl), after unsure ones were
+// traced.
 typedef struct {
   __global const ShadowMap *maps;
   __global const ShadowFace *faces;
@@ -88,7 +92,7 @@ INLINE vec3L all_lanes(float4 v) {
   return all;
 }
 
-// *sum += a·b, channel by channel.
+// *sum += a·b for each channel.
 INLINE void add_product(vec3L *sum, vec3L a, vec3L b) {
   sum->x = fma_lanes(a.x, b.x, sum->x);
   sum->y = fma_lanes(a.y, b.y, sum->y);
@@ -113,7 +117,8 @@ INLINE void incident_light(Pair *pair, const Pixels *pixels, __global const Shad
   pair->n_dot_l = dot3(pixels->normal, pair->to_light) * pair->inverse_d;
 }
 
-// The share of the light that reaches the pixels, in [0, 1]. entry: of the lists, by which light and pixels met.
+// The share of the light that reaches the pixels, in [0, 1]. entry: index of the list entry that named the light, read with EXACT
+// only.
 INLINE floatL visibility(const Pixels *pixels, __global const ShadeLight *light, const Shadows *shadows, uint entry) {
   if (EXACT) {
     uint word = shadows->pair_bits[entry * kPairWords + pixels->place / 32] >> pixels->place % 32;
@@ -124,8 +129,8 @@ INLINE floatL visibility(const Pixels *pixels, __global const ShadeLight *light,
   return map_lookup(map, shadows->faces, shadows->texels, shadows->texel_count, point);
 }
 
-// Multiplies the strength of ABREAST pairs by their visibility. One after another, in a loop that stays one: a lookup is as long as
-// all the rest of shading.
+// Multiplies the strength of ABREAST pairs by their visibility, one after another. The loop isn't unrolled, because a lookup is as
+// much code as all the rest of shading.
 INLINE void apply_shadows(Pair *pairs, Pixels *const *pixels, __global const ShadeLight *const *light, const Shadows *shadows,
                          const uint *entry) {
   floatL strength[ABREAST];
@@ -144,8 +149,8 @@ INLINE void apply_shadows(Pair *pairs, Pixels *const *pixels, __global const Sha
   EACH_ABREAST(k) pairs[k].strength = strength[k];
 }
 
-// What the model makes of ABREAST pairs: all that it has to say. Any finite value will do where the surface faces away, for the
-// strength is 0 there.
+// Sets the factors diffuse, highlight and grazing of ABREAST pairs as the model has them. Where the surface faces away from the
+// light any finite value will do, because the strength is 0 there.
 INLINE void reflect(Pair *pairs, Pixels *const *pixels, uint model) {
   if (MODEL_IS(kToonModel)) {
     EACH_ABREAST(k) pairs[k].diffuse = toon(pairs[k].n_dot_l);
@@ -164,7 +169,7 @@ INLINE void reflect(Pair *pairs, Pixels *const *pixels, uint model) {
     return;
   }
   EACH_ABREAST(k) pairs[k].grazing = 0.0f;
-  // pow_one_minus_half(), a step at a time.
+  // pow_one_minus_half() of all pairs, one step of all after another.
   floatL chord2[ABREAST], log2_cosine[ABREAST];
   if (MODEL_IS(kBlinnPhongModel)) {
     EACH_ABREAST(k) chord2[k] = blinn_chord2(pairs[k].to_light, pairs[k].inverse_d, pixels[k]->to_eye, pixels[k]->normal);
@@ -210,12 +215,13 @@ INLINE void add_pair(LightSums *sums, const Pair *pair, __global const ShadeLigh
 
 INLINE void finish_sums(LightSums *sums, bool long_sums) {
   if (!long_sums) return;
-  // A block that is just full is closed even where no more lights come: lights that add nothing must not decide it.
+  // A full block is closed even if no light follows. Otherwise a following light that adds nothing would change the rounding.
   close_full_blocks(sums);
   EACH_PART(part) finish_sum(sums->closed[part], &sums->part[part]);
 }
 
-// Adds the first `count` of ABREAST pairs, which are all there: light[k] and the row pixels[k], which met by entry[k] of the lists.
+// Adds the light of `count` pairs to their rows' sums: light[k] and the row pixels[k], paired by entry[k] of the lists. All ABREAST
+// elements must be valid, also those from `count` on, which add nothing.
 INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *light, uint count, const uint *entry,
                        const Shadows *shadows, uint model, bool long_sums) {
   Pair pairs[ABREAST];
@@ -233,14 +239,15 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
   EACH_ABREAST(k) add_pair(&pixels[k]->sums, pairs + k, light[k], long_sums);
 }
 
-// The planes of a G-buffer, from a work-item's first pixel on. Those that a program doesn't use may be anything.
+// The planes of a G-buffer, indexed by the place of a pixel. Those that a program doesn't use may be any pointer.
 typedef struct {
   __global const float *position, *normal, *diffuse, *specular, *ambient, *emission;
   __global const uint *geometric_normal;
   __global const float *lift;
 } Planes;
 
-// What a row of pixels starts from. Uncovered lanes compute along on a point ahead of the eye and are dropped at the end.
+// Loads what lighting needs of a row of pixels. Lanes that show background compute with a point ahead of the eye, so that nothing
+// overflows, and are dropped at the end.
 INLINE void start_row(Pixels *pixels, const ShadeFrame *frame, uint first, const Planes *planes, bool long_sums) {
   uint stride = frame->plane_stride;
   pixels->position = load_vec3(planes->position + first, stride);
@@ -272,7 +279,7 @@ INLINE void start_row(Pixels *pixels, const ShadeFrame *frame, uint first, const
   if (GRAZING) pixels->gloss = cook_torrance_gloss(pixels->shininess, dot3(pixels->normal, pixels->to_eye));
 }
 
-// The colour of a row of pixels, its lights summed.
+// The colour of a row of pixels whose lights are summed: times the material, with ambient light and emission, seen through fog.
 INLINE vec3L finish_row(Pixels *pixels, const ShadeFrame *frame, uint first, const Planes *planes, bool long_sums) {
   uint stride = frame->plane_stride;
   LightSums *sums = &pixels->sums;
@@ -305,7 +312,7 @@ INLINE vec3L finish_row(Pixels *pixels, const ShadeFrame *frame, uint first, con
   return FOG ? apply_fog(*frame, seen, pixels->position) : seen;
 }
 
-// While lights are summed, memory brings the rows that come next.
+// Prefetches the rows of the next work-item, so that they arrive while this one sums its lights.
 INLINE void prefetch_rows(uint first, uint stride, const Planes *planes) {
   prefetch_lanes(planes->position + first, stride, 3, ROWS);
   if (LIT) {
@@ -319,11 +326,13 @@ INLINE void prefetch_rows(uint first, uint stride, const Planes *planes) {
   if (EMISSION) prefetch_lanes(planes->emission + first, stride, 3, ROWS);
 }
 
-// Pairs that wait for their turn at most; a single lane takes each as it comes.
+// Capacity of the queue of pairs. With a single lane each pair is shaded as it comes.
 #define QUEUE (LANES == 1 ? 1 : 128)
 
-// geometric_normal: by packNormal(); lift: metres. list_starts, list: see cull.cl; an entry of the list indexes `lights`.
-// image: r, g, b planes of frame.plane_stride floats, then the share of shadowed lights that is visible if OUTPUT_SHADOW.
+// Planes have frame.plane_stride elements each. specular: r, g, b and the shininess; geometric_normal: as packNormal() packs it;
+// lift: metres. list_starts, list: see cull.cl; without LIGHT_LISTS every pixel meets all frame.light_count lights.
+// image: planes r, g, b, and with OUTPUT_SHADOW a fourth: the mean visibility, in [0, 1], of the lights with shadows that reach the
+// pixel's front.
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
                     __global const float *emission, __global const uint *geometric_normal, __global const float *lift,
@@ -336,7 +345,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
   uint stride = frame.plane_stride;
   uint entry = LIGHT_LISTS ? list_starts[tile] : 0;
   uint end = LIGHT_LISTS ? list_starts[tile + 1] : frame.light_count;
-  // No block can be full before.
+  // With fewer lights than that, one block takes them all.
   bool long_sums = LONG_SUMS && end - entry > kSumBlock;
   Pixels rows[ROWS];
   uint square[ROWS];  // of each row, as a bit; none for background
@@ -388,7 +397,7 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
     stream_lanes(image + pixel + stride, color.y);
     stream_lanes(image + pixel + 2 * stride, color.z);
     if (OUTPUT_SHADOW) {
-      // No shadowed light facing the surface: fully visible.
+      // A pixel that faces no light with a shadow counts as fully visible.
       floatL share = pixels->visible / max_lanes(pixels->shadow_lights, (floatL)(1.0f));
       stream_lanes(image + pixel + 3 * stride, pixels->shadow_lights > 0.0f ? share : (floatL)(1.0f));
     }

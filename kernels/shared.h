@@ -1,5 +1,5 @@
-// What host and device share, compiled by both: constants, and structs that hold only float, int, uint and 4-vectors
-// (OpenCL's float3 is 16 bytes, GLM's vec3 is 12). tests/cl/struct_layout_test.cpp compares every offset.
+// Constants and structs that host and device share: both compile this file. Structs hold only float, int, uint and 4-vectors,
+// because OpenCL's float3 has 16 bytes and GLM's vec3 has 12. tests/cl/struct_layout_test.cpp compares every offset.
 #ifndef LUCIOLE_SHARED_H
 #define LUCIOLE_SHARED_H
 
@@ -22,11 +22,11 @@ enum {
   kSquaresPerTile = 16,                  // of 4×4 pixels
 };
 
-// Rows of pixels that a work-item of shade.cl takes on. Without lists a row meets all lights: it fills its places alone, and one
-// row's sums stay in registers.
+// Rows of pixels that a work-item of shade.cl takes. Several rows of one tile keep all ABREAST places filled even if each meets few
+// lights. Without lists a row meets all lights and fills them alone, and the sums of a single row stay in registers.
 #define ROWS_PER_ITEM(lanes, lists) ((lanes) == 1 || !(lists) ? 1 : 4)
 
-// The square of a pixel in its tile, by its place in the planes.
+// The square of its tile, 0 to kSquaresPerTile − 1, that a pixel belongs to. place: its index in a plane, or in its tile.
 #define SQUARE_OF_PIXEL(place) ((place) / (kTilePixels / kSquaresPerTile) % kSquaresPerTile)
 
 // An entry of a tile's light list.
@@ -36,24 +36,25 @@ typedef struct {
 } ListEntry;
 SHARED_SIZE(ListEntry, 8);
 
-// Entries that are kept for a tile while lists are counted.
+// How many entries of a tile counting keeps: a list that isn't longer need not be found again when lists are written.
 enum { kFoundPerTile = 64 };
 
-// What leaves a light out of a list: that it is out of range, and by choice (bits) that no point lies in a spot's cone, and that
-// every point faces away from it, which is right where no light gives ambient light.
+// The tests by which culling leaves a light out of a list, as bits. Range is always tested: kByRange asks for no other.
+// - kByCone: no point lies in a spot's cone.
+// - kByFacing: every point faces away from the light. Only right where no light gives ambient light.
 enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
 
-// The tree over the lights has so many children a node.
+// Children of a node in the tree over the lights.
 enum { kTreeArity = 16 };
 
 enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
 #define kNoShadow 0xffffffffu
 
-// Lights whose contributions to a pixel may be added one by one, see long_sum.clh.
+// How many lights' contributions to a pixel are added one by one at most, see long_sum.clh.
 enum { kSumBlock = 128 };
 
-// A light as the shade stage sees it. View space, metres, linear colours with the intensity multiplied in.
+// A light as kernels see it. View space, metres, linear colours with the intensity multiplied in.
 typedef struct {
   float4 position;     // xyz place; w: 1 / range², 0 where the light reaches everywhere. Directional: xyz unit, towards the light
   float4 direction;    // xyz unit, the way a spot shines; w: cosine of its cutoff
@@ -83,7 +84,7 @@ typedef struct {
   uint kind;           // kParallelMap …
   uint first_face;     // index of its first ShadowFace
   uint face_count;
-  float penumbra_scale;        // the light's size: a blocker that is nearer by a depth of d blurs its shadow by penumbra_scale·d of u and v
+  float penumbra_scale;        // by the light's size: a blocker nearer by a depth of d has a penumbra of penumbra_scale·d in u and v
   float filter_radius;         // texels around a lookup that it may read
   uint pad;
 } ShadowMap;
@@ -92,8 +93,8 @@ SHARED_SIZE(ShadowMap, 80);
 enum { kParallelMap = 0, kPerspectiveMap = 1, kCubeMap = 2 };
 
 // One square picture from a light. (u, v) lies at texel (middle_x + scale·u, middle_y − scale·v), counted from its top left
-// corner; a texel's centre is at .5. Memory holds a rectangle of it, whose texels lie row by row, and of that were drawn those bins
-// of kShadowBin × kShadowBin texels that somebody looks at.
+// corner; a texel's centre is at .5. Memory holds a rectangle of the picture, row by row. Of that rectangle only those bins of
+// kShadowBin × kShadowBin texels are drawn that a lookup may read.
 typedef struct {
   float scale;     // texels per unit of u and v
   float middle_x;
@@ -116,11 +117,12 @@ typedef struct {
 } ShadowTexel;
 SHARED_SIZE(ShadowTexel, 8);
 
-// What a texel, its whole square and kBoundGrowth more on each side, sees for certain. Reversed depths, larger towards the light.
-// - The plane is that of a solid triangle which covers the square: what lies behind it is dark. Of several it is the one whose
-//   lowest depth in the square is highest. It errs by kPlaneError at most (host/raster/bound_depth.hpp).
-// - No other triangle in the square reaches higher than `others`, except for what lies certainly behind the plane: what is nearer
-//   than both is lit.
+// Bounds of what is seen anywhere in a texel's square, grown by kBoundGrowth on each side. Depths are reversed: larger is nearer
+// to the light.
+// - The plane is that of a solid triangle which covers the whole square: what lies behind it is dark. Of several such triangles
+//   it is the one whose least depth in the square is the largest. kPlaneError bounds its error (host/raster/bound_depth.hpp).
+// - `others` is the largest depth in the square of any other triangle, without what lies certainly behind the plane. A point that
+//   is nearer to the light than both is lit.
 typedef struct {
   float depth;           // of the plane at the texel's centre; −∞: no triangle covers the square
   float step_x, step_y;  // of the plane a texel right and down
@@ -128,15 +130,15 @@ typedef struct {
 } BoundTexel;
 SHARED_SIZE(BoundTexel, 16);
 
-// What exact shadows know of a pixel and a light: see classify.cl.
+// Words of classify.cl's result for an entry of a light list: two bits for each pixel of the tile.
 enum { kPairWords = 2 * kTilePixels / 32 };
 
-// Share of its distance from the eye by which a point may lie off its surface. A float position is rounded in view space, and
-// again relative to the eye, by 2⁻²⁴ each; thirty-two times that leaves room for G-buffers of other programs, which have rounded
-// in world space, and for what classify.cl loses on the way to the light's axes.
+// How far a point may lie off its surface, as a share of its distance from the eye. A float position is rounded in view space, and
+// again relative to the eye, by 2⁻²⁴ each. Thirty-two times that leaves room for G-buffers of other programs, which have rounded
+// in world space, and for the rounding of classify.cl on the way to the light's axes.
 #define POINT_ERROR 0x1p-18f
 
-// In place of the depth of the farthest point that looks at a bin, as a float's bits: nothing looks at it.
+// find_needed.cl's result for a bin that no lookup reads. As a float's bits it would be NaN, so no depth has it.
 #define kNotNeeded 0xffffffffu
 
 // kPhongModel …

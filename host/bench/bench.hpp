@@ -16,7 +16,7 @@ struct BenchResult {
   std::uint64_t triangles = 0, lights = 0;
   int width = 0, height = 0, repeats = 0;
   std::vector<BenchGroup> groups{};  ///< speed against error
-  std::vector<SpeedTable> speed{};
+  std::vector<SpeedTable> speed{};   ///< speed alone, a table for each measurement
 };
 
 /// What to measure.
@@ -28,10 +28,11 @@ struct BenchChoice {
   std::string program{};             ///< the path of luciole itself
 };
 
-/// The names of all that can be measured, groups of variants first, in the order in which they are.
+/// The names of all that can be measured, groups of variants first, in the order in which they are measured.
 std::vector<std::string> benchNames();
 
-/// Measures what was chosen. Throws InputError, also where nothing of it can be measured, and MachineError.
+/// Measures what was chosen; takes minutes. Throws InputError, also if the scene lacks the shadows that all
+/// that was chosen needs, and MachineError.
 BenchResult runBench(const Scene& scene, const BenchSettings& settings, const BenchChoice& choice);
 
 }  // namespace luciole

@@ -29,7 +29,7 @@ std::vector<std::string> changedEnvironment(const std::vector<std::pair<std::str
   return all;
 }
 
-/// As C takes a list of strings, which must outlive it.
+/// The strings as a null-terminated array for C. They must outlive it.
 std::vector<char*> pointersTo(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());

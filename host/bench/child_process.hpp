@@ -7,7 +7,8 @@
 
 namespace luciole {
 
-/// A folder for temporary files, removed with all that is in it. Throws MachineError where none can be made.
+/// A folder for temporary files, which the destructor removes with all that is in it. The constructor throws
+/// MachineError if it can't make one.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -20,9 +21,9 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// Runs a program, with these variables in its environment and nothing on its standard streams, and waits for
-/// its end. Returns the milliseconds from its start to its end. Throws MachineError unless its exit status
-/// is 0, with the first line that it said on standard error.
+/// Runs a program and waits for its end. environment: variables that are set in addition to the caller's.
+/// Returns the milliseconds from its start to its end. Throws MachineError if it can't be run, or with the
+/// first line that it wrote to standard error if its exit status isn't 0.
 double runChild(const std::string& program, const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& environment);
 

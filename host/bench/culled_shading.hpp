@@ -5,7 +5,7 @@
 
 namespace luciole {
 
-/// What culling and shading cost where lights are many and near: the hall of speed_scenes.hpp.
+/// Measures culling and shading by many near lights: the hall of speed_scenes.hpp. Throws MachineError.
 SpeedTable measureCulledShading(const SpeedInput& input);
 
 }  // namespace luciole

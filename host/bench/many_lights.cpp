@@ -19,7 +19,7 @@ struct Row {
   const GBuffer* gbuffer = nullptr;
 };
 
-/// The lists' entries and where each list starts.
+/// Bytes of light lists: their entries, and where each starts.
 double listBytes(const GBuffer& gbuffer, double entries) {
   const std::size_t starts = gbuffer.pixels() / kTilePixels + 1;
   return entries * sizeof(ListEntry) + double(starts) * sizeof(cl_uint);

@@ -5,8 +5,8 @@
 
 namespace luciole {
 
-/// What culling and shading cost as lights become more, up to input.most_lights: a sphere of lights around
-/// the camera, and a city with 1, 10, 100 … lights that fill it evenly.
+/// Measures how culling and shading grow with the number of lights, up to input.most_lights: a sphere of
+/// lights around the camera, and a city with 1, 10, 100 … lights that fill it evenly. Throws MachineError.
 SpeedTable measureManyLights(const SpeedInput& input);
 
 }  // namespace luciole

@@ -59,7 +59,7 @@ void report(const BenchSettings& settings, const std::string& what, std::size_t 
   if (settings.on_progress) settings.on_progress(what, done, total);
 }
 
-/// The scene with all its lights as points, or as far away as they seem.
+/// The scene with all its lights without a size: points, or parallel light.
 Scene withoutLightSizes(Scene scene) {
   for (Light& light : scene.lights) light.radius = light.half_angle = 0;
   return scene;
@@ -88,7 +88,7 @@ BenchGroup measureGroup(const Bench& bench, const VariantGroup& group) {
       truths[variant.shade.model] = makeTruth(bench, group, variant.shade.model);
   BenchGroup result{.group = group, .truth_error = truths.begin()->second.own_error};
   const std::size_t count = group.variants.size();
-  // A first run compiles and gives the picture, which no later one changes.
+  // The first run compiles the kernels. Its picture is the one that is compared: all runs give the same.
   for (const Variant& variant : group.variants) {
     report(bench.settings, group.name + ": errors", result.rows.size(), count);
     Stats ignored;

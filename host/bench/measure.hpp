@@ -22,19 +22,19 @@ struct BenchRow {
   Variant variant;
   Repeated time{};          ///< milliseconds
   ImageDifference error{};  ///< from the truth, linear units
-  double brightest = 0;     ///< the truth's largest value: what relative errors are relative to, if not 0
-  bool front = false;       ///< on the Pareto front, in a group that has one truth
+  double brightest = 0;  ///< the truth's largest value, to which relative errors are relative unless it is 0
+  bool front = false;    ///< on the Pareto front, in a group that has one truth
 };
 
 struct BenchGroup {
   VariantGroup group;
-  /// Mean absolute error that the truth itself may have; 0: only what float rounds off, 2⁻²⁴ of each value.
+  /// Estimate of the truth's own mean absolute error; 0: only float's rounding, 2⁻²⁴ of each value.
   double truth_error = 0;
   std::vector<BenchRow> rows{};  ///< in the order of group.variants
 };
 
-/// Makes every variant's picture, holds it against its group's truth, and times it, in rounds. Loading and
-/// compiling are left out. Throws InputError, MachineError.
+/// Makes every variant's picture, compares it with its group's truth, and times it, in rounds. Times don't
+/// contain loading and compiling. Throws InputError for a device that isn't there, and MachineError.
 std::vector<BenchGroup> measureVariants(const Scene& scene, const std::vector<VariantGroup>& groups,
                                         const BenchSettings& settings);
 

@@ -13,7 +13,7 @@
 namespace luciole {
 namespace {
 
-/// A picture's size and its lights: what is doubled, or more, to see what one costs.
+/// A picture's size and its number of lights: the difference of two cases says what a pixel or a light costs.
 struct Case {
   glm::ivec2 size;
   std::uint64_t lights;
@@ -29,7 +29,7 @@ struct Growth {
   }
 };
 
-constexpr int kRuns = 3;  ///< once for so many repeats
+constexpr int kRuns = 3;  ///< repeats of other measurements for each run of this one, which is slow
 
 std::string sceneText(std::uint64_t lights) {
   return fmt::format(
@@ -40,7 +40,7 @@ std::string sceneText(std::uint64_t lights) {
       lights);
 }
 
-/// Bytes of a run: of the process at its largest, and of the device's buffers as the program counts them.
+/// Bytes of a run: the process's peak, and the device's buffers as the program counts them.
 std::vector<double> bytesOf(const SpeedInput& input, const ScratchFolder& folder, const Case& which) {
   writeTextFile(folder / "scene.json", sceneText(which.lights));
   runChild(input.program,
@@ -53,7 +53,7 @@ std::vector<double> bytesOf(const SpeedInput& input, const ScratchFolder& folder
   return {memory["peak_bytes"], memory["device_bytes"]};
 }
 
-/// What the program says that a pixel of the scene takes.
+/// The bytes that a pixel of the scene takes by bytesPerPixel().
 double statedBytesPerPixel(const ScratchFolder& folder) {
   const Scene scene = loadScene(folder / "scene.json");
   RenderSettings settings;

@@ -5,7 +5,8 @@
 
 namespace luciole {
 
-/// By how much the memory of luciole render grows with a pixel and with a light.
+/// Measures by how many bytes the memory of luciole render grows with a pixel and with a light. Throws
+/// MachineError.
 SpeedTable measureMemory(const SpeedInput& input);
 
 }  // namespace luciole

@@ -27,8 +27,8 @@ PlotPoint pointOf(const BenchRow& row) {
   return {at, at - spread, at + spread, row.variant.name};
 }
 
-/// Of the points on the front, from fast to slow, those nearer than all before: equally fast ones within the
-/// spread would make the line go back and forth.
+/// The points on the front, from fast to slow, whose error is smaller than that of all before. The others are
+/// as fast within the spread, and would make the line go back and forth.
 std::vector<PlotPoint> frontLine(const std::vector<BenchRow>& rows) {
   std::vector<PlotPoint> line;
   for (const BenchRow& row : rows) {
@@ -65,7 +65,7 @@ std::string benchPlot(const BenchResult& result) {
   for (const BenchGroup& group : result.groups) {
     if (!haveOneTruth(group.group)) continue;
     PlotPanel panel = groupPanel(group, result.repeats);
-    // The first group across the top, with the legend of all; the others side by side under it.
+    // The first group is across the top, with the legend for all; the others are side by side under it.
     panel.has_legend = plot.rows.empty();
     panel.size = panel.has_legend ? glm::dvec2(728, 380) : glm::dvec2(384, 300);
     if (plot.rows.size() < 2) plot.rows.emplace_back();

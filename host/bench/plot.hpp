@@ -6,8 +6,8 @@
 
 namespace luciole {
 
-/// The result as an SVG picture: a panel a group that has one truth, error over time on logarithmic axes, the
-/// front as a line.
+/// The result as an SVG picture: for each group with one truth a panel that shows error over time on
+/// logarithmic axes, with the Pareto front as a line.
 std::string benchPlot(const BenchResult& result);
 
 }  // namespace luciole

@@ -5,8 +5,8 @@
 
 namespace luciole {
 
-/// What the rasterizer costs by one thread and by all: the named scene, or the hall of speed_scenes.hpp, as a
-/// G-buffer with every group and as a depth map.
+/// Measures the rasterizer with one thread and with all: the named scene, or the hall of speed_scenes.hpp, as
+/// a G-buffer with all groups and as a depth map.
 SpeedTable measureRasterizer(const SpeedInput& input);
 
 }  // namespace luciole

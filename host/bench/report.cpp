@@ -19,10 +19,10 @@ constexpr const char* kColumns[]{"ms",         "spread",      "max, steps", "mea
                                  "max, share", "mean, share", "front"};
 using Cells = std::vector<std::string>;
 
-/// Stands in a table for a figure that there isn't.
+/// A table's cell without a figure.
 constexpr const char* kNoFigure = "–";
 
-/// Under a table: why figures of it have no value, each reason once.
+/// Collects why figures of a table have no value, each reason once, to print under the table.
 class Reasons {
  public:
   void add(const std::string& why) {

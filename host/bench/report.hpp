@@ -6,10 +6,10 @@
 
 namespace luciole {
 
-/// The result as Markdown that reads well as plain text: a table a group, and what its figures mean.
+/// The result as Markdown that reads well as plain text: for each group a table, and what its figures mean.
 std::string benchTable(const BenchResult& result);
 
-/// The same and every setting, as JSON.
+/// The result with all settings, as JSON.
 std::string benchJson(const BenchResult& result);
 
 }  // namespace luciole

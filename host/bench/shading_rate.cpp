@@ -23,7 +23,8 @@ std::string yardstickSource(std::string_view name) {
   return expandKernelSource(name, file->text);
 }
 
-/// Shared by the yardsticks: the camera stands at the origin, so that the world is view space.
+/// The lights for plain.cl and roof.cl. The camera is at the origin and looks along −z, so world space is
+/// view space.
 std::vector<ShadeLight> shadeLights(const Scene& scene) {
   const auto pack = [](const glm::vec3& v, float w) { return float4{v.x, v.y, v.z, w}; };
   std::vector<ShadeLight> lights;
@@ -47,7 +48,7 @@ double launchMilliseconds(Device& device, Kernel& kernel, const std::vector<Kern
   });
 }
 
-/// A group of planes as the plain kernel takes it: one float4 a pixel.
+/// A group of planes as the plain kernel takes it: a float4 for each pixel.
 std::vector<float4> packed(const Plane& planes, std::size_t pixels) {
   std::vector<float4> values(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -105,7 +106,7 @@ struct Plain {
   Kernel kernel;
 };
 
-/// tests/kernels/roof.cl and its arguments: as many pairs.
+/// tests/kernels/roof.cl and its arguments, for the same number of pairs.
 struct Roof {
   Roof(Device& device_, const AllPairs& pairs)
       : device(device_),
@@ -154,8 +155,8 @@ AllPairs makeAllPairs(glm::ivec2 size, int lights) {
   };
   AllPairs pairs;
   pairs.scene.name = "all pairs";
-  // From no surface a light is seen farther than 65 degrees from the view axis, and normals lean by 20 at
-  // most.
+  // From any surface, lights are within 65 degrees of the view axis. Normals lean by 20 degrees at most, so
+  // all surfaces face all lights.
   for (int i = 0; i < lights; ++i) {
     Light light;
     light.position = {random(-3, 3), random(-3, 3), random(-6, -4)};

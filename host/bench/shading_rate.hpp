@@ -7,19 +7,20 @@
 
 namespace luciole {
 
-/// Surfaces and lights of which every pair counts: all in range, all facing each other, highlights of
-/// exponents 1 to 100.
+/// Surfaces and lights of which every pair counts: all lights are in range of all surfaces and in front of
+/// them. Highlights have exponents from 1 to 100.
 struct AllPairs {
   Scene scene;  ///< lights only
   GBuffer gbuffer;
 };
 AllPairs makeAllPairs(glm::ivec2 size, int lights);
 
-/// The picture by tests/kernels/plain.cl, channels R G B.
+/// The picture made by tests/kernels/plain.cl, channels R G B. Throws MachineError.
 Image shadePlainly(Device& device, const AllPairs& pairs);
 
-/// How many pairs of pixel and light our kernel shades a second where nothing is culled, beside the plain
-/// kernel and beside the roof: the rate at which the vector units could issue our kernel's instructions.
+/// Measures how many pairs of a pixel and a light the shade kernel computes in a second if nothing is culled,
+/// beside the plain kernel and the roof: the rate at which the vector units could issue the shade kernel's
+/// instructions (tests/kernels/roof.cl). Throws MachineError.
 SpeedTable measureShadingRate(const SpeedInput& input);
 
 }  // namespace luciole

@@ -28,8 +28,8 @@ struct Method {
 constexpr Method kMethods[] = {
     {"hard", ShadowMethod::kHard}, {"pcf", ShadowMethod::kPcf}, {"exact", ShadowMethod::kExact}};
 
-/// A scene as its first camera sees it, and what rays say of it. The rays refer to the scene, so it stays
-/// where it is.
+/// A scene as its first camera sees it, and the truth about its shadows by rays. The rays refer to the scene,
+/// so this may not be moved.
 struct Judged {
   Scene scene;
   GBuffer gbuffer, flat;
@@ -79,8 +79,8 @@ TexelSide texelSides(const Scene& scene, const ShadowMaps& shadows) {
   };
 }
 
-/// What exact shadows say of the pairs; of those that culling left out, since the light adds nothing there,
-/// what is true.
+/// The exact shadows of the pairs. A pair that culling left out gets the truth, because the light adds
+/// nothing there.
 std::vector<float> exactVisibility(Device& device, const Judged& judged, const Lighting& lighting,
                                    const LitPlanes& lit) {
   std::vector<uint> starts(lighting.lists.tiles + 1);
@@ -140,8 +140,9 @@ Verdict judgeMaps(Device& device, const Judged& judged, const ShadeSettings& set
   return verdict;
 }
 
-/// Milliseconds of Embree for the pairs, as it is mostly used: rays that start a little off the surface, so
-/// that their own triangle needn't be told apart, and no holes. Making the rays isn't counted.
+/// Milliseconds that Embree takes for the pairs in the usual way: rays start a little off the surface, so
+/// that no filter needs to recognize their own triangle, and holes in masks are ignored. Making the rays
+/// isn't counted.
 double rayMilliseconds(const Judged& judged, const RayScene& solid) {
   constexpr double kLift = 1e-3;           // of the distance to the eye
   constexpr std::size_t kBlock = 1 << 20;  // pairs
@@ -180,8 +181,8 @@ struct Row {
   ShadeSettings settings;
 };
 
-/// Milliseconds: drawing (with planning and finding what to draw), and shading beyond what it takes without
-/// shadows.
+/// Milliseconds of drawing (with planning, and finding what to draw), of lookups (shading less shading
+/// without shadows), of both together, and of Embree's rays.
 std::vector<double> timeMaps(Device& device, const Row& row) {
   RenderSettings settings;
   settings.shade = row.settings;
@@ -196,7 +197,7 @@ std::vector<double> timeMaps(Device& device, const Row& row) {
   return {draw, look_up, draw + look_up, rays};
 }
 
-/// Sizes of maps to try: the scenes made for it differ in kind, not in size.
+/// The sizes of maps to try: all for a scene of the user's, only the default for makeShadowScenes().
 std::vector<int> sizesFor(const SpeedInput& input) {
   if (input.shadow_size) return {*input.shadow_size};
   if (!input.scene) return {ShadowLimits{}.size};
@@ -207,7 +208,7 @@ SpeedCell percent(std::uint64_t part, std::uint64_t whole, const std::string& wh
   return quotient(100.0 * double(part), double(whole), why_none);
 }
 
-/// What a row counts, its times left to be filled in.
+/// A row's cells, with empty ones for the times.
 std::vector<SpeedCell> countedCells(const Judged& judged, const Verdict& verdict) {
   const ShadowErrors& errors = verdict.errors;
   const std::string none =

@@ -7,12 +7,13 @@
 
 namespace luciole {
 
-/// Shadow maps against rays: for every method and size what drawing and looking up cost and which pairs of a
-/// pixel and a light they get wrong, and what Embree takes for the same pairs. Of the scene given, or of five
-/// that are hard for shadow maps.
+/// Compares shadow maps with rays. For every method and size: what drawing and lookups cost, how many pairs
+/// of a pixel and a light are wrong, and what Embree takes for the same pairs. Measures the scene given, or
+/// makeShadowScenes() if there is none. Throws MachineError.
 SpeedTable measureShadowErrors(const SpeedInput& input);
 
-/// What shadows drawn and looked up like this get wrong where the scene's first camera looks.
+/// How many pairs of a pixel and a light these settings' shadows get wrong, in the picture of `size` pixels
+/// that the scene's first camera sees. Throws MachineError.
 ShadowErrors shadowErrors(Device& device, const Scene& scene, glm::ivec2 size, const ShadeSettings& settings);
 
 }  // namespace luciole

@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-/// Five scenes that are hard for shadow maps, named for what is hard:
+/// Five scenes that are hard for shadow maps. Their names say why:
 /// - grazing plane: a sun 3 degrees above a plane, with a few posts
 /// - thin wall: a sheet without thickness, a light 2 cm behind it
 /// - picket fence: a hundred pickets of 3 cm under the sun, into the distance

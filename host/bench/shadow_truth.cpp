@@ -19,7 +19,7 @@
 namespace luciole {
 namespace {
 
-/// Rays that a thread makes and asks at once: 64 packets, 56 KB.
+/// Rays that a thread makes and traces at once: 64 packets, 56 KB.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kDirections = 8;
 
@@ -107,7 +107,7 @@ void findPairs(const std::vector<ViewLight>& lights, const TilePixels& pixels, F
   }
 }
 
-/// Calls `run` with the pairs' first and last + 1, for `most` of them at once, by all threads.
+/// Splits pairs into blocks of at most `most` and calls run(first, end) for each block, on all threads.
 template <class Run>
 void forBlocks(std::size_t pairs, std::size_t most, Run run) {
   tbb::parallel_for(std::size_t(0), (pairs + most - 1) / most,
@@ -118,7 +118,7 @@ glm::dvec3 wayToLight(const Light& light, const glm::dvec3& point) {
   return hasPlace(light) ? light.position - point : -light.direction;
 }
 
-/// What leads from a point to the eight around it.
+/// The eight points around a point (see nearEdges), as offsets from it; world space.
 struct Around {
   glm::dvec3 to_light, right, up;  ///< unit, at right angles to each other
   double reach;                    ///< metres
@@ -187,7 +187,7 @@ std::vector<std::uint8_t> nearEdges(const Scene& scene, const RayScene& rays, co
   std::vector<std::uint8_t> edge(pairs.size());
   forBlocks(pairs.size(), kBlock / kDirections, [&](std::size_t first, std::size_t end) {
     const std::size_t count = end - first;
-    // All pairs' first points, then all their second …: those lie side by side.
+    // The first points of all pairs, then their second points, and so on: neighbouring rays are similar.
     std::array<ShadowRay, kBlock> block;
     std::array<std::uint8_t, kBlock> blocked;
     for (std::size_t i = 0; i < count; ++i) {

@@ -19,42 +19,43 @@ struct LightPair {
   bool operator==(const LightPair&) const = default;
 };
 
-/// Every pair that a shadow decides about: the light has `shadow`, and would light the pixel if nothing were
-/// in its way, because the pixel shows a surface whose normal leans towards the light, nearer than its range
-/// and inside its cutoff. By tile, in it by light, and under that in the pixels' Z order, so that rays of
-/// pairs that follow each other go much the same way.
+/// All pairs that a shadow decides about: the light has `shadow`, the pixel shows a surface whose normal
+/// faces it, and the surface is nearer than the light's range and inside its cutoff. Ordered by tile, then by
+/// light, then by the pixels' Z order, so that rays of neighbouring pairs are similar. O(tiles · lights +
+/// pairs), on all cores.
 std::vector<LightPair> facingPairs(const Scene& scene, const GBuffer& gbuffer);
 
 struct TracedShadows {
-  std::vector<std::uint8_t> lit;  ///< one a pair, 1: nothing is between the pixel and the light
-  /// What it took, from the G-buffer and the pairs to `lit`: as any user of Embree must, it makes the rays, a
-  /// few packets at a time. Building `rays` is not in it.
+  std::vector<std::uint8_t> lit;  ///< for each pair, 1: nothing is between the pixel and the light
+  /// Wall-clock time from the G-buffer and the pairs to `lit`. It includes making the rays, as any user of
+  /// Embree must, but not building `rays`.
   double milliseconds = 0;
 };
 
-/// The truth about the pairs' shadows, by rays from the pixels to the lights' middles: as if they had no
-/// size. `rays`: by buildShadowRays for this scene and the G-buffer's eye.
+/// The truth about the pairs' shadows, by rays from the pixels to the lights' middles, as if lights had no
+/// size. rays: by buildShadowRays() for this scene and the G-buffer's eye.
 TracedShadows traceTruth(const Scene& scene, const RayScene& rays, const GBuffer& gbuffer,
                          std::span<const LightPair> pairs);
 
-/// Metres across the light's rays that one texel of that light's map covers at a point, > 0. Called by many
-/// threads at once.
+/// Returns the metres, > 0, that a texel of a light's map covers at a point, measured across the light's
+/// rays. Many threads call it at once.
 using TexelSide = std::function<double(std::uint32_t light, const glm::dvec3& world_point)>;
 
-/// Longest way back into the plane in nearEdges, in texels: where a surface leans from the light's rays by
-/// less than 1/20, a texel covers more of it than any map could do right.
+/// The longest way along the light's rays back to the plane in nearEdges(), in texels. On surfaces whose
+/// slope to the rays is less than 1/20 a texel covers more than any map could get right.
 inline constexpr double kLongestWayBack = 20;
 
-/// One a pair, 1: the truth changes within a texel of it, so that a map can't be held to it. Eight points
-/// around it are asked: one texel away across the light's rays, and from there along them back into the plane
-/// of the pixel's triangle, or of the smooth surface above it where shadow tests start there, or
-/// kLongestWayBack texels towards it where that is less. They may lie beyond the triangle's rim.
-/// `flat_normals`: a G-buffer of the same view by Shading::kFlat. `lit`: what traceTruth says of the pairs.
+/// For each pair, 1 if the truth changes within a texel of it, so that no map can be expected to get it
+/// right. Eight points around the pair's are traced. Each is a texel away across the light's rays, then moved
+/// along the rays back to the plane of the pixel's triangle, but by at most kLongestWayBack texels. If shadow
+/// tests start on the smooth surface above the triangle, its tangent plane is taken. The points may lie
+/// beyond the triangle's rim. flat_normals: a G-buffer of the same view with Shading::kFlat; lit: by
+/// traceTruth().
 std::vector<std::uint8_t> nearEdges(const Scene& scene, const RayScene& rays, const GBuffer& gbuffer,
                                     const GBuffer& flat_normals, std::span<const LightPair> pairs,
                                     std::span<const std::uint8_t> lit, const TexelSide& texel_side);
 
-/// Pairs by what is true of them, and how many of those a shadow map gets wrong.
+/// Numbers of pairs by the truth about them, and how many of those a shadow map gets wrong.
 struct ShadowErrors {
   std::uint64_t lit = 0, dark = 0;  ///< away from edges
   std::uint64_t wrongly_dark = 0;   ///< of `lit`
@@ -62,8 +63,8 @@ struct ShadowErrors {
   std::uint64_t edges = 0, wrong_edges = 0;
 };
 
-/// `lit` and `edge` as traceTruth and nearEdges give them; `visibility`: the share of the light that the map
-/// lets through, of which from 0.5 on it says lit. All one a pair.
+/// Counts the errors of a shadow map. An element for each pair: lit by traceTruth(), edge by nearEdges(), and
+/// visibility, the share of the light that the map lets through. From 0.5 on the map counts as saying lit.
 ShadowErrors judge(std::span<const std::uint8_t> lit, std::span<const std::uint8_t> edge,
                    std::span<const float> visibility);
 

@@ -10,7 +10,7 @@
 
 namespace luciole {
 
-/// What the measurements of speed are given.
+/// The input of the measurements of speed.
 struct SpeedInput {
   Device& device;
   std::string device_selector;     ///< that opened it

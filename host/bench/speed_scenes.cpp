@@ -17,8 +17,8 @@ namespace {
 const std::vector<glm::vec3> kSceneColors{
     {1, 0.55f, 0.2f}, {0.4f, 0.6f, 1}, {0.5f, 1, 0.6f}, {1, 0.35f, 0.5f}};
 
-/// Points that fill a box evenly, the same on every machine: M. Roberts' sequence, by the powers of the root
-/// of x⁴ = x + 1.
+/// Points that fill a box evenly, the same on every machine: M. Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018, with the root of x⁴ = x + 1.
 glm::dvec3 spreadPoint(int index, const glm::dvec3& low, const glm::dvec3& high) {
   const glm::dvec3 place = glm::fract((index + 1.0) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
   return low + place * (high - low);
@@ -136,7 +136,7 @@ Scene makeLightSphere(std::uint64_t lights) {
   material.shininess = 30;
   material.double_sided = true;
   scene.materials.push_back(material);
-  // Of 512 sides, which lie within 2 mm of the sphere.
+  // With 512 segments its facets lie within 2 mm of the sphere.
   place(scene, addMesh(scene, {PrimitiveKind::kSphere, 512}), 0, glm::dmat4(1), {}, glm::dvec3(50.1));
   LightField field;
   field.count = lights;

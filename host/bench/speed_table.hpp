@@ -15,19 +15,19 @@ struct SpeedColumn {
   int decimals = 0;  ///< in the table
 };
 
-/// In the place of a figure that there isn't.
+/// Stands for a figure that has no value.
 struct NoValue {
   std::string why{};  ///< for people
 };
 
-/// A figure that is counted or computed, one that repeated runs gave, or none.
+/// A cell: no value, a figure that is counted or computed, or one from repeated runs.
 using SpeedCell = std::variant<NoValue, double, Repeated>;
 
-/// How many times `under` goes into `over`, or `why` that has no value where it is 0.
+/// over / under. If `under` is 0: no value, because of `why`.
 SpeedCell quotient(double over, double under, const std::string& why);
 
-/// One row's figures over another's, round by round; no value where a round of `under` took no time that
-/// could be measured.
+/// Median and spread of one row's times over another's, round by round. No value if a round of `under` took
+/// no measurable time.
 SpeedCell ratio(const std::vector<double>& over, const std::vector<double>& under);
 
 struct SpeedRow {
@@ -35,7 +35,7 @@ struct SpeedRow {
   std::vector<SpeedCell> cells;  ///< one a column
 };
 
-/// What a stage costs, in rows that compare with one another.
+/// A measurement's result: rows that compare with one another.
 struct SpeedTable {
   std::string name;
   std::string measured;  ///< in a sentence, for people

@@ -5,8 +5,8 @@
 
 namespace luciole {
 
-/// Wall time of the whole process for a picture of 64 x 64 pixels: with an empty kernel cache of its own, and
-/// with the one that this left behind.
+/// Measures the wall-clock time of the whole process for a picture of 64 x 64 pixels: with an empty kernel
+/// cache of its own, and with the cache that such a run has filled. Throws MachineError.
 SpeedTable measureStart(const SpeedInput& input);
 
 }  // namespace luciole

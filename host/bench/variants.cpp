@@ -8,7 +8,7 @@
 namespace luciole {
 namespace {
 
-/// Degrees that kernels/math.clh has besides the defaults.
+/// The degrees of kernels/math.clh other than the defaults.
 constexpr int kLog2Degrees[] = {3, 4, 5, 6, 7, 9};
 constexpr int kExp2Degrees[] = {2, 3, 4, 5, 7};
 
@@ -79,8 +79,8 @@ VariantGroup shadowGroup(const std::string& name, const std::string& truth, Trut
           .shadows = shadows};
 }
 
-/// One group, or for lights that have a size two, of which the second one's truth has their penumbrae: there
-/// the methods that take lights for points have a row each, too.
+/// One group, or two if lights have a size. The truth of the second has their penumbrae; in it the methods
+/// that take lights for points have a row each, too.
 std::vector<VariantGroup> shadowVariants(const Scene& scene, int lanes, std::optional<int> only_size) {
   const std::vector<int> sizes =
       only_size ? std::vector{*only_size} : std::vector(std::begin(kShadowSizes), std::end(kShadowSizes));

@@ -13,7 +13,7 @@
 namespace luciole {
 namespace {
 
-/// Memory of ours that a buffer lies in.
+/// Host memory that a buffer lies in and owns: freed when OpenCL destroys the buffer.
 struct OwnArray {
   void* memory;
   std::size_t bytes;
@@ -25,7 +25,8 @@ struct OwnArray {
 
 void CL_CALLBACK freeOwnArray(cl_mem, void* array) { delete static_cast<OwnArray*>(array); }
 
-/// Ends when nothing queued works on what was lent.
+/// Shared by the copies of a borrowed buffer. The last one's destructor waits for the queue, so that nothing
+/// queued works on the host's array any more.
 struct Loan {
   cl::CommandQueue queue;
   ~Loan() {
@@ -42,7 +43,7 @@ void count(Device& device, std::uint64_t Traffic::*kind, std::size_t bytes) {
   device.traffic.*kind += bytes;
 }
 
-/// A buffer of memory that OpenCL or the host has: see clCreateBuffer.
+/// clCreateBuffer. Throws MachineError.
 cl::Buffer create(Device& device, cl_mem_flags flags, std::size_t size, void* array) {
   try {
     return cl::Buffer(device.context, flags, size, array);
@@ -51,7 +52,7 @@ cl::Buffer create(Device& device, cl_mem_flags flags, std::size_t size, void* ar
   }
 }
 
-/// In the host's array, where memory is shared.
+/// A buffer in the host's array, for devices that share memory.
 DeviceMemory inPlace(Device& device, cl_mem_flags access, void* array, std::size_t size) {
   return {create(device, access | CL_MEM_USE_HOST_PTR, size, array), std::make_shared<Loan>(device.queue)};
 }
@@ -67,7 +68,7 @@ DeviceMemory make(Device& device, std::size_t size) {
     memory.handle = create(device, CL_MEM_READ_WRITE, size, nullptr);
   } else {
     try {
-      // Our own memory, for its larger pages.
+      // From allocateArray() instead of OpenCL, because it uses larger pages.
       auto array = std::make_unique<OwnArray>(size);
       memory.handle = create(device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size, array->memory);
       memory.handle.setDestructorCallback(freeOwnArray, array.get());
@@ -116,10 +117,10 @@ void write(Device& device, const DeviceMemory& memory, const void* whole, const 
 
 void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size) {
   if (size == 0) return;
-  finish(device);  // by itself, so that an error of a kernel carries its name
+  finish(device);  // apart from the copy, so that a kernel's error names the kernel
   try {
     if (memory.loan && memory.handle.getInfo<CL_MEM_HOST_PTR>() == array && offset == 0) {
-      // The buffer is this very memory: mapping it is what makes its content the host's.
+      // The buffer lies in this very array. OpenCL guarantees its content there only after mapping.
       void* mapped = device.queue.enqueueMapBuffer(memory.handle, CL_TRUE, CL_MAP_READ, 0, size);
       device.queue.enqueueUnmapMemObject(memory.handle, mapped);
       device.queue.finish();
@@ -142,7 +143,7 @@ void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std:
 
 void fill(Device& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
           std::size_t size) {
-  // Not by clEnqueueFillBuffer: what that has filled, Oclgrind 21.10 takes for unwritten.
+  // Not by clEnqueueFillBuffer: Oclgrind 21.10 takes memory filled by it for uninitialized.
   const auto* const first = static_cast<const std::byte*>(element);
   std::vector<std::byte> values;
   while (values.size() < size) values.insert(values.end(), first, first + element_size);

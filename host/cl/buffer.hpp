@@ -9,46 +9,53 @@
 #include "base/index_range.hpp"
 #include "cl/device.hpp"
 
-// The one place where memory of a device is made and copied, and where its bytes are counted
-// (Device::traffic). All functions throw MachineError where the device fails, also where it has too little
-// memory.
+// Only the functions here allocate and copy memory of a device, and count the bytes (Device::traffic). All of
+// them throw MachineError if the device fails or has too little memory. Those that copy to or from the host
+// wait for the copy.
 namespace luciole {
 
 /// An OpenCL buffer, not yet of any type. Copies are the same buffer.
 struct DeviceMemory {
   cl::Buffer handle;
-  std::shared_ptr<const void> loan;  ///< of the host's array, where the buffer lies in one
+  std::shared_ptr<const void> loan;  ///< not null where the buffer lies in an array of the host's
 };
 
-/// An array of T that kernels work on; of const T where they only read it. Copies are the same array.
+/// An array of T that kernels work on, or of const T that they only read. Copies are the same array.
 /// - An owned one has memory of its own, which lasts as long as a copy or a queued kernel refers to it.
-/// - A borrowed one lies in the host's array where device and host share memory, so that nothing is copied.
-///   As long as there is a copy, that array must stay where it is, and the host may not change it. The last
-///   copy waits for everything queued before it goes. So it is enough that the array was there first, also
-///   when something is thrown. Where memory isn't shared, it is an owned one that starts as a copy.
+/// - A borrowed one lies in the host's array if device and host share memory, so that nothing is copied. As
+///   long as a copy exists, the host's array must stay where it is and may not be changed. The last copy's
+///   destructor waits for everything queued. So it is enough that the array is declared before the buffer,
+///   also if something is thrown. If memory isn't shared, it is an owned one that starts as a copy.
 template <class T>
 struct Buffer {
   DeviceMemory memory;
   std::size_t count = 0;  ///< elements
 
-  /// A kernel may always promise to write nothing.
+  /// The same array for a kernel that only reads it.
   operator Buffer<const T>() const requires(!std::is_const_v<T>) { return {memory, count}; }
 };
 
-/// What the functions below do, in bytes. OpenCL has no empty buffers: those of 0 bytes get some.
+/// The functions below without types; sizes and offsets are in bytes. OpenCL has no empty buffers: those of 0
+/// bytes get 16.
 namespace bytes {
+/// See makeBuffer().
 DeviceMemory make(Device& device, std::size_t size);
+/// See borrowed().
 DeviceMemory borrow(Device& device, const void* array, std::size_t size);
+/// See borrowedForOutput().
 DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size);
-/// `whole`: the host's array that the buffer is a copy of. range: of bytes.
+/// Copies a range of bytes to the same place in the buffer. whole: the array that the buffer is a copy of.
 void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range);
+/// See download().
 void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size);
+/// Queues a copy of the first `size` bytes.
 void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size);
+/// See fill().
 void fill(Device& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
           std::size_t size);
 }  // namespace bytes
 
-/// An array of the host's, by reference or as a span: none that is gone when a buffer is used.
+/// An array of the host's, as an lvalue or a span: a temporary would be gone when the buffer is used.
 template <class Array>
 concept HostArray = std::ranges::contiguous_range<Array> && std::ranges::borrowed_range<Array>;
 
@@ -61,34 +68,36 @@ Buffer<T> makeBuffer(Device& device, std::size_t count) {
   return {bytes::make(device, count * sizeof(T)), count};
 }
 
-/// The values of an array, to read.
+/// A borrowed buffer (see Buffer) of an array that kernels read.
 template <HostArray Array>
 Buffer<const ElementOf<Array>> borrowed(Device& device, Array&& array) {
   const std::span values(array);
   return {bytes::borrow(device, values.data(), values.size_bytes()), values.size()};
 }
 
-/// A buffer whose content download() brings to the array; what it starts as is undefined. The array is
-/// undefined until then.
+/// A borrowed buffer that kernels write. It starts undefined. download() brings its content to the array,
+/// which is undefined until then.
 template <HostArray Array>
 Buffer<ElementOf<Array>> borrowedForOutput(Device& device, Array&& array) {
   const std::span values(array);
   return {bytes::borrowForOutput(device, values.data(), values.size_bytes()), values.size()};
 }
 
-/// Makes an owned buffer, or none yet, hold `count` elements at the least. Where it has to grow its content
-/// is lost.
+/// Makes `buffer`, an owned one or one without memory yet, hold at least `count` elements. If it has to grow,
+/// its content is lost.
 template <class T>
 void reserve(Device& device, std::size_t count, Buffer<T>& buffer) {
   if (buffer.memory.handle() && buffer.count >= count) return;
-  buffer = {};  // first, so that both need not fit
+  buffer = {};  // freed first, so that memory need not hold both
   buffer = makeBuffer<T>(device, count);
 }
 
-/// Brings a buffer up to date with an array, which since the last time changed in the ranges `changed` and
-/// perhaps grew. Where memory is shared it is borrowed from the array: giveBack() it before that changes
-/// again. Otherwise it is owned, keeps its memory where that is large enough, and only the ranges are copied,
-/// those at once that follow each other. May hold more elements than the array.
+/// Brings a buffer up to date with an array that has changed in the ranges `changed` since the last time, and
+/// perhaps grown.
+/// - If memory is shared, the buffer is borrowed from the array: call giveBack() before the array changes
+///   again.
+/// - Otherwise it is owned, and keeps its memory if that is large enough; so it may hold more elements than
+///   the array. Only the ranges are copied, adjacent ones by a single copy.
 template <class T, HostArray Array>
 void refresh(Device& device, Array&& array, std::span<const IndexRange> changed, Buffer<const T>& buffer) {
   if (device.shares_host_memory) {
@@ -112,8 +121,8 @@ void refresh(Device& device, Array&& array, std::span<const IndexRange> changed,
   }
 }
 
-/// Drops a borrowed buffer, so that the host may change its array; an owned one stays as it is. refresh()
-/// follows.
+/// Drops a borrowed buffer, so that the host may change its array. An owned one stays as it is. Call
+/// refresh() before the buffer is used again.
 template <class T>
 void giveBack(Buffer<T>& buffer) {
   if (buffer.memory.loan) buffer = {};
@@ -125,8 +134,8 @@ void fill(Device& device, const Buffer<T>& buffer, const std::type_identity_t<T>
   bytes::fill(device, buffer.memory, &value, sizeof(T), buffer.count * sizeof(T));
 }
 
-/// The elements from `first` on, as many as `out` has, once everything queued is done. A borrowed buffer's
-/// are there already where memory is shared and `out` is what it was borrowed from.
+/// Waits for everything queued, then copies as many elements as `out` has, from `first` on, to `out`. Nothing
+/// is copied if `out` is the array that the buffer lies in.
 template <class T>
 void download(Device& device, const Buffer<T>& buffer,
               std::span<std::remove_const_t<std::type_identity_t<T>>> out, std::size_t first = 0) {

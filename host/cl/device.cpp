@@ -24,7 +24,7 @@ struct FoundDevice {
   DeviceDescription description;
 };
 
-/// OpenCL strings may carry their terminator and blanks along.
+/// Some platforms' strings end with their terminator and blanks.
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back()))))
     text.pop_back();
@@ -37,10 +37,12 @@ int nativeLanes(const cl::Device& device) {
   return width >= 16 ? 16 : width >= 8 ? 8 : width >= 4 ? 4 : 1;
 }
 
-/// What a platform takes at the least with its compiler, a part of it when kernels are compiled. Measured
-/// with PoCL 3.1 and no kernel in its cache: killed in a control group of 144 MiB, well in one of 160; ended
-/// by itself or hung under `ulimit -v` of 720 MiB and `ulimit -d` of 320, well under 760 and 360, of which
-/// this program and the stacks of a thread a core of the platform's and of ours took 130 and 40.
+/// Bytes that a platform and its compiler take at least: resident, of address space, and of data segment. A
+/// part of it is taken when kernels are compiled. Measured with PoCL 3.1 and an empty kernel cache:
+/// - a control group of 144 MiB killed it, one of 160 MiB didn't;
+/// - under `ulimit -v` of 720 MiB or `ulimit -d` of 320 MiB it aborted or hung, under 760 and 360 MiB it
+///   worked. Of these, this program and the stacks of two threads a core, ours and the platform's, took 130
+///   and 40 MiB.
 constexpr double kPlatformBytes = 192 << 20, kPlatformAddresses = 640 << 20, kPlatformData = 320 << 20;
 
 std::vector<FoundDevice> findDevices() {

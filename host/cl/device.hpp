@@ -20,37 +20,38 @@ struct DeviceDescription {
   int lanes = 1;        ///< pixels a work-item shades: 16, 8, 4 or 1, by the device's native vector width
 };
 
-/// What buffers cost a device, in bytes. Where it shares the host's memory nothing is copied.
+/// Bytes that buffers have copied and allocated. A device that shares the host's memory copies nothing.
 struct Traffic {
   std::uint64_t bytes_up = 0;    ///< copied from the host to the device
   std::uint64_t bytes_down = 0;  ///< copied from the device to the host
   std::uint64_t bytes_made =
-      0;  ///< of memory that buffers were given; arrays of the host's in their place are none
+      0;  ///< allocated as memory of buffers; those that lie in an array of the host's don't count
 };
 
-/// A device, opened, with what every launch on it needs.
+/// An opened device, and what every launch on it needs.
 struct Device {
   DeviceDescription description;
   cl::Device device;
   cl::Context context;
   cl::CommandQueue queue;           ///< in order
-  bool shares_host_memory = false;  ///< set it before the first buffer is made
+  bool shares_host_memory = false;  ///< true on a CPU; not to be changed once a buffer is made
 
   /// Programs built so far, by options and file or source; guarded by `programs_mutex`.
   std::map<std::string, cl::Program> programs;
   std::mutex programs_mutex;
 
   Traffic traffic;             ///< since it was opened; guarded by `notes_mutex`
-  std::string running_kernel;  ///< the last that was queued; guarded by `notes_mutex`
+  std::string running_kernel;  ///< the kernel queued last, for messages; guarded by `notes_mutex`
   std::mutex notes_mutex;
 
-  double milliseconds_to_open = 0;  ///< 0 again once a picture's statistics have told it
+  double milliseconds_to_open = 0;  ///< the first picture's statistics take it and set it to 0
 
-  /// The thread of startDevice. Last, so that it has ended before anything it works on goes.
+  /// The thread of startDevice. The last member, so that it is destroyed first and waits for the thread.
   std::shared_future<void> opening;
 };
 
-/// All OpenCL devices of all platforms, in the order the runtime names them. Empty where there is none.
+/// All OpenCL devices of all platforms, in the runtime's order. Empty if there is none. Throws MachineError
+/// if this process may not take the memory that a platform needs.
 std::vector<DeviceDescription> listDevices();
 
 /// Which of listDevices() a selector means. "": PoCL's first device where there is one, otherwise the first.
@@ -59,22 +60,23 @@ std::vector<DeviceDescription> listDevices();
 /// is left to openDevice.
 std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::string& selector);
 
-/// Opens the device that `selector` means, its lanes forced where the selector ends in ",lanes=N".
-/// Throws as selectDevice does, and MachineError if the device fails.
+/// Opens the device that `selector` means. A selector that ends in ",lanes=N" sets its lanes. Throws as
+/// selectDevice and listDevices do, InputError for other lanes than 1, 4, 8 and 16, and MachineError if the
+/// device fails.
 void openDevice(const std::string& selector, Device& device);
 
-/// The same in a thread of its own. Until awaitDevice() returns, `device` is the thread's.
+/// openDevice() in a thread of its own. Nobody else may use `device` until awaitDevice() has returned.
 void startDevice(const std::string& selector, Device& device);
 
 /// Waits until the device is open. Throws what openDevice() threw. For a device that no thread opens it does
 /// nothing.
 void awaitDevice(const Device& device);
 
-/// What buffers have cost the device so far.
+/// The bytes that buffers have copied and allocated so far. Any thread may ask.
 Traffic trafficOf(Device& device);
 
-/// Waits until everything queued is done. Throws MachineError where a kernel failed, naming the last that was
-/// queued.
+/// Waits until everything queued is done. Throws MachineError if a kernel failed. The message names the
+/// kernel queued last: OpenCL doesn't tell which one it was.
 void finish(Device& device);
 
 }  // namespace luciole

@@ -7,8 +7,8 @@
 
 namespace luciole {
 
-/// The error of an OpenCL call as the user reads it: whose it is (the device, and what it was at), the call,
-/// and the error's name in the standard. It says so where memory is short.
+/// The error of an OpenCL call as the user reads it: `whose` (the device, and what it was doing), the call,
+/// and the error's name in the standard, with "out of memory" for the errors that mean that.
 MachineError deviceError(const cl::Error& error, const std::string& whose);
 
 }  // namespace luciole

@@ -20,8 +20,8 @@ double now(clockid_t clock) {
   return secondsOf(time);
 }
 
-/// Seconds from the machine's start to this process's: field 22 of its stat file, of which the second, the
-/// program's name in parentheses, may hold blanks (proc(5)).
+/// Seconds from the machine's start to this process's: field 22 of /proc/self/stat (proc(5)). Counting starts
+/// behind the ')' of field 2, the program's name in parentheses, because that may hold blanks.
 double processStart() {
   std::ifstream file("/proc/self/stat");
   const std::string text{std::istreambuf_iterator<char>(file), {}};

@@ -5,12 +5,12 @@
 
 namespace luciole {
 
-/// Milliseconds since this process started. The system tells the start in steps of 10 ms, so up to that much
-/// more than was.
+/// Milliseconds since this process started. The system rounds the start down to steps of 10 ms, so the result
+/// may be up to 10 ms too large.
 double millisecondsSinceStart();
 
-/// How many kernels this process had to compile because the platform's cache on the disk hadn't got them: 0
-/// is a warm start. Empty where the platform doesn't tell, which is any but PoCL.
+/// How many kernels this process has compiled because the platform's cache on disk hadn't got them: 0 is a
+/// warm start. platform: its name. Empty for any platform but PoCL, since others don't tell.
 std::optional<int> kernelsCompiled(const std::string& platform);
 
 }  // namespace luciole

@@ -5,12 +5,12 @@
 
 namespace luciole {
 
-/// The source of kernels/`name` with its includes put in place, each once, under #line directives so that a
-/// compiler's message names the real file and line. Throws std::logic_error for a name that isn't there.
+/// The source of kernels/`name` with each of its includes in place of its first #include. #line directives
+/// make a compiler's message name the real file and line. Throws std::logic_error for an unknown name.
 std::string kernelSource(std::string_view name);
 
-/// The same for a kernel file that is not among the embedded ones, such as a test's: its text, which may
-/// include them.
+/// The same for a kernel file that isn't embedded in the program, such as a test's. text: its content, which
+/// may include embedded ones; name: what messages call it.
 std::string expandKernelSource(std::string_view name, std::string_view text);
 
 }  // namespace luciole

@@ -12,8 +12,8 @@
 namespace luciole {
 namespace {
 
-/// What must be left when a program is compiled. Measured as what a platform takes is (device.cpp), which
-/// this is a part of.
+/// Bytes of memory that must be free when a program is compiled: the compiler's part of kPlatformBytes
+/// (device.cpp), measured in the same way.
 constexpr double kCompilerBytes = 64 << 20;
 
 std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
@@ -30,8 +30,8 @@ std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
   return arguments;
 }
 
-/// The kernel `name` of the program known by `key`, which is built from the source that source() gives where
-/// it isn't there yet.
+/// The kernel `name` of the program with this key and these defines. A program that isn't there yet is built
+/// from what source() returns.
 template <class Source>
 Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
                     Source&& source) {
@@ -65,7 +65,7 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
   }
 }
 
-/// Why an argument can't have a value; empty: it can.
+/// Why an argument can't take this value, for a message. Empty if it can.
 std::string whyNot(const DeclaredArgument& declared, const KernelArgument& given) {
   if (declared.space == CL_KERNEL_ARG_ADDRESS_LOCAL) return "is in local memory, where launch() puts nothing";
   if (declared.type != given.type) return fmt::format("is a {}, not a {}", declared.type, given.type);
@@ -74,8 +74,8 @@ std::string whyNot(const DeclaredArgument& declared, const KernelArgument& given
   return "";
 }
 
-/// The one of the declared arguments that each given one is for. Throws std::logic_error where they don't
-/// match.
+/// The index among the kernel's arguments for each given one. Throws std::logic_error if they don't match
+/// (see launch()).
 std::vector<cl_uint> matchArguments(const Kernel& kernel, const std::vector<KernelArgument>& given) {
   const auto refuse = [&](std::string_view argument, const std::string& why) {
     throw std::logic_error(fmt::format("kernel '{}', argument '{}' {}", kernel.name, argument, why));

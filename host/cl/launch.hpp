@@ -13,8 +13,8 @@
 
 namespace luciole {
 
-/// What kernels call a type of the host. For types that they don't have, such as std::size_t, nothing
-/// compiles.
+/// The name in kernels of a type of the host. It doesn't compile for types that kernels don't have, such as
+/// std::size_t.
 template <class T>
 constexpr std::string_view kernelTypeName() = delete;
 template <>
@@ -71,7 +71,7 @@ struct KernelArgument {
     value.assign(as_bytes.begin(), as_bytes.end());
   }
 
-  /// A buffer that isn't there yet is a null pointer: the kernel may not look at it.
+  /// A buffer without memory is passed as a null pointer, which the kernel may not access.
   template <class T>
   KernelArgument(std::string_view name_, const Buffer<T>& buffer)
       : name(name_),
@@ -86,46 +86,49 @@ struct KernelArgument {
   std::string_view name;
   std::string type;  ///< as clGetKernelArgInfo names it: float*
   bool is_buffer = false, is_read_only = false;
-  std::vector<std::byte> value;  ///< or a buffer's cl_mem
+  std::vector<std::byte> value;  ///< its bytes; of a buffer, those of its cl_mem
 };
 
-/// What a kernel's source says of an argument.
+/// An argument as the kernel's source declares it.
 struct DeclaredArgument {
   std::string name, type;
   cl_kernel_arg_address_qualifier space;
   bool is_const;  ///< what it points to
 };
 
-/// A kernel, which knows its name and its arguments.
+/// A kernel with its name and its arguments in order.
 struct Kernel {
   cl::Kernel kernel;
   std::string name;
   std::vector<DeclaredArgument> arguments;
 };
 
-/// The kernel `name` of kernels/`file`, compiled for the device with LANES and the given -D options. A
-/// program is built once a device. Throws MachineError with the compiler's first message, and where the
-/// platform doesn't tell the kernel's arguments.
+/// The kernel `name` of kernels/`file`, compiled with the device's LANES and the -D options in `defines`. A
+/// program is built only once for a device and the same options. Any thread may call it. Throws MachineError
+/// with the first 1000 characters of the compiler's log if it doesn't compile, if memory is short, and if the
+/// platform doesn't tell the kernel's arguments; std::logic_error for a file that isn't there.
 Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines);
 
 /// The same for any source text whose includes are in place (see expandKernelSource).
 Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
                             const std::string& defines);
 
-/// How many work-items, in groups of how many: a power of two that divides them. Groups must mean nothing to
-/// the kernel: they are smaller where the device takes no larger ones.
+/// The size of a launch. A kernel's result may not depend on `group`, because it is halved until the device
+/// takes it.
 struct WorkItems {
   std::size_t items;
-  std::size_t group = 1;
+  std::size_t group = 1;  ///< work-items in a group: a power of two that divides `items`
 };
 
 /// Queues a kernel with its arguments, in any order:
 ///     launch(device, kernel, {{"position", gbuffer.position}, {"plane_stride", stride}}, {.items = 64,
 ///     .group = 16});
-/// The buffers may go before it has run. Throws std::logic_error where an argument of the kernel is missing,
-/// another is given, one is given twice or is of another type than in the kernel's source, and where the
-/// kernel may write to a buffer that is to be read only; MachineError where the device refuses an argument or
-/// the launch. Both name the kernel and the argument.
+/// It doesn't wait for the kernel. Buffers may be destroyed before it has run: OpenCL keeps their memory.
+/// 0 work-items launch nothing. Throws
+/// - std::logic_error if an argument of the kernel is missing, is given twice, isn't one of its arguments or
+///   has another type than in its source, and if the kernel may write to a Buffer of const elements;
+/// - MachineError if the device refuses an argument or the launch.
+/// Both messages name the kernel and the argument.
 void launch(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
             const WorkItems& work);
 

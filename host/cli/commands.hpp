@@ -6,26 +6,25 @@
 
 namespace luciole {
 
-/// The status of the process: 0 done, 1 the comparison failed, 2 wrong input or arguments, 3 the machine
-/// can't.
+/// The exit status of the process: 0 done, 1 the comparison failed, 2 wrong input or arguments, 3 the machine
+/// failed (MachineError).
 enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3 };
 
-/// What every command is told: the line as typed, for metadata and statistics, and where to leave its exit
-/// status.
+/// The command line as typed, for metadata and statistics, and where a command leaves its exit status.
 struct CommandContext {
   std::string command_line;
   int status = kDone;
 };
 
-/// To be called where an exception was caught: says on standard error, after `where` unless it is empty, what
-/// is wrong, and returns the status that the exception means.
+/// To be called in a catch block. Writes to standard error what is wrong, after `where` unless that is empty,
+/// and returns the exit status for the exception.
 int tellFailure(const std::string& where);
 
-/// Says on standard error, a line each, what was found while something went on.
+/// Writes warnings to standard error, a line each.
 void tellWarnings(const std::vector<std::string>& warnings);
 
-// Each adds one command to the program; its work runs when the command line names it. They throw InputError
-// and MachineError.
+// Each adds a command to the program. The command's work runs while the command line is parsed, if it is
+// named there, and throws InputError and MachineError.
 void addRenderCommand(CLI::App& app, CommandContext& context);
 void addGBufferCommand(CLI::App& app, CommandContext& context);
 void addShadeCommand(CLI::App& app, CommandContext& context);

@@ -23,7 +23,7 @@ struct CompareOptions {
 
 constexpr float kDifferenceGain = 10.0f;
 
-/// Why a figure is infinite.
+/// The reason why a figure is infinite, for people.
 const char* whyInfinite(const std::string& name, const ImageDifference& d) {
   if (name == "psnr" && d.rmse == 0) return "no finite value differs";
   return d.nonfinite > 0 ? "a pixel of one picture alone is not finite"
@@ -97,7 +97,7 @@ void compareFiles(const CompareOptions& options, CommandContext& context) {
   const Image b = readImage(options.b);
   const ImageDifference d = compareNamed(options, a, b);
   const Metadata metadata{{"ImageDescription", context.command_line}};
-  // Both are made before either is written: no file appears where one of them fails.
+  // Both are made before either is written, so that a failure leaves no file.
   const bool wants_difference = !options.difference.empty(), wants_map = !options.error_map.empty();
   const Image difference = wants_difference ? differencePicture(a, b, kDifferenceGain) : Image{};
   const Image error_map = wants_map ? errorMap(d) : Image{};

@@ -14,8 +14,8 @@
 namespace luciole {
 namespace {
 
-/// Locks `count` bytes from `first` on for this open file; 0: all from there on. Returns at once, false where
-/// another one holds any of them. Where the file system knows no locks nobody does.
+/// Locks `count` bytes (0: all) from `first` on for this open file. Returns at once: false if another open
+/// file holds a lock on any of them. On a file system without locks nobody does.
 bool lockBytes(int descriptor, off_t first, off_t count) {
   struct flock lock {};
   lock.l_type = F_WRLCK;
@@ -25,7 +25,7 @@ bool lockBytes(int descriptor, off_t first, off_t count) {
   return fcntl(descriptor, F_OFD_SETLK, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
 }
 
-/// Whether the file still has its name: another run that ended may have taken it away.
+/// Whether the open file still has a name: another run may have removed it when it ended.
 bool hasName(int descriptor) {
   struct stat status {};
   return fstat(descriptor, &status) == 0 && status.st_nlink > 0;
@@ -40,7 +40,8 @@ FrameClaims::FrameClaims(const std::string& pattern)
 }
 
 FrameClaims::~FrameClaims() {
-  // All bytes: then no other run has claimed any, and one that is about to finds the name gone.
+  // A lock on all bytes means that no other run has a claim. One that is about to claim notices that the name
+  // is gone, and makes a new file.
   if (lockBytes(descriptor_, 0, 0)) unlink(path_.c_str());
   close(descriptor_);
 }

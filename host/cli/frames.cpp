@@ -24,7 +24,7 @@ std::optional<int> frameNumber(std::string_view text) {
   return number;
 }
 
-/// One part of the list: every `step`th from `first` to `last`.
+/// A part of the list: every `step`th frame from `first` to `last`.
 struct FrameRange {
   int first, last, step;
 };
@@ -42,14 +42,13 @@ std::optional<FrameRange> frameRange(std::string_view text) {
   return FrameRange{*first, *last, *step};
 }
 
-/// What stands before the frame's number in a file's name, and after it.
+/// A file's name: the text before the frame's number, the number's digits, and the text after it.
 struct NamePattern {
   std::string before, after;
   int digits = 0;  ///< 0: there is no place for the number, and the name is `before`
 };
 
-/// How many characters a frame's number in the style of C's printf takes at the start of `text`: "%d" or
-/// "%04d"; 0 where there is none.
+/// The length of a placeholder for the frame's number, "%d" or "%04d", at the start of `text`; 0 without one.
 std::size_t percentLength(std::string_view text) {
   if (text.starts_with("%d")) return 2;
   const bool is_padded =

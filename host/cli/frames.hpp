@@ -8,22 +8,25 @@ namespace luciole {
 /// The frames that --frames names.
 struct FrameChoice {
   std::vector<int> frames{1};  ///< in the order typed, none twice
-  bool is_list = false;        ///< typed as more than a number: each picture has its number in its name
+  bool is_list = false;        ///< typed as a list or range: each picture's name contains its frame's number
 };
 
-/// Reads --frames: frames "A", ranges "A-B" and steps "A-BxN" (each Nth from A to B), with commas between
-/// them; whole numbers from 0 to 9,999,999. Empty: 1. Throws InputError.
+/// Parses --frames: frames "A", ranges "A-B" and steps "A-BxN" (every Nth from A to B), separated by commas.
+/// Numbers are from 0 to 9,999,999. An empty option means frame 1. Throws InputError.
 FrameChoice chosenFrames(const std::string& option);
 
-/// The same for a command that makes one picture.
+/// The frame that --frames names for a command that makes one picture. Throws InputError, also for a list.
+/// command: its name, for the message.
 int chosenFrame(const std::string& option, const std::string& command);
 
-/// A file's name with the frame's number in the place of %d, or of %0Nd, with zeros in front to make N digits
-/// (1 to 9); in a name without these, in the place of the last run of #, as many digits. %% becomes %. A name
-/// without any of them stays as it is, and so does the folder's. Throws InputError for any other %.
+/// The file's name for a frame. The number replaces %d, or %0Nd by at least N digits (1 to 9), with zeros in
+/// front. In a name without these it replaces the last run of #, by at least as many digits. %% becomes %. A
+/// name without any of them doesn't change, and the folder's name never does. Throws InputError for another
+/// %.
 std::string frameFile(const std::string& pattern, int frame);
 
-/// Throws InputError where the files of several frames would have the same name: `option` names it.
+/// Throws InputError if all frames' files would have the same name, because the pattern has no place for the
+/// number. option: the pattern's option, for the message.
 void checkPattern(const std::string& pattern, const std::string& option);
 
 }  // namespace luciole

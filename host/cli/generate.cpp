@@ -23,7 +23,7 @@
 namespace luciole {
 namespace {
 
-/// What was typed; empty where nothing was.
+/// The options as typed; empty if they weren't.
 struct LightsOptions {
   std::string scene, output = "-", shape, csv;
   std::optional<std::uint64_t> count, clusters;
@@ -37,7 +37,7 @@ struct LightsOptions {
 
 constexpr std::uint64_t kDefaultCount = 1000;
 constexpr double kDefaultDensity = 8;
-/// Enough for a mean that is right to some percent.
+/// Number of visible points: enough for a mean that is right to a few percent.
 constexpr std::size_t kSeenPoints = 1000;
 
 const Bounds kDefaultBox{{-10, 0, -10}, {10, 10, 10}};
@@ -46,7 +46,7 @@ glm::dvec3 vectorAt(const std::vector<double>& numbers, std::size_t i) {
   return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
 }
 
-/// Refuses options that say nothing about this shape.
+/// Throws InputError for options that have no meaning for this shape.
 void checkShapeOptions(const LightsOptions& options, const std::string& shape) {
   const std::pair<const char*, bool> given[]{
       {"--min", !options.low.empty()},          {"--max", !options.high.empty()},
@@ -69,7 +69,7 @@ void checkShapeOptions(const LightsOptions& options, const std::string& shape) {
   }
 }
 
-/// The box that a field fills: as typed, else what is seen of the scene.
+/// The box that a field fills: as typed, otherwise around what is seen of the scene.
 Bounds fieldBox(const LightsOptions& options, const Scene& scene, const std::vector<glm::dvec3>& seen) {
   Bounds box = kDefaultBox;
   const bool is_typed = !options.low.empty() && !options.high.empty();
@@ -123,7 +123,7 @@ void setColors(const LightsOptions& options, LightField& field) {
     field.colors.emplace_back(vectorAt(options.colors, i));
 }
 
-/// Where the density is measured: what the camera sees, or, without a scene, anywhere in the field.
+/// Points at which the density is measured: what the camera sees, or without a scene, points in the field.
 std::vector<glm::dvec3> densityPoints(const LightsOptions& options, LightField field,
                                       const std::vector<glm::dvec3>& seen) {
   if (!options.scene.empty()) {
@@ -188,7 +188,7 @@ void generateLights(const LightsOptions& options) {
                                     : sceneWithLights(options.scene, folder, camera, scene.lights));
 }
 
-/// What CLI11 can't say by itself.
+/// Checks that CLI11 can't do. Throws InputError.
 void checkOptions(const LightsOptions& options) {
   if (options.scene == "-")
     throw InputError("SCENE: expected a file, got standard input, which can't be read twice");

@@ -65,8 +65,8 @@ void luciole::tellWarnings(const std::vector<std::string>& warnings) {
 
 namespace {
 
-/// Memory may run out where nobody can catch it: in a thread of a library's, or in its functions that mustn't
-/// throw.
+/// Ends the process after an exception that nobody could catch. Memory may run out in a library's thread, or
+/// in a noexcept function: then with a message, and with the status of a MachineError.
 [[noreturn]] void endUncaught() {
   try {
     if (std::current_exception()) throw;
@@ -104,7 +104,7 @@ int main(int argument_count, char** arguments) {
   help->add_option("COMMAND", topic, "the command to explain");
   help->callback([&] {
     if (topic.empty()) {
-      // Not app.help(), which would explain the command that runs: this one.
+      // Not app.help(): that would print the help of the command that runs, which is this one.
       fmt::print("{}", app.get_formatter()->make_help(&app, "luciole", CLI::AppFormatMode::Normal));
       return;
     }

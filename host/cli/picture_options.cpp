@@ -335,7 +335,7 @@ Metadata pictureMetadata(const std::string& command_line, const Device* device) 
 void reportStats(const PictureOptions& options, const Stats& stats) {
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
   if (options.quiet) return;
-  // Whole milliseconds that are over, so that the stages' add up to no more than the picture's.
+  // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.
   const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };
   std::string stages;
   for (const auto& stage : stats.stages)

@@ -39,7 +39,7 @@ struct PictureOptions {
   bool quiet = false;
 };
 
-/// Which of them a command takes, beside the output, --format, --stats and --quiet.
+/// Groups of options that a command takes, in addition to -o, --format, --stats and --quiet.
 enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
@@ -48,55 +48,56 @@ enum OptionGroup : unsigned {
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
-  kManyPictures = 64,  ///< without what is about one file: -o, --format, --dither, --stats, --crop, --aov
+  kManyPictures = 64,  ///< for many files, so without -o, --format, --dither, --stats, --crop, --aov
 };
+/// Adds the options of these groups (OptionGroup, or'ed) to a command. `options` must outlive it.
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
 
-/// The option --shadows of a command, which has values of its own.
+/// Adds the option --shadows, whose values depend on the command.
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values);
-/// --cast-shadows, and --missing-textures.
+/// Add the options --cast-shadows and --missing-textures.
 void addCastShadowsOption(CLI::App& command, PictureOptions& options);
 void addMissingTexturesOption(CLI::App& command, std::string& value);
 MissingTextures missingTexturesOf(const std::string& value);
 
-/// Loads the scene at a frame (see loadScene), lets its lights cast shadows as --cast-shadows says, or else
-/// those that it marks, or else all where --shadows asks for shadows, and tells its warnings, unless --quiet.
+/// Loads the scene at a frame (see loadScene). Shadows are cast by the lights that --cast-shadows says;
+/// without it by those that the scene marks, or if it marks none, by all if --shadows asks for shadows.
+/// Writes the scene's warnings to standard error unless --quiet. Throws InputError.
 Scene openScene(const std::string& path, double frame, const PictureOptions& options);
 
-/// The same for a command that shows the scene by its own lights: tells as well where --shading doesn't suit
-/// it.
+/// The same for a command that lights the scene by its own lights. Also warns of Gouraud shading on triangles
+/// that are too large for it (coarseTriangleWidth).
 Scene openLitScene(const std::string& path, double frame, const PictureOptions& options);
 
-/// What --model says.
+/// The model that --model names.
 Model modelOf(const PictureOptions& options);
 
-/// Turns them into settings for this scene: the picture's size from --size, the scene or 1280x720; the camera
-/// by name or index. Throws InputError naming the option.
+/// The settings that the options mean for this scene. The picture's size comes from --size, else from the
+/// scene, else it is 1280x720; the camera is found by name or index. Throws InputError that names the option.
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene);
 
-/// Checks what can be checked of the output before any work is done: extension, folder, layers. Throws
-/// InputError.
+/// Checks before any work what can be wrong with the output: extension, folder, layers. Throws InputError.
 void checkOutput(const PictureOptions& options);
 
-/// The frame that --frames names for a command that makes one picture (1 without), whose number goes into the
-/// names of its files. Throws InputError.
+/// The frame that --frames names for a command that makes one picture; 1 without it. Puts its number into the
+/// file names in `options`. Throws InputError.
 int useFrame(PictureOptions& options, const std::string& command);
 
-/// How to write a picture, or part of one, that this camera sees.
+/// How to write a picture that this camera sees, or the part of it that starts at crop_origin.
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
                           glm::ivec2 picture_size, glm::ivec2 crop_origin);
-/// The same of all the pixels of a G-buffer.
+/// How to write the picture of all pixels of a G-buffer.
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
 
-/// Text attributes for the picture: software, command and device.
+/// Text attributes for the picture's file: software, command and device. device: null if none was used.
 Metadata pictureMetadata(const std::string& command_line, const Device* device);
 
-/// Writes --stats, if asked for, and unless --quiet one line on standard error that says what was made and
-/// what it cost.
+/// Writes the statistics to the file that --stats names, if any. Unless --quiet, writes a line to standard
+/// error that says what was made and what it cost.
 void reportStats(const PictureOptions& options, const Stats& stats);
 
-/// The parts between separators, of which there may be none.
+/// The parts of a text between separators; the whole text if there is no separator.
 std::vector<std::string> split(const std::string& text, char separator);
 
 /// Parses "a<separator>b…" into exactly `count` whole numbers. Throws InputError naming `option`.

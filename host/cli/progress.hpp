@@ -6,22 +6,22 @@
 
 namespace luciole {
 
-/// One line that is rewritten as work goes on: what is done, how much of it, and about how long it still
-/// takes. On a terminal only, and not when --quiet.
+/// A line on standard error that is rewritten as work goes on: what is done, how much of it, and about how
+/// long it will still take. Only on a terminal, and not with --quiet.
 struct ProgressLine {
   explicit ProgressLine(bool quiet);
 
-  /// `done` of `total`, in any unit that takes about as long each time.
+  /// Shows that `done` of `total` are done, in units that take about equally long.
   void show(const std::string& what, std::size_t done, std::size_t total);
-  /// Takes the line away, before something else is printed and at the end.
+  /// Removes the line. Call it before something else is printed, and at the end.
   void clear();
 
   bool is_shown;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  std::string text;  ///< what stands there
+  std::string text;  ///< the line as it is shown
 };
 
-/// "0:07", "12:34" or "1:02:03".
+/// A time in minutes and seconds, from an hour on in hours, too: "0:07", "12:34" or "1:02:03".
 std::string duration(double seconds);
 
 }  // namespace luciole

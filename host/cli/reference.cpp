@@ -33,21 +33,21 @@ struct ReferenceOptions : PictureOptions {
   std::uint64_t seed = 0;
 };
 
-/// Attributes by which a later run knows what a file holds.
+/// Attributes of the picture's file that tell a later run what it holds.
 constexpr const char* kRequest = "luciole:reference";
 constexpr const char* kWindow = "luciole:window";
 
-/// Of a pixel: the G-buffer's, its place, a sample's colour and the sum of all, and the picture's.
+/// Bytes of memory for a pixel: in the G-buffer, its place, a colour and the sum of colours, in the picture.
 constexpr double kBytesPerPixel =
     kGBufferBytesPerPixel + sizeof(glm::ivec2) + 2 * sizeof(glm::dvec3) + 3 * sizeof(float);
 
-/// A picture of part of a bigger one.
+/// A part of a larger picture, and where in that it lies.
 struct Piece {
   Image image;
   Crop window;
 };
 
-/// rays: of the scene, if shadows are asked for. `progress` outlives the settings.
+/// rays: of the scene; empty without shadows. The settings refer to all arguments, which must outlive them.
 ReferenceSettings referenceSettings(const ReferenceOptions& options, const std::optional<RayScene>& rays,
                                     ProgressLine& progress) {
   ReferenceSettings settings;
@@ -66,7 +66,7 @@ std::optional<RayScene> shadowRays(const ReferenceOptions& options, const Scene&
   return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3]));
 }
 
-/// All pixels of a picture row by row, or `count` of them, no one twice, in the same order.
+/// All pixels of a picture row by row if `count` is 0, otherwise `count` different ones in the same order.
 std::vector<glm::ivec2> choosePixels(const glm::ivec2& size, std::size_t count, std::uint64_t seed) {
   const std::vector<glm::ivec2> all = allPixels(size);
   if (count == 0) return all;
@@ -75,7 +75,8 @@ std::vector<glm::ivec2> choosePixels(const glm::ivec2& size, std::size_t count, 
   return chosen;
 }
 
-/// Channels R G B, and `sampled` where not every pixel is.
+/// A picture with channels R G B, and `sampled` unless it has all pixels. colors: one for each of `pixels`;
+/// exposure: stops.
 Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
                   const std::vector<glm::dvec3>& colors, double exposure) {
   const bool sparse = pixels.size() < std::size_t(size.x) * size.y;
@@ -91,7 +92,7 @@ Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
   return image;
 }
 
-/// What must be equal for two crops to be parts of one picture.
+/// A text that is equal for two crops if they are parts of the same picture.
 std::string requestText(const ReferenceOptions& options, const Scene& scene, const RenderSettings& settings) {
   return fmt::format(
       "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
@@ -100,7 +101,7 @@ std::string requestText(const ReferenceOptions& options, const Scene& scene, con
       options.shadow_samples, options.exposure);
 }
 
-/// The rectangle that two make together, if they make one.
+/// The union of two rectangles if it is a rectangle.
 std::optional<Crop> unite(const Crop& a, const Crop& b) {
   const int left = std::min(a.x, b.x), top = std::min(a.y, b.y);
   const int right = std::max(a.x + a.width, b.x + b.width), bottom = std::max(a.y + a.height, b.y + b.height);
@@ -123,8 +124,9 @@ void paste(const Piece& from, Piece& to) {
   }
 }
 
-/// The part of the same picture, of the same scene to the last texel, that the output file already holds: a
-/// long reference grows crop by crop. Throws InputError where the two don't make a rectangle.
+/// The part of the same picture, of a scene that hasn't changed, that the output file already holds: so a
+/// long reference can be made crop by crop. Throws InputError if it and `crop` don't make a rectangle
+/// together.
 std::optional<Piece> findEarlierPiece(const ReferenceOptions& options, const std::string& request,
                                       const Crop& crop) {
   namespace fs = std::filesystem;
@@ -168,7 +170,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
              check.unexplained);
 }
 
-/// Shades what the scene shows, and holds the rasterizer's G-buffer against rays.
+/// Makes the reference picture of a scene, and compares the rasterizer's G-buffer with rays.
 void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   const Scene scene =
       timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, options.frame, options); });
@@ -213,7 +215,7 @@ void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
   reportCheck(options, check, stats);
 }
 
-/// Shades a G-buffer from a file.
+/// Makes the reference picture of a G-buffer file.
 void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   const Scene scene =
       timed(stats, Stage::kLoadScene, [&] { return openScene(options.lights, options.frame, options); });

@@ -27,7 +27,7 @@ struct RenderOptions : PictureOptions {
   bool resume = false;
 };
 
-/// Writes the picture of the scene as it is posed.
+/// Renders the scene at its frame and writes the picture.
 void renderPicture(Device& device, const Scene& scene, const PictureOptions& options,
                    const std::function<void(int, int)>& on_pass, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
@@ -47,7 +47,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   timed(stats, Stage::kWrite, [&] { writer->close(); });
 }
 
-/// "3, 7-9" for 3 7 8 9.
+/// Frames as text with ranges: "3, 7-9" for 3 7 8 9.
 std::string listFrames(const std::vector<int>& frames) {
   std::string text;
   for (std::size_t i = 0; i < frames.size();) {
@@ -60,13 +60,13 @@ std::string listFrames(const std::vector<int>& frames) {
   return text;
 }
 
-/// A file that is written whole or not at all, so one that is there is done.
+/// Whether a frame's file exists. Files are written as a whole or not at all, so such a frame is done.
 bool isDone(const std::string& path) {
   std::error_code none;
   return std::filesystem::is_regular_file(path, none) && std::filesystem::file_size(path, none) > 0;
 }
 
-/// Those of all the frames that are this run's to make.
+/// The frames of this run's shard, without those that --resume finds done.
 std::vector<int> framesToMake(const RenderOptions& options, const std::vector<int>& all, const Shard& shard) {
   if (options.shard.empty() && shard.count > 1 && !options.quiet)
     fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count);
@@ -81,9 +81,9 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
   return frames;
 }
 
-/// Renders frame after frame, of which one that fails is told and left out. `claims`: of a run that others
-/// may be at work beside, else null. `started`: what loading cost, which the first frame's statistics tell.
-/// Returns the first failure's status; throws InputError for a frame that another run has claimed.
+/// Renders frame after frame. A frame that fails is reported and left out. claims: null unless other runs may
+/// be at work beside this one. started: the cost of loading, which goes into the first frame's statistics.
+/// Returns the exit status of the first failure. Throws InputError for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
                  FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);

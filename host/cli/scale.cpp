@@ -26,7 +26,7 @@ struct MergeOptions {
   std::string output, plot;
 };
 
-/// Throws, before any work is done, what writing the page and the plot would meet.
+/// Throws before any work what writing the page and the plot would throw.
 void checkDrawing(const std::string& plot) {
   requireChartLibrary();
   if (plot.empty()) return;
@@ -34,7 +34,7 @@ void checkDrawing(const std::string& plot) {
   checkPlace(plot);
 }
 
-/// Everything that is made from a log.
+/// Writes all files that are made from a log.
 void writeResults(const ScaleResults& results, const std::string& folder, const std::string& plot,
                   const std::string& command_line, bool quiet) {
   const ScaleSummary summary = summarizeScale(results);

@@ -16,8 +16,8 @@
 namespace luciole {
 namespace {
 
-/// What --vary may name: options of this command, and the values tried where none are given; those of
-/// `range` depend on the scene (defaultRanges).
+/// The axes of --vary: options of this command, with their default values. Those of `range` depend on the
+/// scene (defaultRanges).
 const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"tile", {"4", "8", "16"}},
                                    {"samples", {"1", "4", "16"}},
@@ -33,23 +33,23 @@ const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"shadow-memory", {"64", "512"}},
                                    {"shadow-size", {"512", "1024", "2048", "4096"}}};
 
-/// Axes that each say how far lights reach, so that a variant takes a value of one alone.
+/// Axes that say how far lights reach. A variant takes a value of only one of them.
 constexpr const char* kReaches[] = {"density", "range", "cutoff"};
 
 constexpr glm::ivec2 kDefaultSize(640, 360);
-/// Enough for a box that holds most of what is seen.
+/// Number of visible points that make a box which holds most of what is seen.
 constexpr std::size_t kSeenPoints = 1000;
-/// Samples of the truth for each sample of the best picture, where pictures have several.
+/// The truth has so many samples for each one of the picture with the most, if that has several.
 constexpr int kTruthSamples = 4;
 
-/// "1,10,…,1000" or "1,10,...,1000": after two numbers, dots stand for all up to the next that are as many
-/// times the one before as the second is the first.
+/// Parses --lights: "1,10,…,1000" or "1,10,...,1000". Dots after two numbers continue them by the same factor
+/// up to the next number. Throws InputError.
 std::vector<std::uint64_t> parseLights(const std::string& text) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(fmt::format("--lights {}: {}", text, why));
   };
   std::vector<std::uint64_t> lights;
-  std::uint64_t factor = 0;  // of dots that wait for their end
+  std::uint64_t factor = 0;  // of dots whose last number is still to come
   for (const std::string& part : split(text, ',')) {
     if (part == "..." || part == "…") {
       const std::size_t n = lights.size();
@@ -74,7 +74,7 @@ std::vector<std::uint64_t> parseLights(const std::string& text) {
   return lights;
 }
 
-/// "culling,tile=4,8": names of axes, each with the values after its '='.
+/// Parses --vary: "culling,tile=4,8" are names of axes, each followed by its values after '=', if any.
 std::vector<ScaleAxis> parseAxes(const std::vector<std::string>& vary) {
   const auto refuse = [](const std::string& part, const std::string& why) {
     throw InputError(fmt::format("--vary {}: {}", part, why));
@@ -114,7 +114,7 @@ bool isReach(const ScaleAxis& axis) {
   return std::find(std::begin(kReaches), std::end(kReaches), axis.name) != std::end(kReaches);
 }
 
-/// Metres: a 64th, a 32nd and a 16th of the box's diagonal, with two digits.
+/// Default ranges of lights in metres, rounded to two digits: 1/64, 1/32 and 1/16 of the box's diagonal.
 std::vector<std::string> defaultRanges(const Bounds& box) {
   std::vector<std::string> ranges;
   for (const double part : {64.0, 32.0, 16.0})
@@ -123,7 +123,8 @@ std::vector<std::string> defaultRanges(const Bounds& box) {
   return ranges;
 }
 
-/// Fills in values that depend on the scene, and lets axes that say how far lights reach take turns.
+/// Fills in values that depend on the scene. If several axes say how far lights reach, each also gets the
+/// value kNotThis, so that they take turns.
 void completeAxes(std::vector<ScaleAxis>& axes, const Bounds& box) {
   const bool take_turns = std::count_if(axes.begin(), axes.end(), isReach) > 1;
   for (ScaleAxis& axis : axes) {
@@ -132,7 +133,7 @@ void completeAxes(std::vector<ScaleAxis>& axes, const Bounds& box) {
   }
 }
 
-/// Every choice of one value from each axis, the last axis changing fastest.
+/// All combinations of one value from each axis; the last axis changes fastest.
 std::vector<std::vector<std::string>> allVariants(const std::vector<ScaleAxis>& axes) {
   std::vector<std::vector<std::string>> variants{{}};
   for (const ScaleAxis& axis : axes) {
@@ -147,8 +148,9 @@ std::vector<std::vector<std::string>> allVariants(const std::vector<ScaleAxis>& 
   return variants;
 }
 
-/// Whether a variant is none, with several ways or none to say how far lights reach, or another one over
-/// again: an axis that means nothing beside another's value keeps its first value.
+/// Whether a combination is left out. Either it has not exactly one of the axes that say how far lights
+/// reach, or it repeats another variant: an axis without effect beside another's value only keeps its first
+/// value.
 bool isLeftOut(const std::vector<ScaleAxis>& axes, const std::vector<std::string>& variant) {
   const auto has = [&](const std::string& name, const std::string& value) {
     for (std::size_t i = 0; i < axes.size(); ++i)
@@ -173,7 +175,7 @@ bool isLeftOut(const std::vector<ScaleAxis>& axes, const std::vector<std::string
          (has("shadows", "off") && (!isFirst("shadow-memory") || !isFirst("shadow-size")));
 }
 
-/// Sets an option as if it had been typed, with its checks.
+/// Sets an option as if it had been typed, and runs its checks.
 void setOption(CLI::App& command, const std::string& name, const std::string& value) {
   CLI::Option* option = command.get_option("--" + name);
   option->clear();
@@ -210,13 +212,14 @@ LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64
   return field;
 }
 
-/// Whether ranges are chosen for a density of lights: unless they are given, be it by a file of lights.
+/// Whether ranges are chosen for a density of lights: if --density is given, or if nothing else says the
+/// range (--range, --cutoff, or a file of lights).
 bool choosesRanges(const CLI::App& command, const ScaleOptions& options) {
   const bool is_asked_for = command.get_option("--density")->count() > 0;
   return is_asked_for || (!options.range && !options.cutoff && !options.field.ends_with(".csv"));
 }
 
-/// What all points share, as text.
+/// The settings that all points share, as text for people.
 std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& command,
                                                                 const ScaleOptions& options,
                                                                 const std::vector<ScaleAxis>& axes,

@@ -23,12 +23,12 @@ struct ScaleOptions {
   std::uint64_t seed = 0;
 };
 
-/// Throws InputError where options are missing or contradict each other; `command` is what they were typed
-/// for.
+/// Throws InputError if options of `command` are missing or contradict each other.
 void checkScaleOptions(const CLI::App& command, const ScaleOptions& options);
 
-/// The experiment that they mean for this scene. Each variant is set through the command's own options, and
-/// so checked as they are: afterwards `options` hold the last one. Throws InputError.
+/// The experiment that the options mean for this scene. Each variant's values are set through the command's
+/// options, so that the same checks apply to them; afterwards `options` holds those of the last variant.
+/// Throws InputError.
 ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const Scene& scene);
 
 }  // namespace luciole

@@ -20,7 +20,8 @@ std::optional<int> wholeNumber(std::string_view text) {
   return number;
 }
 
-/// Slurm sets all of a job array's variables.
+/// The value of one of the variables that Slurm sets in a job array. Throws InputError unless it is a whole
+/// number of at least `least`.
 int slurmNumber(const char* name, int least) {
   const char* text = std::getenv(name);
   const std::optional<int> number = text ? wholeNumber(text) : std::nullopt;
@@ -30,7 +31,7 @@ int slurmNumber(const char* name, int least) {
   return *number;
 }
 
-/// A task that starts several processes starts as many that take the same part.
+/// Throws InputError in a task that runs several processes: all of them would do the same shard.
 void refuseManyProcesses() {
   const char* text = std::getenv("SLURM_STEP_NUM_TASKS");
   const std::optional<int> processes = text ? wholeNumber(text) : std::nullopt;
@@ -48,7 +49,7 @@ Shard slurmShard() {
   const int last = slurmNumber("SLURM_ARRAY_TASK_MAX", 0);
   const int step = slurmNumber("SLURM_ARRAY_TASK_STEP", 1);
   refuseManyProcesses();
-  // With a hole, as in --array=1,3,7, no task can tell from these how many come before it.
+  // In an array with gaps, such as --array=1,3,7, a task can't tell how many come before it.
   if (std::int64_t(first) + std::int64_t(count - 1) * step != last)
     throw InputError(fmt::format(
         "SLURM_ARRAY_TASK_MAX: the array's {} tasks from {} to {} aren't numbered evenly; expected an array "

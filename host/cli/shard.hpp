@@ -5,18 +5,18 @@
 
 namespace luciole {
 
-/// One of several runs that share a job: of its pieces, counted from 0, this one does every count-th from
-/// index on. The default does all.
+/// One of several runs that share a job. Of the job's pieces, counted from 0, it does every count-th from
+/// `index` on. The default does all.
 struct Shard {
   int index = 0;  ///< 0 ≤ index < count
   int count = 1;
-  bool is_chosen = false;  ///< by the option or by Slurm, so that others may be at work beside it
+  bool is_chosen = false;  ///< given by the option or by Slurm, so that other runs may be at work beside it
 };
 
-/// What --shard says ("2/8": the second of eight), or if it is empty, which task of a Slurm job array this is
-/// (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _MAX and _STEP), or all. Throws InputError naming the option or the
-/// variable, also for a Slurm array whose tasks aren't numbered evenly, and in a task that runs several
-/// processes.
+/// The shard that --shard names ("2/8": the second of eight). If `option` is empty: this task of a Slurm job
+/// array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _MAX and _STEP), or all outside of one. Throws InputError that
+/// names the option or the variable, also for a Slurm array whose tasks aren't numbered evenly, and for a
+/// task that runs several processes.
 Shard chosenShard(const std::string& option);
 
 /// Whether this shard does piece k.

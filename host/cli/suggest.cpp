@@ -31,7 +31,7 @@ std::vector<std::string> commandNames(const CLI::App& command) {
   return names;
 }
 
-/// The command and those in it that were typed, outermost first.
+/// The program and the commands in it that were typed, outermost first.
 std::vector<const CLI::App*> typedCommands(const CLI::App& app) {
   std::vector<const CLI::App*> commands{&app};
   while (!commands.back()->get_subcommands().empty())
@@ -42,7 +42,7 @@ std::vector<const CLI::App*> typedCommands(const CLI::App& app) {
 }  // namespace
 
 std::size_t editDistance(std::string_view a, std::string_view b) {
-  // Row i holds the distances of a's first i letters to each beginning of b.
+  // Row i holds the distances of a's first i letters from each prefix of b.
   std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {

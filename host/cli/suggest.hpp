@@ -8,20 +8,20 @@
 
 namespace luciole {
 
-/// How many letters must be inserted, left out, replaced or swapped with their neighbour to turn one word
-/// into the other, none of them twice (F. Damerau 1964, "A technique for computer detection and correction of
-/// spelling errors").
+/// The number of bytes that must be inserted, removed, replaced or swapped with their neighbour, each at most
+/// once, to turn one word into the other (F. Damerau, "A technique for computer detection and correction of
+/// spelling errors", 1964). O(|a|·|b|).
 std::size_t editDistance(std::string_view a, std::string_view b);
 
-/// "; did you mean NAME?" with the known name that is nearest to what was typed: one that it is the beginning
-/// of, or one within a third of its letters. Empty where none is.
+/// "; did you mean NAME?" with the known name nearest to what was typed: one that starts with it, or one
+/// whose editDistance() is at most 1 or a third of what was typed. Empty if there is none.
 std::string didYouMean(std::string_view typed, const std::vector<std::string>& known);
 
-/// Takes one of these names, and suggests one in the place of another.
+/// A validator that accepts these names only, and suggests one of them for others.
 CLI::Validator oneOf(const std::vector<std::string>& names);
 
-/// After the command line could not be parsed: " COMMAND: " and what was typed that the command doesn't take,
-/// the first of it, with a suggestion. Empty where nothing is left over, so that something else is wrong.
+/// Explains why the command line couldn't be parsed: " COMMAND: " and the first argument that the command
+/// doesn't take, with a suggestion. Empty if no argument is left over, so that something else is wrong.
 std::string describeUnexpected(const CLI::App& app);
 
 }  // namespace luciole

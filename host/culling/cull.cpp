@@ -8,7 +8,7 @@ namespace {
 
 constexpr const char* kFile = "cull.cl";
 
-/// What counting and filling have in common, and the arguments that only one of them has.
+/// The arguments that counting and filling share, and `own`, those of one of them.
 std::vector<KernelArgument> withCommon(const CullArguments& arguments, std::vector<KernelArgument> own) {
   own.insert(own.end(), {{"position", arguments.position},
                          {"normal", arguments.normal},

@@ -11,13 +11,13 @@ namespace luciole {
 namespace {
 
 constexpr double kHalfStep = 0.5 / 255 / 12.92;
-/// Of a distance or a colour, relative: more than what the kernels' roundings make of it.
+/// Relative margin of distances and colours, larger than the kernels' rounding errors.
 constexpr double kSlack = 0x1p-20;
 
 double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-/// The most that a surface makes of light, per channel: of ambient light, and of the lights' diffuse and
-/// specular colours.
+/// Upper bounds of the factors by which a surface reflects, for each channel: of ambient light, and of the
+/// lights' diffuse and specular colours.
 struct Response {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 
@@ -28,7 +28,7 @@ struct Response {
   }
 };
 
-/// An object that the fog hides unless it is brighter than most.
+/// An object that the fog hides unless it is brighter than usualColor().
 struct Candidate {
   std::uint32_t object;
   Bounds box;    ///< world
@@ -36,7 +36,7 @@ struct Candidate {
   Response response;
 };
 
-/// What lights give to the points of a box at the most. Colours add up whatever way surfaces face.
+/// Upper bounds of the light that points of a box get, whichever way surfaces face.
 struct LightSum {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 };
@@ -46,13 +46,14 @@ struct Fogged {
   const Scene& scene;
   glm::dvec3 eye;
   double emission = 0;  ///< the scene's brightest
-  /// What colours are multiplied by for fogLimit: exposure, and so much more that what the fog leaves of them
-  /// comes to half a step together with the contrast of background and fog.
+  /// Factor of colours for fogLimit(): the exposure, enlarged because the contrast of background and fog
+  /// uses up a part of the half step.
   double gain = 0;
 };
 
-/// The most that `model` makes of a specular colour. Phong's and Blinn's lobes and the toon's highlight are at
-/// most 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) with facets ≥ α²,
+/// Upper bound of a highlight by `model`. Phong's and Blinn's lobes and the toon model's highlight are at
+/// most
+/// 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) with facets ≥ α²,
 /// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/cook_torrance.clh): 1/(2α³), times the larger of F0 and F90.
 glm::dvec3 largestHighlight(const Material& material, Model model) {
   const glm::dvec3 specular(material.specular);
@@ -61,8 +62,8 @@ glm::dvec3 largestHighlight(const Material& material, Model model) {
   return glm::max(specular, glm::min(50.0 * specular, 1.0)) / (2 * alpha2 * std::sqrt(alpha2));
 }
 
-/// Textures are at most 1; vertex colours need not be. Without lighting the diffuse colour is the ambient
-/// one.
+/// Texels are at most 1, vertex colours may be more. In a scene without lighting the diffuse colour takes the
+/// place of the ambient one.
 Response responseOf(const Scene& scene, const Object& object, Model model) {
   const Mesh& mesh = scene.meshes[object.mesh];
   glm::dvec3 tint(mesh.colors.empty() ? 1.0 : 0.0);
@@ -85,12 +86,12 @@ Response responseOf(const Scene& scene, const Object& object, Model model) {
   return response;
 }
 
-/// How much of a light's colours reaches the points of a box at the most: 0 where it is out of range.
+/// Upper bound of the share of a light's colours that reaches points of a box; 0 if it is out of range.
 double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
   if (light.kind == LightKind::kDirectional) return 1;
   const glm::dvec3 nearest = glm::clamp(light.position, box.low, box.high);
   const glm::dvec3 farthest = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
-  // Places round relative to their distance from the eye.
+  // The kernels' positions are rounded relative to their distance from the eye.
   const double lost = kSlack * (glm::length(farthest) + glm::distance(light.position, eye));
   const double distance = std::max(glm::distance(light.position, nearest) - lost, 0.0);
   if (distance >= light.range) return 0;
@@ -101,7 +102,7 @@ double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
   return std::min(strength, 0x1p100);  // the kernels' own cap, see kernels/falloff.clh
 }
 
-/// Of the brightest surface that responds so.
+/// Upper bound of the colour of surfaces with this response in this light, without exposure.
 double brightestColor(const Fogged& fogged, const Response& response, const LightSum& light) {
   const glm::dvec3 ambient(fogged.scene.lighting ? fogged.scene.ambient : glm::vec3(1.0f));
   const glm::dvec3 color = (ambient + light.ambient) * response.ambient + light.diffuse * response.diffuse +
@@ -109,8 +110,8 @@ double brightestColor(const Fogged& fogged, const Response& response, const Ligh
   return (1 + kSlack) * (largest(color) + fogged.emission);
 }
 
-/// What colours are taken as unless the lights may make them brighter. Not below the fog's own, from which a
-/// dark colour differs by that much.
+/// The brightness that every colour is assumed to have; only brighter ones need the lights. Not below the
+/// fog's own colour, because a black surface differs from that by as much.
 double usualColor(const Fogged& fogged) {
   return std::max({1.0, fogged.emission, largest(glm::dvec3(fogged.scene.fog.color))});
 }
@@ -127,9 +128,9 @@ double nearestDepth(const Bounds& box, const View& view) {
   return nearest;
 }
 
-/// Adds those of the candidates to `seen` that the lights, all that may reach them, may make bright enough to
-/// shine through the fog. All are tried together, by the box around them; where that leaves a doubt, each
-/// half by the lights that reach it.
+/// Adds to `seen` the candidates that may be bright enough to shine through the fog. lights: all that may
+/// reach them. The candidates are tried together, by the box around them. If that doesn't settle it they are
+/// halved, and each half is tried with the lights that reach this box. Changes the candidates' order.
 void addBright(const Fogged& fogged, std::span<Candidate> candidates, const std::vector<const Light*>& lights,
                std::vector<std::uint32_t>& seen) {
   Bounds box;

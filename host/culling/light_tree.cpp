@@ -12,14 +12,14 @@
 namespace luciole {
 namespace {
 
-/// Of the Z curve's 2¹⁸ cells along an axis; with 10 bits for the range a key has 64.
+/// The Z curve has 2¹⁸ cells along an axis. Three times 18 bits and 10 for the range make a key of 64 bits.
 constexpr int kCellBits = 18;
 
 bool reachesEverywhere(const Light& light) {
   return light.kind == LightKind::kDirectional || !std::isfinite(light.range);
 }
 
-/// 0 for lights that reach everywhere, then growing with the range's exponent.
+/// The upper 10 bits of a key: 0 for lights that reach everywhere, else 1 or more, growing with the range.
 std::uint64_t rangeClass(const Light& light) {
   if (reachesEverywhere(light)) return 0;
   return std::uint64_t(std::clamp(std::ilogb(light.range), -510, 511) + 511);
@@ -27,10 +27,10 @@ std::uint64_t rangeClass(const Light& light) {
 
 constexpr std::size_t rowsFor(std::size_t nodes) { return (nodes + kTreeArity - 1) / kTreeArity; }
 
-/// A node, with the planes' values in turn.
+/// A node's values, in the order of the planes.
 using Node = std::array<float, 7>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Reaches nothing: it is infinitely far from every box that is finite.
+/// A node that reaches nothing: it is infinitely far from every finite box.
 constexpr Node kPadding{kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, 1};
 
 Node nodeOver(const LightTree& tree, std::size_t first, std::size_t count) {
@@ -91,7 +91,7 @@ LightTree buildLightTree(std::span<const ShadeLight> lights) {
     const std::size_t nodes = level_nodes[level], end = start + rowsFor(nodes) * kTreeArity;
     tbb::parallel_for(std::size_t(0), nodes, [&](std::size_t i) {
       if (level == 0) {
-        // The very floats that shading uses, so that both see the same distances.
+        // The same floats as in shading, so that both compute the same distances.
         const float4& p = lights[i].position;
         const bool directional = lights[i].kind == kDirectionalLight;
         setNode(tree, i, directional ? Node{} : Node{p.x, p.y, p.z, p.x, p.y, p.z, p.w});

@@ -10,18 +10,19 @@
 
 namespace luciole {
 
-/// Lights in an order that keeps neighbours together: those that reach everywhere first, then by the binary
-/// order of magnitude of their range, then along a Z curve (G. Morton, 1966) through the box around them.
-/// It depends on the lights alone, not on who looks at them.
+/// Indices of the lights in an order that keeps neighbours together: lights that reach everywhere first, then
+/// by the binary exponent of their range, then along a Z curve (G. Morton, 1966) through the box around
+/// them. It doesn't depend on the camera. O(n log n), on all cores.
 std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights);
 
-/// The tree over the lights that kernels/cull.cl walks, and draws.
+/// The tree over the lights that kernels/cull.cl walks; a drawing of it is there.
 struct LightTree {
-  Plane planes;            ///< low x y z, high x y z, 1 / range² of `stride` floats each
-  std::size_t stride = 0;  ///< nodes of all levels, paddings included
+  Plane planes;            ///< low x y z, high x y z, 1 / range²: 7 planes of `stride` floats each
+  std::size_t stride = 0;  ///< nodes of all levels, padding included
 };
 
-/// lights: as the kernels see them, in the order in which they are shaded.
+/// The tree over lights in the order of spatialOrder(); view space. O(n), on all cores; 28 bytes a node,
+/// 16/15 nodes a light.
 LightTree buildLightTree(std::span<const ShadeLight> lights);
 
 }  // namespace luciole

@@ -11,10 +11,10 @@
 namespace luciole {
 namespace {
 
-/// Metres. Squares of a few times this are finite floats.
+/// Metres. The square of a few times this is still a finite float.
 constexpr double kFarthestLight = 1e18;
-/// Cosine of the narrowest cutoff: floats round a cosine near 1 by up to 12 · 2⁻²⁴, and the axis must stay
-/// inside.
+/// Cosine of the narrowest cutoff. The kernels' cosine of 1 may be off by 12 · 2⁻²⁴, and the axis has to stay
+/// inside the cone.
 constexpr double kNarrowestEdge = 1 - 12 * 0x1p-24;
 
 float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y), float(xyz.z), float(w)}; }
@@ -34,8 +34,8 @@ LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowM
     const double inverse_range2 = light.kind == LightKind::kDirectional ? 0.0 : 1.0 / (range * range);
     const double edge = std::min(std::cos(light.cutoff), kNarrowestEdge);
     double cone_scale = 0;
-    // A light so far away is the same at every point that is seen, so it may come nearer along its direction
-    // if its falloff is stretched to match.
+    // Light from farther away than kFarthestLight comes from the same direction at every visible point. So
+    // the light may be moved nearer, by this factor, if its falloff is scaled to match.
     double nearer = 1;
     if (light.kind == LightKind::kDirectional) {
       out.kind = kDirectionalLight;

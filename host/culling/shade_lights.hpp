@@ -11,8 +11,9 @@ namespace luciole {
 
 using LightArray = std::vector<ShadeLight, ArrayAllocator<ShadeLight>>;
 
-/// Brings the lights into the camera's view space, in the order of spatialOrder. shadow_maps: empty where no
-/// light casts shadows.
+/// The scene's lights as kernels see them: in the camera's view space, in the order of spatialOrder(). A
+/// light whose squared distance would overflow a float is moved nearer, with its falloff scaled to match.
+/// shadow_maps: empty if no light casts shadows.
 LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps);
 
 }  // namespace luciole

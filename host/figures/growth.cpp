@@ -9,7 +9,7 @@
 namespace luciole {
 namespace {
 
-/// The best a and b for one exponent, and the sum of the squares of the relative residuals.
+/// The best a and b for an exponent, and the sum of squares of the relative residuals.
 struct LinearFit {
   double a = 0, b = 0, error = 0;
 };
@@ -23,10 +23,10 @@ double errorOf(const std::vector<double>& powers, const std::vector<double>& tim
   return sum;
 }
 
-/// Least squares with a, b ≥ 0: where the unconstrained minimum has a negative one, the constrained minimum
-/// has a zero in its place, as the sum is convex.
+/// Least squares with a, b ≥ 0. The sum is convex: if a or b is negative at the unconstrained minimum, it is
+/// 0 at the constrained one.
 LinearFit fitLinear(const std::vector<double>& powers, const std::vector<double>& times) {
-  // Columns 1/t and p/t against 1.
+  // Dividing by the time t makes residuals relative: the columns are 1/t and p/t, the right-hand side is 1.
   double aa = 0, ab = 0, bb = 0, a1 = 0, b1 = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double u = 1 / times[i], v = powers[i] / times[i];
@@ -47,7 +47,8 @@ LinearFit fitLinear(const std::vector<double>& powers, const std::vector<double>
                            [](const LinearFit& x, const LinearFit& y) { return x.error < y.error; });
 }
 
-/// Powers scaled so that the largest is 1: 10⁶ cubed, squared, would leave no digits for the rest.
+/// The best fit for the exponent c. Powers are scaled so that the largest is 1: the squares of (10⁶)³ would
+/// leave no digits for the other terms.
 LinearFit fitExponent(const std::vector<double>& lights, const std::vector<double>& times, double c) {
   const double most = *std::max_element(lights.begin(), lights.end());
   std::vector<double> powers;
@@ -128,7 +129,7 @@ Growth fitGrowth(const std::vector<double>& lights, const std::vector<double>& m
   // The difference of two measurements has twice the variance of one.
   if (inside(0) || rise < t * std::sqrt(2 * variance) * last) return {{}, "no growth beyond noise"};
 
-  // From the best one outwards, to where it first fits worse.
+  // The ends of the interval are searched from the best exponent outwards.
   double low = best, high = best;
   while (low > 0 && inside(low)) low -= kStep;
   while (high < kSteepest && inside(high)) high += kStep;

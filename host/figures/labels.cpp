@@ -19,8 +19,8 @@ constexpr double kTextRoom = 3;  ///< between texts
 constexpr double kRingStep = 4;  ///< between distances from a point to its text that are tried
 constexpr int kRings = 40;
 
-/// In the order in which they are tried, in sixteenths of a turn from the right: beside the point, above and
-/// below it, then between.
+/// Directions from a point in the order in which they are tried, in sixteenths of a turn from the right:
+/// beside the point, above and below it, then between.
 constexpr std::array kDirections{0, 8, 12, 4, 14, 2, 10, 6, 15, 1, 9, 7, 13, 11, 3, 5};
 
 Rectangle around(const glm::dvec2& middle, const glm::dvec2& size) {
@@ -33,7 +33,8 @@ bool inside(const Rectangle& a, const Rectangle& area) {
   return a.low.x >= area.low.x && a.low.y >= area.low.y && a.high.x <= area.high.x && a.high.y <= area.high.y;
 }
 
-/// A text of this size whose nearest edge or corner is `distance` from the point in a direction.
+/// The place of a text of this size whose nearest edge or corner is `distance` from the point, in one of
+/// kDirections.
 LabelPlace beside(const glm::dvec2& point, const glm::dvec2& size, double distance, int direction) {
   const double angle = 2 * std::numbers::pi * direction / double(kDirections.size());
   const glm::dvec2 way(std::cos(angle), std::sin(angle));
@@ -48,7 +49,7 @@ Segment withoutStart(const Segment& segment, double length) {
   return {segment.from + glm::normalize(segment.to - segment.from) * length, segment.to};
 }
 
-/// On which side of a line a point is: the sign.
+/// The sign says on which side of a line the point is.
 double side(const Segment& line, const glm::dvec2& point) {
   const glm::dvec2 way = line.to - line.from, to_point = point - line.from;
   return way.x * to_point.y - way.y * to_point.x;
@@ -58,7 +59,7 @@ bool cross(const Segment& a, const Segment& b) {
   return side(a, b.from) * side(a, b.to) <= 0 && side(b, a.from) * side(b, a.to) <= 0;
 }
 
-/// As far inside as its size allows.
+/// The place moved into the area, as far as its size allows.
 LabelPlace movedInside(LabelPlace place, const Rectangle& area) {
   const glm::dvec2 size = place.text.high - place.text.low;
   place.text.low = glm::clamp(place.text.low, area.low, glm::max(area.low, area.high - size));
@@ -73,8 +74,8 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
   return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
 }
 
-// The segment's parameters between each pair of the rectangle's edges must have one in common (C. Cyrus and
-// J. Beck, "Generalized two- and three-dimensional clipping", 1978).
+// They overlap if some parameter of the segment lies between both pairs of the rectangle's edges (C. Cyrus
+// and J. Beck, "Generalized two- and three-dimensional clipping", 1978).
 bool overlap(const Rectangle& rectangle, const Segment& segment) {
   const glm::dvec2 way = segment.to - segment.from;
   double first = 0, last = 1;
@@ -92,7 +93,7 @@ bool overlap(const Rectangle& rectangle, const Segment& segment) {
   return first < last;
 }
 
-// A sans serif's characters are 0.56 of its size wide on average, rounded up, and lines 1.2 high.
+// In a sans serif font a character is on average less than 0.56 of the font's size wide, and a line 1.2 high.
 glm::dvec2 textSize(const std::string& text, double font_size) {
   return glm::dvec2(0.56 * double(shownWidth(text)), 1.2) * font_size;
 }

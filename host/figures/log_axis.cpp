@@ -13,10 +13,10 @@ namespace {
 
 using Unit = std::pair<double, const char*>;  ///< its size and name
 
-/// In the largest unit that it isn't less than one of, or the last.
+/// The value in the first unit, largest first, of which it is at least one; in the last if there is none.
 template <std::size_t kCount>
 std::string inUnits(double value, const std::array<Unit, kCount>& units) {
-  // A power of ten may be rounded down.
+  // The factor allows for a power of ten that was rounded down.
   const auto fits = [&](const Unit& unit) { return value >= unit.first * (1 - 1e-12); };
   const auto found = std::find_if(units.begin(), units.end() - 1, fits);
   return fmt::format("{:g}{}", value / found->first, found->second);

@@ -11,24 +11,24 @@ struct LogAxis {
   double low = 0, high = 0;     ///< 0 < low < high
   std::optional<double> floor;  ///< where zero is drawn, where there is one
 
-  /// Where a value lies between the ends, 0 to 1; what is beyond them, at the end.
+  /// Where a value lies between the ends, in [0, 1]; a value beyond an end lies at the end.
   double place(double value) const;
 };
 
-/// An axis with some room around the values, ≥ 0: this share of their distance at each end, a little at
-/// least.
+/// An axis around values ≥ 0, with free room at each end: `room` is its share of the distance between the
+/// least and the largest value on the axis, and there is always a little.
 LogAxis axisAround(const std::vector<double>& values, double room = 0.05);
 
-/// Round numbers in [low, high], 0 < low < high, for a logarithmic axis: powers of ten where the range holds
-/// three of them or more, every second or third of them where that would be more than `most`; else as many of
-/// their multiples as it takes to have three.
+/// Round numbers in [low, high], 0 < low < high, for a logarithmic axis: powers of ten if the range holds
+/// three of them, otherwise as many of their multiples as it takes to have three. If there are more than
+/// `most`, only every second, third … of them.
 std::vector<double> logTicks(double low, double high, int most = 9);
 
-/// A tick's number for people to read: 10 µs, 3 ms, 1 s.
+/// A tick's text for a time: 10 µs, 3 ms, 1 s.
 std::string timeTick(double milliseconds);
-/// 1, 100, 10k, 1M
+/// A tick's text for a count: 1, 100, 10k, 1M.
 std::string countTick(double count);
-/// 30, 0.1, 3·10⁻⁵
+/// A tick's text for an error: 30, 0.1, 3·10⁻⁵.
 std::string errorTick(double error);
 
 }  // namespace luciole

@@ -7,17 +7,17 @@
 
 namespace luciole {
 
-/// What figures were measured on.
+/// The machine that figures were measured on.
 struct Machine {
   std::string processor;
   unsigned threads = 0;
   std::uint64_t memory_bytes = 0;
-  std::string system;  ///< its name and version
+  std::string system;  ///< the operating system's name and version
   DeviceDescription device;
   std::string compiler;
 };
 
-/// This machine, with an opened device.
+/// Describes this machine, with an opened device. What the system doesn't tell is "unknown".
 Machine describeMachine(const Device& device);
 
 }  // namespace luciole

@@ -9,7 +9,7 @@
 namespace luciole {
 namespace {
 
-/// Of sorted values; share 0: the first, 1: the last.
+/// The quantile of sorted values; share 0 is the first, 1 the last.
 double quantile(const std::vector<double>& sorted, double share) {
   const double rank = share * double(sorted.size() - 1);
   const std::size_t below = std::size_t(rank), above = std::min(below + 1, sorted.size() - 1);

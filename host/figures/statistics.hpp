@@ -4,16 +4,16 @@
 
 namespace luciole {
 
-/// A figure that repeated runs gave, mostly milliseconds.
+/// A figure from repeated runs, mostly milliseconds.
 struct Repeated {
   double median = 0;
-  double spread = 0;  ///< half the distance between the quartiles: half of the runs lie about this near
+  double spread = 0;  ///< half the distance between the quartiles: about half of the runs lie this near
 };
 
-/// Quartiles lie between the runs next to them, by linear interpolation of ranks. There is one run at least.
+/// Median and spread of the runs, of which there must be one. O(n log n).
 Repeated summarize(std::vector<double> runs);
 
-/// The quartiles themselves.
+/// The quartiles of repeated runs, interpolated linearly between ranks.
 struct Quartiles {
   double low = 0, median = 0, high = 0;
 };
@@ -25,12 +25,13 @@ struct SpeedAndError {
   double error = 0;  ///< mean absolute
 };
 
-/// An error as tables print it, two digits: errors that print alike count as equal.
+/// An error rounded to two digits, as tables print it: errors that print alike count as equal.
 double printedError(double error);
 
-/// Which rows are on the Pareto front: those that no other row beats. One row beats another where it is
-/// nearer to the truth and not slower by more than both their spreads, or as near and faster by more than
-/// both. Nobody beats a row in a circle, so the front is never empty.
+/// Which rows are on the Pareto front: those that no other row beats. A row beats another if its error is
+/// smaller and it isn't slower by more than the sum of both spreads, or if its error is equal and it is
+/// faster by more than that. The relation has no cycles, so the front of one row or more is never empty.
+/// O(n²).
 std::vector<bool> paretoFront(const std::vector<SpeedAndError>& rows);
 
 }  // namespace luciole

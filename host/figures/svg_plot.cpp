@@ -25,7 +25,7 @@ std::string number(double value) {
   return fmt::format("{:g}", std::round(value * 100) / 100 + 0.0);  // + 0: no "-0"
 }
 
-/// Text between tags or in an attribute.
+/// Text escaped for use between tags or in an attribute.
 std::string escaped(const std::string& text) {
   using Json = nlohmann::json;
   const std::string valid =
@@ -54,7 +54,7 @@ std::string escaped(const std::string& text) {
 
 enum class Anchor { kStart, kMiddle, kEnd };
 
-/// A line of text whose middle is at a height. `more`: attributes.
+/// A line of text, vertically centred at `at`. more: attributes.
 std::string textAt(const glm::dvec2& at, Anchor anchor, const std::string& text,
                    const std::string& more = "") {
   static constexpr const char* kAnchors[] = {"", " text-anchor=\"middle\"", " text-anchor=\"end\""};
@@ -119,7 +119,8 @@ struct Frame {
   }
 };
 
-/// A bar's end that isn't above zero reaches the axis. Names take room.
+/// An axis that holds all points and bars. An end of a bar at 0 or below doesn't count: the bar is drawn to
+/// the axis. Labels need room.
 LogAxis axisOf(const PlotPanel& panel, int axis) {
   std::vector<double> values;
   bool has_labels = false;
@@ -139,7 +140,7 @@ std::vector<double> ticksOf(const LogAxis& axis, double length) {
   return logTicks(low, axis.high, std::max(2, int(length / kTickGap)));
 }
 
-/// What lies between the powers of ten; nothing where that would be a hatching.
+/// Ticks between the powers of ten; none if they would be too dense.
 std::vector<double> fineTicks(const LogAxis& axis, double length) {
   const double low = axis.floor ? *axis.floor * 1.3 : axis.low;
   std::vector<double> ticks;
@@ -215,7 +216,7 @@ std::vector<Segment> barsOf(const PlotSeries& series, const Frame& frame) {
 std::string drawSeries(const PlotSeries& series, const Frame& frame) {
   std::string line, bars, markers;
   for (const Segment& segment : lineOf(series, frame))
-    // One path, whose corners are joined.
+    // A single path, so that its corners are joined.
     line += line.empty() ? lineBetween(segment.from, segment.to)
                          : fmt::format("L{} {}", number(segment.to.x), number(segment.to.y));
   for (const Segment& bar : barsOf(series, frame)) {
@@ -228,7 +229,7 @@ std::string drawSeries(const PlotSeries& series, const Frame& frame) {
   return path(line, series.color, 2, lineLook(series)) + path(bars, series.color, 1.2) + markers;
 }
 
-/// A white edge keeps a name readable where it had to lie over something.
+/// The labels. A white outline keeps one readable that lies over something.
 std::string drawLabels(const PlotPanel& panel, const Frame& frame) {
   constexpr glm::dvec2 kRing(11);
   std::vector<Label> labels;
@@ -259,7 +260,7 @@ std::string drawLabels(const PlotPanel& panel, const Frame& frame) {
              kInk, texts);
 }
 
-/// Those that have a name.
+/// The series that have a name.
 std::vector<const PlotSeries*> legendOf(const PlotPanel& panel) {
   std::vector<const PlotSeries*> entries;
   for (const PlotSeries& series : panel.series)
@@ -280,7 +281,8 @@ std::string drawLegend(const PlotPanel& panel, const Frame& frame) {
   return drawn;
 }
 
-/// Of the panel with what is around it. The area is as high as its legend at least.
+/// The sizes of a panel: of the area between its axes, which is at least as high as its legend, and of the
+/// whole with all that is around it.
 struct PanelSize {
   glm::dvec2 area, whole;
 };

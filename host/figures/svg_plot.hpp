@@ -16,8 +16,8 @@ enum class PlotLine { kNone, kStraight, kSteps };  ///< steps go right first, th
 
 struct PlotPoint {
   glm::dvec2 at{0.0};              ///< ≥ 0
-  glm::dvec2 low{0.0}, high{0.0};  ///< ends of its bars; no bar where they are equal
-  std::string label{};             ///< beside it
+  glm::dvec2 low{0.0}, high{0.0};  ///< ends of its error bars in x and y; no bar if they are equal
+  std::string label{};             ///< text beside it
 };
 
 struct PlotSeries {
@@ -31,7 +31,7 @@ struct PlotSeries {
 
 struct PlotAxis {
   std::string title{};
-  std::string (*tick)(double) = nullptr;  ///< a number as the axis shows it
+  std::string (*tick)(double) = nullptr;  ///< the text for a number on the axis
 };
 
 /// Series on logarithmic axes. The later ones are drawn over the earlier, and their labels get better places.
@@ -49,8 +49,8 @@ struct Plot {
   std::vector<std::vector<PlotPanel>> rows{};
 };
 
-/// The plot as an SVG picture in UTF-8, as large as its panels take. What isn't UTF-8 in a text, or has no
-/// place in XML, becomes U+FFFD.
+/// The plot as an SVG picture in UTF-8, as large as its panels need. In texts, what isn't valid UTF-8 or
+/// isn't allowed in XML becomes U+FFFD.
 std::string svgPlot(const Plot& plot);
 
 }  // namespace luciole

@@ -6,11 +6,11 @@
 
 namespace luciole {
 
-/// Characters that UTF-8 text shows as: all bytes but those that continue one.
+/// The number of characters in UTF-8 text: of all bytes but those that continue a character.
 std::size_t shownWidth(const std::string& text);
 
-/// Lines of cells, the first one the head, as a Markdown table that reads well as plain text: the first
-/// column left, the others right. All lines have as many cells.
+/// Lines of cells as a Markdown table that reads well as plain text. The first line is the head, the first
+/// column is left-aligned, the others right. All lines must have the same number of cells.
 std::string textTable(const std::vector<std::vector<std::string>>& lines);
 
 }  // namespace luciole

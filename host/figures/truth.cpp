@@ -6,7 +6,7 @@
 namespace luciole {
 namespace {
 
-/// Samples a pixel of the two sets.
+/// Samples a pixel in each of the two sets.
 constexpr int kSamples[2] = {32, 48};
 
 }  // namespace

@@ -6,16 +6,16 @@
 
 namespace luciole {
 
-/// The picture that others are held against, channels R G B.
+/// The picture that others are compared with, channels R G B.
 struct Truth {
   Image image;
-  /// Estimate of its own mean absolute error; 0: only what float rounds off, 2⁻²⁴ of each value.
+  /// Estimate of its own mean absolute error; 0: only float's rounding, 2⁻²⁴ of each value.
   double own_error = 0;
 };
 
-/// The mean of many samples a pixel, each shaded in double precision. It is put together from two sets of
-/// samples: as their errors are about alike and have nothing to do with each other, their mean is wrong by
-/// about half of what they differ.
+/// The mean of 80 samples a pixel, each shaded in double precision (see referencePicture). They are two sets:
+/// as their errors are independent and about equal, their mean is wrong by about half of their difference,
+/// which is the estimate of the own error.
 Truth sampledTruth(const Scene& scene, const View& view, const ReferenceSettings& settings);
 
 }  // namespace luciole

@@ -19,13 +19,13 @@
 namespace luciole {
 namespace {
 
-/// Nearer to each other than this share of their distance from the eye, two surfaces are one place.
+/// Two surfaces on a ray tie if they are nearer to each other than this share of their distance from the eye.
 constexpr double kSamePlace = 1e-6;
 
 /// Normals farther apart than this, in radians, belong to different surfaces.
 constexpr double kSameNormal = 1e-5;
 
-/// What is needed to follow a ray, all in view space.
+/// What is needed to trace rays in view space.
 struct Tracer {
   const Scene& scene;
   const View& view;
@@ -44,11 +44,11 @@ struct Meeting {
   double depth;       ///< metres along the view axis
 };
 
-/// What the ray that Embree follows on this thread has met so far.
+/// The triangles that this thread's current ray has hit so far.
 thread_local std::vector<std::uint32_t> met_triangles;
 
 Tracer makeTracer(const Scene& scene, const View& view) {
-  // Every triangle lets the rays through, so that they meet all: which is nearest is decided in double.
+  // The filter lets rays pass, so that they find all triangles. Which one is nearest is decided in double.
   const HitFilter note = [](const CandidateHit& candidate) {
     met_triangles.push_back(candidate.triangle);
     return true;
@@ -91,11 +91,11 @@ glm::bvec3 leaningCorners(const Mesh& mesh, const glm::uvec3& corners) {
   return leans;
 }
 
-/// How far the smooth surface is taken to lie above a point of a facet (raster/lift.hpp). The point's
-/// projections onto the tangent planes of the corners that lie above it (Hanika 2021) are on average `up`
-/// higher; half of that, or as much of it as brings all corners behind the plane on the shading normal.
-/// `normals`: of the corners, on the side of the eye and of one length in the mesh's space; their average is
-/// `sum`. A corner that doesn't lean has the facet's own plane.
+/// The lift of a point of a facet (raster/lift.hpp). Its projections onto the tangent planes of the corners
+/// that lie above it (Hanika 2021) are on average `up` higher. The lift is half of that, or as much of it as
+/// puts all corners behind the plane on which the shading normal stands. normals: of the corners, on the side
+/// of the eye and of the same length in the mesh's space; sum: their average. A corner that doesn't lean has
+/// the facet's own plane.
 double liftAt(const glm::dvec3& point, const glm::dvec3& shares, const std::array<glm::dvec3, 3>& corners,
               const glm::dmat3& normals, const glm::dvec3& sum, const glm::bvec3& leans) {
   const double length = glm::length(sum);
@@ -111,8 +111,8 @@ double liftAt(const glm::dvec3& point, const glm::dvec3& shares, const std::arra
   return std::min(std::clamp(in_front, up / 2, up), longest / 2);
 }
 
-/// Where the ray meets the triangle's plane; nothing for a triangle that the picture leaves out: turned away
-/// and single-sided, a hole at this pixel, or not between the near and the far plane.
+/// Where the ray meets the triangle's plane. Empty for a triangle that the picture doesn't show here: it
+/// faces away and is single-sided, has a hole at this pixel, or isn't between the near and the far plane.
 std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
                             const glm::ivec2& pixel) {
   const PlacedObject& object = objectOfTriangle(tracer.geometry.objects, triangle);
@@ -120,7 +120,7 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   const Material& material = materialOf(tracer.scene, object, in_mesh);
   const auto [a, b, c] = cornersOf(tracer.geometry, triangle);
   const glm::dvec3 edge1 = b - a, edge2 = c - a;
-  // Möller and Trumbore 1997.
+  // T. Möller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
   const glm::dvec3 p = glm::cross(ray.direction, edge2);
   const double determinant = glm::dot(edge1, p);
   const bool front = (determinant > 0) != object.mirrored;
@@ -151,7 +151,7 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   return candidate;
 }
 
-/// All that the pixel's ray through `at` meets and the picture could show, nearest first.
+/// All surfaces that the pixel's ray through `at` meets and that the picture could show, the nearest first.
 std::vector<Meeting> follow(const Tracer& tracer, const glm::dvec2& at, const glm::ivec2& pixel) {
   const Ray ray = viewRay(tracer.plane, at);
   met_triangles.clear();
@@ -171,7 +171,7 @@ std::vector<Meeting> follow(const Tracer& tracer, const glm::dvec2& at, const gl
 /// Distance in pixels of a place on the picture from the nearest of the lines that a triangle's edges lie on.
 double distanceToEdges(const Tracer& tracer, std::uint32_t triangle, const glm::dvec2& at) {
   const std::array<glm::dvec3, 3> corners = cornersOf(tracer.geometry, triangle);
-  // Homogeneous pixel coordinates, which hold behind the eye too.
+  // In homogeneous pixel coordinates, which are valid behind the eye, too.
   const auto pixels = [&](const glm::dvec3& corner) {
     const double w = tracer.plane.perspective ? -corner.z : 1.0;
     return glm::dvec3((glm::dvec2(corner) - tracer.plane.offset * w) / tracer.plane.scale, w);
@@ -197,7 +197,7 @@ double distanceToTriangle(const std::array<glm::dvec3, 3>& corners, const glm::d
   return inside ? std::abs(glm::dot(normal, p - corners[0])) / glm::length(normal) : nearest;
 }
 
-/// The G-buffer's answer for a pixel.
+/// What the G-buffer shows at a pixel.
 struct Shown {
   glm::dvec3 position;
   glm::dvec3 normal;
@@ -217,7 +217,8 @@ double positionError(const Shown& shown, const Meeting& candidate) {
   return glm::distance(shown.position, candidate.position) / glm::length(candidate.position);
 }
 
-/// The angle, from the chord, which keeps the digits of small ones.
+/// The angle between two unit normals, radians. Computed from the chord between them, because the cosine of a
+/// small angle has lost its digits.
 double normalError(const Shown& shown, const Meeting& candidate) {
   return 2 * std::asin(std::min(glm::distance(shown.normal, candidate.normal) / 2, 1.0));
 }
@@ -268,8 +269,8 @@ bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<M
   return false;
 }
 
-/// Whether snapping explains why the pixel shows this instead of the first of the meetings: what lies in
-/// front of it has an edge beside the sample, and so has the surface itself, unless the ray meets it.
+/// Whether snapping explains that the pixel shows this instead of the first of the meetings: all that lies in
+/// front of it has an edge beside the sample, and so has the surface itself unless the ray meets it.
 bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
                   const glm::dvec2& at, const glm::ivec2& pixel) {
   bool met = !shown.surface;

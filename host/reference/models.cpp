@@ -20,31 +20,31 @@ glm::dvec3 halfVector(const Directions& at) { return unitOrZero(at.to_light + at
 /// 0^0 = 1, as in OpenGL.
 double power(double cosine, double shininess) { return std::pow(std::clamp(cosine, 0.0, 1.0), shininess); }
 
-/// Phong, CACM 18(6), 1975.
+/// B. T. Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975: (R·V)^n.
 double phongLobe(const Directions& at, double shininess) {
   const glm::dvec3 mirrored = 2 * glm::dot(at.normal, at.to_light) * at.normal - at.to_light;
   return power(glm::dot(mirrored, at.to_eye), shininess);
 }
 
-/// Blinn, SIGGRAPH 1977.
+/// J. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977: (N·H)^n.
 double blinnLobe(const Directions& at, double shininess) {
   return power(glm::dot(at.normal, halfVector(at)), shininess);
 }
 
-/// A value that is 0 below `start`, 1 from 1/32 above it on, and grows evenly between.
+/// 0 up to `start`, 1 from start + 1/32 on, linear between.
 double ramp(double x, double start) {
   const double end = start + 1.0 / 32;
   return x <= start ? 0 : x >= end ? 1 : (x - start) / (end - start);
 }
 
-/// Smith's masking for GGX in one direction, Walter et al. 2007, equation 34: 2 / (1 + √(1 + α²·tan²)), here
-/// divided by 2·cosine, which makes it finite at a cosine of 0.
+/// Smith's masking of GGX in one direction, Walter et al. 2007, equation 34: 2 / (1 + √(1 + α²·tan²)). The
+/// result is that divided by 2·cosine, which is finite at a cosine of 0.
 double maskingOverCosine(double cosine, double alpha) {
   const double sine = std::sqrt(1 - cosine * cosine);
   return 1 / (cosine + std::hypot(cosine, alpha * sine));
 }
 
-/// GGX, equation 33. The cosine is N·H, or 0 where that is less.
+/// The distribution D of GGX, Walter et al. 2007, equation 33. cosine: N·H, or 0 where that is negative.
 double facetDistribution(double cosine, double alpha) {
   const double alpha2 = alpha * alpha, cosine2 = cosine * cosine;
   const double tangent_term = alpha2 * cosine2 + (1 - cosine2);  // cos²·(α² + tan²)
@@ -60,7 +60,8 @@ double toonTone(double cosine) {
 
 double toonHighlight(double lobe) { return ramp(lobe, 0.5); }
 
-// Cook and Torrance 1982, D·G·F / (4 N·L N·V), times the irradiance π·N·L that a light of 1 stands for.
+// R. Cook and K. Torrance, "A Reflectance Model for Computer Graphics", 1982: D·G·F / (4 N·L N·V), times the
+// irradiance π·N·L of a light of 1.
 double cookTorrance(const Directions& at, double f0, double shininess) {
   const glm::dvec3 half_way = halfVector(at);
   const double n_dot_l = std::clamp(glm::dot(at.normal, at.to_light), 0.0, 1.0);
@@ -70,7 +71,7 @@ double cookTorrance(const Directions& at, double f0, double shininess) {
   const double alpha = std::sqrt(2 / (shininess + 2));
   const double f90 = std::min(50 * f0, 1.0);
   const double fresnel = f0 + (f90 - f0) * std::pow(1 - v_dot_h, 5);
-  // G/(4 N·L N·V), with both directions' factors of 2.
+  // G / (4 N·L N·V): each direction's factor contains its 2·cosine.
   const double masking = maskingOverCosine(n_dot_l, alpha) * maskingOverCosine(n_dot_v, alpha);
   return facetDistribution(n_dot_h, alpha) * masking * fresnel * kPi * n_dot_l;
 }

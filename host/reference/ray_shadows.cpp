@@ -8,8 +8,8 @@
 namespace luciole {
 namespace {
 
-/// The cone of directions in which a light is seen: its unit axis, 1 − the cosine of its half angle, and for
-/// a light with a place the distance to its middle.
+/// The cone of directions in which a light is seen: its unit axis, 1 − the cosine of its half angle, and the
+/// distance to the light's middle, metres; infinite for directional lights.
 struct LightCone {
   glm::dvec3 axis;
   double one_minus_cosine;
@@ -23,11 +23,12 @@ LightCone lightCone(const Light& light, const glm::dvec3& point) {
   }
   const glm::dvec3 way = light.position - point;
   const double distance = glm::length(way), sine = std::min(light.radius / distance, 1.0);
-  // 1 − √(1 − s²), which would lose a small s.
+  // Equals 1 − √(1 − s²), but keeps the digits of a small s.
   return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine)), distance};
 }
 
-/// How far away a sphere's surface is on a ray that leaves its axis by an angle of this cosine.
+/// The distance to a sphere's surface along a ray. distance: to its middle; cosine: of the angle between the
+/// ray and the direction to the middle.
 double distanceToSphere(double distance, double radius, double cosine) {
   const double along = distance * cosine, across2 = distance * distance * (1 - cosine * cosine);
   return along - std::sqrt(std::max(radius * radius - across2, 0.0));
@@ -44,7 +45,7 @@ double lightVisibility(const RayScene& rays, const Light& light, const glm::dvec
 
   const glm::dvec3 any = std::abs(cone.axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 right = glm::normalize(glm::cross(cone.axis, any)), up = glm::cross(right, cone.axis);
-  // A sunflower's spiral: equal solid angles from the axis outwards, the golden angle apart.
+  // H. Vogel's spiral (1979): point i is at i golden angles, and equal solid angles lie between points.
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const double turn = seed * 0x1p-32 * 2 * std::numbers::pi;
   int visible = 0;

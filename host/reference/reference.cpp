@@ -13,7 +13,7 @@
 namespace luciole {
 namespace {
 
-/// What a light sends to a point: the way to it and the share of its colours that arrives, before shadows.
+/// A light as it arrives at a point: its direction and the share of its colours, before shadows.
 struct Incoming {
   glm::dvec3 to_light{0.0};  ///< unit; zero at the light's own place
   double share = 1.0;
@@ -31,7 +31,7 @@ double rangeWindow(const Light& light, double distance) {
 
 double attenuation(const Light& light, double distance) {
   const glm::dvec3 k(light.attenuation);
-  // Finite where the polynomial vanishes, which it can only at the light's own place.
+  // Finite where the polynomial is 0.
   return 1 / std::max(k.x + k.y * distance + k.z * distance * distance, std::exp2(-100.0));
 }
 
@@ -76,7 +76,7 @@ double fogShare(const Fog& fog, double density, double distance) {
       share = std::exp(-density * distance * density * distance);
       break;
   }
-  // 0/0, at the one distance where fog of no depth begins and ends, counts as fogged.
+  // If linear fog starts and ends at the same distance, the share there is 0/0. It counts as 0.
   return share > 0 ? std::min(share, 1.0) : 0.0;
 }
 
@@ -86,7 +86,7 @@ glm::dvec3 triple(const Plane& group, std::size_t stride, std::size_t place) {
   return {group[place], group[place + stride], group[place + 2 * stride]};
 }
 
-/// Spreads the bits of a pixel's place in the whole picture, for rays that differ from pixel to pixel.
+/// A hash of the pixel's place in the whole picture, so that the rays' pattern differs from pixel to pixel.
 std::uint32_t pixelSeed(const glm::ivec2& pixel) {
   std::uint32_t bits = std::uint32_t(pixel.x) * 0x9e3779b1u ^ std::uint32_t(pixel.y) * 0x85ebca6bu;
   bits = (bits ^ bits >> 15) * 0x2c1b3c6du;
@@ -109,7 +109,7 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
   point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
   const std::uint32_t seed = pixelSeed(pixel + gbuffer.crop_origin);
   Visibility visibility;
-  // Onto the surface that the smooth normals tell of (Hanika 2021, see raster/lift.hpp).
+  // Shadow rays start on the smooth surface above the facet (Hanika 2021, see raster/lift.hpp).
   glm::dvec3 start = point.position;
   if (!gbuffer.lift.empty()) start += double(gbuffer.lift[place]) * unitOrZero(point.normal);
   if (settings.shadow_rays)
@@ -123,11 +123,11 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
 }  // namespace
 
 // The lighting equation of OpenGL 1.x (The OpenGL Graphics System: A Specification, section "Lighting") with
-// a local viewer, whose reflection is Phong's, or that of another model in its place.
+// a local viewer. Its highlight is replaced by Phong's, or by another model's.
 glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
                              const Visibility& visibility) {
   if (!scene.lighting) return point.emission + point.diffuse;
-  // Unit again in double: a power of 10⁶ would make 10 % of the last bit of a float normal.
+  // Normalized again in double: an exponent of 10⁶ turns an error in a float's last bit into one of 10 %.
   const glm::dvec3 normal = unitOrZero(point.normal);
   const glm::dvec3 to_eye =
       unitOrZero(camera.orthographic ? backward(camera) : eyePosition(camera) - point.position);

@@ -11,8 +11,8 @@
 #include "scene/model.hpp"
 #include "scene/scene.hpp"
 
-// The lighting equations in double precision, written from the textbooks and independently of kernels/: what
-// judges a picture shares no code with it. World space throughout.
+// The lighting equations in double precision, written from the specification and the papers and independently
+// of kernels/, so that pictures are compared with code that they don't share. World space throughout, metres.
 namespace luciole {
 
 /// A point on a surface and how it reflects.
@@ -23,40 +23,40 @@ struct SurfacePoint {
   double shininess = 0.0;
 };
 
-/// The share of a light that reaches the point which is being lit, in [0, 1].
+/// Returns the share of a light, in [0, 1], that nothing hides from the point that is lit.
 using Visibility = std::function<double(const Light& light)>;
 
-/// Radiance that leaves the point towards the eye, before fog: every light of the scene, no culling. Lights
-/// marked `shadow` are asked for their visibility where it matters; without one nothing casts a shadow.
+/// Radiance that leaves the point towards the eye, before fog, by all lights of the scene: O(lights).
+/// visibility is called for lights marked `shadow` that the point faces; without it nothing casts a shadow.
 glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
                              const Visibility& visibility = {});
 
-/// What the eye sees of `radiance` through the scene's fog.
+/// The radiance that the eye sees of `radiance`, which leaves `position`, through the fog.
 glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& position,
                         const glm::dvec3& radiance);
 
 struct ReferenceSettings {
   Model model = Model::kPhong;
-  bool fog = true;                        ///< false for vertices, whose colours meet the fog as pixels
+  bool fog = true;                        ///< false for vertices: fog is applied to their colours in pixels
   const RayScene* shadow_rays = nullptr;  ///< of this scene, by buildShadowRays; null: nothing casts a shadow
   int shadow_samples = 64;  ///< rays from a pixel to a light that has a size; one to a light without
-  /// Called now and then, if set.
+  /// Called now and then with the number of pixels that are done, if set.
   std::function<void(std::size_t done, std::size_t pixels)> on_progress = {};
 };
 
-/// Every pixel of a picture, row by row.
+/// All pixels of a picture of this size, row by row from the top left.
 std::vector<glm::ivec2> allPixels(const glm::ivec2& size);
 
-/// Some pixels of a G-buffer shaded so, linear R G B each; (x, y) counted from its top left. On all cores;
-/// the result depends neither on their number nor on which other pixels are asked for.
+/// Shades some pixels of a G-buffer, counted from its top left. Returns the linear R G B of each. Works on
+/// all cores; the result depends neither on their number nor on which other pixels are asked for.
 std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings);
 
-/// A colour's channel as pictures keep it: in float, the largest where it is more.
+/// A colour's channel as pictures store it: rounded to float, at most the largest finite one.
 float pictureValue(double channel);
 
-/// The whole of it: channels R G B.
+/// All pixels of a G-buffer, as a picture with channels R G B.
 Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings);
 
 }  // namespace luciole

@@ -3,7 +3,7 @@
 namespace luciole {
 namespace {
 
-/// Radiance of the scene's vertices, in the order of gatherVertices(), before fog, which is for pixels.
+/// Radiance of the scene's vertices, in the order of gatherVertices(), before fog: that is applied to pixels.
 std::vector<glm::vec3> lightVertices(const Scene& scene, const std::vector<std::uint32_t>& objects,
                                      const View& view, const ReferenceSettings& settings) {
   ReferenceSettings clear = settings;

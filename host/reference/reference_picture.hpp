@@ -9,10 +9,10 @@
 
 namespace luciole {
 
-/// Some pixels of a scene's picture, linear R G B each; (x, y) counted from the view's crop. The G-buffers
-/// are the renderer's own, but with every object in them, whatever the fog hides; all that follows is in
-/// double. For Shading::kGouraud the vertices are lit so, too. The mean of `samples` samples a pixel, at
-/// samplePoint().
+/// Some pixels of a scene's picture, counted from the top left of the view's crop. Returns the linear R G B
+/// of each: the mean of `samples` samples, at samplePoint(). The G-buffers are those of the renderer, but
+/// with all objects, also those that the fog hides. Lighting is in double, also of the vertices for
+/// Shading::kGouraud.
 std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, Shading shading, int samples,
                                          std::span<const glm::ivec2> pixels,
                                          const ReferenceSettings& settings);

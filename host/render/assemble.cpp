@@ -9,7 +9,7 @@
 namespace luciole {
 namespace {
 
-/// A channel of the finished picture.
+/// A channel of the finished picture, and where its values are.
 struct Layer {
   std::string name;
   const float* plane;  ///< in the G-buffer's layout
@@ -57,7 +57,7 @@ void forEachPixel(const GBuffer& gbuffer, Image& image, Visit visit) {
   });
 }
 
-/// As finite_color in the kernels: bright samples may add up to more than a float holds.
+/// As finite_color() in the kernels: the sum of bright samples may overflow a float.
 float finiteColor(float color) {
   constexpr float kLargest = std::numeric_limits<float>::max();
   return std::max(color < kLargest ? color : kLargest, -kLargest);

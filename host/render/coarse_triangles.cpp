@@ -48,10 +48,10 @@ double squaredWidth(const std::array<glm::dvec3, 3>& corners) {
   return std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
 }
 
-/// The scene's largest triangles but for those without area, the widest last.
+/// The scene's kMostTriangles widest triangles, without those that have no area; the widest last.
 std::vector<Triangle> largestTriangles(const Scene& scene) {
   const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1), true);
-  // The smallest on top, to go first.
+  // The smallest is on top, and is replaced first.
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> largest;
   for (const PlacedObject& object : objects) {
     for (std::uint32_t i = 0; i < object.mesh->triangles.size(); ++i) {
@@ -82,12 +82,13 @@ bool isInside(const Triangle& triangle, const glm::dvec3& point) {
     return glm::dot(glm::cross(to - from, point - from), triangle.normal);
   };
   const double sides[] = {side(0), side(1), side(2)};
-  // A mirrored triangle's corners go the other way around its front.
+  // The corners of a mirrored triangle have the other orientation.
   return std::all_of(std::begin(sides), std::end(sides), [](double s) { return s >= 0; }) ||
          std::all_of(std::begin(sides), std::end(sides), [](double s) { return s <= 0; });
 }
 
-/// The place in the triangle that the light stands over, or shines on: nothing where that is outside.
+/// The place in the triangle's plane below a point light, or where a spot's axis meets it. Empty if that lies
+/// outside the triangle or out of range.
 std::optional<glm::dvec3> brightestPlace(const Light& light, const Triangle& triangle) {
   const double height = glm::dot(light.position - triangle.corners[0], triangle.normal);
   if (!(std::abs(height) < light.range)) return std::nullopt;
@@ -101,7 +102,8 @@ std::optional<glm::dvec3> brightestPlace(const Light& light, const Triangle& tri
   return place;
 }
 
-/// The light that a place in the triangle gets; of a cone that fades, all as bright as its middle.
+/// The light that a place in the triangle gets, N·L included. A glTF cone doesn't fade here: all of it is as
+/// bright as its middle.
 double lightAt(const Light& light, const Triangle& triangle, const glm::dvec3& place) {
   const glm::dvec3 way = light.position - place;
   const double distance = glm::length(way);

@@ -4,14 +4,14 @@
 
 namespace luciole {
 
-/// Gouraud shading lights the corners of triangles, and shows nothing of a light that shines between them. Of
-/// the scene's largest triangles that this happens to: how wide the widest is, its longest edge in metres; 0
-/// where it happens to none. It happens where a point light stands over a triangle, or a spot's axis meets
-/// it, and that place gets more than four times the light of every corner.
+/// Gouraud shading lights the corners of triangles only, so a light that shines between them is lost. Returns
+/// the width (the longest edge, metres) of the widest triangle that loses a light so; 0 if there is none. A
+/// triangle loses a light if a point light stands over it, or a spot's axis meets it, and the place below the
+/// light, or on the axis, gets more than four times the light of every corner.
 ///
-/// Looks at up to 1024 triangles (of meshes' divided forms), the largest, and at as many lights, evenly
-/// chosen: beyond finding the largest it takes no longer for a larger scene. Shadows between corners go
-/// unseen.
+/// Looks at the 1024 largest triangles (of meshes as they are divided for Gouraud shading) and at up to 1024
+/// evenly chosen lights. So a larger scene takes longer only to find the largest triangles, O(n log 1024).
+/// Doesn't look for shadows between corners.
 double coarseTriangleWidth(const Scene& scene);
 
 }  // namespace luciole

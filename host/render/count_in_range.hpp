@@ -6,14 +6,15 @@
 namespace luciole {
 
 struct CountInRangeArguments {
-  Buffer<const float> position;  ///< G-buffer planes x, y, z
-  std::size_t plane_stride;      ///< floats
+  Buffer<const float> position;  ///< G-buffer planes x, y, z; view space, metres
+  std::size_t plane_stride;      ///< floats in a plane
   Buffer<const ShadeLight> lights;
-  const LightLists& lists;
-  Buffer<float> counts;  ///< out: one a pixel
+  const LightLists& lists;  ///< culled with kByRange
+  Buffer<float> counts;     ///< out: plane_stride
 };
 
-/// Launches kernels/count_in_range.cl: how many lights reach each pixel.
+/// Launches kernels/count_in_range.cl: counts for each pixel the lights in whose range it lies. Doesn't wait.
+/// Throws MachineError.
 void countInRange(Device& device, const CountInRangeArguments& arguments);
 
 }  // namespace luciole

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kHalf = kPairWords / 2;
 
-/// The pixels of an entry that are unsure, by rays in blocks of some packets.
+/// Traces the unsure pixels of an entry as one block of rays, and sets the bits of the lit ones.
 void traceEntry(const RayScene& rays, const GBuffer& gbuffer, const Light& light, std::size_t tile,
                 std::span<uint> words) {
   std::array<ShadowRay, kTilePixels> block;

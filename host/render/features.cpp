@@ -113,7 +113,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   }
   features.set(Feature::kLift, surfaces.smooth && features.shadows());
   features.set(Feature::kSpotCone, any_cone);
-  // Beside cones, an exponent of 0 must be told apart from a cone at run time.
+  // A spot with an exponent of 0 needs no code of its own, unless cones are compiled: then the kernel has to
+  // tell it from a cone at run time.
   if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
   features.set(Feature::kSpecular, surfaces.specular && light_specular);

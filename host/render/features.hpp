@@ -11,7 +11,7 @@
 
 namespace luciole {
 
-/// What a scene may use and a program may compile. A program is built for one set of them.
+/// What scenes may use. A program is compiled for a set of features and contains the code of no others.
 enum class Feature : unsigned {
   kPointLights,
   kDirectionalLights,
@@ -23,7 +23,7 @@ enum class Feature : unsigned {
   kKhrWindow,
   kSpecular,
 #define MODEL_FEATURE(name, typed, shown, meaning) k##name,
-  EACH_MODEL(MODEL_FEATURE)  // by Model
+  EACH_MODEL(MODEL_FEATURE)  // in the order of Model
 #undef MODEL_FEATURE
   kAmbient,
   kLightAmbient,
@@ -50,8 +50,8 @@ inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::k
 
 /// The feature table: row i describes Feature i. kernels/features.clh has a fallback for each define.
 struct FeatureRow {
-  const char* define;  ///< the kernels' macro, 0 or 1; of a model its number, by which it has a bit of MODELS
-  const char* name;    ///< in --stats
+  const char* define;   ///< the kernels' macro, 0 or 1; for a model, the name of its number in the kernels
+  const char* name;     ///< in --stats
   const char* meaning;  ///< what the compiled code does
 };
 extern const std::array<FeatureRow, kFeatureCount> kFeatureTable;
@@ -69,34 +69,34 @@ class FeatureSet {
   std::bitset<kFeatureCount> bits_;
 };
 
-/// What surfaces bring along, whether they come from materials or from a G-buffer file.
+/// What surfaces need of shading, whether they come from a scene's materials or from a G-buffer file.
 struct SurfaceTraits {
   bool specular = false;
   bool emission = false;
   bool smooth = false;  ///< shadow tests start above facets (raster/lift.hpp)
 };
-/// `smooth` only where lights cast shadows.
+/// The traits of a scene's materials and meshes. `smooth` is set only if a light casts shadows.
 SurfaceTraits materialTraits(const Scene& scene);
 
 enum class Culling : std::uint8_t { kNone, kTiles };
 
-/// What a program of this model compiles.
+/// The feature of a program that compiles this model.
 constexpr Feature featureOf(Model model) { return Feature(unsigned(Feature::kPhong) + unsigned(model)); }
 
 constexpr bool isModel(Feature feature) {
   return feature >= Feature::kPhong && unsigned(feature) < unsigned(Feature::kPhong) + kModelNames.size();
 }
 
-/// How to light a G-buffer, apart from the scene.
+/// How to light a G-buffer, apart from what the scene says.
 struct ShadeSettings {
   Model model = Model::kPhong;
   Culling culling = Culling::kTiles;
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;
-  bool shadow_layer = false;  ///< also write the share of shadowed lights that reaches each pixel
-  int pcf_width = 2;          ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6: a tent over a box
+  bool shadow_layer = false;  ///< also write how visible, on average, lights with shadows are
+  int pcf_width = 2;          ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
   ShadowLimits shadow_limits{};
-  int log2_degree = 8;  ///< of the polynomials in kernels/math.clh, which lists the degrees there are
+  int log2_degree = 8;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
   int exp2_degree = 6;
 };
 
@@ -104,18 +104,17 @@ struct ShadeSettings {
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings);
 
-/// Those of the features that decide where shadow lookups go, not what they see: all that
-/// kernels/find_needed.cl and kernels/classify.cl depend on, so that scenes that differ in others share these
-/// programs.
+/// The features that decide where shadow maps are looked up. kernels/find_needed.cl and kernels/classify.cl
+/// depend on no others, so scenes that differ only in others share these programs.
 FeatureSet lookupFeatures(const FeatureSet& features);
 
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);
 
-/// -D options for every row of the table; models share one.
+/// The compiler's -D options for these features: one for each row of the table, and MODELS for all models.
 std::string featureDefines(const FeatureSet& features);
 
-/// -D options for what the settings choose beside features: degrees of polynomials, the width of PCF.
+/// The compiler's -D options for other settings: the degrees of polynomials and the width of PCF.
 std::string mathDefines(const ShadeSettings& settings);
 
 }  // namespace luciole

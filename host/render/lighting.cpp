@@ -18,7 +18,7 @@ namespace {
 
 float4 color4(const glm::vec3& color) { return {color.x, color.y, color.z, 0}; }
 
-/// The pixels of a square as a power of two.
+/// log2 of the pixels in a square of this side.
 unsigned groupLog2(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
 
 ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettings& settings) {
@@ -39,12 +39,12 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettin
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
               int(FogMode::kExp2) == kFogExp2);
 
-/// The square that a place in the planes belongs to.
+/// The index, among all tiles' squares, of the square that holds the pixel at a place in the planes.
 std::size_t squareOf(std::size_t place) {
   return place / kTilePixels * kSquaresPerTile + SQUARE_OF_PIXEL(place);
 }
 
-/// How many lights each square's pixels go through: its list's, or without lists all.
+/// How many lights the pixels of each square are shaded with: those in its list, or without lists all.
 std::vector<std::uint32_t> squareLengths(Device& device, const LightLists* lists, std::size_t tiles,
                                          std::size_t light_count) {
   if (!lists) return std::vector<std::uint32_t>(tiles * kSquaresPerTile, std::uint32_t(light_count));
@@ -60,7 +60,8 @@ std::vector<std::uint32_t> squareLengths(Device& device, const LightLists* lists
   return lengths;
 }
 
-/// Pixel-light pairs: a row of lanes with any covered pixel goes through the lights of its square.
+/// Number of pixel-light pairs that the shade kernel computes: a row of lanes with a covered pixel goes
+/// through the lights of its square in all its lanes.
 std::uint64_t evaluatedPairs(const GBuffer& gbuffer, const std::vector<std::uint32_t>& square_lengths,
                              int lanes) {
   const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
@@ -74,7 +75,7 @@ std::uint64_t evaluatedPairs(const GBuffer& gbuffer, const std::vector<std::uint
   return pairs;
 }
 
-/// The shading normals, for a G-buffer that doesn't know its triangles'.
+/// The shading normals, packed: they stand in for geometric normals in a G-buffer that has none.
 PackedNormals packNormals(const GBuffer& gbuffer) {
   const std::size_t pixels = gbuffer.pixels();
   PackedNormals packed(pixels);
@@ -100,7 +101,7 @@ void cullLights(Device& device, const Lighting& lighting, const GBufferBuffers& 
        lists);
 }
 
-/// The host side of lights and shadow maps, to the device.
+/// Borrows the buffers of lights and shadow maps from their arrays on the host.
 void uploadLighting(Device& device, Lighting& lighting) {
   lighting.lights = borrowed(device, lighting.host_lights);
   lighting.tree = borrowed(device, lighting.host_tree.planes);
@@ -123,7 +124,7 @@ Lookups lookupsOf(const Lighting& lighting, const GBufferBuffers& buffers, const
           .shadow_faces = lighting.shadow_faces};
 }
 
-/// Draws what shading the G-buffer will look at of the scene's shadow maps and isn't there yet.
+/// Draws those parts of the shadow maps that shading the G-buffer will read and that aren't drawn yet.
 void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, const std::string& defines,
                     const GBufferBuffers& buffers, const LightLists& lists, std::size_t pixels,
                     Stats& stats) {
@@ -145,7 +146,7 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
   });
 }
 
-/// The exact shadows of all entries of the lists; `traced`: how many pairs took a ray.
+/// The exact shadows of all entries of the lists. Sets `traced` to the number of pairs that took a ray.
 PairBits decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
                        const std::string& defines, const GBuffer& gbuffer, const GBufferBuffers& buffers,
                        const LightLists& lists, std::uint64_t& traced, Stats& stats) {
@@ -173,8 +174,7 @@ Plane lightsInRange(Device& device, Lighting& lighting, const GBufferBuffers& bu
   return result;
 }
 
-/// Fills in those of the counts that are asked for. lists: that the pixels went through, null where they went
-/// through all lights.
+/// Fills in the counts that are asked for. lists: that pixels were shaded with; null if with all lights.
 void countLights(Device& device, Lighting& lighting, const LightLists* lists, const GBuffer& gbuffer,
                  const GBufferBuffers& buffers, const PixelCounts& counts, LitPlanes& lit) {
   const std::size_t pixels = gbuffer.pixels();
@@ -226,7 +226,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   PackedNormals packed;
   if (features.shadows() && gbuffer.geometric_normal.empty()) packed = packNormals(gbuffer);
   const PackedNormals& geometric_normal = packed.empty() ? gbuffer.geometric_normal : packed;
-  Plane level;  // for a G-buffer that lies on its facets
+  Plane level;  // lifts of 0, for a G-buffer without lifts
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
   const Plane& lift = level.empty() ? gbuffer.lift : level;
   const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
@@ -281,14 +281,14 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   GBuffer empty;  // one tile of background
   empty.tiles_x = empty.tiles_y = 1;
   empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
-  // Every group, since rows load theirs before they know that they show nothing.
+  // All groups must be there, because the kernel loads a row's values before it knows that it is background.
   for (Plane* group : {&empty.normal, &empty.diffuse, &empty.ambient, &empty.emission})
     group->assign(3 * kTilePixels, 0.0f);
   empty.specular.assign(4 * kTilePixels, 0.0f);
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
   lighting.group_log2 = groupLog2(settings.tile_size);
-  // A map of nothing, so that its kernel is compiled too.
+  // An empty map, so that find_needed.cl is launched, and compiled, too.
   if (features.shadows()) {
     lighting.host_shadows.maps.emplace_back();
     lighting.host_shadows.faces.emplace_back();

@@ -15,37 +15,38 @@
 
 namespace luciole {
 
-/// What stays the same for all G-buffers of one picture: lights and shadow maps in the camera's view space,
-/// on the device; and memory there that one G-buffer leaves to the next. Buffers are borrowed from what
-/// stands before them, so host side and device side live together and are not copied.
+/// What all G-buffers of one picture share: lights and shadow maps in the camera's view space, on the host
+/// and on the device, and device memory that each G-buffer reuses. Buffers are borrowed from the members
+/// before them, so a Lighting can't be copied.
 struct Lighting {
   FeatureSet features;
   std::string math_defines;  ///< as by mathDefines
-  ShadeFrame frame{};        ///< all but plane_stride
+  ShadeFrame frame{};        ///< all but plane_stride and texel_count, which depend on the G-buffer
   unsigned group_log2 = 0;   ///< see CullArguments
   bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
   LightArray host_lights;
   LightTree host_tree;
   ShadowMaps host_shadows;
   RayScene shadow_rays;              ///< with Feature::kExact only
-  std::vector<std::uint32_t> order;  ///< likewise: the scene's index of each light in host_lights
+  std::vector<std::uint32_t> order;  ///< with Feature::kExact only: the scene's index of each of host_lights
   Buffer<const ShadeLight> lights;
   Buffer<const float> tree;
   Buffer<const ShadowMap> shadow_maps;
   Buffer<const ShadowFace> shadow_faces;
-  Buffer<const ShadowTexel> shadow_texels;  ///< drawn so far
-  Buffer<const BoundTexel> shadow_bounds;   ///< likewise
+  Buffer<const ShadowTexel> shadow_texels;  ///< those drawn so far, without Feature::kExact
+  Buffer<const BoundTexel> shadow_bounds;   ///< those drawn so far, with Feature::kExact
   LightLists lists;                         ///< of the last G-buffer, with Feature::kLightLists
-  LightLists lists_in_range;                ///< that its lights in range were counted by
-  std::size_t bytes = 0;                    ///< of lights and tree
+  LightLists lists_in_range;                ///< lists by range alone, to count lights in range
+  std::size_t bytes = 0;                    ///< of lights and tree on the device
 
   Lighting() = default;
   Lighting(const Lighting&) = delete;
   Lighting& operator=(const Lighting&) = delete;
 };
 
-/// Fills `lighting` for a scene seen by a view of `camera`, planning the shadow maps that the features ask
-/// for. The device may still be opening when it is called.
+/// Fills `lighting` for a scene seen by a view of `camera`, and plans the shadow maps that the features need;
+/// none is drawn yet. The device may still be opening: this waits for it as late as possible. Adds the times
+/// of its stages to `stats`. Throws MachineError, and what opening the device throws.
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
                      Stats& stats);
@@ -57,24 +58,26 @@ struct LitPlanes {
   Plane
       list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists
   std::uint64_t list_entries = 0;
-  PairBits pair_bits;           ///< of the entries of Lighting::lists, with Feature::kExact
+  PairBits pair_bits;           ///< with Feature::kExact: which pixels each entry of Lighting::lists lights
   std::uint64_t traced = 0;     ///< pixel-light pairs whose exact shadow took a ray
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
 };
 
-/// What lightGBuffer is to count beside.
+/// What lightGBuffer() shall count in addition. Each costs time.
 struct PixelCounts {
   bool evaluated = false;    ///< LitPlanes::evaluated
   bool in_range = false;     ///< LitPlanes::light_count
   bool list_length = false;  ///< LitPlanes::list_length
 };
 
-/// Culls and shades one G-buffer, drawing those parts of the scene's shadow maps that it looks at and that
-/// weren't drawn before. `features` may leave out some of what the lighting was prepared for.
+/// Culls and shades one G-buffer. Draws those parts of the scene's shadow maps that it looks up and that
+/// weren't drawn before. features: those that the lighting was prepared for, or fewer. Adds the times of its
+/// stages to `stats`, and raises stats.device_bytes to what it needs. Throws MachineError.
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
                        const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats);
 
-/// Compiles the kernels for these features down to machine code, which OpenCL does at the first launch.
+/// Compiles the kernels for these features down to machine code, by lighting one tile of background: OpenCL
+/// compiles a kernel at its first launch. Throws MachineError.
 void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings);
 
 }  // namespace luciole

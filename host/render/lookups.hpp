@@ -8,13 +8,13 @@
 
 namespace luciole {
 
-/// The points of a G-buffer and the lights that they look up shadows of: what classify.cl and find_needed.cl
-/// both read.
+/// The points of a G-buffer and the lights whose shadow maps they look up: the arguments that classify.cl and
+/// find_needed.cl share.
 struct Lookups {
-  std::size_t plane_stride;      ///< floats
-  Buffer<const float> position;  ///< G-buffer planes x, y, z
-  Buffer<const float> normal;    ///< likewise
-  Buffer<const float> lift;      ///< one plane, with Feature::kLift only
+  std::size_t plane_stride;      ///< floats in a plane
+  Buffer<const float> position;  ///< G-buffer planes x, y, z; view space, metres
+  Buffer<const float> normal;    ///< G-buffer planes x, y, z; view space, unit
+  Buffer<const float> lift;      ///< a plane, metres, with Feature::kLift only
   Buffer<const ShadeLight> lights;
   std::size_t light_count;
   const LightLists& lists;  ///< with Feature::kLightLists only
@@ -22,7 +22,7 @@ struct Lookups {
   Buffer<const ShadowFace> shadow_faces;
 };
 
-/// Their arguments, by the names that both kernels give them.
+/// These as arguments for launch(), by the names that both kernels give them.
 std::vector<KernelArgument> lookupArguments(const Lookups& lookups);
 
 }  // namespace luciole

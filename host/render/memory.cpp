@@ -24,8 +24,8 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t channels = channelCount(settings, planes);
   const bool world =
       wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
-  // Colours and counts are on the device and then on the host, too. From the second sample on there are the
-  // sum and the picture with its layers.
+  // Colours and counts are counted twice: on the device and on the host. From the second sample on the sum
+  // and the picture with its layers are there, too.
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels : 0);
   const std::size_t assembling = gbuffer + lit + counted + channels + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
@@ -36,7 +36,7 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
                                 : 0;
-  // Lights in range are counted with lists of their own.
+  // Counting lights in range needs lists of its own.
   return sizeof(float) * std::max(lighting, assembling) + lists * (1 + counted);
 }
 

@@ -8,7 +8,7 @@ namespace luciole {
 
 std::vector<float> pairVisibility(Device& device, const std::string& defines, const GBuffer& gbuffer,
                                   const ShadowMaps& shadows, std::span<const MapPair> pairs) {
-  // A row of lanes shares its map; what a row has no pair for repeats the one before.
+  // A row of lanes shares its map. Lanes without a pair repeat the row's last one.
   const std::size_t lanes = std::size_t(device.description.lanes);
   std::vector<std::size_t> first_of_row, rows_end;
   for (std::size_t i = 0; i < pairs.size();) {

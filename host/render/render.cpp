@@ -28,16 +28,16 @@ ShadeSettings shadeSettings(const RenderSettings& settings) {
 constexpr Feature kFogFeatures[] = {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
                                     Feature::kFogPerChannel, Feature::kFogRadial};
 
-/// Features of the pass that lights vertices (Gouraud's way): no fog, which is for pixels.
+/// Features of the pass that lights vertices for Gouraud shading: without fog, which is applied to pixels.
 FeatureSet vertexFeatures(FeatureSet features) {
   for (const Feature fog : kFogFeatures) features.set(fog, false);
   features.set(Feature::kOutputShadow, false);
-  // A vertex lies on the smooth surface.
+  // A vertex lies on the smooth surface already.
   features.set(Feature::kLift, false);
   return features;
 }
 
-/// Features of the pass that fogs colours which are lit already, and stand in the emission planes.
+/// Features of the pass that only applies fog, to lit colours in the emission planes.
 FeatureSet fogOnly(const FeatureSet& features) {
   FeatureSet kept;
   kept.set(Feature::kEmission);
@@ -45,7 +45,7 @@ FeatureSet fogOnly(const FeatureSet& features) {
   return kept;
 }
 
-/// The scene's vertices, lit.
+/// The colours of the lit vertices, in the order of gatherVertices(), before fog.
 std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
                                      const std::vector<std::uint32_t>& objects, const View& view,
                                      Lighting& lighting, Stats& stats) {
@@ -76,7 +76,7 @@ void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
   stats.counts.emplace_back(name, count);
 }
 
-/// counted: whether the pairs were.
+/// Adds a pass to the statistics. counted: whether lit.evaluated was counted.
 void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   if (counted) addCount(stats, "pixel_lights_evaluated", lit.evaluated);
@@ -105,8 +105,8 @@ void countShadows(const ShadowMaps& shadows, Stats& stats) {
            shadows.texels.size() * sizeof(ShadowTexel) + shadows.bounds.size() * sizeof(BoundTexel));
 }
 
-/// Compiles the kernels of these passes in a thread of its own, once the device is open. The future's value:
-/// the milliseconds that it took.
+/// Compiles the kernels of these passes in a thread of its own, once the device is open. The future's value
+/// is the milliseconds that compiling took.
 std::future<double> startCompiling(Device& device, const std::vector<FeatureSet>& passes,
                                    const ShadeSettings& settings) {
   return std::async(std::launch::async, [&device, passes, settings] {
@@ -139,7 +139,7 @@ struct TrafficMeter {
   }
 };
 
-/// Layers are the first sample's, statistics all samples'.
+/// What to count for this sample: for layers only in the first one, for statistics in all.
 PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
   return {.evaluated = settings.count_lights,
           .in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
@@ -155,7 +155,7 @@ struct Prepared {
   PlaneSet planes;
 };
 
-/// Says after each pass how many there have been.
+/// Counts passes, and reports each.
 struct Progress {
   const std::function<void(int, int)>& report;
   int passes;

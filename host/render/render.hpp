@@ -23,8 +23,8 @@ enum class Aov : std::uint8_t {
   kDiffuse,
   kMaterial,
   kLightCount,  ///< lights in range of the pixel
-  kListLength,  ///< lights that its square has in its list, all of them where there are no lists; where
-                ///< squares begin depends on the band and the crop
+  kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
+                ///< counted from the band's first pixel, so it depends on the band and the crop
   kShadow
 };
 
@@ -35,36 +35,38 @@ struct RenderSettings {
   int samples = 1;  ///< per pixel, at the points of a Hammersley set
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  std::vector<Aov> aovs;  ///< of the first sample
+  std::vector<Aov> aovs;  ///< layers; they show the first sample
   float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
   /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
   bool count_lights = false;
-  /// Rows that are rendered at a time; 0: as bandHeight() says. The picture is the same.
+  /// Rows that are rendered at a time; 0: as bandHeight() says. The picture's colours don't depend on it.
   int band_height = 0;
   std::function<void(int done, int passes)> on_pass;  ///< called after each sample of each band, if set
 };
 
-/// Fills in what the statistics say of the scene.
+/// Sets what the statistics say of the scene: triangles, lights, warnings, and the names of the features.
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
-/// Takes the next rows of a picture, from the top down.
+/// Takes the next rows of a picture, from the top down. `rows` lasts until it returns.
 using RowSink = std::function<void(const Image& rows)>;
 
-/// Rasterizes, draws shadow maps, culls and shades: the whole way from a scene to its picture (channels R G
-/// B, then the layers), band by band. Fills in the statistics. Throws InputError for a crop outside the
-/// picture, MachineError, and what `take` throws.
+/// Makes a scene's picture (channels R G B, linear, then the layers) and hands it to `take` band by band:
+/// rasterizes, draws shadow maps, culls and shades. Adds to the statistics. Throws InputError for a crop
+/// outside the picture, MachineError, and what `take` throws.
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
                  Stats& stats);
 
-/// The same as one picture.
+/// The same, but returns the whole picture.
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
-/// The first half of it: the G-buffer with every group. For Shading::kGouraud, whose vertices are lit,
-/// `device` is needed; otherwise it may be null.
+/// The first half of renderScene(): the G-buffer with every group. `device` is needed for Shading::kGouraud,
+/// which lights vertices; otherwise it may be null. Throws InputError for a crop outside the picture, and
+/// MachineError.
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
-/// The second half: lights a G-buffer by the scene's lights, ambient and fog, with shadows cast by its
-/// objects. Of the settings, `shade`, `aovs`, `exposure` and `count_lights` count.
+/// The second half: lights a G-buffer by the scene's lights, ambient light and fog, with shadows that the
+/// scene's objects cast. Uses of the settings `shade`, `aovs`, `exposure` and `count_lights` only; the camera
+/// is the G-buffer's. Throws MachineError.
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats);
 

@@ -6,7 +6,7 @@ namespace luciole {
 
 GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
                                const Plane& lift, bool unlit) {
-  // One buffer for both: what two do to the same host memory, OpenCL leaves undefined.
+  // A single buffer for both: OpenCL leaves two buffers in the same host memory undefined.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
   return {.position = borrowed(device, gbuffer.position),
           .normal = borrowed(device, gbuffer.normal),

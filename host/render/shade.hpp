@@ -8,15 +8,15 @@
 
 namespace luciole {
 
-/// A G-buffer's groups on the device. Absent groups are small dummies.
+/// A G-buffer's groups on the device. A group that the G-buffer lacks is a buffer of 16 bytes.
 struct GBufferBuffers {
   Buffer<const float> position, normal, diffuse, specular, ambient, emission;
   Buffer<const uint> geometric_normal;
   Buffer<const float> lift;
 };
 
-/// The planes of a G-buffer, its triangles' normals and its lift. unlit: the diffuse colour takes the place
-/// of ambient.
+/// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals and the lift given instead of
+/// its own. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
                                const Plane& lift, bool unlit);
 
@@ -32,8 +32,8 @@ struct ShadeArguments {
   Buffer<float> image;  ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
 };
 
-/// Launches kernels/shade.cl on every pixel of the G-buffer. defines: the program's features
-/// (featureDefines).
+/// Launches kernels/shade.cl on every pixel of the G-buffer and waits for it. defines: the program's features
+/// (featureDefines) and mathDefines. Throws MachineError.
 void shade(Device& device, const std::string& defines, const ShadeArguments& arguments);
 
 }  // namespace luciole

@@ -19,14 +19,14 @@ void replaceAll(std::string& text, std::string_view what, std::string_view by) {
     text.replace(at, what.size(), by);
 }
 
-/// JSON that an HTML parser can't take for a tag: there a '<' stands only in strings, which may escape it.
+/// JSON in which an HTML parser sees no tag. In JSON a '<' stands only in strings, where it can be escaped.
 std::string embeddableJson(std::string json) {
   replaceAll(json, "<", "\\u003c");
   return json;
 }
 
-/// A script without what would end it early, or hide its end, in an HTML file. Where either text can stand in
-/// a script, in a string, regular expression or comment, the backslash changes nothing.
+/// A script without the texts that would end it early, or hide its end, in an HTML file. In a script they
+/// stand in strings, regular expressions and comments, where the backslash changes nothing.
 std::string embeddableScript(std::string script) {
   replaceAll(script, "</script", "<\\/script");
   replaceAll(script, "<!--", "<\\!--");

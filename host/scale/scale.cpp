@@ -24,8 +24,8 @@
 namespace luciole {
 namespace {
 
-/// Points of what the camera sees at which lights in range are counted: enough for a mean that is right to
-/// some percent.
+/// Number of points that the camera sees at which lights in range are counted: enough for the mean to be
+/// right to a few percent.
 constexpr std::size_t kDensityPoints = 1000;
 
 using Clock = std::chrono::steady_clock;
@@ -34,12 +34,12 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// The picture's pixels in cells of `side` pixels a side, and one pixel of each at random: with no cell
-/// unchecked, the checked pixels say where in the picture errors are.
+/// The pixels that are compared with the truth: one at random in each cell of side × side pixels, so that
+/// they show where in the picture errors are.
 struct CheckedPixels {
   int side = 1;
   glm::ivec2 cells{0};
-  std::vector<glm::ivec2> pixels;  ///< one a cell, row by row
+  std::vector<glm::ivec2> pixels;  ///< one for each cell, row by row
 };
 
 CheckedPixels chooseCheckedPixels(const glm::ivec2& size, std::size_t count, std::uint64_t seed) {
@@ -57,15 +57,15 @@ CheckedPixels chooseCheckedPixels(const glm::ivec2& size, std::size_t count, std
   return checked;
 }
 
-/// The truth at the checked pixels: channels R G B and `sampled`.
+/// The truth at the checked pixels: channels R G B and `sampled`, and what it was made with.
 struct Truth {
-  std::vector<Light> lights;  ///< that it was made by, and how
+  std::vector<Light> lights;
   Model model = Model::kPhong;
   Shading shading = Shading::kPhong;
   Image image;
 };
 
-/// Everything that stays the same from point to point.
+/// What all points of an experiment share.
 struct Bench {
   Device& device;
   Scene& scene;
@@ -74,10 +74,10 @@ struct Bench {
   CheckedPixels checked;
   std::vector<glm::dvec3> seen;  ///< points that the camera sees, where densities are wanted
   std::map<std::size_t, float> range_of_task;
-  Truth truth;  ///< the last one: points that share lights follow each other
+  Truth truth;  ///< the last one; points with the same lights follow each other, and share it
 };
 
-/// Gives the scene the task's lights.
+/// Replaces the scene's lights by those of the point's task.
 void setLights(Bench& bench, std::size_t index) {
   const ScaleTask& task = bench.experiment.tasks[index];
   LightField field = bench.experiment.fields[task.field];
@@ -95,7 +95,7 @@ bool isSame(const Light& a, const Light& b) {
          a.attenuation == b.attenuation && a.range == b.range && a.shadow == b.shadow;
 }
 
-/// Makes the truth by the scene's lights, unless it is the one at hand.
+/// The truth by the scene's lights: the last one if that fits, otherwise a new one.
 const Image& findTruth(Bench& bench, const RenderSettings& settings) {
   Truth& truth = bench.truth;
   const Scene& scene = bench.scene;
@@ -126,7 +126,7 @@ const Image& findTruth(Bench& bench, const RenderSettings& settings) {
   return truth.image;
 }
 
-/// Every pixel gets the difference of its cell's checked one.
+/// Gives every pixel the difference of its cell's checked pixel.
 void fillCells(const CheckedPixels& checked, ImageDifference& difference) {
   const std::vector<double> sparse = difference.of_pixel;
   for (int y = 0; y < difference.height; ++y) {
@@ -139,7 +139,7 @@ void fillCells(const CheckedPixels& checked, ImageDifference& difference) {
   }
 }
 
-/// The picture's colours alone, and one of its layers.
+/// The picture without its layers.
 Image colorsOf(const Image& picture) {
   Image colors{picture.width, picture.height, {"R", "G", "B"}, {}};
   for (std::size_t i = 0; i < picture.pixels.size(); i += picture.channels.size())
@@ -156,8 +156,8 @@ std::vector<float> layerOf(const Image& picture, const std::string& name) {
   return layer;
 }
 
-/// A file name that tells people what it shows: the point's number, so that there is no other such name, and
-/// its name without what file systems or shells take for something else.
+/// A unique file name that says what the file shows: the point's number, and its name without characters that
+/// are special for file systems or shells. Without an extension, relative to the experiment's folder.
 std::string fileName(const ScaleDescription& description, std::size_t index) {
   std::string name = pointName(description, description.points[index]);
   for (char& c : name)
@@ -165,7 +165,7 @@ std::string fileName(const ScaleDescription& description, std::size_t index) {
   return fmt::format("{}/{:04}-{}", kPictureFolder, index + 1, name);
 }
 
-/// Makes a point's picture, counting, and holds it against the truth.
+/// Makes a point's picture with all counts, and compares it with the truth.
 PointCheck checkPoint(Bench& bench, std::size_t index) {
   setLights(bench, index);
   RenderSettings settings = bench.experiment.tasks[index].settings;
@@ -204,7 +204,7 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
 
 PointRun timePoint(Bench& bench, std::size_t index) {
   setLights(bench, index);
-  malloc_trim(0);  // what earlier points took is not this one's
+  malloc_trim(0);  // memory that earlier points freed shall not count for this one
   resetPeakBytes();
   Stats stats;
   renderScene(bench.device, bench.scene, bench.experiment.tasks[index].settings, stats);
@@ -214,15 +214,16 @@ PointRun timePoint(Bench& bench, std::size_t index) {
   return run;
 }
 
-/// How long what is left will take, from what the like of it took.
+/// Estimates how long points will take, from those that were measured. Milliseconds.
 class Estimate {
  public:
   explicit Estimate(const ScaleDescription& description) : description_(description) {}
 
   void measured(std::size_t point, double milliseconds) { took_[point] = milliseconds; }
 
-  /// Of a point that wasn't done yet, from those of fewer lights with the same values: it grows on as it did
-  /// from the last but one to the last. From any other point where there is none of the same values.
+  /// The time of a measured point; of another one an estimate: the last two measured points with the same
+  /// values are continued with their exponent of growth, clamped to [0, 1]. Without such points it is the
+  /// time of the last point measured, or 0.
   double of(std::size_t point) const {
     if (const auto known = took_.find(point); known != took_.end()) return known->second;
     const ScalePoint& wanted = description_.points[point];
@@ -248,7 +249,7 @@ class Estimate {
   std::map<std::size_t, double> took_;
 };
 
-/// What is still to do.
+/// The checks and runs that the log lacks.
 struct Work {
   std::vector<std::size_t> checks;
   std::vector<std::pair<int, std::size_t>> runs;  ///< repeat and point, in rounds
@@ -264,7 +265,7 @@ Work remainingWork(const ScaleDescription& description, const std::vector<std::s
     if (!record(i).check) work.checks.push_back(i);
   for (int repeat = 0; repeat < description.repeats; ++repeat) {
     for (std::size_t k = 0; k < mine.size(); ++k) {
-      // Each round begins with another point, so that what else the machine does falls on all alike.
+      // Each round begins with another point, so that other work on the machine affects all points alike.
       const std::size_t i = mine[(k + std::size_t(repeat)) % mine.size()];
       if (!record(i).runs.contains(repeat)) work.runs.emplace_back(repeat, i);
     }
@@ -322,7 +323,7 @@ std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExpe
   const auto nameOf = [&](std::size_t i) { return pointName(description, description.points[i]); };
   std::vector<ScaleFailure> failures;
   std::vector<bool> is_warm(description.points.size()), has_failed(description.points.size());
-  /// What the point gives; nothing where the machine can't.
+  /// The result of make() for a point. Empty, and noted as a failure, if the machine fails.
   const auto tryPoint = [&](std::size_t i, auto&& make) {
     std::optional<decltype(make(bench, i))> made;
     try {
@@ -335,7 +336,7 @@ std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExpe
     has_failed[i] = !made;
     return made;
   };
-  // A check makes the picture and the truth; of its time, the picture's is not known apart.
+  // A check's time is that of the picture and the truth together: half of it is taken to estimate a run's.
   for (std::size_t k = 0; k < work.checks.size(); ++k) {
     const std::size_t i = work.checks[k];
     report(fmt::format("check {} of {}: {}", k + 1, work.checks.size(), nameOf(i)), k, 0);

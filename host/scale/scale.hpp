@@ -12,21 +12,21 @@
 #include "render/render.hpp"
 #include "scene/lights/light_field.hpp"
 
-// A many-light experiment: the same picture by more and more lights, made in several ways. It is done point
-// by point, and what is known of the points is kept in a log, from which files and a page are made:
+// A many-light experiment: the same picture with more and more lights, made in several ways. A point is one
+// number of lights and one way. A log keeps the results of points; from it files and a page are made:
 //
 //   ScaleExperiment ─► runScale ─► ScaleLog ─► summarizeScale ─► results.csv, growth.json, report.html
 //                     (scale.cpp) (scale_log)  (scale_summary)   (scale_files)
 namespace luciole {
 
-/// What points differ in, beside the number of lights: an option and the values it takes.
+/// An option in which points differ, beside the number of lights, and the values that it takes.
 struct ScaleAxis {
   std::string name;
   std::vector<std::string> values;
   bool operator==(const ScaleAxis&) const = default;
 };
 
-/// The value of an axis whose option the point leaves to another axis's.
+/// The value of an axis whose option doesn't apply to the point, because another axis's takes its place.
 inline constexpr const char* kNotThis = "-";
 
 /// One way to make the picture, with one number of lights.
@@ -36,11 +36,11 @@ struct ScalePoint {
   bool operator==(const ScalePoint&) const = default;
 };
 
-/// What an experiment is, apart from the machine that does it: two of equal descriptions are the same one.
+/// What an experiment is, apart from the machine that runs it. Equal descriptions mean the same experiment.
 struct ScaleDescription {
   std::string version;                                        ///< of this program
   std::string scene;                                          ///< its file
-  std::uint64_t digest = 0;                                   ///< of what that holds, by sceneDigest
+  std::uint64_t digest = 0;                                   ///< of the scene's content, by sceneDigest
   std::vector<std::pair<std::string, std::string>> settings;  ///< that all points share, for people to read
   std::vector<std::uint64_t> lights;                          ///< ascending
   std::vector<ScaleAxis> axes;
@@ -52,32 +52,32 @@ struct ScaleDescription {
 /// How a point's picture is made.
 struct ScaleTask {
   RenderSettings settings;
-  std::size_t field = 0;  ///< of ScaleExperiment::fields: its first lights take the place of the scene's
-  /// Lights in range of what the camera sees, on average, that their range is chosen for; 0: as the field has
-  /// it.
+  std::size_t field = 0;  ///< index into ScaleExperiment::fields: its first lights replace the scene's
+  /// The range of all lights is chosen so that, on average, so many reach a point that the camera sees. 0:
+  /// the range is the field's.
   double density = 0;
 };
 
 struct ScaleExperiment {
   ScaleDescription description;
-  std::vector<ScaleTask> tasks;     ///< one a point
-  std::vector<LightField> fields;   ///< of as many lights as any point has
-  std::size_t check_pixels = 1024;  ///< about how many are held against the reference
-  std::uint64_t seed = 0;           ///< which ones
+  std::vector<ScaleTask> tasks;     ///< one for each of description.points
+  std::vector<LightField> fields;   ///< with at least as many lights as any point
+  std::size_t check_pixels = 1024;  ///< about how many pixels are compared with the reference
+  std::uint64_t seed = 0;           ///< chooses these pixels
   int truth_samples = 1;            ///< samples a pixel that make the truth
 };
 
-/// What is found once of a point: how right its picture is, and what counts in making it.
+/// What is measured only once for a point: the error of its picture, and counts.
 struct PointCheck {
   std::uint64_t pairs_evaluated = 0, pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
   double reach =
       0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
-  std::uint64_t pixels = 0;                    ///< held against the reference
-  double mean_abs = 0, max_abs = 0, rmse = 0;  ///< from it, linear
+  std::uint64_t pixels = 0;                    ///< compared with the reference
+  double mean_abs = 0, max_abs = 0, rmse = 0;  ///< errors of these pixels, in linear units
   std::string picture, error_map, list_map;    ///< files in the experiment's folder
 };
 
-/// Figures of a check that JSON has no number for, by name, and why.
+/// The names of a check's figures that aren't finite, which JSON can't hold, each with the reason.
 std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck& check);
 
 /// One timed run.
@@ -103,10 +103,11 @@ struct ScaleFailure {
   std::string point, reason;
 };
 
-/// Does what the log lacks of the points `mine` (indices): checks each once, with its pictures written into
-/// the log's folder, then times all of them in rounds, each warmed up before. A point that fails is left out,
-/// and told in the result. The scene's lights are replaced. `on_progress` gets milliseconds as done and
-/// total, the total an estimate. Throws InputError, and MachineError where the log can't be written.
+/// Measures what the log lacks of the points `mine` (indices): checks each once and writes its pictures into
+/// the log's folder, then times all of them in rounds, after an untimed run of each point that this call
+/// didn't check. Replaces the scene's lights. on_progress: gets milliseconds as done and total; the total is
+/// an estimate. Returns the points at which the machine failed, which are left out. Throws InputError if a
+/// density is asked for and the camera sees nothing, and MachineError if the log can't be written.
 std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExperiment& experiment,
                                    const std::vector<std::size_t>& mine, ScaleLog& log,
                                    const OnProgress& on_progress);

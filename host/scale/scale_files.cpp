@@ -16,10 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The page holds no more bytes of pictures than browsers on phones open well.
+/// The most bytes of pictures on the page: more is too much for browsers on phones.
 constexpr std::size_t kMostPictureBytes = std::size_t(64) << 20;
 
-/// As RFC 4180 has it.
+/// A cell of a CSV file, quoted as in RFC 4180.
 std::string csvCell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -49,7 +49,7 @@ std::string snakeCase(std::string name) {
   return name;
 }
 
-/// RFC 4648.
+/// Base 64 as in RFC 4648.
 std::string base64(const std::string& bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -63,12 +63,13 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-/// Pictures of the page, each that looks like none before it once.
+/// The pictures of the page; files with the same content are stored once.
 class PagePictures {
  public:
   explicit PagePictures(const std::string& folder) : folder_(folder) {}
 
-  /// The index of a picture file; null where it is missing or there is no more room.
+  /// Adds a picture file and returns its index; null if it is missing or kMostPictureBytes are used up.
+  /// Throws as pictureFile().
   Json add(const std::string& file) {
     std::error_code none;
     if (!std::filesystem::exists(folder_ + "/" + file, none)) return nullptr;
@@ -101,10 +102,10 @@ Json quartilesJson(const Quartiles& time) {
   return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
 }
 
-/// JSON has no infinity.
+/// The number, or null if it isn't finite: JSON has no infinity.
 Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
-/// A fit's numbers, null where there is none, and then the reason.
+/// A row for each fit: its numbers, or null and the reason if there is none.
 Json growthRows(const ScaleSummary& summary) {
   Json rows = Json::array();
   for (const StageGrowth& row : summary.growth) {
@@ -236,7 +237,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   PagePictures pictures(folder);
   Json points = Json::array();
   for (const PointSummary& point : summary.points) points.push_back(pointJson(description, point));
-  // From the most lights down, as those pictures are the ones to see where there isn't room for all.
+  // From the most lights down: if there isn't room for all pictures, those matter most.
   for (std::size_t i = points.size(); i-- > 0;) {
     const PointCheck& check = summary.points[i].check;
     points[i]["picture"] = pictures.add(check.picture);
@@ -259,7 +260,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   json["growth"] = growthRows(summary);
   json["pictures"] = pictures.urls();
   json["incomplete"] = summary.incomplete;
-  // Names of files and scenes may be in any encoding.
+  // Names of files and scenes may be in any encoding: what isn't UTF-8 is replaced.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

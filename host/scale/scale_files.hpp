@@ -6,16 +6,17 @@
 
 namespace luciole {
 
-/// One line a point: lights, the axes' values, time as a whole and by stage with quartiles (milliseconds),
-/// pairs, memory, errors.
+/// The content of results.csv. A line for each point: lights, the axes' values, times of the whole and of
+/// each stage with quartiles (milliseconds), pairs, memory, errors.
 std::string scaleCsv(const ScaleSummary& summary);
 
-/// The machines, and a, b and c of each stage of each variant with c's confidence interval, or why there are
-/// none, as JSON.
+/// The content of growth.json: the machines, and for each stage of each variant a, b and c (see GrowthFit)
+/// with c's confidence interval, or the reason why there is no fit.
 std::string growthJson(const ScaleSummary& summary);
 
-/// What the page shows (see page.js), as JSON, with the pictures in `folder` inside it. `command`: how the
-/// experiment was asked for.
+/// What the page shows (see page.js), as JSON that contains the pictures in `folder`, up to 64 MiB of them.
+/// command: the command line of the experiment. Throws InputError for a picture that isn't a file in the
+/// folder.
 std::string pageData(const ScaleSummary& summary, const std::string& folder, const std::string& command);
 
 }  // namespace luciole

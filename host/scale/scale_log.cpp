@@ -25,8 +25,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFile = "/results.jsonl";
 
-// The lines, there and back. Reading throws nlohmann::json::exception where something is missing or of
-// another type, and InputError where it can't be so.
+// Conversions between results and the log's lines. Reading throws nlohmann::json::exception if something is
+// missing or of another type, and InputError if a value is impossible.
 
 Json toJson(const ScaleDescription& description) {
   Json settings = Json::object(), axes = Json::array(), points = Json::array();
@@ -46,7 +46,7 @@ Json toJson(const ScaleDescription& description) {
             {"repeats", description.repeats}}}};
 }
 
-/// A whole number that T can hold. `key` is what messages call it. Throws InputError.
+/// A whole number. Throws InputError, in which `key` names it, unless T can hold it.
 template <class T>
 T wholeNumber(const Json& number, const char* key) {
   const bool fits = number.is_number_unsigned()
@@ -114,7 +114,7 @@ Machine machineOf(const Json& line) {
           .compiler = json.at("compiler").get<std::string>()};
 }
 
-/// JSON has no infinity: null takes its place.
+/// The number, or null if it isn't finite: JSON has no infinity.
 Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 double numberOrInfinity(const Json& json) {
@@ -140,8 +140,8 @@ Json toJson(const std::string& point, const PointCheck& check) {
   return json;
 }
 
-/// The file that a line names by this key. Throws InputError unless it lies among the pictures in the log's
-/// own folder; links there are looked at when it is used.
+/// The file that a line names by this key. Throws InputError unless the name lies in the log's folder of
+/// pictures. Links are checked when the file is used (pictureFile).
 std::string fileNamed(const Json& json, const char* key) {
   const std::string file = json.at(key).get<std::string>();
   const fs::path path(file);
@@ -187,7 +187,7 @@ PointRun runOf(const Json& line) {
   return run;
 }
 
-/// Adds what a line says. A line that says again what another one said changes nothing.
+/// Adds a line's content to the results. A repeated line changes nothing.
 void take(const Json& line, ScaleResults& results) {
   if (line.contains("machine")) {
     results.machines.push_back(machineOf(line));
@@ -204,7 +204,7 @@ std::vector<std::string> filesOf(const PointCheck& check) {
   return {check.picture, check.error_map, check.list_map};
 }
 
-/// The log in `text`, which ends after a whole line. Throws InputError "path: line: what".
+/// The log in `text`, which ends after a whole line. Throws InputError with the path and the line's number.
 ScaleResults parseLog(const std::string& path, const std::string& text) {
   ScaleResults results;
   std::size_t number = 0;

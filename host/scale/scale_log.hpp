@@ -19,15 +19,15 @@ struct ScaleResults {
   std::map<std::string, PointRecord> records;  ///< by pointName
 };
 
-/// The log of an experiment in a folder, results.jsonl: a first line that describes the experiment, then in
-/// any order a line for each machine, each check and each timed run. A line is appended whole and is on the
-/// disk when append() returns, so work that is cut off loses what it was doing and no more. It is locked
-/// while it is open.
+/// The log of an experiment, results.jsonl in a folder: a first line that describes the experiment, then in
+/// any order a line for each machine, each check and each timed run. A line is appended as a whole and is on
+/// the disk when append() returns, so an interrupted experiment loses only the point it was at. The file is
+/// locked while it is open.
 class ScaleLog {
  public:
-  /// Opens the log, or begins it, with its folder where that is missing. What follows the last whole line is
-  /// cut off. Throws InputError: it is another experiment's, another process has it open, it isn't a log, or
-  /// there is no place for one; MachineError.
+  /// Opens the log, or makes it and its folder. Text after the last whole line is removed. Throws InputError
+  /// if the log is another experiment's, another process has it open, the file isn't a log, or it can't be
+  /// made; MachineError if it can't be written.
   ScaleLog(const std::string& folder, const ScaleDescription& description);
   ~ScaleLog();
   ScaleLog(const ScaleLog&) = delete;
@@ -35,10 +35,11 @@ class ScaleLog {
 
   const std::string& folder() const { return folder_; }
   const ScaleResults& results() const { return results_; }
-  /// Of any point; empty where nothing is known.
+  /// The record of a point, by its name (pointName); empty if nothing is known of it.
   const PointRecord& record(const std::string& point) const;
 
-  // Throw MachineError: the disk is full. A machine that is in the log is not added again.
+  // Each adds a line, and throws MachineError if it can't be written. A machine that is in the log isn't
+  // added again.
   void append(const Machine& machine);
   void append(const std::string& point, const PointCheck& check);
   void append(const std::string& point, int repeat, const PointRun& run);
@@ -51,16 +52,17 @@ class ScaleLog {
   ScaleResults results_;
 };
 
-/// Reads the log in a folder. Throws InputError: there is none, or a line isn't of one.
+/// Reads the log in a folder. Throws InputError if there is none or a line isn't valid.
 ScaleResults readScaleLog(const std::string& folder);
 
-/// The path of a file that the log in a folder names. A log may come from anybody: throws InputError unless
-/// it is a regular file in there, links followed.
+/// The path of a picture file that the log in a folder names. A log may come from anybody, so this throws
+/// InputError unless the file, after following links, is a regular one in the folder.
 std::string pictureFile(const std::string& folder, const std::string& file);
 
-/// Puts what shards of one experiment found together in a new folder, with their pictures. Throws InputError
-/// where they aren't of one experiment, where two have the same check or run, where a picture is missing or
-/// no file of its shard's folder, and where the folder holds a log already; MachineError.
+/// Merges the logs of an experiment's shards, and their pictures, in a new folder, and returns the results.
+/// Throws InputError if they aren't of the same experiment, if two contain the same check or run, if a
+/// picture is missing or isn't a file in its shard's folder, and if `merged` holds a log already;
+/// MachineError.
 ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged);
 
 }  // namespace luciole

@@ -30,7 +30,7 @@ double highest(const PlotSeries& series) {
   return most;
 }
 
-/// The variant that is fastest with the most lights that any was done with.
+/// The variant that is fastest with the most lights that were measured.
 const std::vector<std::string>& bestVariant(const ScaleSummary& summary) {
   const PointSummary* best = &summary.points.front();
   for (const PointSummary& point : summary.points) {
@@ -63,8 +63,8 @@ std::vector<PlotSeries> variantSeries(const ScaleSummary& summary) {
   return all;
 }
 
-/// The legend names the lines from the highest to the lowest at their right ends. Neighbours differ in colour
-/// and marker, so that neither is needed alone.
+/// A panel of these series. Its legend lists the lines in the order of their right ends, the highest first.
+/// Neighbours differ in colour and in marker, so that either is enough to tell them apart.
 PlotPanel panelOf(const std::string& title, std::vector<PlotSeries> series) {
   static constexpr PlotMarker kMarkers[] = {PlotMarker::kDot, PlotMarker::kSquare, PlotMarker::kTriangle,
                                             PlotMarker::kDiamond, PlotMarker::kCircle};

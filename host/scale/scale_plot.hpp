@@ -6,9 +6,10 @@
 
 namespace luciole {
 
-/// Time against lights as an SVG picture, on logarithmic axes with quartiles as bars: the variant that is
-/// fastest with the most lights by stage, and beside it, where there are others, all variants as wholes.
-/// Stages that never take a hundredth of the time are left out. There is one point at least.
+/// Time over number of lights as an SVG picture, on logarithmic axes, with quartiles as bars. One panel shows
+/// the stages of the variant that is fastest with the most lights, without those that never take 1 % of its
+/// time. If there are other variants, a second panel shows the total time of all. There must be at least one
+/// point.
 std::string scalePlot(const ScaleSummary& summary);
 
 }  // namespace luciole

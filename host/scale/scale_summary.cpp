@@ -11,7 +11,7 @@
 namespace luciole {
 namespace {
 
-/// The stages of all runs, each at its place in the first run that had it.
+/// The names of the stages of all runs, each at its place in the first run that had it.
 std::vector<std::string> stageNames(const PointRecord& record) {
   std::vector<std::string> names;
   for (const auto& [repeat, run] : record.runs)
@@ -64,8 +64,7 @@ void markFronts(std::vector<PointSummary>& points) {
   }
 }
 
-/// Times against lights; runs of a stage that took no time measurable are left out, as a share of nothing
-/// can't be missed.
+/// Times over numbers of lights. Times of 0 are left out, because the fit is of relative residuals.
 struct Curve {
   std::vector<double> lights, milliseconds;
 

@@ -14,7 +14,7 @@ struct StageSummary {
   Quartiles milliseconds;
 };
 
-/// A point that was checked and timed once or more.
+/// A point that has its check and at least one timed run.
 struct PointSummary {
   ScalePoint point;
   int runs = 0;
@@ -22,15 +22,15 @@ struct PointSummary {
   std::vector<StageSummary> stages;  ///< in the order in which they ran
   PointCheck check;
   std::uint64_t device_bytes = 0, peak_bytes = 0;  ///< the most of any run
-  std::string truth;  ///< what `check` holds it against, see truthName(): errors compare where it is equal
-  /// Of those with this truth and as many lights none is both faster and nearer to it.
+  std::string truth;  ///< what `check` compares it with, see truthName(): errors compare if it is equal
+  /// On the Pareto front (see paretoFront) of the points with this truth and the same number of lights.
   bool front = false;
 };
 
 /// The name of all stages together.
 inline constexpr const char* kWhole = "total";
 
-/// How a stage's time grows with the lights, other things being equal.
+/// How a stage's time grows with the number of lights for one variant.
 struct StageGrowth {
   std::vector<std::string> values;  ///< of the axes
   std::string stage;                ///< or kWhole
@@ -45,10 +45,10 @@ struct ScaleSummary {
   std::size_t incomplete = 0;  ///< points that lack their check or one of their runs
 };
 
-/// The axes' values in one line, for people: "culling tiles, tile 4"; empty where there are no axes.
+/// The axes' values in one line, for people: "culling tiles, tile 4"; empty if there are no axes.
 std::string variantName(const ScaleDescription& description, const std::vector<std::string>& values);
 
-/// What a log's results come to.
+/// Summarizes a log's results: quartiles of times, Pareto fronts and growth.
 ScaleSummary summarizeScale(const ScaleResults& results);
 
 }  // namespace luciole

@@ -14,7 +14,7 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-constexpr std::size_t kMostRows = 40;   ///< that are still read
+constexpr std::size_t kMostRows = 40;   ///< nobody reads more
 constexpr std::size_t kMostStages = 3;  ///< of a variant whose growth is told
 constexpr double kLeastShare = 0.01;  ///< of the time by the most lights, that a stage's growth must come to
 
@@ -33,7 +33,7 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
   for (const std::string& name : axisNames(summary.description)) head.push_back(name);
   for (const char* name : {"ms", "spread", "mean error", "largest", "memory, MiB", "front"})
     head.push_back(name);
-  // Errors compare, and fronts are drawn, among points that are held against the same truth.
+  // Errors compare, and a front is meaningful, only among points with the same truth.
   const bool truths_differ = std::any_of(points.begin(), points.end(), [&](const PointSummary& point) {
     return point.truth != points.front().truth;
   });
@@ -60,10 +60,10 @@ std::string exponentText(const GrowthFit& fit) {
   return fmt::format("{:.2f} ({:.2f} to {:.2f})", fit.c, fit.c_low, fit.c_high);
 }
 
-/// Milliseconds that the most lights take beyond what any number takes.
+/// The milliseconds of a fit that depend on the number of lights, without the constant.
 double grownTime(const GrowthFit& fit, double lights) { return fit.b * std::pow(lights, fit.c); }
 
-/// The variant's stages that grow by a share of its time that counts, the largest first.
+/// The variant's stages whose growth comes to at least kLeastShare of its time, the largest first.
 std::string growingStages(const ScaleSummary& summary, const Cells& values) {
   const double lights = double(summary.points.back().point.lights);
   double whole = 0;

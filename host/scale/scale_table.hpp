@@ -6,8 +6,8 @@
 
 namespace luciole {
 
-/// What an experiment comes to, to read on a terminal: time, error and memory against lights, then how each
-/// variant's time grows as a whole and in the stages that matter.
+/// An experiment's results as tables for a terminal: time, error and memory over the number of lights, then
+/// how each variant's total time, and that of the stages that matter, grows.
 std::string scaleTable(const ScaleSummary& summary);
 
 }  // namespace luciole

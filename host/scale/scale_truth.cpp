@@ -5,8 +5,7 @@
 namespace luciole {
 namespace {
 
-/// Axes that say how the picture is made, not what it should be: by which lists, from how many samples of the
-/// truth's, from which maps.
+/// Axes that change how the picture is made but not what it approximates: light lists, samples, shadow maps.
 constexpr const char* kWaysToMakeIt[] = {"culling",   "tile",          "samples",
                                          "pcf-width", "shadow-memory", "shadow-size"};
 
@@ -14,8 +13,8 @@ bool isWayToMakeIt(const std::string& axis) {
   return std::find(std::begin(kWaysToMakeIt), std::end(kWaysToMakeIt), axis) != std::end(kWaysToMakeIt);
 }
 
-/// Lights of an experiment have no size, so that all methods, soft ones too, approximate rays to the lights.
-/// Without shadows another picture is meant.
+/// The truth of a method of shadows. Lights of an experiment have no size, so all methods, also the soft one,
+/// approximate rays to the lights' middles. A picture without shadows is another one.
 std::string shadowTruth(const std::string& method) {
   return method == "off" ? "no shadows" : "shadows by rays";
 }
