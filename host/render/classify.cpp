@@ -15,7 +15,7 @@ PairBits classify(Device& device, const std::string& defines, const Lookups& loo
   requireMemory(double(entries) * (kPairWords * sizeof(uint)), "the exact shadows of all pixels");
   if (entries > 0xffffffffu / kPairWords)
     throw MachineError(
-        "exact shadows of more than 2^28 pairs of a tile and a light: use fewer lights or a smaller picture");
+        "exact shadows of 2^28 or more pairs of a tile and a light: use fewer lights or a smaller picture");
   PairBits result(std::max<std::size_t>(entries, 1) * kPairWords);
   const Buffer<uint> bits = borrowedForOutput(device, result);
   Kernel kernel = makeKernel(device, "classify.cl", "classify", defines);
