@@ -129,24 +129,17 @@ INLINE floatL visibility(const Pixels *pixels, __global const ShadeLight *light,
   return map_lookup(map, shadows->faces, shadows->texels, shadows->texel_count, point);
 }
 
-// Multiplies the strength of ABREAST pairs by their visibility, one after another. The loop isn't unrolled, because a lookup is as
-// much code as all the rest of shading.
-INLINE void apply_shadows(Pair *pairs, Pixels *const *pixels, __global const ShadeLight *const *light, const Shadows *shadows,
-                         const uint *entry) {
-  floatL strength[ABREAST];
-  EACH_ABREAST(k) strength[k] = pairs[k].strength;
-  _Pragma("nounroll") for (uint k = 0; k < ABREAST; ++k) {
-    intL faces_light = strength[k] > 0.0f;
-    if (light[k]->shadow == kNoShadow || !any_lane(faces_light)) continue;
-    floatL visible = visibility(pixels[k], light[k], shadows, entry[k]);
-    strength[k] *= visible;
-    if (OUTPUT_SHADOW) {
-      floatL counted = faces_light ? (floatL)(1.0f) : (floatL)(0.0f);
-      pixels[k]->visible = fma_lanes(visible, counted, pixels[k]->visible);
-      pixels[k]->shadow_lights += counted;
-    }
+// Multiplies a pair's strength by its visibility.
+INLINE void apply_shadow(Pair *pair, Pixels *pixels, __global const ShadeLight *light, const Shadows *shadows, uint entry) {
+  intL faces_light = pair->strength > 0.0f;
+  if (light->shadow == kNoShadow || !any_lane(faces_light)) return;
+  floatL visible = visibility(pixels, light, shadows, entry);
+  pair->strength *= visible;
+  if (OUTPUT_SHADOW) {
+    floatL counted = faces_light ? (floatL)(1.0f) : (floatL)(0.0f);
+    pixels->visible = fma_lanes(visible, counted, pixels->visible);
+    pixels->shadow_lights += counted;
   }
-  EACH_ABREAST(k) pairs[k].strength = strength[k];
 }
 
 // Sets the factors diffuse, highlight and grazing of ABREAST pairs as the model has them. Where the surface faces away from the
@@ -231,7 +224,10 @@ INLINE void add_lights(Pixels *const *pixels, __global const ShadeLight *const *
     pair->attenuation = k < count ? pair->attenuation : (floatL)(0.0f);
     pair->strength = pair->n_dot_l > 0.0f ? pair->attenuation : (floatL)(0.0f);
   }
-  if (SHADOWS) apply_shadows(pairs, pixels, light, shadows, entry);
+  if (SHADOWS) {
+    // Unrolled, too: lookups of several pairs side by side hide each other's gathers.
+    EACH_ABREAST(k) apply_shadow(pairs + k, pixels[k], light[k], shadows, entry[k]);
+  }
   intL lit = 0;
   EACH_ABREAST(k) lit |= (LIGHT_AMBIENT ? pairs[k].attenuation : pairs[k].strength) > 0.0f;
   if (!any_lane(lit)) return;

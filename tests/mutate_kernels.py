@@ -180,7 +180,7 @@ MUTANTS = {
         Mutant("pixels->position.y, frame->eye.y", "pixels->position.y, -frame->eye.y"),
         Mutant("fma_lanes(visible, counted, pixels[k]->visible)", "pixels[k]->visible + visible"),
         Mutant("pixels->shadow_lights > 0.0f ? share : (floatL)(1.0f)", "share"),
-        Mutant("strength[k] *= visible", "strength[k] = visible"),
+        Mutant("pair->strength *= visible", "pair->strength = visible"),
         Mutant("all_lanes(frame.background)", "all_lanes(frame.ambient)"),
         Mutant("light->specular, pair->strength * pair->highlight", "light->diffuse, pair->strength * pair->highlight"),
         Mutant("tile * frame.light_count + entry", "entry"),
