@@ -178,7 +178,7 @@ MUTANTS = {
         Mutant("light.y += sums->part[kAmbientPart].y", "light.y += sums->part[kAmbientPart].x"),
         Mutant("seen.z += ke.z", "seen.z += ke.y"),
         Mutant("pixels->position.y, frame->eye.y", "pixels->position.y, -frame->eye.y"),
-        Mutant("fma_lanes(visible, counted, pixels[k]->visible)", "pixels[k]->visible + visible"),
+        Mutant("fma_lanes(visible, counted, pixels->visible)", "pixels->visible + visible"),
         Mutant("pixels->shadow_lights > 0.0f ? share : (floatL)(1.0f)", "share"),
         Mutant("pair->strength *= visible", "pair->strength = visible"),
         Mutant("all_lanes(frame.background)", "all_lanes(frame.ambient)"),
@@ -368,10 +368,13 @@ def main():
     parser = argparse.ArgumentParser(description="Which mistakes in the kernels do the tests find?")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--check", action="store_true", help="only whether the table fits the kernels")
     parser.add_argument("files", nargs="*", metavar="FILE", choices=[[], *MUTANTS], help="kernel files; default: all")
     options = parser.parse_args()
     files = options.files or list(MUTANTS)
     places = find_places(files)
+    if options.check:
+        return
     counts = {}
     with tempfile.TemporaryDirectory() as temporary:
         runner = Runner(options.build.resolve(), pathlib.Path(temporary))
