@@ -67,8 +67,8 @@ void castShadows(const PictureOptions& options, Scene& scene) {
   const auto casts = [](const Light& light) { return light.shadow; };
   const bool asked_for = options.shadows_given && options.shadows != "off";
   const bool any_marked = std::any_of(scene.lights.begin(), scene.lights.end(), casts);
-  const bool all = options.apply_shadows.empty() ? asked_for && !any_marked : options.apply_shadows == "all";
-  if (all || options.apply_shadows == "none")
+  const bool all = options.cast_shadows.empty() ? asked_for && !any_marked : options.cast_shadows == "all";
+  if (all || options.cast_shadows == "none")
     for (Light& light : scene.lights) light.shadow = all;
   if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
     scene.warnings.push_back(
@@ -217,7 +217,7 @@ CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const 
 void addCastShadowsOption(CLI::App& command, PictureOptions& options) {
   command
       .add_option(
-          "--cast-shadows", options.apply_shadows,
+          "--cast-shadows", options.cast_shadows,
           "which lights cast shadows: all, none, or those that the scene's file marks (default: marked, "
           "but all where none is marked and --shadows is given)")
       ->check(oneOf({"all", "marked", "none"}));

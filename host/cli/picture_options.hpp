@@ -25,7 +25,7 @@ struct PictureOptions {
   int tile = ShadeSettings{}.tile_size;
   std::string shadows = "hard";
   bool shadows_given = false;  ///< --shadows was typed
-  std::string apply_shadows;   ///< empty: see openScene()
+  std::string cast_shadows;    ///< empty: see openScene()
   int pcf_width = ShadeSettings{}.pcf_width;
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   int shadow_size = ShadowLimits{}.size;

@@ -36,7 +36,7 @@ struct Tracer {
 };
 
 /// A surface on a pixel's ray.
-struct Meeting {
+struct SurfaceHit {
   std::uint32_t triangle;
   glm::dvec3 position;
   glm::dvec3 normal;  ///< as shaded: interpolated, on the side of the eye
@@ -45,12 +45,12 @@ struct Meeting {
 };
 
 /// The triangles that this thread's current ray has hit so far.
-thread_local std::vector<std::uint32_t> met_triangles;
+thread_local std::vector<std::uint32_t> hit_triangles;
 
 Tracer makeTracer(const Scene& scene, const View& view) {
   // The filter lets rays pass, so that they find all triangles. Which one is nearest is decided in double.
   const HitFilter note = [](const CandidateHit& candidate) {
-    met_triangles.push_back(candidate.triangle);
+    hit_triangles.push_back(candidate.triangle);
     return true;
   };
   const glm::dmat4 view_to_world = viewCamera(view).camera_to_world;
@@ -113,8 +113,8 @@ double liftAt(const glm::dvec3& point, const glm::dvec3& shares, const std::arra
 
 /// Where the ray meets the triangle's plane. Empty for a triangle that the picture doesn't show here: it
 /// faces away and is single-sided, has a hole at this pixel, or isn't between the near and the far plane.
-std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
-                            const glm::ivec2& pixel) {
+std::optional<SurfaceHit> intersect(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
+                                    const glm::ivec2& pixel) {
   const PlacedObject& object = objectOfTriangle(tracer.geometry.objects, triangle);
   const std::uint32_t in_mesh = triangle - object.first_triangle;
   const Material& material = materialOf(tracer.scene, object, in_mesh);
@@ -127,11 +127,11 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   if (determinant == 0 || (!front && !material.double_sided)) return std::nullopt;
   const glm::dvec3 t = ray.from - a, q = glm::cross(t, edge1);
   const double second = glm::dot(t, p) / determinant, third = glm::dot(ray.direction, q) / determinant;
-  Meeting candidate;
-  candidate.triangle = triangle;
-  candidate.depth = glm::dot(edge2, q) / determinant - ray.from.z;
-  candidate.position = ray.from + ray.direction * (candidate.depth + ray.from.z);
-  const glm::dvec4 clip = tracer.view.projection * glm::dvec4(candidate.position, 1);
+  SurfaceHit hit;
+  hit.triangle = triangle;
+  hit.depth = glm::dot(edge2, q) / determinant - ray.from.z;
+  hit.position = ray.from + ray.direction * (hit.depth + ray.from.z);
+  const glm::dvec4 clip = tracer.view.projection * glm::dvec4(hit.position, 1);
   if (!(clip.z >= 0 && clip.z <= clip.w)) return std::nullopt;
   if (material.alpha_cutoff > 0 &&
       isHole(tracer.scene, makeSurface(tracer.scene, tracer.geometry.objects, triangle, tracer.plane),
@@ -145,27 +145,26 @@ std::optional<Meeting> meet(const Tracer& tracer, const Ray& ray, std::uint32_t 
   const glm::dvec3 shares(1 - second - third, second, third), sum = of_corners * shares;
   const double length = glm::length(sum);
   const glm::dvec3 own = glm::normalize(glm::cross(edge1, edge2)) * (object.mirrored ? -side : side);
-  candidate.normal = length > 0 ? sum / length : own;
-  candidate.lift =
-      liftAt(candidate.position, shares, {a, b, c}, of_corners, sum, leaningCorners(*object.mesh, corners));
-  return candidate;
+  hit.normal = length > 0 ? sum / length : own;
+  hit.lift = liftAt(hit.position, shares, {a, b, c}, of_corners, sum, leaningCorners(*object.mesh, corners));
+  return hit;
 }
 
 /// All surfaces that the pixel's ray through `at` meets and that the picture could show, the nearest first.
-std::vector<Meeting> follow(const Tracer& tracer, const glm::dvec2& at, const glm::ivec2& pixel) {
+std::vector<SurfaceHit> follow(const Tracer& tracer, const glm::dvec2& at, const glm::ivec2& pixel) {
   const Ray ray = viewRay(tracer.plane, at);
-  met_triangles.clear();
+  hit_triangles.clear();
   castRay(tracer.rays, glm::dvec3(tracer.view_to_world * glm::dvec4(ray.from, 1)),
           glm::normalize(glm::dmat3(tracer.view_to_world) * ray.direction));
-  // Embree may meet a triangle that lies in two leaves of its tree twice.
-  std::sort(met_triangles.begin(), met_triangles.end());
-  met_triangles.erase(std::unique(met_triangles.begin(), met_triangles.end()), met_triangles.end());
-  std::vector<Meeting> meetings;
-  for (const std::uint32_t triangle : met_triangles)
-    if (const auto candidate = meet(tracer, ray, triangle, pixel)) meetings.push_back(*candidate);
-  std::sort(meetings.begin(), meetings.end(),
-            [](const Meeting& a, const Meeting& b) { return a.depth < b.depth; });
-  return meetings;
+  // Embree may hit a triangle that lies in two leaves of its tree twice.
+  std::sort(hit_triangles.begin(), hit_triangles.end());
+  hit_triangles.erase(std::unique(hit_triangles.begin(), hit_triangles.end()), hit_triangles.end());
+  std::vector<SurfaceHit> hits;
+  for (const std::uint32_t triangle : hit_triangles)
+    if (const auto hit = intersect(tracer, ray, triangle, pixel)) hits.push_back(*hit);
+  std::sort(hits.begin(), hits.end(),
+            [](const SurfaceHit& a, const SurfaceHit& b) { return a.depth < b.depth; });
+  return hits;
 }
 
 /// Distance in pixels of a place on the picture from the nearest of the lines that a triangle's edges lie on.
@@ -213,18 +212,18 @@ Shown shownAt(const GBuffer& gbuffer, const glm::ivec2& pixel) {
           gbuffer.lift.empty() ? std::nullopt : std::optional<double>(gbuffer.lift[i])};
 }
 
-double positionError(const Shown& shown, const Meeting& candidate) {
-  return glm::distance(shown.position, candidate.position) / glm::length(candidate.position);
+double positionError(const Shown& shown, const SurfaceHit& hit) {
+  return glm::distance(shown.position, hit.position) / glm::length(hit.position);
 }
 
 /// The angle between two unit normals, radians. Computed from the chord between them, because the cosine of a
 /// small angle has lost its digits.
-double normalError(const Shown& shown, const Meeting& candidate) {
-  return 2 * std::asin(std::min(glm::distance(shown.normal, candidate.normal) / 2, 1.0));
+double normalError(const Shown& shown, const SurfaceHit& hit) {
+  return 2 * std::asin(std::min(glm::distance(shown.normal, hit.normal) / 2, 1.0));
 }
 
-bool isSame(const Shown& shown, const Meeting& candidate) {
-  return positionError(shown, candidate) <= kSamePlace && normalError(shown, candidate) <= kSameNormal;
+bool isSame(const Shown& shown, const SurfaceHit& hit) {
+  return positionError(shown, hit) <= kSamePlace && normalError(shown, hit) <= kSameNormal;
 }
 
 /// Places around another at a distance of `radius` pixels.
@@ -242,26 +241,26 @@ bool endsBeside(const Tracer& tracer, std::uint32_t triangle, const glm::dvec2& 
   if (distanceToEdges(tracer, triangle, at) <= kEdgePixels) return true;
   const auto around = placesAround(at, kEdgePixels);
   return std::any_of(around.begin(), around.end(), [&](const glm::dvec2& place) {
-    return !meet(tracer, viewRay(tracer.plane, place), triangle, pixel);
+    return !intersect(tracer, viewRay(tracer.plane, place), triangle, pixel);
   });
 }
 
 /// Whether the point that is shown lies on the rim of a triangle that the sample's ray passes beside: it is
 /// seen within kEdgePixels of the sample, and a ray close around it meets the triangle.
-bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
+bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<SurfaceHit>& hits,
                    const glm::dvec2& at, const glm::ivec2& pixel) {
   const double w = tracer.plane.perspective ? -shown.position.z : 1.0;
   const glm::dvec2 seen = (glm::dvec2(shown.position) / w - tracer.plane.offset) / tracer.plane.scale;
   if (glm::distance(seen, at) > kEdgePixels) return false;
   const auto passesBeside = [&](std::uint32_t triangle) {
-    return std::none_of(meetings.begin(), meetings.end(),
-                        [&](const Meeting& candidate) { return candidate.triangle == triangle; });
+    return std::none_of(hits.begin(), hits.end(),
+                        [&](const SurfaceHit& hit) { return hit.triangle == triangle; });
   };
   for (const double radius : {kEdgePixels / 8, kEdgePixels}) {
     for (const glm::dvec2& around : placesAround(seen, radius)) {
-      for (const Meeting& candidate : follow(tracer, around, pixel))
-        if (passesBeside(candidate.triangle) &&
-            distanceToTriangle(cornersOf(tracer.geometry, candidate.triangle), shown.position) <=
+      for (const SurfaceHit& hit : follow(tracer, around, pixel))
+        if (passesBeside(hit.triangle) &&
+            distanceToTriangle(cornersOf(tracer.geometry, hit.triangle), shown.position) <=
                 kSamePlace * glm::length(shown.position))
           return true;
     }
@@ -269,18 +268,18 @@ bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<M
   return false;
 }
 
-/// Whether snapping explains that the pixel shows this instead of the first of the meetings: all that lies in
+/// Whether snapping explains that the pixel shows this instead of the first of the hits: all that lies in
 /// front of it has an edge beside the sample, and so has the surface itself unless the ray meets it.
-bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<Meeting>& meetings,
+bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<SurfaceHit>& hits,
                   const glm::dvec2& at, const glm::ivec2& pixel) {
-  bool met = !shown.surface;
-  for (const Meeting& candidate : meetings) {
-    if (shown.surface && isSame(shown, candidate)) met = true;
+  bool is_hit = !shown.surface;
+  for (const SurfaceHit& hit : hits) {
+    if (shown.surface && isSame(shown, hit)) is_hit = true;
     const bool in_front =
-        !shown.surface || candidate.depth < -shown.position.z - kSamePlace * glm::length(shown.position);
-    if (in_front && !endsBeside(tracer, candidate.triangle, at, pixel)) return false;
+        !shown.surface || hit.depth < -shown.position.z - kSamePlace * glm::length(shown.position);
+    if (in_front && !endsBeside(tracer, hit.triangle, at, pixel)) return false;
   }
-  return met || isOnRimBeside(tracer, shown, meetings, at, pixel);
+  return is_hit || isOnRimBeside(tracer, shown, hits, at, pixel);
 }
 
 void checkPixel(const Tracer& tracer, const GBuffer& gbuffer, const glm::ivec2& in_crop,
@@ -288,24 +287,24 @@ void checkPixel(const Tracer& tracer, const GBuffer& gbuffer, const glm::ivec2& 
   const glm::ivec2 pixel = in_crop + gbuffer.crop_origin;
   const glm::dvec2 at(pixel);
   const Shown shown = shownAt(gbuffer, in_crop);
-  const std::vector<Meeting> meetings = follow(tracer, at, pixel);
+  const std::vector<SurfaceHit> hits = follow(tracer, at, pixel);
   ++check.pixels;
-  if (meetings.empty() && !shown.surface) return;
-  for (const Meeting& candidate : meetings) {
-    if (!shown.surface || !isSame(shown, candidate)) continue;
-    if (candidate.depth - meetings.front().depth > kSamePlace * glm::length(candidate.position)) break;
-    if (&candidate != &meetings.front()) ++check.at_ties;
-    if (distanceToEdges(tracer, candidate.triangle, at) <= kEdgePixels) return;
-    const double error = positionError(shown, candidate);
+  if (hits.empty() && !shown.surface) return;
+  for (const SurfaceHit& hit : hits) {
+    if (!shown.surface || !isSame(shown, hit)) continue;
+    if (hit.depth - hits.front().depth > kSamePlace * glm::length(hit.position)) break;
+    if (&hit != &hits.front()) ++check.at_ties;
+    if (distanceToEdges(tracer, hit.triangle, at) <= kEdgePixels) return;
+    const double error = positionError(shown, hit);
     if (error > check.position_error && check.unexplained == 0) check.worst_pixel = pixel;
     check.position_error = std::max(check.position_error, error);
-    check.normal_error = std::max(check.normal_error, normalError(shown, candidate));
+    check.normal_error = std::max(check.normal_error, normalError(shown, hit));
     if (shown.lift)
-      check.lift_error = std::max(check.lift_error,
-                                  std::abs(*shown.lift - candidate.lift) / glm::length(candidate.position));
+      check.lift_error =
+          std::max(check.lift_error, std::abs(*shown.lift - hit.lift) / glm::length(hit.position));
     return;
   }
-  if (isBesideEdge(tracer, shown, meetings, at, pixel)) {
+  if (isBesideEdge(tracer, shown, hits, at, pixel)) {
     ++check.beside_edges;
     return;
   }

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/run_program.hpp"
+#include "cli/program_test.hpp"
 
 namespace luciole::test {
 namespace {
@@ -33,8 +33,16 @@ const nlohmann::json& defaultRow(const nlohmann::json& group) {
   throw std::logic_error("no default in " + group["name"].get<std::string>());
 }
 
-TEST(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
-  const TemporaryFolder folder;
+class BenchCommand : public ProgramTest {
+ protected:
+  /// The same, and that no file was made.
+  void refuse(const std::string& line, int status, const std::string& what) {
+    ProgramTest::refuse(line, status, what);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << line;
+  }
+};
+
+TEST_F(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
   writeText(folder / "scene.json", kScene);
   const Outcome outcome = runLine(folder,
                                   "luciole bench scene.json --only shading --only shadows --only samples "
@@ -85,8 +93,7 @@ double meanOf(const nlohmann::json& group, const std::string& name) {
   throw std::logic_error("no row " + name);
 }
 
-TEST(BenchCommand, SharpAndSoftShadowsAreEachHeldAgainstTheirOwnTruth) {
-  const TemporaryFolder folder;
+TEST_F(BenchCommand, SharpAndSoftShadowsAreEachHeldAgainstTheirOwnTruth) {
   writeText(folder / "scene.json", sceneWith(R"("shadow": true)", R"("shadow": true, "radius": 0.4)"));
   const Outcome outcome = runLine(
       folder, "luciole bench scene.json --only shadows --size 160x90 --repeats 1 --quiet --json out.json");
@@ -112,8 +119,7 @@ TEST(BenchCommand, SharpAndSoftShadowsAreEachHeldAgainstTheirOwnTruth) {
   }
 }
 
-TEST(BenchCommand, ShadowSizeIsTheOnlyOneTried) {
-  const TemporaryFolder folder;
+TEST_F(BenchCommand, ShadowSizeIsTheOnlyOneTried) {
   writeText(folder / "scene.json", kScene);
   const Outcome outcome =
       runLine(folder,
@@ -134,11 +140,10 @@ void expectReasons(const nlohmann::json& row) {
     EXPECT_TRUE(!value.is_null() || row["reasons"].contains(key)) << key << " of " << row;
 }
 
-TEST(BenchCommand, WhatHasNoValueSaysWhy) {
+TEST_F(BenchCommand, WhatHasNoValueSaysWhy) {
   // No light casts a shadow, and nothing is seen.
   for (const std::string& scene : {sceneWith(R"("shadow": true)", R"("shadow": false)"),
                                    sceneWith(R"("target": [0, 0.5, 0]})", R"("target": [3, 9, 5.5]})")}) {
-    const TemporaryFolder folder;
     writeText(folder / "scene.json", scene);
     const Outcome outcome =
         runLine(folder,
@@ -162,8 +167,7 @@ TEST(BenchCommand, WhatHasNoValueSaysWhy) {
   }
 }
 
-TEST(BenchCommand, TablesOfOnePixelHaveNoValueThatIsNone) {
-  const TemporaryFolder folder;
+TEST_F(BenchCommand, TablesOfOnePixelHaveNoValueThatIsNone) {
   const Outcome outcome = runLine(
       folder, "luciole bench --only 'culling and shading' --size 1x1 --repeats 1 --quiet --json out.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -173,8 +177,7 @@ TEST(BenchCommand, TablesOfOnePixelHaveNoValueThatIsNone) {
   for (const auto& row : json["speed"][0]["rows"]) expectReasons(row);
 }
 
-TEST(BenchCommand, EveryModelIsHeldAgainstItself) {
-  const TemporaryFolder folder;
+TEST_F(BenchCommand, EveryModelIsHeldAgainstItself) {
   writeText(folder / "scene.json", kScene);
   const Outcome outcome = runLine(
       folder, "luciole bench scene.json --only models --size 64x36 --repeats 1 --quiet --json out.json");
@@ -196,8 +199,7 @@ TEST(BenchCommand, EveryModelIsHeldAgainstItself) {
   EXPECT_GE(brightest.size(), 3u) << "each has a truth of its own";
 }
 
-TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
-  const TemporaryFolder folder;
+TEST_F(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
   writeText(folder / "bare.json", sceneWith(R"("shadow": true)", R"("shadow": false)"));
   const Outcome outcome = runLine(folder,
                                   "luciole bench bare.json --only shading --only shadows --only samples "
@@ -208,8 +210,7 @@ TEST(BenchCommand, WritesThePlotAndASceneWithoutShadowsHasNoGroupOfThem) {
   EXPECT_NE(readText(folder / "out.svg").find("</svg>"), std::string::npos);
 }
 
-TEST(BenchCommand, MeasuresOneThingAlone) {
-  const TemporaryFolder folder;
+TEST_F(BenchCommand, MeasuresOneThingAlone) {
   writeText(folder / "scene.json", kScene);
   const Outcome outcome = runLine(
       folder, "luciole bench scene.json --only rasterizer --size 64x36 --repeats 2 --quiet --json out.json");
@@ -228,17 +229,7 @@ TEST(BenchCommand, MeasuresOneThingAlone) {
   }
 }
 
-/// Expects one line on standard error that mentions `what`, this exit status, and no file.
-void refuse(const std::string& line, int status, const std::string& what) {
-  const TemporaryFolder folder;
-  const Outcome outcome = runLine(folder, line);
-  EXPECT_EQ(outcome.status, status) << line << "\n" << outcome.err;
-  EXPECT_TRUE(isOneLine(outcome.err)) << line << "\n" << outcome.err;
-  EXPECT_NE(outcome.err.find(what), std::string::npos) << line << "\n" << outcome.err;
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << line;
-}
-
-TEST(BenchCommand, RefusesWrongInputBeforeItMeasures) {
+TEST_F(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench none.json", 2, "none.json");
   refuse("luciole bench --json none/out.json", 2, "none/out.json: no such folder");
   refuse("luciole bench --plot none/out.svg", 2, "none/out.svg: no such folder");

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr unsigned kShifts[] = {4, 6, 8};
+constexpr unsigned kGroupLog2s[] = {4, 6, 8};
 constexpr unsigned kTests[] = {kByRange, kByCone, kByCone | kByFacing};
 
 /// A surface's points, of whole tiles; background where z is −∞.
@@ -297,7 +297,7 @@ TEST_P(CullKernels, ListsHoldWhatLightsAPointAndNothingThatCannot) {
   const Points points = randomPoints(GetParam() > 1000 ? 4 : 12, random);
   std::vector<ShadeLight> lights;
   while (int(lights.size()) < GetParam()) lights.push_back(randomLight(points, random));
-  for (const unsigned group_log2 : kShifts) {
+  for (const unsigned group_log2 : kGroupLog2s) {
     Tally tally;
     for (const unsigned tests : kTests) {
       const Lists lists = cullEverywhere(points, lights, group_log2, tests);
@@ -344,11 +344,12 @@ TEST(CullKernels, LightsAHairAboveTheSurfaceStayIn) {
     const ShadeLight lights[] = {
         pointLight({0, 0, above}, INFINITY), pointLight({-40 * depth, 3 * depth, above}, INFINITY),
         spotLight({depth, depth, above}, INFINITY, {-1, 0, 0}, 0.01), directionalLight({1, 0, 1e-30})};
-    for (const unsigned group_log2 : kShifts) {
+    for (const unsigned group_log2 : kGroupLog2s) {
       const Lists lists = cullEverywhere(points, lights, group_log2, kByFacing);
       for (std::size_t list = 0; list < std::size_t(kTilePixels) >> group_log2; ++list)
         for (std::uint32_t light = 0; light < std::size(lights); ++light)
-          EXPECT_TRUE(lists.has(list, light)) << depth << " m, group_log2 " << group_log2 << ", light " << light;
+          EXPECT_TRUE(lists.has(list, light))
+              << depth << " m, group_log2 " << group_log2 << ", light " << light;
     }
   }
 }
@@ -422,7 +423,7 @@ TEST(CullKernels, NoLightsAndNoPixelsMakeEmptyLists) {
   Random random(9);
   const Points points = randomPoints(3, random), background(3);
   const std::vector<ShadeLight> lights(33, pointLight({0, 0, -5}, INFINITY));
-  for (const unsigned group_log2 : kShifts) {
+  for (const unsigned group_log2 : kGroupLog2s) {
     EXPECT_EQ(cullEverywhere(points, {}, group_log2, kByFacing).starts,
               std::vector<cl_uint>(3 * kSquaresPerTile + 1, 0));
     EXPECT_EQ(cullEverywhere(background, lights, group_log2, kByFacing).starts,
@@ -439,8 +440,9 @@ TEST(CullKernels, PaddingOfTheTreeIsNeverListed) {
     points.set(i, {coordinates[i % 4], coordinates[i / 4 % 4], coordinates[i / 16]}, {0, 0, 1});
   for (int i = 64; i < kTilePixels; ++i) points.set(i, {0, 0, -1e-3f}, {0, 0, 1});
   const ShadeLight light = pointLight({0, 0, 1}, INFINITY);
-  for (const unsigned group_log2 : kShifts)
-    for (const cl_uint entry : cullEverywhere(points, {&light, 1}, group_log2, kByCone).list) EXPECT_EQ(entry, 0u);
+  for (const unsigned group_log2 : kGroupLog2s)
+    for (const cl_uint entry : cullEverywhere(points, {&light, 1}, group_log2, kByCone).list)
+      EXPECT_EQ(entry, 0u);
 }
 
 }  // namespace

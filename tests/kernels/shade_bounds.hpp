@@ -141,7 +141,7 @@ inline Interval cookTorranceInterval(const glm::dvec3& normal, const WayToLight&
   const auto smith = [&](double x) { return x + std::sqrt(squared(std::clamp(x, 0.0, 1.0))); };
   const auto positive = [](double x) { return std::clamp(x, 0.0, 1.0); };
   const ChordCosine half = halfCosine(normal, way, to_eye);
-  const Interval geometric_normals = growing(half.cosine, half.error, [&](double x) {
+  const Interval facets = growing(half.cosine, half.error, [&](double x) {
     const double c = positive(x), spread = alpha2 * c * c + (1 - c * c);
     return alpha2 / (spread * spread);
   });
@@ -155,7 +155,7 @@ inline Interval cookTorranceInterval(const glm::dvec3& normal, const WayToLight&
                                      [&](double x) { return std::pow(1 - positive(x), 5); });
   const double f90 = std::min(50 * f0, 1.0);
   const Interval color = Interval{1 - fresnel.high, 1 - fresnel.low} * f0 + fresnel * f90;
-  return (geometric_normals * light * eye * color).widened(60 * kUnit);
+  return (facets * light * eye * color).widened(60 * kUnit);
 }
 
 /// Intervals of reflectedLight(): channel f0 of the specular colour.

@@ -454,7 +454,7 @@ Map drawn(const Relief& relief) {
 }
 
 /// The normal there, as a G-buffer has it.
-glm::dvec3 geometric_normal(const Slopes& at) { return unpackNormal(packNormal({-at.dx, -at.dy, 1})); }
+glm::dvec3 geometricNormal(const Slopes& at) { return unpackNormal(packNormal({-at.dx, -at.dy, 1})); }
 
 /// Points of a relief at random places.
 std::vector<Receiver> pointsOf(const Relief& relief, int count) {
@@ -464,7 +464,7 @@ std::vector<Receiver> pointsOf(const Relief& relief, int count) {
   for (int i = 0; i < count; ++i) {
     const double x = inside(random), y = inside(random);
     const Slopes at = relief(x, y);
-    points.push_back({{x, y, at.z}, geometric_normal(at)});
+    points.push_back({{x, y, at.z}, geometricNormal(at)});
   }
   return points;
 }
@@ -551,7 +551,7 @@ TEST(ShadowKernels, OccluderAboveATiltedFloorShadows) {
     for (int i = 0; i < 500; ++i) {
       const double y = kRim + 0.01 + (kReliefSize - 2 * kRim - 0.02) * i / 500, x = 17.3 - y / 2;
       const Slopes at = floor(x, y);
-      points.push_back({{x, y, at.z}, geometric_normal(at)});
+      points.push_back({{x, y, at.z}, geometricNormal(at)});
       z = at.z;
     }
     for (const Method& method : kMethods)

@@ -47,8 +47,8 @@ inline std::string sceneFault(const Scene& scene) {
     if (object.mesh >= scene.meshes.size()) return "an object's mesh is out of range";
   }
   for (const Attachment& attachment : scene.animation.objects) {
-    if (attachment.index >= scene.objects.size()) return "a attachment object is out of range";
-    if (attachment.node >= scene.animation.nodes.size()) return "a attachment object's node is out of range";
+    if (attachment.index >= scene.objects.size()) return "an attached object is out of range";
+    if (attachment.node >= scene.animation.nodes.size()) return "an attached object's node is out of range";
   }
   return "";
 }

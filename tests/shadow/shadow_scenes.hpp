@@ -20,7 +20,7 @@ inline std::string planeScene(const std::string& light) {
                      light);
 }
 
-/// A terrain of many runs of triangles under a light of each kind.
+/// A terrain of many meshlets under a light of each kind.
 inline Scene terrainScene() {
   Scene scene =
       sceneFromJson(planeScene(R"({"type": "directional", "direction": [1, -2, 0.3], "shadow": true},
