@@ -50,10 +50,11 @@ NEEDED = ("render", "FindNeeded.*")
 MAPS = ("shadow", "ShadowMaps.*:*HoveringSquare*")
 SOFT = ("shadow", "*SoftEdge*")
 EXACT_SHADOWS = ("render", "*ShadowMethods.PictureIsTheSame*/Exact")
+VERDICTS = ("render", "Classify.*")
 TERMINATOR = ("render", "*Terminator*")
 
 TESTS = {
-    "classify.cl": [EXACT_SHADOWS, TERMINATOR],
+    "classify.cl": [VERDICTS, EXACT_SHADOWS, TERMINATOR],
     "cook_torrance.clh": [COOK_TORRANCE, PICTURES],
     "count_in_range.cl": [PICTURES, EXACT],
     "cull.cl": [CULL, EXACT, PICTURES],
@@ -64,7 +65,7 @@ TESTS = {
     "lanes.clh": [MATH, FALLOFF, PHONG, SHADE, NEEDED],
     "long_sum.clh": [SUMS, EXACT],
     "math.clh": [MATH, SHADOW, PICTURES, TERMINATOR],
-    "pair_visibility.cl": [("bench", "*HardShadows*")],
+    "pair_visibility.cl": [("bench", "*HardShadows*:ShadowErrors.OfTwo*")],
     "phong.clh": [PHONG, CLOSED_FORM, NUMBERS],
     "shade.cl": [CLOSED_FORM, SHADE, PICTURES, SUMS, EXACT, EXACT_SHADOWS],
     "shadow.clh": [SHADOW, NEEDED, MAPS, SOFT, TERMINATOR],

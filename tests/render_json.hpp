@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <string>
 
@@ -24,6 +26,21 @@ inline Device& testDevice() {
   return device;
 }
 
+/// Settings for a picture of that size by the scene's first camera, with shadow maps of 256 x 256 texels:
+/// small, to save time.
+inline RenderSettings settingsFor(const Scene& scene, glm::ivec2 size) {
+  RenderSettings settings;
+  settings.size = size;
+  settings.camera = scene.cameras.front();
+  settings.shade.shadow_limits.size = 256;
+  return settings;
+}
+
+inline Image picture(const Scene& scene, const RenderSettings& settings, Device& device = testDevice()) {
+  Stats stats;
+  return renderScene(device, scene, settings, stats);
+}
+
 /// A picture of the scene by its first camera, with the changes that `adjust` makes to the settings.
 template <class Adjust>
 Image renderJson(const std::string& json, glm::ivec2 size, Adjust adjust) {
@@ -32,8 +49,13 @@ Image renderJson(const std::string& json, glm::ivec2 size, Adjust adjust) {
   settings.size = size;
   settings.camera = scene.cameras.front();
   adjust(settings);
-  Stats stats;
-  return renderScene(testDevice(), scene, settings, stats);
+  return picture(scene, settings);
+}
+
+/// Names the tests of a suite with a method as its parameter.
+inline std::string shadowMethodName(const testing::TestParamInfo<ShadowMethod>& test) {
+  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact"};
+  return kNames[int(test.param)];
 }
 
 inline std::size_t channelIndex(const Image& image, const std::string& name) {

@@ -39,10 +39,10 @@ for file in "${files[@]}"; do
 done
 mapfile -t sources < <(printf '%s\n' "${sources[@]}" | sort -u)
 
-# The compiler's command for each file, with clang's own flags and without precompiled headers, which are another compiler's.
+# The compiler's command for each file alone, with clang's own flags and without precompiled headers, which are another compiler's.
 build=build/tidy
 cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
-  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"$build.log" 2>&1 || { cat "$build.log" >&2 && exit 1; }
+  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=OFF >"$build.log" 2>&1 || { cat "$build.log" >&2 && exit 1; }
 # Files that no target here compiles: the fuzz programs.
 mapfile -t sources < <(for file in "${sources[@]}"; do
   if grep -qF "/$file\"" "$build/compile_commands.json"; then echo "$file"; fi

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace luciole {
@@ -21,5 +22,8 @@ inline std::uint64_t nextBits(std::uint64_t& state) {
 inline double nextUniform(std::uint64_t& state) {
   return static_cast<double>(nextBits(state) >> 11) * 0x1p-53;
 }
+
+/// The number that lies u, in [0,1), of the way from low to high. Rounding never takes it beyond high.
+inline double between(double low, double high, double u) { return std::min(low + u * (high - low), high); }
 
 }  // namespace luciole

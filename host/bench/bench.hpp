@@ -10,6 +10,9 @@
 
 namespace luciole {
 
+/// Steps of an 8-bit picture in a range of 1: what reports count errors in.
+inline constexpr double k8BitSteps = 255;
+
 struct BenchResult {
   Machine machine;
   std::string scene;

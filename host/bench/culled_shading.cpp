@@ -9,15 +9,15 @@
 namespace luciole {
 namespace {
 
-struct Row {
+struct CullingRow {
   const char* name;
   Culling culling;
   int tile_size;
 };
-constexpr Row kRows[] = {{"lists of 4 x 4 pixels", Culling::kTiles, 4},
-                         {"lists of 8 x 8 pixels", Culling::kTiles, 8},
-                         {"lists of 16 x 16 pixels", Culling::kTiles, 16},
-                         {"no culling", Culling::kNone, 16}};
+constexpr CullingRow kRows[] = {{"lists of 4 x 4 pixels", Culling::kTiles, 4},
+                                {"lists of 8 x 8 pixels", Culling::kTiles, 8},
+                                {"lists of 16 x 16 pixels", Culling::kTiles, 16},
+                                {"no culling", Culling::kNone, 16}};
 
 }  // namespace
 

@@ -11,9 +11,9 @@
 namespace luciole {
 namespace {
 
-constexpr glm::ivec2 kSize(1920, 1080);
+constexpr glm::ivec2 kManyLightsSize(1920, 1080);
 
-struct Row {
+struct ManyLightsRow {
   std::string name;
   Scene scene;
   const GBuffer* gbuffer = nullptr;
@@ -25,7 +25,7 @@ double listBytes(const GBuffer& gbuffer, double entries) {
   return entries * sizeof(ListEntry) + double(starts) * sizeof(cl_uint);
 }
 
-Stats shadeRow(Device& device, const Row& row, bool count_lights) {
+Stats shadeRow(Device& device, const ManyLightsRow& row, bool count_lights) {
   RenderSettings settings;
   settings.count_lights = count_lights;
   Stats stats;
@@ -36,13 +36,13 @@ Stats shadeRow(Device& device, const Row& row, bool count_lights) {
 }  // namespace
 
 SpeedTable measureManyLights(const SpeedInput& input) {
-  const glm::ivec2 size = input.size.value_or(kSize);
-  std::vector<Row> rows;
+  const glm::ivec2 size = input.size.value_or(kManyLightsSize);
+  std::vector<ManyLightsRow> rows;
   rows.push_back({"sphere", makeLightSphere(std::min<std::uint64_t>(input.most_lights, 100'000))});
   for (std::uint64_t lights = 1; lights <= input.most_lights; lights *= 10)
     rows.push_back({"city", makeCity(lights)});
   const GBuffer sphere = gbufferOf(rows.front().scene, size), city = gbufferOf(rows.back().scene, size);
-  for (Row& row : rows) row.gbuffer = row.name == "city" ? &city : &sphere;
+  for (ManyLightsRow& row : rows) row.gbuffer = row.name == "city" ? &city : &sphere;
 
   SpeedTable table{
       .name = "many lights",
@@ -60,7 +60,7 @@ SpeedTable measureManyLights(const SpeedInput& input) {
                   {"million_pairs_evaluated", "million pairs", 2},
                   {"million_pairs_in_range", "in range", 2},
                   {"lights_in_range_per_pixel", "in range per pixel", 2}}};
-  for (const Row& row : rows) {
+  for (const ManyLightsRow& row : rows) {
     if (input.on_progress) input.on_progress(table.name + ": counts", table.rows.size(), rows.size());
     const Stats stats = shadeRow(input.device, row, true);  // compiles, too
     const double entries = double(countOf(stats, "list_entries")),

@@ -12,8 +12,6 @@
 namespace luciole {
 namespace {
 
-constexpr double kSteps = 255;  ///< 8-bit steps of 1
-
 /// The rows from fast to slow.
 std::vector<BenchRow> sortedRows(const BenchGroup& group) {
   std::vector<BenchRow> rows = group.rows;
@@ -23,7 +21,7 @@ std::vector<BenchRow> sortedRows(const BenchGroup& group) {
 }
 
 PlotPoint pointOf(const BenchRow& row) {
-  const glm::dvec2 at(row.time.median, row.error.mean_abs * kSteps), spread(row.time.spread, 0);
+  const glm::dvec2 at(row.time.median, row.error.mean_abs * k8BitSteps), spread(row.time.spread, 0);
   return {at, at - spread, at + spread, row.variant.name};
 }
 

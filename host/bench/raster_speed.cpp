@@ -12,7 +12,7 @@
 namespace luciole {
 namespace {
 
-constexpr glm::ivec2 kSize(1920, 1080), kMapSize(1024);
+constexpr glm::ivec2 kGBufferSize(1920, 1080), kMapSize(1024);
 
 double gbufferMilliseconds(const Scene& scene, glm::ivec2 size) {
   RenderSettings settings;
@@ -42,7 +42,7 @@ std::uint64_t triangleCount(const Scene& scene) {
 SpeedTable measureRasterizer(const SpeedInput& input) {
   const Scene hall = input.scene ? Scene{} : makeHall();
   const Scene& scene = input.scene ? *input.scene : hall;
-  const glm::ivec2 size = input.size.value_or(kSize), map_size = input.size.value_or(kMapSize);
+  const glm::ivec2 size = input.size.value_or(kGBufferSize), map_size = input.size.value_or(kMapSize);
   const int threads = tbb::info::default_concurrency();
   SpeedTable table{.name = "rasterizer",
                    .measured = fmt::format("{}, {} triangles, by one thread and by {}", scene.name,

@@ -13,8 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSteps = 255;  ///< 8-bit steps of 1
-
 constexpr const char* kColumns[]{"ms",         "spread",      "max, steps", "mean, steps", "signed, steps",
                                  "max, share", "mean, share", "front"};
 using Cells = std::vector<std::string>;
@@ -51,9 +49,9 @@ Cells rowCells(const BenchRow& row, Reasons& reasons) {
   return {row.variant.is_default ? row.variant.name + " (default)" : row.variant.name,
           fmt::format("{:.1f}", row.time.median),
           spreadText(row.time),
-          fmt::format("{:.1e}", error.max_abs * kSteps),
-          fmt::format("{:.1e}", error.mean_abs * kSteps),
-          fmt::format("{:+.1e}", error.mean_signed * kSteps),
+          fmt::format("{:.1e}", error.max_abs * k8BitSteps),
+          fmt::format("{:.1e}", error.mean_abs * k8BitSteps),
+          fmt::format("{:+.1e}", error.mean_signed * k8BitSteps),
           share(error.max_abs),
           share(error.mean_abs),
           row.front ? "*" : ""};
@@ -117,14 +115,15 @@ Json errorJson(const ImageDifference& error, double unit) {
 }
 
 Json rowJson(const BenchRow& row) {
-  return {{"name", row.variant.name},
-          {"default", row.variant.is_default},
-          {"front", row.front},
-          {"settings", settingsJson(row.variant)},
-          {"milliseconds", {{"median", row.time.median}, {"spread", row.time.spread}}},
-          {"brightest", row.brightest},
-          {"error",
-           {{"steps", errorJson(row.error, 1 / kSteps)}, {"relative", errorJson(row.error, row.brightest)}}}};
+  return {
+      {"name", row.variant.name},
+      {"default", row.variant.is_default},
+      {"front", row.front},
+      {"settings", settingsJson(row.variant)},
+      {"milliseconds", {{"median", row.time.median}, {"spread", row.time.spread}}},
+      {"brightest", row.brightest},
+      {"error",
+       {{"steps", errorJson(row.error, 1 / k8BitSteps)}, {"relative", errorJson(row.error, row.brightest)}}}};
 }
 
 Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
@@ -161,7 +160,7 @@ std::string benchTable(const BenchResult& result) {
   for (const BenchGroup& group : result.groups) {
     text += fmt::format("\n{}: {}.", group.group.name, group.group.measured);
     if (group.truth_error > 0)
-      text += fmt::format(" Its own mean error is about {:.1e} steps.", group.truth_error * kSteps);
+      text += fmt::format(" Its own mean error is about {:.1e} steps.", group.truth_error * k8BitSteps);
     text += "\n\n" + groupTable(group);
   }
   if (!result.groups.empty()) text += kErrorsExplained;
@@ -196,7 +195,7 @@ std::string benchJson(const BenchResult& result) {
     for (const BenchRow& row : group.rows) rows.push_back(rowJson(row));
     json["groups"].push_back({{"name", group.group.name},
                               {"measured", group.group.measured},
-                              {"truth_error_steps", group.truth_error * kSteps},
+                              {"truth_error_steps", group.truth_error * k8BitSteps},
                               {"rows", std::move(rows)}});
   }
   for (const SpeedTable& table : result.speed) {

@@ -15,7 +15,7 @@ namespace luciole {
 namespace {
 
 constexpr int kLights = 64;
-constexpr glm::ivec2 kSize(512);
+constexpr glm::ivec2 kAllPairsSize(512);
 
 std::string yardstickSource(std::string_view name) {
   const auto& files = yardstickKernels();
@@ -202,7 +202,7 @@ Image shadePlainly(Device& device, const AllPairs& pairs) {
 }
 
 SpeedTable measureShadingRate(const SpeedInput& input) {
-  const AllPairs pairs = makeAllPairs(input.size.value_or(kSize), kLights);
+  const AllPairs pairs = makeAllPairs(input.size.value_or(kAllPairsSize), kLights);
   const double million_pairs = 1e-6 * double(pairs.gbuffer.pixels()) * double(pairs.scene.lights.size());
   Plain plain(input.device, pairs);
   Roof roof(input.device, pairs);

@@ -19,7 +19,7 @@
 namespace luciole {
 namespace {
 
-constexpr glm::ivec2 kSize(1280, 720);
+constexpr glm::ivec2 kJudgedSize(1280, 720);
 
 struct Method {
   const char* name;
@@ -176,14 +176,14 @@ double rayMilliseconds(const Judged& judged, const RayScene& solid) {
 }
 
 /// What a row of the table is measured with.
-struct Row {
+struct MethodRow {
   const Judged* judged;
   ShadeSettings settings;
 };
 
 /// Milliseconds of drawing (with planning, and finding what to draw), of lookups (shading less shading
 /// without shadows), of both together, and of Embree's rays.
-std::vector<double> timeMaps(Device& device, const Row& row) {
+std::vector<double> timeMaps(Device& device, const MethodRow& row) {
   RenderSettings settings;
   settings.shade = row.settings;
   Stats with, without;
@@ -241,7 +241,7 @@ ShadowErrors shadowErrors(Device& device, const Scene& scene, glm::ivec2 size,
 }
 
 SpeedTable measureShadowErrors(const SpeedInput& input) {
-  const glm::ivec2 size = input.size.value_or(kSize);
+  const glm::ivec2 size = input.size.value_or(kJudgedSize);
   std::vector<std::unique_ptr<const Judged>> judged;
   if (input.scene) {
     judged.push_back(judgeScene(*input.scene, size));
@@ -266,11 +266,11 @@ SpeedTable measureShadowErrors(const SpeedInput& input) {
                                {"wrongly_lit_percent", "wrongly lit, % of dark", 4},
                                {"edge_percent", "edges, %", 2},
                                {"wrong_edge_percent", "wrong there, %", 2}}};
-  std::vector<Row> rows;
+  std::vector<MethodRow> rows;
   for (const auto& one : judged) {
     for (const Method& method : kMethods) {
       for (const int map_size : sizesFor(input)) {
-        Row row{one.get(), {}};
+        MethodRow row{one.get(), {}};
         row.settings.shadows = method.method;
         row.settings.shadow_limits.size = map_size;
         table.rows.push_back({fmt::format("{}, {} {}", one->scene.name, method.name, map_size),

@@ -38,7 +38,7 @@ constexpr const char* kReaches[] = {"density", "range", "cutoff"};
 
 constexpr glm::ivec2 kDefaultSize(640, 360);
 /// Number of visible points that make a box which holds most of what is seen.
-constexpr std::size_t kSeenPoints = 1000;
+constexpr std::size_t kPointsOfAField = 1000;
 /// The truth has so many samples for each one of the picture with the most, if that has several.
 constexpr int kTruthSamples = 4;
 
@@ -287,7 +287,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
   description.settings = sharedSettings(command, options, description.axes, settingsNow());
   const RenderSettings first = settingsNow();
   const std::vector<glm::dvec3> seen =
-      visiblePoints(scene, first.camera, first.size, kSeenPoints, options.seed);
+      visiblePoints(scene, first.camera, first.size, kPointsOfAField, options.seed);
   if (seen.empty())
     throw InputError(
         fmt::format("{}: its camera sees nothing that lights could be put around", options.scene));

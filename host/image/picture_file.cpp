@@ -20,38 +20,6 @@
 namespace luciole {
 namespace {
 
-/// Passes what an encoder writes on to a file, at once. Write errors are hidden from the encoder, since some
-/// encoders lose them and others end the program; the first one is kept for throwError().
-class Stream : public OIIO::Filesystem::IOProxy {
- public:
-  explicit Stream(OutputFile& file) : IOProxy("", Write), file_(file) {}
-  const char* proxytype() const override { return "luciole"; }
-  std::size_t write(const void* bytes, std::size_t count) override {
-    pwrite(bytes, count, m_pos);
-    m_pos += std::int64_t(count);
-    return count;
-  }
-  std::size_t pwrite(const void* bytes, std::size_t count, std::int64_t offset) override {
-    size_ = std::max(size_, std::size_t(offset) + count);
-    if (error_) return count;
-    try {
-      file_.writeAt(std::uint64_t(offset), {static_cast<const std::byte*>(bytes), count});
-    } catch (...) {
-      error_ = std::current_exception();
-    }
-    return count;
-  }
-  std::size_t size() const override { return size_; }
-  void throwError() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  OutputFile& file_;
-  std::size_t size_ = 0;
-  std::exception_ptr error_;
-};
-
 std::size_t sizeOf(const MemoryFile& file, const std::string& name) {
   struct stat status {};
   if (fstat(file.descriptor(), &status) != 0) throw MachineError(fmt::format("{}: {}", name, systemReason()));
@@ -69,6 +37,38 @@ void copy(const MemoryFile& from, OutputFile& to, const std::string& name) {
 }  // namespace
 
 struct PictureFile::State {
+  /// Passes what an encoder writes on to a file, at once. Write errors are hidden from the encoder, since
+  /// some encoders lose them and others end the program; the first one is kept for throwError().
+  class Stream : public OIIO::Filesystem::IOProxy {
+   public:
+    explicit Stream(OutputFile& file) : IOProxy("", Write), file_(file) {}
+    const char* proxytype() const override { return "luciole"; }
+    std::size_t write(const void* bytes, std::size_t count) override {
+      pwrite(bytes, count, m_pos);
+      m_pos += std::int64_t(count);
+      return count;
+    }
+    std::size_t pwrite(const void* bytes, std::size_t count, std::int64_t offset) override {
+      size_ = std::max(size_, std::size_t(offset) + count);
+      if (error_) return count;
+      try {
+        file_.writeAt(std::uint64_t(offset), {static_cast<const std::byte*>(bytes), count});
+      } catch (...) {
+        error_ = std::current_exception();
+      }
+      return count;
+    }
+    std::size_t size() const override { return size_; }
+    void throwError() const {
+      if (error_) std::rethrow_exception(error_);
+    }
+
+   private:
+    OutputFile& file_;
+    std::size_t size_ = 0;
+    std::exception_ptr error_;
+  };
+
   State(const std::string& of_path, const std::string& extension, const OIIO::ImageSpec& of_spec)
       : path(of_path),
         spec(of_spec),

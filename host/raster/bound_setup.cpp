@@ -73,7 +73,7 @@ void setPlane(BoundPiece& piece) {
 }
 
 /// What all triangles of a view share.
-struct Frame {
+struct BoundFrame {
   const View& view;
   glm::dmat4 absolute;  ///< the projection's magnitudes
   ClipVolume volume;
@@ -81,13 +81,13 @@ struct Frame {
   glm::dvec2 first, last;  ///< box of the picture, grown by one texel
 };
 
-Frame makeFrame(const View& view) {
-  Frame frame{view,
-              view.projection,
-              clipVolume(view),
-              1.0 + 2.0 * kBeyond / glm::dvec2(view.size),
-              glm::dvec2(-1.0),
-              glm::dvec2(view.size)};
+BoundFrame makeBoundFrame(const View& view) {
+  BoundFrame frame{view,
+                   view.projection,
+                   clipVolume(view),
+                   1.0 + 2.0 * kBeyond / glm::dvec2(view.size),
+                   glm::dvec2(-1.0),
+                   glm::dvec2(view.size)};
   for (int column = 0; column < 4; ++column) frame.absolute[column] = glm::abs(frame.absolute[column]);
   return frame;
 }
@@ -120,8 +120,8 @@ CutTriangle cutSides(const std::array<glm::dvec4, 3>& triangle, const glm::dvec2
 }
 
 /// Adds a corner and its error bounds. False where its place is not known well enough.
-bool addCorner(const glm::dvec4& clip, const ScreenVertex& screen, const glm::dvec4& sums, const Frame& frame,
-               BoundPiece& piece) {
+bool addCorner(const glm::dvec4& clip, const ScreenVertex& screen, const glm::dvec4& sums,
+               const BoundFrame& frame, BoundPiece& piece) {
   // Cutting a convex polygon adds at most one corner a side, so there is room for 7. One that rounding has
   // dented may have more: it counts as unknown.
   if (!(clip.w > 0.0) || piece.count == int(piece.corners.size())) return false;
@@ -140,7 +140,7 @@ bool addCorner(const glm::dvec4& clip, const ScreenVertex& screen, const glm::dv
   return true;
 }
 
-void setupTriangle(const std::array<const Vertex*, 3>& vertices, bool masked, const Frame& frame,
+void setupTriangle(const std::array<const Vertex*, 3>& vertices, bool masked, const BoundFrame& frame,
                    BoundSetup& setup) {
   const auto& [a, b, c] = vertices;
   const unsigned any = a->place | b->place | c->place;
@@ -177,7 +177,7 @@ void setupTriangle(const std::array<const Vertex*, 3>& vertices, bool masked, co
 }
 
 void setupMeshlet(const Scene& scene, const Meshlets& meshlets, std::uint32_t index,
-                  const PlacedObject& object, const Frame& frame, BoundSetup& setup) {
+                  const PlacedObject& object, const BoundFrame& frame, BoundSetup& setup) {
   std::array<Vertex, 3 * kMeshletTriangles> vertices;
   const Meshlet& meshlet = meshlets.items[index];
   for (std::uint32_t i = 0; i < meshlet.vertex_count; ++i) {
@@ -200,7 +200,7 @@ void setupMeshlet(const Scene& scene, const Meshlets& meshlets, std::uint32_t in
 }  // namespace
 
 BoundSetup setupBounds(const Scene& scene, const PlacedMeshlets& placed, const View& view) {
-  const Frame frame = makeFrame(view);
+  const BoundFrame frame = makeBoundFrame(view);
   constexpr std::size_t kTask = 32;  // meshlets
   const std::size_t tasks = (placed.chosen.size() + kTask - 1) / kTask;
   std::vector<std::vector<BoundPiece>> pieces(tasks);

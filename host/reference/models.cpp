@@ -10,11 +10,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-glm::dvec3 unitOrZero(const glm::dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 ? v / length : glm::dvec3(0.0);
-}
-
 glm::dvec3 halfVector(const Directions& at) { return unitOrZero(at.to_light + at.to_eye); }
 
 /// 0^0 = 1, as in OpenGL.
@@ -52,6 +47,11 @@ double facetDistribution(double cosine, double alpha) {
 }
 
 }  // namespace
+
+glm::dvec3 unitOrZero(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? v / length : glm::dvec3(0.0);
+}
 
 // Lake et al., NPAR 2000: three tones.
 double toonTone(double cosine) {

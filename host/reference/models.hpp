@@ -13,6 +13,9 @@ struct Directions {
   glm::dvec3 normal{0.0}, to_light{0.0}, to_eye{0.0};
 };
 
+/// The vector at length 1; the zero vector stays.
+glm::dvec3 unitOrZero(const glm::dvec3& v);
+
 /// Factors of a light's diffuse and specular colour. The caller multiplies the first by the surface's diffuse
 /// colour; the second contains the surface's specular colour.
 struct Reflected {

@@ -19,11 +19,6 @@ struct Incoming {
   double share = 1.0;
 };
 
-glm::dvec3 unitOrZero(const glm::dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 ? v / length : glm::dvec3(0.0);
-}
-
 double rangeWindow(const Light& light, double distance) {
   const double fade = 1 - std::pow(distance / light.range, 4);
   return light.window == RangeWindow::kSmooth ? fade * fade : fade;

@@ -103,8 +103,6 @@ Json quartilesJson(const Quartiles& time) {
 }
 
 /// The number, or null if it isn't finite: JSON has no infinity.
-Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
 /// A row for each fit: its numbers, or null and the reason if there is none.
 Json growthRows(const ScaleSummary& summary) {
   Json rows = Json::array();

@@ -115,8 +115,6 @@ Machine machineOf(const Json& line) {
 }
 
 /// The number, or null if it isn't finite: JSON has no infinity.
-Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
 double numberOrInfinity(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
 }
@@ -247,6 +245,8 @@ std::string difference(const ScaleDescription& a, const ScaleDescription& b) {
 }
 
 }  // namespace
+
+Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 ScaleLog::ScaleLog(const std::string& folder, const ScaleDescription& description) : folder_(folder) {
   const std::string path = folder + kFile;

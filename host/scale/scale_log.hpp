@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -64,5 +65,8 @@ std::string pictureFile(const std::string& folder, const std::string& file);
 /// picture is missing or isn't a file in its shard's folder, and if `merged` holds a log already;
 /// MachineError.
 ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged);
+
+/// As the log and results.json write a number: null where it is not finite.
+nlohmann::ordered_json finiteOrNull(double number);
 
 }  // namespace luciole

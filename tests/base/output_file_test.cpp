@@ -15,14 +15,10 @@
 namespace luciole {
 namespace {
 
+using test::readText;
 using test::TemporaryFolder;
 
 std::span<const std::byte> bytes(const std::string& text) { return std::as_bytes(std::span(text)); }
-
-std::string textOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 TEST(OutputFile, PiecesLieAtTheirOffsetsInWhateverOrderTheyCame) {
   const TemporaryFolder folder;
@@ -31,7 +27,7 @@ TEST(OutputFile, PiecesLieAtTheirOffsetsInWhateverOrderTheyCame) {
   file.writeAt(0, bytes("1234"));
   file.writeAt(1, bytes("x"));
   file.putInPlace();
-  EXPECT_EQ(textOf(folder / "a"), "1x3456");
+  EXPECT_EQ(readText(folder / "a"), "1x3456");
 }
 
 TEST(OutputFile, TheOldFileStaysUntilTheNewOneIsInPlace) {
@@ -41,12 +37,12 @@ TEST(OutputFile, TheOldFileStaysUntilTheNewOneIsInPlace) {
     OutputFile given_up(folder / "a");
     given_up.writeAt(0, bytes("new"));
   }
-  EXPECT_EQ(textOf(folder / "a"), "old");
+  EXPECT_EQ(readText(folder / "a"), "old");
   OutputFile file(folder / "a");
   file.writeAt(0, bytes("new"));
-  EXPECT_EQ(textOf(folder / "a"), "old");
+  EXPECT_EQ(readText(folder / "a"), "old");
   file.putInPlace();
-  EXPECT_EQ(textOf(folder / "a"), "new");
+  EXPECT_EQ(readText(folder / "a"), "new");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
@@ -57,8 +53,8 @@ TEST(OutputFile, SeveralAtOnceDontMeet) {
   second.writeAt(0, bytes("second"));
   second.putInPlace();
   first.putInPlace();
-  EXPECT_EQ(textOf(folder / "a"), "first");
-  EXPECT_EQ(textOf(folder / "b"), "second");
+  EXPECT_EQ(readText(folder / "a"), "first");
+  EXPECT_EQ(readText(folder / "b"), "second");
 }
 
 TEST(OutputFile, HasTheRightsThatTheUsersMaskLeaves) {
@@ -82,9 +78,9 @@ TEST(OutputFile, LinksStayAndWhatTheyLeadToIsReplacedWhole) {
   for (const auto& [link, target] : {std::pair("a", "shelf/box/target"), {"dangling", "shelf/none yet"}}) {
     OutputFile file(folder / link);
     file.writeAt(0, bytes("new"));
-    EXPECT_NE(textOf(folder / target), "new") << "before it is whole";
+    EXPECT_NE(readText(folder / target), "new") << "before it is whole";
     file.putInPlace();
-    EXPECT_EQ(textOf(folder / target), "new");
+    EXPECT_EQ(readText(folder / target), "new");
     EXPECT_TRUE(std::filesystem::is_symlink(folder / link));
     EXPECT_FALSE(std::filesystem::is_symlink(folder / target));
   }
@@ -97,7 +93,7 @@ TEST(OutputFile, WhatIsNoFileGetsTheBytesAndStaysWhatItIs) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "fifo").c_str(), 0600), 0);
   std::string read;
-  std::thread reader([&] { read = textOf(folder / "fifo"); });
+  std::thread reader([&] { read = readText(folder / "fifo"); });
   OutputFile file(folder / "fifo");
   EXPECT_TRUE(file.isStream());
   file.writeAt(0, bytes("one, "));

@@ -16,8 +16,7 @@ TEST(WriteFile, ReplacesAFileByExactlyTheText) {
   const test::TemporaryFolder folder;
   for (const std::string& text : {std::string("{ \"longer\": 1 }\n"), std::string("{}"), std::string()}) {
     writeTextFile(folder / "a.json", text);
-    std::ifstream file(folder / "a.json");
-    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), text);
+    EXPECT_EQ(test::readText(folder / "a.json"), text);
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }

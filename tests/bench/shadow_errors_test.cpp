@@ -45,6 +45,16 @@ TEST_P(HardShadows, ExactOnesAreWhatRaysSayEverywhere) {
   EXPECT_EQ(errors.wrong_edges, 0u);
 }
 
+TEST(ShadowErrors, OfTwoLightsAreEachItsOwnMaps) {
+  Scene scene = makeShadowScenes()[2];  // the fence
+  Light from_the_side = scene.lights[0];
+  from_the_side.direction = glm::normalize(glm::dvec3(-0.6, -0.5, -0.2));
+  scene.lights.push_back(from_the_side);
+  const ShadowErrors errors = errorsOf(scene, ShadowMethod::kHard);
+  EXPECT_GT(errors.dark, 100);
+  EXPECT_LE((errors.wrongly_dark + errors.wrongly_lit) * 200, errors.lit + errors.dark);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, HardShadows, testing::Range(0, 5), [](const auto& test) {
   std::string name = makeShadowScenes()[test.param].name;
   name.erase(std::remove(name.begin(), name.end(), ' '), name.end());

@@ -94,7 +94,7 @@ struct Traced {
   std::vector<std::uint8_t> lit;
 };
 
-glm::dvec3 wayToLight(const Light& light, const glm::dvec3& point) {
+glm::dvec3 vectorToLight(const Light& light, const glm::dvec3& point) {
   return light.kind == LightKind::kDirectional ? -light.direction : light.position - point;
 }
 
@@ -151,7 +151,7 @@ TEST(ShadowTruth, NothingShowsNothingPairs) {
 /// Where a floor point's ray to the light passes the square's height, by similar triangles: how far inside
 /// the square, metres there; negative outside.
 double insideSquare(const Light& light, const glm::dvec3& point) {
-  const glm::dvec3 way = wayToLight(light, point);
+  const glm::dvec3 way = vectorToLight(light, point);
   const glm::dvec3 there = point + way * ((1 - point.y) / way.y);
   return 1 - std::max(std::abs(there.x), std::abs(there.z));
 }
@@ -179,7 +179,7 @@ std::array<double, 4> wayInside(const Light& light, const glm::dvec3& point) {
   for (int i = 0; i < 4; ++i) {
     const glm::dvec3 out = i < 2 ? glm::dvec3(1 - 2 * i, 0, 0) : glm::dvec3(0, 0, 5 - 2 * i);
     const glm::dvec3 rim = middle + out, along(out.z, 0, out.x);
-    const glm::dvec3 normal = glm::normalize(glm::cross(along, wayToLight(light, rim)));
+    const glm::dvec3 normal = glm::normalize(glm::cross(along, vectorToLight(light, rim)));
     ways[i] = glm::dot(point - rim, normal) * (glm::dot(normal, out) < 0 ? 1 : -1);
   }
   return ways;

@@ -18,15 +18,6 @@ struct Outcome {
   std::string out, err;
 };
 
-inline std::string readText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-inline void writeText(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
 /// Runs a shell line in `folder` as a person would type it, with "luciole" as the program.
 inline Outcome runLine(const TemporaryFolder& folder, const std::string& line) {
   const std::string out = folder / ".stdout", err = folder / ".stderr";

@@ -11,12 +11,10 @@
 #include "hard_cases/surfaces_seen.hpp"
 #include "kernels/random_scene.hpp"
 #include "render_json.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// A glossy surface that scatters a light's own ambient as well.
 SurfaceSeen glossy(const glm::vec3& position, const glm::vec3& normal = {0, 0, 1}) {
@@ -257,14 +255,18 @@ Crowd crowd(int count, bool equal) {
 // round alike, really so: a million of these come out 1.3 % too dark. In blocks of kSumBlock whose sums are
 // added without error the growth ends: see finish_sum in kernels/long_sum.clh.
 TEST(HardLights, MillionLightsAddUpLikeOneAMillionTimesAsBright) {
-  std::vector<SurfaceSeen> points;
-  for (const SurfaceSeen& seen : bumpyWall())
-    if (points.size() < 16) points.push_back(seen);
-  for (SurfaceSeen& seen : points) seen.diffuse = seen.specular = seen.ambient = glm::vec3(1);
   Light one = pointLight({1, 2, -1});
   one.diffuse = {1, 0, 0};
   one.specular = {0, 1, 0};
   one.ambient = {0, 0, 1};
+  std::vector<SurfaceSeen> points;
+  for (SurfaceSeen seen : bumpyWall()) {
+    seen.diffuse = seen.specular = seen.ambient = glm::vec3(1);
+    seen.shininess = 2;
+    const glm::vec3 color = shadedPoints(16, sceneWith({one}), {seen})[0];
+    if (std::min({color.r, color.g, color.b}) > 1e-3f && points.size() < 16) points.push_back(seen);
+  }
+  ASSERT_EQ(points.size(), 16u) << "each of the three sums is seen at each point";
   const auto single = shadedPoints(16, sceneWith({one}), points);
   for (const bool equal : {true, false}) {
     const Crowd many = crowd(1000000, equal);

@@ -12,13 +12,12 @@
 #include "image/oiio.hpp"
 #include "kernels/random_scene.hpp"
 #include "render_json.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 bool isFinite(const std::vector<float>& values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });

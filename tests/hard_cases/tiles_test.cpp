@@ -9,11 +9,10 @@
 
 #include "gbuffer/gbuffer_file.hpp"
 #include "hard_cases/shot.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST(HardTiles, BackgroundAloneNeedsNoLights) {
   // A ball in the middle of a picture, which in each direction is lit by both lights: they give ambient

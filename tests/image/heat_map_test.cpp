@@ -21,7 +21,6 @@ using Codes = std::array<int, 3>;  ///< sRGB of 8 bits, as a viewer shows it
 
 constexpr Codes kLowest{68, 1, 84}, kHighest{253, 231, 37};  // viridis's ends
 constexpr Codes kBlack{0, 0, 0}, kWhite{255, 255, 255}, kRed{255, 0, 0};
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 ImageDifference differences(int width, int height, const std::vector<double>& of_pixel) {
   ImageDifference d;
@@ -91,7 +90,7 @@ TEST(ErrorMap, TheScaleIsOfWholeDecadesAroundTheDifferences) {
 }
 
 TEST(ErrorMap, WhatHasNoPlaceOnTheScaleHasAColorOfItsOwn) {
-  const std::vector<Codes> colors = colorsOf({0.0, kNotCompared, kInf, 0.5});
+  const std::vector<Codes> colors = colorsOf({0.0, kNotCompared, HUGE_VAL, 0.5});
   EXPECT_EQ(colors[0], kBlack);
   EXPECT_EQ(colors[2], kRed);
   EXPECT_EQ(colors[1][0], colors[1][1]);

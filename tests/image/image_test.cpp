@@ -27,7 +27,9 @@
 namespace luciole {
 namespace {
 
+using test::filesIn;
 using test::messageOf;
+using test::readText;
 using test::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -51,19 +53,6 @@ float channelValue(const Image& image, std::size_t pixel, const std::string& cha
 double linearOfByte(int code) {
   const double c = code / 255.0;
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-std::vector<std::string> filesIn(const TemporaryFolder& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-    names.push_back(entry.path().filename().string());
-  }
-  return names;
-}
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 TEST(Image, EveryEightBitCodeSurvivesARoundTrip) {
@@ -159,10 +148,10 @@ TEST(Image, MetadataIsStored) {
       {"Software", "Luciole 1"}, {"ImageDescription", "render a.json"}, {"luciole:device", "pocl"}};
   writeImage(image, folder / "a.exr", metadata);
   for (const char* text : {"Luciole 1", "render a.json", "luciole:device"}) {
-    EXPECT_THAT(bytesOf(folder / "a.exr"), HasSubstr(text));
+    EXPECT_THAT(readText(folder / "a.exr"), HasSubstr(text));
   }
   writeImage(image, folder / "a.png", metadata);
-  EXPECT_THAT(bytesOf(folder / "a.png"),
+  EXPECT_THAT(readText(folder / "a.png"),
               AllOf(HasSubstr("Luciole 1"), HasSubstr("render a.json"), HasSubstr("sRGB")));
 }
 
@@ -188,7 +177,7 @@ TEST(Image, PngTextIsLatin1OrSaysThatItIsUtf8) {
     EXPECT_EQ(readAttribute(folder / "a.png", "luciole:reference"), text);
     EXPECT_EQ(readAttribute(folder / "a.png", "Software"), "Luciole");
     int international = 0;
-    for (const auto& [type, content] : chunksOf(bytesOf(folder / "a.png"))) {
+    for (const auto& [type, content] : chunksOf(readText(folder / "a.png"))) {
       if (type != "tEXt" && type != "iTXt") continue;
       // ISO 15948: iTXt is UTF-8, uncompressed here (two zeros), of no language (two more), tEXt Latin-1.
       EXPECT_EQ(content.find(utf8) != std::string::npos, type == "iTXt") << type;
@@ -214,9 +203,9 @@ TEST(Image, TheFormatMayBeNamedApartFromTheFile) {
   const Image image = rampPicture(8, 8, {"R", "G", "B"});
   writeImage(image, folder / "a", {}, {.format = "exr"});
   EXPECT_EQ(readImage(folder / "a").channels.size(), 3u);
-  EXPECT_EQ(bytesOf(folder / "a").substr(0, 4), "\x76\x2f\x31\x01");
+  EXPECT_EQ(readText(folder / "a").substr(0, 4), "\x76\x2f\x31\x01");
   writeImage(image, folder / "b.exr", {}, {.format = "PNG"});
-  EXPECT_EQ(bytesOf(folder / "b.exr").substr(0, 4), "\x89PNG");
+  EXPECT_EQ(readText(folder / "b.exr").substr(0, 4), "\x89PNG");
   EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}, {.format = "pgn"}); }),
               HasSubstr("unknown format 'pgn'"));
   EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}); }), HasSubstr("--format"));
@@ -229,7 +218,7 @@ TEST(Image, EveryFormatCanBeSentThroughAFifo) {
   ASSERT_EQ(mkfifo((folder / "fifo").c_str(), 0600), 0);
   for (const char* format : {"png", "exr", "tif", "jpg", "ppm", "hdr", "tga", "bmp", "webp"}) {
     std::string sent;
-    std::thread reader([&] { sent = bytesOf(folder / "fifo"); });
+    std::thread reader([&] { sent = readText(folder / "fifo"); });
     writeImage(image, folder / "fifo", {}, {.format = format});
     reader.join();
     std::ofstream(folder / "received", std::ios::binary) << sent;
@@ -301,7 +290,7 @@ int fillASmallDisk() {
   if (mount("none", place.c_str(), "tmpfs", 0, "size=32k") != 0) return kNoSmallDisk;
   const TemporaryFolder folder;
   writeImage(small, folder / "b.exr", {});
-  const std::string before = bytesOf(folder / "b.exr");
+  const std::string before = readText(folder / "b.exr");
   for (const std::string& name : kFileNames) {
     try {
       writeImage(noise, folder / name, {});
@@ -312,7 +301,7 @@ int fillASmallDisk() {
       return 3;
     }
   }
-  if (bytesOf(folder / "b.exr") != before) return 4;
+  if (readText(folder / "b.exr") != before) return 4;
   if (filesIn(folder) != std::vector<std::string>{"b.exr"}) return 5;
   return 0;
 }
@@ -356,7 +345,7 @@ TEST(Image, TruncatedFilesAreErrors) {
   for (const char* name : {"a.png", "a.exr", "a.tif", "a.hdr", "a.ppm", "a.bmp", "a.jpg", "a.tga"}) {
     SCOPED_TRACE(name);
     writeImage(image, folder / name, {});
-    const std::string bytes = bytesOf(folder / name);
+    const std::string bytes = readText(folder / name);
     std::ofstream(folder / name, std::ios::binary | std::ios::trunc) << bytes.substr(0, bytes.size() / 2);
     EXPECT_THAT(messageOf<InputError>([&] { readImage(folder / name); }), Not(HasSubstr("\n")));
   }

@@ -11,6 +11,8 @@
 namespace luciole {
 namespace {
 
+using test::filesIn;
+using test::readText;
 using test::TemporaryFolder;
 
 const std::vector<std::string> kExtensions{"exr", "tif", "hdr", "png", "jpg", "ppm", "bmp", "tga", "sgi"};
@@ -27,15 +29,6 @@ Image cutRows(const Image& image, int first, int count) {
           count,
           image.channels,
           {image.pixels.begin() + first * row, image.pixels.begin() + (first + count) * row}};
-}
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::ptrdiff_t filesIn(const TemporaryFolder& folder) {
-  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
 }
 
 TEST(ImageWriter, PiecesOfAnyHeightMakeTheWholePicture) {
@@ -66,9 +59,9 @@ TEST(ImageWriter, WhatIsNotFinishedLeavesTheOldFileAndNothingElse) {
       ImageWriter writer(path, image.width, image.height, image.channels, {});
       if (rows > 0) writer.write(cutRows(image, 0, rows));
     }
-    EXPECT_EQ(bytesOf(path), "old") << extension;
+    EXPECT_EQ(readText(path), "old") << extension;
   }
-  EXPECT_EQ(filesIn(folder), std::ptrdiff_t(kExtensions.size()));
+  EXPECT_EQ(filesIn(folder).size(), kExtensions.size());
 }
 
 }  // namespace

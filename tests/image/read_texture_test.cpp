@@ -171,8 +171,7 @@ TEST(ReadTexture, AFileInMemoryReadsAsOnDisk) {
   for (int i = 0; i < 105; ++i) image.pixels.push_back(float(i) / 105);
   for (const char* name : {"a.png", "a.jpg"}) {
     writeImage(image, folder / name, {});
-    std::ifstream stream(folder / name, std::ios::binary);
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
+    const std::string bytes = test::readText(folder / name);
     const Texture in_memory = readTexture(std::as_bytes(std::span(bytes)), "a.glb: image 3");
     const Texture on_disk = readTexture(folder / name);
     EXPECT_EQ(in_memory.name, "a.glb: image 3");

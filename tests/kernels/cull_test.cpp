@@ -12,12 +12,11 @@
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "scene/bounds.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
 
-constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr unsigned kGroupLog2s[] = {4, 6, 8};
 constexpr unsigned kTests[] = {kByRange, kByCone, kByCone | kByFacing};
 

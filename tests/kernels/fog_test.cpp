@@ -7,11 +7,10 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/shared.h"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
-
-constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 
 struct FogCase {
   uint mode;

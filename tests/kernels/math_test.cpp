@@ -12,13 +12,10 @@
 #include "base/error.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "kernels/math_functions.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 
 // With what only some compilers have, and as a device without compiles them.
 constexpr const char* kDialects[] = {"", "-DSTANDARD_ONLY=1 "};
@@ -111,7 +108,8 @@ TEST(MathKernels, OnlyWhatSaysSoFusesAProductAndASum) {
   for (const int lanes : kAllLanes) {
     for (const char* dialect : kDialects) {
       const auto of = [&](const char* kernel) {
-        return probe(deviceWithLanes(lanes), "math_probe.cl", kernel, {{a}, {a}, {-rounded}}, 1, {}, dialect)[0];
+        return probe(deviceWithLanes(lanes), "math_probe.cl", kernel, {{a}, {a}, {-rounded}}, 1, {},
+                     dialect)[0];
       };
       EXPECT_EQ(of("probe_fma"), Column{0x1p-46f}) << lanes << dialect;
       EXPECT_EQ(of("probe_product_and_sum"), Column{0}) << lanes << dialect;

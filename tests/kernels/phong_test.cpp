@@ -6,11 +6,10 @@
 #include <random>
 
 #include "kernels/probe.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
-
-constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
 
 /// Cases for one exponent: float vectors, unit but for the one to the light, the eye near enough to the
 /// mirror direction to see the lobe.

@@ -10,14 +10,13 @@
 #include "reference/models.hpp"
 #include "scene/model.hpp"
 #include "scene/scene.hpp"
+#include "single_precision.hpp"
 
 // What float may make of the lighting equation: for each pixel an interval that holds both the exact value
 // and every value that shading in float may come to. Each factor of the equation is monotone in one quantity
 // (a distance or a cosine) and not negative; so the error of that quantity, counted in roundings, gives the
 // factor's interval, edges such as a spot's cutoff included, and intervals multiply and add end by end.
 namespace luciole::test {
-
-inline constexpr double kUnit = 0x1p-24;  ///< the relative error of one rounding
 
 struct Interval {
   double low = 0, high = 0;

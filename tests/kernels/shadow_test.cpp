@@ -10,11 +10,11 @@
 #include "kernels/probe.hpp"
 #include "kernels/shared.h"
 #include "raster/coverage.hpp"
+#include "single_precision.hpp"
 
 namespace luciole::test {
 namespace {
 
-constexpr double kUnit = 0x1p-24;          // the relative error of one rounding
 constexpr float kCloser = 1e30f;           // a depth that hides everything
 constexpr double kSlopeRounding = 0x1p-8;  // see packSlopes()
 

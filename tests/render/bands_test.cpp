@@ -12,7 +12,7 @@ namespace {
 
 /// Triangles of all sizes, some behind the camera; shadows of every kind, fog, lights with and without a
 /// range.
-constexpr const char* kScene =
+constexpr const char* kBandsScene =
     R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 60}, "background": [0, 0, 0.25], "ambient": 0.1,
   "fog": {"mode": "exp2", "density": [0.05, 0.02, 0.01], "color": [0.2, 0.3, 0.4]},
   "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}, "e": {"emission": [0.2, 0.1, 0]}},
@@ -25,14 +25,6 @@ constexpr const char* kScene =
 
 const std::vector<Aov> kAllLayers{Aov::kPosition, Aov::kNormal,     Aov::kDepth, Aov::kDiffuse,
                                   Aov::kMaterial, Aov::kLightCount, Aov::kShadow};
-
-RenderSettings settingsFor(const Scene& scene, glm::ivec2 size) {
-  RenderSettings settings;
-  settings.size = size;
-  settings.camera = scene.cameras.front();
-  settings.shade.shadow_limits.size = 256;
-  return settings;
-}
 
 /// Renders in one piece and in bands of several heights.
 void expectSameInBands(const Scene& scene, RenderSettings settings) {
@@ -49,12 +41,12 @@ void expectSameInBands(const Scene& scene, RenderSettings settings) {
 }
 
 TEST(Bands, TheirHeightChangesNoPicture) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   expectSameInBands(scene, settingsFor(scene, {100, 150}));
 }
 
 TEST(Bands, TheirHeightChangesNoShadowOrLayerByAnyMethod) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {100, 150});
   settings.aovs = kAllLayers;
   for (const auto method :
@@ -65,7 +57,7 @@ TEST(Bands, TheirHeightChangesNoShadowOrLayerByAnyMethod) {
 }
 
 TEST(Bands, TheirHeightChangesNoSumOfSamplesWithLayers) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {100, 90});
   settings.samples = 3;
   settings.exposure = 0.5f;
@@ -74,14 +66,14 @@ TEST(Bands, TheirHeightChangesNoSumOfSamplesWithLayers) {
 }
 
 TEST(Bands, TheirHeightChangesNoCrop) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {130, 170});
   settings.crop = Crop{21, 37, 90, 121};
   expectSameInBands(scene, settings);
 }
 
 TEST(Bands, TheirHeightChangesNoGouraudOrFlatPicture) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {100, 150});
   for (const Shading shading : {Shading::kGouraud, Shading::kFlat}) {
     settings.shading = shading;
@@ -90,7 +82,7 @@ TEST(Bands, TheirHeightChangesNoGouraudOrFlatPicture) {
 }
 
 TEST(Bands, CountsAreThoseOfOnePiece) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {130, 300});
   settings.crop = Crop{21, 37, 90, 223};
   settings.samples = 2;
@@ -110,7 +102,7 @@ TEST(Bands, CountsAreThoseOfOnePiece) {
 }
 
 TEST(Bands, ComeFromTheTopDownAndEachPassIsReported) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {40, 150});
   settings.samples = 2;
   settings.band_height = 64;
@@ -137,7 +129,7 @@ TEST(BandHeight, IsAsFewBandsOfWholeBinsAsFitTheBudget) {
 }
 
 TEST(Bands, AWidePictureHasNoSeamsAndTakesNoMoreThanABand) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {16384, 160});
   settings.camera.fov_y = 0.02;
   Stats whole, bands;

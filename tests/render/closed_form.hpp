@@ -9,14 +9,14 @@
 #include <string>
 
 #include "render_json.hpp"
+#include "single_precision.hpp"
 
 // A floor seen from above, and what light does to it by formulas of this file's own, with how far float may
 // be off. Nothing is taken from the G-buffer or the reference.
 namespace luciole::test {
 
-inline constexpr double kUnit = 0x1p-24;  // the relative error of one rounding
-inline constexpr int kSide = 32;          // pixels a side; even, so that pixels lie at binary fractions
-inline constexpr double kEyeHeight = 2;   // metres above the floor
+inline constexpr int kSide = 32;         // pixels a side; even, so that pixels lie at binary fractions
+inline constexpr double kEyeHeight = 2;  // metres above the floor
 
 /// A floor at y = 0 that fills a square picture, seen straight from above; 90 degrees wide, or by a parallel
 /// view of the same part. Its material is "m".

@@ -15,19 +15,6 @@
 namespace luciole::test {
 namespace {
 
-RenderSettings settingsFor(const Scene& scene, glm::ivec2 size) {
-  RenderSettings settings;
-  settings.size = size;
-  settings.camera = scene.cameras.front();
-  settings.shade.shadow_limits.size = 256;  // to save time
-  return settings;
-}
-
-Image picture(const Scene& scene, const RenderSettings& settings, Device& device = testDevice()) {
-  Stats stats;
-  return renderScene(device, scene, settings, stats);
-}
-
 /// By bits, so that −0 is not 0.
 bool sameBits(const Image& a, const Image& b) {
   return a.pixels.size() == b.pixels.size() &&
@@ -183,7 +170,7 @@ TEST(Exact, CullingChangesNoBitOfRandomScenesOfAnySize) {
 }
 
 /// A floor and a ball on it, with no lights.
-constexpr const char* kFloor =
+constexpr const char* kExactFloor =
     R"({"camera": {"eye": [1.1, 1.3, 5.7], "target": [0.1, 0.2, 0.3], "up": [0.1, 1, 0.2]},
   "materials": {"m": {"diffuse": 0.8, "specular": 0.5, "shininess": 20}},
   "objects": [{"primitive": "plane", "scale": 30, "material": "m"}, {"primitive": "sphere", "translate": [0.3, 1, 0.2], "material": "m"}]})";
@@ -199,7 +186,7 @@ Light lampAt(const glm::dvec3& position, float brightness) {
 // Bright lamps as high above a floor, or below it, as roundings lift or lower it: it looks up to some of them
 // by no more than that, and shows it.
 TEST(Exact, CullingChangesNoBitOfAFloorThatLampsGraze) {
-  Scene scene = sceneFromJson(kFloor);
+  Scene scene = sceneFromJson(kExactFloor);
   Random random(12);
   for (int i = 0; i < 120; ++i) {
     const double height =
@@ -222,7 +209,7 @@ TEST(Exact, CullingChangesNoBitOfAFloorThatLampsGraze) {
 
 // Spots that shine along surfaces and through them, from narrower than a float's cosine tells to all around.
 TEST(Exact, CullingChangesNoBitUnderSpotsOfAnyWidth) {
-  Scene scene = sceneFromJson(kFloor);
+  Scene scene = sceneFromJson(kExactFloor);
   Random random(2);
   for (int i = 0; i < 120; ++i) {
     Light spot = lampAt({random.between(-4, 4), random.between(-0.5, 4), random.between(-4, 4)}, 100);
@@ -244,7 +231,7 @@ TEST(Exact, LightsThatAddNothingCloseNoBlockOfASum) {
     return lampAt({random.between(-6, 6), height, random.between(-6, 6)}, float(random.between(0.01, 1)));
   };
   for (const int blocks : {3, 4}) {
-    Scene scene = sceneFromJson(kFloor);
+    Scene scene = sceneFromJson(kExactFloor);
     scene.objects.pop_back();
     scene.lights.push_back(lampAtHeight(-1));
     for (int i = 0; i < blocks * kSumBlock; ++i) scene.lights.push_back(lampAtHeight(random.between(0.5, 4)));

@@ -14,7 +14,7 @@
 namespace luciole::test {
 namespace {
 
-constexpr glm::ivec2 kSize{147, 93};
+constexpr glm::ivec2 kOddSize{147, 93};
 
 /// Many triangles of all sizes under shadowed lights of every kind, some of them behind the camera.
 Scene crowdedScene(bool orthographic, Random& random) {
@@ -46,7 +46,7 @@ Scene crowdedScene(bool orthographic, Random& random) {
   return scene;
 }
 
-ShadeSettings settingsFor(Culling culling, ShadowMethod method) {
+ShadeSettings shadeSettings(Culling culling, ShadowMethod method) {
   ShadeSettings settings;
   settings.culling = culling;
   settings.shadows = method;
@@ -59,7 +59,7 @@ ShadeSettings settingsFor(Culling culling, ShadowMethod method) {
 struct Prepared {
   Prepared(Device& device, const Scene& scene_, const ShadeSettings& settings) : scene(scene_) {
     const Camera& camera = scene.cameras.front();
-    const View view = cameraView(camera, kSize);
+    const View view = cameraView(camera, kOddSize);
     features = neededFeatures(scene, camera, materialTraits(scene), settings);
     gbuffer = rasterize(scene, allObjects(scene), view, Shading::kFlat, neededPlanes(features));
     prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
@@ -105,7 +105,7 @@ TEST(FindNeeded, EveryTexelThatALookupReadsIsDrawn) {
       for (const int lanes : {1, 16}) {
         Device& device = deviceWithLanes(lanes);
         const Scene scene = crowdedScene(orthographic, random);
-        Prepared prepared(device, scene, settingsFor(culling, ShadowMethod::kPcf));
+        Prepared prepared(device, scene, shadeSettings(culling, ShadowMethod::kPcf));
         prepared.light(device);
         const ShadowMaps& maps = prepared.lighting.host_shadows;
         const GBuffer& gbuffer = prepared.gbuffer;
@@ -148,8 +148,8 @@ TEST(FindNeeded, PictureIsTheSameAsWithEveryTexelDrawn) {
         for (const int lanes : {1, 16}) {
           Device& device = deviceWithLanes(lanes);
           const Scene scene = crowdedScene(orthographic, random);
-          Prepared some(device, scene, settingsFor(culling, method)),
-              all(device, scene, settingsFor(culling, method));
+          Prepared some(device, scene, shadeSettings(culling, method)),
+              all(device, scene, shadeSettings(culling, method));
           all.drawEverything(device);
           const Plane a = some.light(device), b = all.light(device);
           EXPECT_EQ(a, b) << lanes << " lanes";
@@ -164,7 +164,7 @@ TEST(FindNeeded, NothingThatIsSeenNeedsNothing) {
   // From outside, looking away.
   scene.cameras.front().camera_to_world =
       scene.cameras.front().camera_to_world * glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -100));
-  Prepared prepared(device, scene, settingsFor(Culling::kTiles, ShadowMethod::kPcf));
+  Prepared prepared(device, scene, shadeSettings(Culling::kTiles, ShadowMethod::kPcf));
   prepared.light(device);
   EXPECT_FALSE(prepared.lighting.host_shadows.maps.empty());
   EXPECT_TRUE(prepared.lighting.host_shadows.texels.empty());
@@ -180,11 +180,11 @@ TEST(FindNeeded, ScenesThatCastAlikeShareItsProgram) {
     return std::count_if(device.programs.begin(), device.programs.end(),
                          [](const auto& program) { return program.first.ends_with("find_needed.cl"); });
   };
-  Prepared(device, scene, settingsFor(Culling::kTiles, ShadowMethod::kHard)).light(device);
+  Prepared(device, scene, shadeSettings(Culling::kTiles, ShadowMethod::kHard)).light(device);
   const auto before = programs();
   EXPECT_GT(before, 0);
   scene.fog = {.mode = FogMode::kExp, .density = glm::vec3(0.01f)};
-  ShadeSettings others = settingsFor(Culling::kTiles, ShadowMethod::kPcf);
+  ShadeSettings others = shadeSettings(Culling::kTiles, ShadowMethod::kPcf);
   others.model = Model::kToon;
   others.pcf_width = 4;
   Prepared(device, scene, others).light(device);

@@ -26,7 +26,7 @@ constexpr const char* kPlane = R"({"primitive": "plane", "scale": 12, "material"
 constexpr const char* kBox =
     R"({"primitive": "box", "scale": [3, 1, 3], "translate": [0, -0.5, 0], "material": "white"})";
 
-Image picture(const std::string& json, Shading shading, Stats* stats = nullptr) {
+Image floorPicture(const std::string& json, Shading shading, Stats* stats = nullptr) {
   const Scene scene = sceneFromJson(json);
   RenderSettings settings;
   settings.size = {81, 81};  // the middle one's centre is at the origin
@@ -45,8 +45,8 @@ float at(const Image& image, double x, double z) {
 
 TEST(Gouraud, WhatIsFlatShowsSpotsAndShadows) {
   for (const char* floor : {kPlane, kBox}) {
-    const Image phong = picture(spotOn(floor), Shading::kPhong),
-                gouraud = picture(spotOn(floor), Shading::kGouraud);
+    const Image phong = floorPicture(spotOn(floor), Shading::kPhong),
+                gouraud = floorPicture(spotOn(floor), Shading::kGouraud);
     // The middle is lit as by Phong: of the squares of 0.19 m the corners at most 0.27 m away are too, at
     // which the light falls on the floor by an angle whose cosine is 8 / |(8, 0.27)|, which is above 0.999.
     EXPECT_NEAR(at(gouraud, 0, 0), at(phong, 0, 0), 1e-3) << floor;
@@ -66,14 +66,14 @@ TEST(Gouraud, ReferenceDividesTheSame) {
   const std::vector<glm::dvec3> truth = referencePicture(scene, cameraView(scene.cameras.front(), size),
                                                          Shading::kGouraud, 1, allPixels(size), {});
   // The middle is lit by 1 in both.
-  EXPECT_NEAR(truth[40 * 81 + 40].x, at(picture(spotOn(kPlane), Shading::kGouraud), 0, 0), 1e-5);
+  EXPECT_NEAR(truth[40 * 81 + 40].x, at(floorPicture(spotOn(kPlane), Shading::kGouraud), 0, 0), 1e-5);
 }
 
 TEST(Gouraud, OtherShadingsAndShadowsKeepTheTwoTriangles) {
   Stats phong, flat, gouraud;
-  picture(spotOn(kPlane), Shading::kPhong, &phong);
-  picture(spotOn(kPlane), Shading::kFlat, &flat);
-  picture(spotOn(kPlane), Shading::kGouraud, &gouraud);
+  floorPicture(spotOn(kPlane), Shading::kPhong, &phong);
+  floorPicture(spotOn(kPlane), Shading::kFlat, &flat);
+  floorPicture(spotOn(kPlane), Shading::kGouraud, &gouraud);
   const auto submitted = [](const Stats& stats) { return countOf(stats, "triangles_submitted"); };
   EXPECT_EQ(submitted(phong), 2u + 12u);
   EXPECT_EQ(submitted(flat), 2u + 12u);

@@ -37,12 +37,12 @@ Case caseOf(const SceneJson& json, ShadowMethod shadows) {
   return made;
 }
 
-Image picture(const Case& of, Device& device = testDevice()) {
+Image pictureOf(const Case& of, Device& device = testDevice()) {
   Stats stats;
   return renderScene(device, of.scene, of.settings, stats);
 }
 
-Image picture(const SceneJson& json, ShadowMethod shadows) { return picture(caseOf(json, shadows)); }
+Image pictureOf(const SceneJson& json, ShadowMethod shadows) { return pictureOf(caseOf(json, shadows)); }
 
 GBuffer gbufferOf(const Case& of) {
   Stats stats;
@@ -86,11 +86,11 @@ Failure cullingChangesSomething(const SceneJson& json, Shading shading) {
   Case made = caseOf(json, ShadowMethod::kPcf);
   made.settings.shading = shading;
   made.settings.shade.culling = Culling::kNone;
-  const Image all = picture(made);
+  const Image all = pictureOf(made);
   made.settings.shade.culling = Culling::kTiles;
   for (const int tile_size : {4, 8, 16}) {
     made.settings.shade.tile_size = tile_size;
-    if (const auto different = unequal(all, picture(made)))
+    if (const auto different = unequal(all, pictureOf(made)))
       return fmt::format("tiles of {}: {}", tile_size, *different);
   }
   return std::nullopt;
@@ -129,12 +129,12 @@ TEST(Property, TilesAndCropsChangeNothing) {
        "luciole render $SCENE --model $MODEL --crop 5,3,9,11 -o crop.exr",
        [](const SceneJson& json) -> Failure {
          Case made = caseOf(json, ShadowMethod::kPcf);
-         const Image whole = picture(made);
+         const Image whole = pictureOf(made);
          const glm::ivec2 size = made.settings.size;
          for (const Crop& crop :
               {Crop{1, 1, size.x - 1, size.y - 1}, {5, 3, 9, 11}, {3, 7, size.x / 2, size.y / 2}}) {
            made.settings.crop = crop;
-           if (const auto different = unequal(cutOut(whole, crop), picture(made)))
+           if (const auto different = unequal(cutOut(whole, crop), pictureOf(made)))
              return fmt::format("crop {},{},{},{}: {}", crop.x, crop.y, crop.width, crop.height, *different);
          }
          return std::nullopt;
@@ -162,8 +162,7 @@ TEST(Property, UnusedFeaturesChangeNothing) {
          const Plane least =
              lightGBuffer(testDevice(), made.scene, lighting, needed, gbuffer, {}, stats).color;
          const Plane most =
-             lightGBuffer(testDevice(), made.scene, lighting, everyFeature(needed), gbuffer, {}, stats)
-                 .color;
+             lightGBuffer(testDevice(), made.scene, lighting, everyFeature(needed), gbuffer, {}, stats).color;
          for (std::size_t i = 0; i < least.size(); ++i)
            if (least[i] != most[i])
              return fmt::format("value {}: {:.9g} by the least program, {:.9g} by the full", i, least[i],
@@ -209,12 +208,12 @@ TEST(Property, BrighterLightsScaleThePicture) {
   const auto failure = hunt(
       {"Scaling", kLookAtScene,
        [](const SceneJson& json) -> Failure {
-         const Image once = picture(json, ShadowMethod::kPcf);
+         const Image once = pictureOf(json, ShadowMethod::kPcf);
          const double terms = (json.contains("lights") ? double(json["lights"].size()) : 0.0) + 12;
          for (const double factor : {0.25, 8.0, 3.0}) {
            const double error = factor == 3 ? 2 * terms * kUnit : 0;
-           const auto wrong =
-               differences(once, picture(brighter(json, factor), ShadowMethod::kPcf), [&](float a, float b) {
+           const auto wrong = differences(
+               once, pictureOf(brighter(json, factor), ShadowMethod::kPcf), [&](float a, float b) {
                  return !(std::abs(b - factor * a) <= error * factor * a + terms * (factor + 1) * 0x1p-126);
                });
            if (wrong) return fmt::format("{} times as bright: {}", factor, *wrong);
@@ -233,9 +232,9 @@ TEST(Property, LanesChangeNothing) {
             "for n in 1 4 8; do luciole compare $n.exr 16.exr --max-abs 0; done",
             [](const SceneJson& json) -> Failure {
               const Case made = caseOf(json, ShadowMethod::kPcf);
-              const Image scalar = picture(made, deviceWithLanes(1));
+              const Image scalar = pictureOf(made, deviceWithLanes(1));
               for (const int lanes : {4, 8, 16})
-                if (const auto different = unequal(scalar, picture(made, deviceWithLanes(lanes))))
+                if (const auto different = unequal(scalar, pictureOf(made, deviceWithLanes(lanes))))
                   return fmt::format("1 lane and {}: {}", lanes, *different);
               return std::nullopt;
             }},
@@ -244,7 +243,7 @@ TEST(Property, LanesChangeNothing) {
 }
 
 Failure shadowsAreWrong(const SceneJson& json) {
-  const Image lit = picture(json, ShadowMethod::kOff), shadowed = picture(json, ShadowMethod::kPcf);
+  const Image lit = pictureOf(json, ShadowMethod::kOff), shadowed = pictureOf(json, ShadowMethod::kPcf);
   if (const auto bad =
           differences(lit, shadowed, [](float a, float b) { return !std::isfinite(a) || !std::isfinite(b); }))
     return fmt::format("not finite: {}", *bad);
@@ -289,7 +288,7 @@ TEST(Property, PicturesAgreeWithTheReference) {
   const auto failure = hunt({"Reference", fmt::format("{} --shadows off", kLookAtScene),
                              [](const SceneJson& json) {
                                const Case made = caseOf(json, ShadowMethod::kOff);
-                               return outsideBounds(made, gbufferOf(made), picture(made));
+                               return outsideBounds(made, gbufferOf(made), pictureOf(made));
                              }},
                             firstSeed(), 36);
   EXPECT_FALSE(failure) << *failure;
@@ -368,7 +367,7 @@ Failure movingChangesSomething(const SceneJson& json, double degrees, const glm:
   const Case here = caseOf(moved(json, 0, glm::dvec3(0)), ShadowMethod::kOff);
   const Case there = caseOf(moved(json, degrees, offset), ShadowMethod::kOff);
   const GBuffer a = gbufferOf(here), b = gbufferOf(there);
-  const Image image_a = picture(here), image_b = picture(there);
+  const Image image_a = pictureOf(here), image_b = pictureOf(there);
   const auto lights_a = prepareLights(here.scene, here.settings.camera, {});
   const auto lights_b = prepareLights(there.scene, there.settings.camera, {});
   const bool equal_lights =

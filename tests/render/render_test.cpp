@@ -30,7 +30,7 @@ TEST(SamplePoint, SamplesFillEveryRowAndColumnOnceForPowersOfTwo) {
   }
 }
 
-constexpr const char* kScene =
+constexpr const char* kRenderScene =
     R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0]}, "ambient": [0.1, 0.1, 0.1],
   "fog": {"mode": "exp", "density": [0.05, 0.02, 0.01], "color": [0.2, 0.3, 0.4]},
   "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
@@ -40,7 +40,7 @@ constexpr const char* kScene =
              {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "inner_cone": 10, "outer_cone": 30, "attenuation": [0, 0, 0.1]}]})";
 
 TEST(Render, AgreesWithTheDoublePrecisionReference) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kRenderScene);
   RenderSettings settings;
   settings.size = {160, 90};
   settings.camera = scene.cameras.front();
@@ -62,7 +62,7 @@ TEST(Render, AgreesWithTheDoublePrecisionReference) {
 }
 
 TEST(Render, PairsAreCountedInAStageOfTheirOwnAndOnlyWhenAskedFor) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kRenderScene);
   RenderSettings settings;
   settings.size = {64, 48};
   settings.camera = scene.cameras.front();
@@ -188,7 +188,7 @@ TEST(Render, MovingCameraAndSceneFarAwayChangesNextToNothing) {
 TEST(Render, CropOutsideThePictureIsRefused) {
   for (const Crop crop :
        {Crop{-1, 0, 2, 2}, {0, 0, 0, 1}, {60, 0, 5, 5}, {0, 0, 2147483647, 1}, {2147483647, 0, 1, 1}})
-    EXPECT_THROW(renderJson(kScene, {64, 36}, [&](RenderSettings& settings) { settings.crop = crop; }),
+    EXPECT_THROW(renderJson(kRenderScene, {64, 36}, [&](RenderSettings& settings) { settings.crop = crop; }),
                  InputError);
 }
 

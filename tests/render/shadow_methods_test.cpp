@@ -8,7 +8,7 @@
 namespace luciole::test {
 namespace {
 
-constexpr const char* kScene = R"({
+constexpr const char* kShadowMethodsScene = R"({
   "camera": {"eye": [3, 2.5, 6], "target": [0, 0.5, 0], "near": 0.1, "far": 50}, "ambient": [0.02, 0.02, 0.03],
   "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
   "objects": [{"primitive": "plane", "scale": 20, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"},
@@ -21,7 +21,7 @@ constexpr const char* kScene = R"({
 class ShadowMethods : public testing::TestWithParam<ShadowMethod> {};
 
 TEST_P(ShadowMethods, PictureIsTheSameForEveryCullingTileAndWidth) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kShadowMethodsScene);
   const auto render = [&](int lanes, Culling culling, int tile_size) {
     RenderSettings settings;
     settings.size = {93, 70};
@@ -44,7 +44,7 @@ TEST_P(ShadowMethods, PictureIsTheSameForEveryCullingTileAndWidth) {
 }
 
 TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
-  Scene scene = sceneFromJson(kScene);
+  Scene scene = sceneFromJson(kShadowMethodsScene);
   for (int i = 0; i < 1000; ++i) {
     Light light;
     light.position = {0.37 * (i % 32) - 6, 0.5 + 0.01 * (i % 7), 0.37 * (i / 32) - 6};
@@ -66,11 +66,6 @@ TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
   EXPECT_LE(countOf(stats, "shadow_bytes"), std::uint64_t(64) << 20);
 }
 
-std::string nameOf(const testing::TestParamInfo<ShadowMethod>& test) {
-  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact"};
-  return kNames[int(test.param)];
-}
-
 // A search that finds no blocker ends there, whatever the pixels beside it find.
 TEST(SoftShadows, OfAPixelDontDependOnItsNeighbours) {
   const Scene scene = loadScene(LUCIOLE_SOURCE_DIR "/scenes/fireflies.json");
@@ -88,7 +83,7 @@ TEST(SoftShadows, OfAPixelDontDependOnItsNeighbours) {
 INSTANTIATE_TEST_SUITE_P(All, ShadowMethods,
                          testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
                                          ShadowMethod::kExact),
-                         nameOf);
+                         shadowMethodName);
 
 }  // namespace
 }  // namespace luciole::test

@@ -14,7 +14,7 @@
 namespace luciole::test {
 namespace {
 
-constexpr glm::ivec2 kSize(160, 120);
+constexpr glm::ivec2 kBallSize(160, 120);
 
 /// Cosine of the angle to the light below which nothing is promised: a shadow
 /// map takes no plane for steeper (LEAST_COSINE in kernels/shadow.clh), and by
@@ -22,8 +22,8 @@ constexpr glm::ivec2 kSize(160, 120);
 /// that a pixel shows.
 constexpr double kGrazing = 0.002;
 
-constexpr const char* kSun = R"({"type": "directional", "direction": [-1, -0.4, 0.1], "shadow": true})";
-constexpr const char* kLamp = R"({"type": "point", "position": [2.5, 1.5, -0.4], "shadow": true})";
+constexpr const char* kLowSun = R"({"type": "directional", "direction": [-1, -0.4, 0.1], "shadow": true})";
+constexpr const char* kNearLamp = R"({"type": "point", "position": [2.5, 1.5, -0.4], "shadow": true})";
 constexpr double kLampDistance = 2.94;  // from the ball's middle
 
 /// A ball of 16 segments and radius 1 in front of the camera.
@@ -80,24 +80,19 @@ Terminator compareWithUnshadowed(const Scene& scene, const Image& shadowed, cons
   return found;
 }
 
-RenderSettings settingsFor(const Scene& scene, ShadowMethod method) {
+RenderSettings ballSettings(const Scene& scene, ShadowMethod method) {
   RenderSettings settings;
-  settings.size = kSize;
+  settings.size = kBallSize;
   settings.camera = scene.cameras.front();
   settings.shade.shadows = method;
   settings.aovs = {Aov::kPosition, Aov::kNormal};
   return settings;
 }
 
-Image picture(const Scene& scene, const RenderSettings& settings) {
-  Stats stats;
-  return renderScene(testDevice(), scene, settings, stats);
-}
-
 void expectSmooth(const std::string& json, ShadowMethod method, bool lamp) {
   const Scene scene = sceneFromJson(json);
-  const Image plain = picture(scene, settingsFor(scene, ShadowMethod::kOff));
-  const Image shadowed = picture(scene, settingsFor(scene, method));
+  const Image plain = picture(scene, ballSettings(scene, ShadowMethod::kOff));
+  const Image shadowed = picture(scene, ballSettings(scene, method));
   const Terminator found = compareWithUnshadowed(scene, shadowed, plain, lamp);
   EXPECT_GT(found.facing, 1000);
   EXPECT_GT(found.grazing, 300) << "the terminator is in sight";
@@ -107,11 +102,11 @@ void expectSmooth(const std::string& json, ShadowMethod method, bool lamp) {
 class TerminatorOf : public testing::TestWithParam<ShadowMethod> {};
 
 TEST_P(TerminatorOf, ABallOfSixteenSegmentsIsSmoothInTheSun) {
-  expectSmooth(ballScene(kSun), GetParam(), false);
+  expectSmooth(ballScene(kLowSun), GetParam(), false);
 }
 
 TEST_P(TerminatorOf, ABallOfSixteenSegmentsIsSmoothByALamp) {
-  expectSmooth(ballScene(kLamp), GetParam(), true);
+  expectSmooth(ballScene(kNearLamp), GetParam(), true);
 }
 
 // The ball touches the walls from within, and start points beyond them would be
@@ -126,7 +121,7 @@ TEST(TerminatorExact, NoLightLeaksThroughAThinWallThatABallTouches) {
             "objects": [{{"primitive": "sphere", "segments": 16, "material": "m"}},
                         {{"primitive": "box", "scale": 2, "material": "m"}}], "lights": [{}]}})",
         light));
-    RenderSettings settings = settingsFor(scene, ShadowMethod::kOff);
+    RenderSettings settings = ballSettings(scene, ShadowMethod::kOff);
     const auto lit = [&] {
       const Image image = picture(scene, settings);
       int count = 0;
@@ -142,8 +137,8 @@ TEST(TerminatorExact, NoLightLeaksThroughAThinWallThatABallTouches) {
 
 // A G-buffer whose facets aren't smooth says so by a lift of 0, or by none.
 TEST_P(TerminatorOf, FlatShadingHasTheBitsThatItHasWithoutLifts) {
-  const Scene scene = sceneFromJson(ballScene(fmt::format("{}, {}", kSun, kLamp)));
-  RenderSettings settings = settingsFor(scene, GetParam());
+  const Scene scene = sceneFromJson(ballScene(fmt::format("{}, {}", kLowSun, kNearLamp)));
+  RenderSettings settings = ballSettings(scene, GetParam());
   settings.aovs = {Aov::kShadow};
   settings.shading = Shading::kFlat;
   Stats stats;
@@ -158,14 +153,15 @@ TEST_P(TerminatorOf, FlatShadingHasTheBitsThatItHasWithoutLifts) {
 // The shading normals are the ellipsoid's, which a mirror and scales make of
 // the ball.
 TEST_P(TerminatorOf, AMirroredEllipsoidIsSmooth) {
-  expectSmooth(ballScene(kSun, R"("primitive": "sphere", "scale": [-0.6, 1.1, 1.4], "rotate": [20, 50, 0])"),
-               GetParam(), false);
+  expectSmooth(
+      ballScene(kLowSun, R"("primitive": "sphere", "scale": [-0.6, 1.1, 1.4], "rotate": [20, 50, 0])"),
+      GetParam(), false);
 }
 
 TEST_P(TerminatorOf, FlatFacetsHaveTheirOwnShadows) {
   // A facet that faces away from the light is dark, and its own normal says so.
-  const Scene scene = sceneFromJson(ballScene(kSun));
-  RenderSettings settings = settingsFor(scene, ShadowMethod::kOff);
+  const Scene scene = sceneFromJson(ballScene(kLowSun));
+  RenderSettings settings = ballSettings(scene, ShadowMethod::kOff);
   settings.shading = Shading::kFlat;
   const Image plain = picture(scene, settings);
   settings.shade.shadows = GetParam();
@@ -174,25 +170,20 @@ TEST_P(TerminatorOf, FlatFacetsHaveTheirOwnShadows) {
   EXPECT_EQ(found.dark, 0);
 }
 
-std::string nameOf(const testing::TestParamInfo<ShadowMethod>& test) {
-  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact"};
-  return kNames[int(test.param)];
-}
-
 INSTANTIATE_TEST_SUITE_P(All, TerminatorOf,
                          testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
                                          ShadowMethod::kExact),
-                         nameOf);
+                         shadowMethodName);
 
 TEST(TerminatorByRays, ReferenceIsSmooth) {
   for (const bool lamp : {false, true}) {
     SCOPED_TRACE(lamp ? "lamp" : "sun");
-    const Scene scene = sceneFromJson(ballScene(lamp ? kLamp : kSun));
-    const RenderSettings settings = settingsFor(scene, ShadowMethod::kOff);
+    const Scene scene = sceneFromJson(ballScene(lamp ? kNearLamp : kLowSun));
+    const RenderSettings settings = ballSettings(scene, ShadowMethod::kOff);
     const Image plain = picture(scene, settings);
-    const View view = cameraView(settings.camera, kSize);
+    const View view = cameraView(settings.camera, kBallSize);
     const RayScene rays = buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3]));
-    const std::vector<glm::ivec2> pixels = allPixels(kSize);
+    const std::vector<glm::ivec2> pixels = allPixels(kBallSize);
     const auto clear = referencePicture(scene, view, Shading::kPhong, 1, pixels, {});
     const auto shadowed = referencePicture(scene, view, Shading::kPhong, 1, pixels, {.shadow_rays = &rays});
     const std::size_t channels = plain.channels.size();

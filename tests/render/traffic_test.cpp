@@ -10,7 +10,7 @@ namespace luciole::test {
 namespace {
 
 /// Shadows of every kind, some of them soft, and lights for the lists.
-constexpr const char* kScene =
+constexpr const char* kTrafficScene =
     R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 60}, "ambient": 0.1,
   "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32}},
   "objects": [{"primitive": "plane", "scale": 20, "segments": 9, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"},
@@ -28,7 +28,7 @@ Device& deviceApart() {
   return device;
 }
 
-RenderSettings settingsFor(const Scene& scene, ShadowMethod method, int samples) {
+RenderSettings sampledSettings(const Scene& scene, ShadowMethod method, int samples) {
   RenderSettings settings;
   settings.size = {100, 150};
   settings.camera = scene.cameras.front();
@@ -47,8 +47,8 @@ Traffic trafficOfPicture(Device& device, const Scene& scene, const RenderSetting
 struct TrafficByMethod : testing::TestWithParam<ShadowMethod> {};
 
 TEST_P(TrafficByMethod, PictureIsTheSameWhereTheDeviceHasMemoryOfItsOwn) {
-  const Scene scene = sceneFromJson(kScene);
-  RenderSettings settings = settingsFor(scene, GetParam(), 2);
+  const Scene scene = sceneFromJson(kTrafficScene);
+  RenderSettings settings = sampledSettings(scene, GetParam(), 2);
   settings.band_height = 64;
   settings.aovs = {Aov::kLightCount, Aov::kShadow};
   Stats stats;
@@ -64,17 +64,17 @@ TEST(Traffic, NothingIsCopiedWhereMemoryIsShared) {
   Device device;
   openDevice("", device);
   if (!device.shares_host_memory) GTEST_SKIP() << "the default device has memory of its own";
-  const Scene scene = sceneFromJson(kScene);
-  const Traffic traffic = trafficOfPicture(device, scene, settingsFor(scene, ShadowMethod::kPcf, 2));
+  const Scene scene = sceneFromJson(kTrafficScene);
+  const Traffic traffic = trafficOfPicture(device, scene, sampledSettings(scene, ShadowMethod::kPcf, 2));
   EXPECT_EQ(traffic.bytes_up, 0u);
   EXPECT_EQ(traffic.bytes_down, 0u);
   EXPECT_GT(traffic.bytes_made, 0u);
 }
 
 TEST(Traffic, OnlyShadowTexelsThatWereDrawnGoUp) {
-  const Scene scene = sceneFromJson(kScene);
+  const Scene scene = sceneFromJson(kTrafficScene);
   constexpr int kSamples = 8;
-  RenderSettings settings = settingsFor(scene, ShadowMethod::kPcf, kSamples);
+  RenderSettings settings = sampledSettings(scene, ShadowMethod::kPcf, kSamples);
   settings.shade.shadow_limits.size = 512;
   Stats with;
   renderScene(deviceApart(), scene, settings, with);

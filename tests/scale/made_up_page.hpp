@@ -42,7 +42,7 @@ inline nlohmann::json madeUpPoint(int lights, int variant, const nlohmann::json&
 }
 
 /// An experiment without points.
-inline nlohmann::json madeUpExperiment() {
+inline nlohmann::json madeUpPageOfNoPoints() {
   return {{"title", "a scene.obj, 1 to 10,000 lights"},
           {"scene", "a scene.obj"},
           {"command", "luciole scale 'a scene.obj' --lights 1,100,10000 -o results"},
@@ -58,7 +58,7 @@ inline nlohmann::json madeUpExperiment() {
 
 /// Three variants at 1, 100 and 10000 lights.
 inline nlohmann::json madeUpVariants() {
-  nlohmann::json data = madeUpExperiment();
+  nlohmann::json data = madeUpPageOfNoPoints();
   const std::vector<std::string> names{"none", "tiles", "a \"tree\", in full"};
   data["axes"] = {{{"name", "culling"}, {"values", names}}};
   for (int variant = 0; variant < 3; ++variant) {
@@ -87,7 +87,7 @@ inline nlohmann::json madeUpVariants() {
 /// Six variants at one number of lights, from fast and wrong to slow and right: times and errors that the
 /// front joins by a line that falls less and less.
 inline nlohmann::json madeUpFront() {
-  nlohmann::json data = madeUpExperiment();
+  nlohmann::json data = madeUpPageOfNoPoints();
   data["axes"] = {{{"name", "way"}, {"values", {0, 1, 2, 3, 4, 5}}}};
   const double errors[] = {1e-3, 3e-5, 1e-5, 7e-6, 6e-6, 5.9e-6};
   for (int way = 0; way < 6; ++way) {
@@ -100,7 +100,7 @@ inline nlohmann::json madeUpFront() {
 
 /// 24 variants of three axes at seven numbers of lights.
 inline nlohmann::json madeUpHundreds() {
-  nlohmann::json data = madeUpExperiment();
+  nlohmann::json data = madeUpPageOfNoPoints();
   data["axes"] = {{{"name", "culling"}, {"values", {"none", "tiles", "tree"}}},
                   {{"name", "tile"}, {"values", {4, 8, 16, 32}}},
                   {{"name", "shadows"}, {"values", {"off", "hard"}}}};

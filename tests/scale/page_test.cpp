@@ -17,14 +17,14 @@
 namespace luciole::test {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-std::string pageOf(const json& data) { return experimentPage(data.dump()); }
+std::string pageOf(const Json& data) { return experimentPage(data.dump()); }
 
 std::size_t countOf(const std::string& text, const std::string& what) {
   std::size_t count = 0;
@@ -46,7 +46,7 @@ std::string chartOf(const std::string& figure) {
 }
 
 /// The values of a chart's lines: {name: [[x, y], …]}.
-json linesOf(Browser& browser, const std::string& figure) {
+Json linesOf(Browser& browser, const std::string& figure) {
   return browser.evaluate(
       "Object.fromEntries(" + chartOf(figure) +
       ".data.datasets.map(line => [line.label, line.data.map(value => [value.x, value.y])]))");
@@ -56,7 +56,7 @@ json linesOf(Browser& browser, const std::string& figure) {
 void choose(Browser& browser, const std::string& id, const std::string& text) {
   browser.evaluate(
       "(() => { const select = document.getElementById('" + id +
-      "'); select.value = [...select.options].find(option => option.text === " + json(text).dump() +
+      "'); select.value = [...select.options].find(option => option.text === " + Json(text).dump() +
       ").value; select.dispatchEvent(new Event('change', {bubbles: true})); })()");
   browser.settle();
 }
@@ -84,7 +84,7 @@ TEST(Page, IsOneFileThatNamesNothingToFetch) {
 }
 
 TEST(Page, EndsItsScriptsOnlyWhereTheyEnd) {
-  json data = madeUpVariants();
+  Json data = madeUpVariants();
   data["title"] = "</script><!-- <script>";
   const std::string page = pageOf(data);
   EXPECT_EQ(countOf(page, "</script>"), 3U);
@@ -109,22 +109,22 @@ TEST(Page, DrawsEveryPlotFromItsDataOffTheNetworkWithoutComplaint) {
   Browser browser;
   browser.open(pageOf(madeUpVariants()));
   EXPECT_THAT(linesOf(browser, "compared_plot"),
-              json({{"culling none", {{1, 2.01}, {100, 3}, {10000, 102}}},
+              Json({{"culling none", {{1, 2.01}, {100, 3}, {10000, 102}}},
                     {"culling tiles", {{1, 2.02}, {100, 4}, {10000, 202}}},
                     {"culling a \"tree\", in full", {{1, 2.03}, {100, 5}, {10000, 302}}}}));
-  EXPECT_THAT(linesOf(browser, "stage_plot"), json({{"total", {{1, 2.01}, {100, 3}, {10000, 102}}},
+  EXPECT_THAT(linesOf(browser, "stage_plot"), Json({{"total", {{1, 2.01}, {100, 3}, {10000, 102}}},
                                                     {"rasterize", {{1, 2}, {100, 2}, {10000, 2}}},
                                                     {"shade", {{1, 0.01}, {100, 1}, {10000, 100}}}}));
   EXPECT_THAT(linesOf(browser, "pairs_plot"),
-              json({{"evaluated", {{1, 2000}, {100, 200000}, {10000, 20000000}}},
+              Json({{"evaluated", {{1, 2000}, {100, 200000}, {10000, 20000000}}},
                     {"in range", {{1, 1000}, {100, 100000}, {10000, 10000000}}}}));
   EXPECT_THAT(linesOf(browser, "memory_plot"),
-              json({{"device", {{1, 40000064}, {100, 40006400}, {10000, 40640000}}},
+              Json({{"device", {{1, 40000064}, {100, 40006400}, {10000, 40640000}}},
                     {"peak of the program", {{1, 180000200}, {100, 180020000}, {10000, 182000000}}}}));
   EXPECT_EQ(browser.evaluate(chartOf("stage_plot") +
                              ".data.datasets[0].data.map(value => [value.low, value.high])"),
-            json({{1.91, 2.51}, {2.9, 3.5}, {101.9, 102.5}}));
-  EXPECT_EQ(browser.evaluate(kPlotsDrawn), json({true, true, true, true, true}));
+            Json({{1.91, 2.51}, {2.9, 3.5}, {101.9, 102.5}}));
+  EXPECT_EQ(browser.evaluate(kPlotsDrawn), Json({true, true, true, true, true}));
   EXPECT_EQ(
       browser.evaluate(
           "[...document.querySelectorAll('canvas')].every(canvas => canvas.getAttribute('role') === 'img' && "
@@ -139,7 +139,7 @@ TEST(Page, DrawsEveryPlotFromItsDataOffTheNetworkWithoutComplaint) {
 TEST(Page, SummarizesInASentenceAndSaysWhatIsMissing) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
-  json data = madeUpVariants();
+  Json data = madeUpVariants();
   data["title"] = "</script><b>bold</b> & \"quoted\"";
   data["incomplete"] = 3;
   browser.open(pageOf(data));
@@ -153,22 +153,22 @@ TEST(Page, SummarizesInASentenceAndSaysWhatIsMissing) {
   EXPECT_EQ(browser.evaluate("document.querySelector('#machine dl').innerText"),
             "Memory\n8 GiB\nProcessor\nA processor\nThreads\n2");
   EXPECT_EQ(browser.evaluate("document.querySelector('#growth_table tbody tr').innerText.split('\\t')"),
-            json({"culling none", "1.00 (0.95 to 1.05)"}));
+            Json({"culling none", "1.00 (0.95 to 1.05)"}));
 }
 
 TEST(Page, SaysWhyThereIsNoGrowth) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
-  json data = madeUpVariants();
+  Json data = madeUpVariants();
   data["growth"][0].update({{"c", nullptr}, {"reason", "too few numbers of lights: 3 of 5"}});
   browser.open(pageOf(data));
   EXPECT_EQ(browser.evaluate("document.querySelector('#growth_table tbody tr').innerText.split('\\t')"),
-            json({"culling none", "too few numbers of lights: 3 of 5"}));
+            Json({"culling none", "too few numbers of lights: 3 of 5"}));
   browser.evaluate("document.querySelector('#growth_table details').open = true");
   browser.settle();
   EXPECT_EQ(
       browser.evaluate("document.querySelectorAll('#growth_table tbody')[1].rows[1].innerText.split('\\t')"),
-      json({"none", "rasterize", "–", "–", "–", "–", "–", "no growth beyond noise"}));
+      Json({"none", "rasterize", "–", "–", "–", "–", "–", "no growth beyond noise"}));
 }
 
 TEST(Page, NamesOfTheFrontAreNotStruckThroughByItsLine) {
@@ -176,7 +176,7 @@ TEST(Page, NamesOfTheFrontAreNotStruckThroughByItsLine) {
   Browser browser;
   browser.open(pageOf(madeUpFront()));
   // What is written on the plot when it is drawn again, and the front between its points.
-  const json struck = browser.evaluate(R"((() => {
+  const Json struck = browser.evaluate(R"((() => {
     const chart = )" + chartOf("error_plot") +
                                        R"(, context = chart.ctx, texts = [];
     const fillText = context.fillText;
@@ -197,41 +197,41 @@ TEST(Page, NamesOfTheFrontAreNotStruckThroughByItsLine) {
   })())");
   EXPECT_EQ(struck["front"], 6) << struck;
   EXPECT_GE(struck["names"], 5) << struck;
-  EXPECT_EQ(struck["struck"], json::array());
+  EXPECT_EQ(struck["struck"], Json::array());
 }
 
 TEST(Page, ShowsZeroErrorBelowAllOthersUnderItsOwnName) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
   browser.open(pageOf(madeUpVariants()));
-  const json lines = linesOf(browser, "error_plot");
+  const Json lines = linesOf(browser, "error_plot");
   const double floor = lines["culling none"][0][1];
   EXPECT_GT(floor, 0);
   EXPECT_LT(floor, 1e-6);
-  EXPECT_EQ(lines["culling tiles"], json({{202, 1e-6}}));
+  EXPECT_EQ(lines["culling tiles"], Json({{202, 1e-6}}));
   // The front goes from the fastest to the most right.
-  EXPECT_EQ(lines["front at 10,000 lights"], json({{102, floor}, {202, 1e-6}, {302, 2e-6}}));
+  EXPECT_EQ(lines["front at 10,000 lights"], Json({{102, floor}, {202, 1e-6}, {302, 2e-6}}));
   EXPECT_EQ(browser.evaluate(chartOf("error_plot") + ".scales.y.ticks[0].label"), "0");
   EXPECT_EQ(browser.evaluate(chartOf("error_plot") + ".scales.y.ticks[0].value"), floor);
 
   // Where nothing is wrong, the axis has nothing else.
-  json right = madeUpVariants();
-  for (json& point : right["points"]) point["error"]["mean_abs"] = 0;
+  Json right = madeUpVariants();
+  for (Json& point : right["points"]) point["error"]["mean_abs"] = 0;
   browser.open(pageOf(right));
-  EXPECT_EQ(browser.evaluate(chartOf("error_plot") + ".scales.y.ticks.map(tick => tick.label)"), json({"0"}));
+  EXPECT_EQ(browser.evaluate(chartOf("error_plot") + ".scales.y.ticks.map(tick => tick.label)"), Json({"0"}));
 }
 
 /// Three methods of shadows, the first of them none.
-json madeUpShadows() {
-  json data = madeUpVariants();
+Json madeUpShadows() {
+  Json data = madeUpVariants();
   const std::vector<std::string> methods{"off", "hard", "pcf"};
   data["axes"] = {{{"name", "shadows"}, {"values", methods}}};
   for (std::size_t i = 0; i < data["points"].size(); ++i) {
-    json& point = data["points"][i];
+    Json& point = data["points"][i];
     point["values"] = {{"shadows", methods[i / 3]}};
     point["truth"] = i / 3 == 0 ? "no shadows" : "shadows by rays";
   }
-  data["growth"] = json::array();
+  data["growth"] = Json::array();
   return data;
 }
 
@@ -251,7 +251,7 @@ TEST(Page, PointsOfDifferentTruthsAreKeptApartAndItSaysSo) {
       "as long as 1 light, with a mean error of 10⁻⁶; shadows pcf, the slowest, takes 302 ms.");
   const auto shown = [&] {
     std::vector<std::string> names;
-    const json lines = linesOf(browser, "error_plot");
+    const Json lines = linesOf(browser, "error_plot");
     for (const auto& [name, values] : lines.items()) names.push_back(name);
     return names;
   };
@@ -274,7 +274,7 @@ TEST(Page, PointsOfDifferentTruthsAreKeptApartAndItSaysSo) {
 TEST(Page, SaysUnderItsTableWhyACellIsADash) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
-  json data = madeUpVariants();
+  Json data = madeUpVariants();
   data["points"][0]["reach"] = nullptr;
   data["points"][1]["reach"] = 3;
   data["points"][0]["reasons"] = {{"reach", "a light without a range reaches everywhere"}};
@@ -290,14 +290,14 @@ TEST(Page, ChoicesChangeWhatIsShown) {
   Browser browser;
   browser.open(pageOf(madeUpVariants()));
   choose(browser, "variant", "culling tiles");
-  EXPECT_EQ(linesOf(browser, "stage_plot")["total"], json({{1, 2.02}, {100, 4}, {10000, 202}}));
-  EXPECT_EQ(linesOf(browser, "pairs_plot")["list entries"], json({{1, 3}, {100, 300}, {10000, 30000}}));
+  EXPECT_EQ(linesOf(browser, "stage_plot")["total"], Json({{1, 2.02}, {100, 4}, {10000, 202}}));
+  EXPECT_EQ(linesOf(browser, "pairs_plot")["list entries"], Json({{1, 3}, {100, 300}, {10000, 30000}}));
   choose(browser, "quantity", "time of shade");
-  EXPECT_EQ(linesOf(browser, "compared_plot")["culling tiles"], json({{1, 0.02}, {100, 2}, {10000, 200}}));
+  EXPECT_EQ(linesOf(browser, "compared_plot")["culling tiles"], Json({{1, 0.02}, {100, 2}, {10000, 200}}));
   choose(browser, "error_lights", "all");
-  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"], json({{2.02, 1e-6}, {4, 1e-6}, {202, 1e-6}}));
+  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"], Json({{2.02, 1e-6}, {4, 1e-6}, {202, 1e-6}}));
   choose(browser, "error_kind", "largest absolute error");
-  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], json({2.02, 50 * 1e-6}));
+  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 50 * 1e-6}));
   // A name in the legend is a switch.
   browser.evaluate("document.querySelector('#compared_plot .legend button').click()");
   EXPECT_EQ(browser.evaluate(chartOf("compared_plot") + ".isDatasetVisible(0)"), false);
@@ -306,10 +306,10 @@ TEST(Page, ChoicesChangeWhatIsShown) {
   const auto pictures = [&] {
     return browser.evaluate("['a', 'b'].map(side => document.getElementById('picture_' + side).src)");
   };
-  EXPECT_EQ(pictures(), json({kTinyPictures[0], kTinyPictures[1]}));
+  EXPECT_EQ(pictures(), Json({kTinyPictures[0], kTinyPictures[1]}));
   choose(browser, "point_b", "100 lights, culling tiles");
   choose(browser, "kind_b", "Tile heat map");
-  EXPECT_EQ(pictures(), json({kTinyPictures[0], kTinyPictures[2]}));
+  EXPECT_EQ(pictures(), Json({kTinyPictures[0], kTinyPictures[2]}));
   EXPECT_EQ(browser.evaluate("document.getElementById('caption_b').innerText"),
             "B: Tile heat map · 100 lights · culling tiles · 4 ms · mean error 10⁻⁶");
   // A point without this kind shows another of its own.
@@ -332,32 +332,32 @@ TEST(Page, SliderDividesThePicturesByKeyboardPointerAndTouch) {
       return [getComputedStyle(a).clipPath, getComputedStyle(b).clipPath, Math.round(100 * ((divider.left + divider.right) / 2 - box.left) / box.width)];
     })())");
   };
-  EXPECT_EQ(cuts(), json({"inset(0px 50% 0px 0px)", "inset(0px 0px 0px 50%)", 50}));
+  EXPECT_EQ(cuts(), Json({"inset(0px 50% 0px 0px)", "inset(0px 0px 0px 50%)", 50}));
   browser.evaluate("document.getElementById('split').focus()");
   for (int i = 0; i < 3; ++i) browser.press("ArrowRight", 39);
-  EXPECT_EQ(cuts(), json({"inset(0px 47% 0px 0px)", "inset(0px 0px 0px 53%)", 53}));
+  EXPECT_EQ(cuts(), Json({"inset(0px 47% 0px 0px)", "inset(0px 0px 0px 53%)", 53}));
   browser.press("Home", 36);
-  EXPECT_EQ(cuts(), json({"inset(0px 100% 0px 0px)", "inset(0px 0px 0px 0%)", 0}));
+  EXPECT_EQ(cuts(), Json({"inset(0px 100% 0px 0px)", "inset(0px 0px 0px 0%)", 0}));
 
   browser.evaluate("document.getElementById('viewer').scrollIntoView({block: 'start', behavior: 'instant'})");
   browser.settle();
-  const json box = browser.evaluate(
+  const Json box = browser.evaluate(
       "(({left, top, width, height}) => [left, top, width, "
       "height])(document.getElementById('picture_a').getBoundingClientRect())");
   const double left = box[0], width = box[2], y = box[1].get<double>() + box[3].get<double>() / 2;
   browser.mouse("mousePressed", left + 0.25 * width, y);
   EXPECT_EQ(cuts()[2], 25);
   browser.mouse("mouseMoved", left + 0.8 * width, y);
-  EXPECT_EQ(cuts(), json({"inset(0px 20% 0px 0px)", "inset(0px 0px 0px 80%)", 80}));
+  EXPECT_EQ(cuts(), Json({"inset(0px 20% 0px 0px)", "inset(0px 0px 0px 80%)", 80}));
   browser.mouse("mouseReleased", left + 0.8 * width, y);
   EXPECT_EQ(browser.evaluate("document.getElementById('split').value"), "80");
 
   browser.call("Emulation.setTouchEmulationEnabled", {{"enabled", true}});
   const auto touch = [&](const std::string& type, double share) {
-    const json finger{{"x", left + share * width}, {"y", y}};
+    const Json finger{{"x", left + share * width}, {"y", y}};
     browser.call(
         "Input.dispatchTouchEvent",
-        {{"type", type}, {"touchPoints", type == "touchEnd" ? json::array() : json::array({finger})}});
+        {{"type", type}, {"touchPoints", type == "touchEnd" ? Json::array() : Json::array({finger})}});
   };
   touch("touchStart", 0.3);
   for (const double share : {0.4, 0.5, 0.6}) touch("touchMove", share);
@@ -400,7 +400,7 @@ TEST(Page, GivesEachPlotsNumbersAsCsv) {
   browser.evaluate("document.querySelector('#compared_plot details').open = true");
   browser.settle();
   EXPECT_EQ(browser.evaluate("document.querySelector('#compared_plot tbody').rows[5].innerText.split('\\t')"),
-            json({"10,000", "tiles", "202 ms", "202 ms", "203 ms"}));
+            Json({"10,000", "tiles", "202 ms", "202 ms", "203 ms"}));
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 
@@ -415,8 +415,8 @@ TEST(Page, SortsItsPointsByAnyColumn) {
         "[...document.querySelectorAll('#points_table tbody tr')].slice(0, 3).map(row => "
         "row.cells[2].innerText)");
   };
-  EXPECT_EQ(click(2), json({"2.01 ms", "2.02 ms", "2.03 ms"}));
-  EXPECT_EQ(click(2), json({"302 ms", "202 ms", "102 ms"}));
+  EXPECT_EQ(click(2), Json({"2.01 ms", "2.02 ms", "2.03 ms"}));
+  EXPECT_EQ(click(2), Json({"302 ms", "202 ms", "102 ms"}));
   EXPECT_EQ(browser.evaluate("document.querySelectorAll('#points_table th[scope=col]')[2].ariaSort"),
             "descending");
   EXPECT_EQ(click(1)[0], "2.03 ms");
@@ -432,11 +432,11 @@ TEST(Page, FollowsLightAndDark) {
                             chartOf("stage_plot") + ".data.datasets[0].borderColor, " +
                             chartOf("stage_plot") + ".options.scales.x.ticks.color]");
   };
-  EXPECT_EQ(colours(), json({"rgb(255, 255, 255)", "#1c1e21", "#1c1e21"}));
+  EXPECT_EQ(colours(), Json({"rgb(255, 255, 255)", "#1c1e21", "#1c1e21"}));
   browser.setColorScheme("dark");
-  EXPECT_EQ(colours(), json({"rgb(21, 24, 29)", "#e8eaed", "#e8eaed"}));
+  EXPECT_EQ(colours(), Json({"rgb(21, 24, 29)", "#e8eaed", "#e8eaed"}));
   browser.setColorScheme("light");
-  EXPECT_EQ(colours(), json({"rgb(255, 255, 255)", "#1c1e21", "#1c1e21"}));
+  EXPECT_EQ(colours(), Json({"rgb(255, 255, 255)", "#1c1e21", "#1c1e21"}));
 }
 
 /// Text whose contrast with what is behind it is less than 4.5, as WCAG 2.1 defines it, and marks of a plot
@@ -473,14 +473,14 @@ constexpr const char* kFaintTexts = R"((() => {
 TEST(Page, TextStandsOutInLightAndDark) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
-  json data = madeUpHundreds();
+  Json data = madeUpHundreds();
   data["incomplete"] = 1;
   browser.open(pageOf(data));
   browser.evaluate("document.querySelectorAll('details').forEach(details => { details.open = true; })");
   for (const char* scheme : {"light", "dark"}) {
     browser.setColorScheme(scheme);
     browser.settle();
-    EXPECT_EQ(browser.evaluate(kFaintTexts), json::array()) << scheme;
+    EXPECT_EQ(browser.evaluate(kFaintTexts), Json::array()) << scheme;
   }
 }
 
@@ -488,7 +488,7 @@ TEST(Page, FitsAPhoneWithoutScrollingSideways) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
   browser.resize(320, 640);
-  for (json data : {madeUpVariants(), madeUpHundreds()}) {
+  for (Json data : {madeUpVariants(), madeUpHundreds()}) {
     data["settings"]["a_word"] = std::string(200, 'x');
     browser.open(pageOf(data));
     browser.evaluate("document.querySelectorAll('details').forEach(details => { details.open = true; })");
@@ -497,7 +497,7 @@ TEST(Page, FitsAPhoneWithoutScrollingSideways) {
     EXPECT_EQ(browser.evaluate(
                   R"([...document.querySelectorAll('body *')].filter(element => element.checkVisibility() &&
       !element.closest('.scroll') && element.getBoundingClientRect().right > 320.5).map(element => element.outerHTML.slice(0, 80)))"),
-              json::array());
+              Json::array());
   }
 }
 
@@ -551,7 +551,7 @@ TEST(Page, PrintsItsPlotsInLightColours) {
   const std::string encoded =
       browser.call("Page.printToPDF", {{"printBackground", true}, {"preferCSSPageSize", true}})["data"];
   EXPECT_EQ(browser.evaluate("printed.colour"), "#1c1e21");
-  EXPECT_EQ(browser.evaluate("printed.drawn"), json({true, true, true, true, true}));
+  EXPECT_EQ(browser.evaluate("printed.drawn"), Json({true, true, true, true, true}));
   EXPECT_EQ(browser.evaluate(chartOf("stage_plot") + ".data.datasets[0].borderColor"), "#e8eaed");
   const std::string pdf = browser.evaluate("(" + std::string(kUnpacked) + ")('" + encoded + "')");
   EXPECT_THAT(pdf, StartsWith("%PDF"));
@@ -568,10 +568,10 @@ TEST(Page, FiltersHundredsOfPoints) {
   Browser browser;
   browser.open(pageOf(madeUpHundreds()));
   const auto shown = [&] {
-    return json{linesOf(browser, "compared_plot").size(),
+    return Json{linesOf(browser, "compared_plot").size(),
                 browser.evaluate("document.querySelectorAll('#points_table tbody tr').length")};
   };
-  EXPECT_EQ(shown(), json({24, 168}));
+  EXPECT_EQ(shown(), Json({24, 168}));
   // No two lines look alike, and with two axes no two points.
   EXPECT_EQ(
       browser.evaluate(
@@ -581,12 +581,12 @@ TEST(Page, FiltersHundredsOfPoints) {
   browser.evaluate(
       "(() => { const select = document.querySelectorAll('#filter select')[1]; select.value = '8'; "
       "select.dispatchEvent(new Event('change')); })()");
-  EXPECT_EQ(shown(), json({6, 42}));
-  json two_axes = madeUpHundreds();
+  EXPECT_EQ(shown(), Json({6, 42}));
+  Json two_axes = madeUpHundreds();
   two_axes["axes"].erase(1);
-  json& points = two_axes["points"];
+  Json& points = two_axes["points"];
   points.erase(std::remove_if(points.begin(), points.end(),
-                              [](const json& point) { return point["values"]["tile"] != 8; }),
+                              [](const Json& point) { return point["values"]["tile"] != 8; }),
                points.end());
   browser.open(pageOf(two_axes));
   EXPECT_EQ(browser.evaluate("new Set(" + chartOf("error_plot") +
@@ -599,16 +599,16 @@ TEST(Page, FiltersHundredsOfPoints) {
 TEST(Page, WorksWithOneVariantOneCountAndNothingElse) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
-  const json point{{"lights", 1000}, {"milliseconds", {{"median", 3.2}, {"low", 3.1}, {"high", 3.4}}}};
-  const json nothing{{"title", "t"}, {"points", json::array()}}, one{{"title", "t"}, {"points", {point}}};
-  json nulls = one;
+  const Json point{{"lights", 1000}, {"milliseconds", {{"median", 3.2}, {"low", 3.1}, {"high", 3.4}}}};
+  const Json nothing{{"title", "t"}, {"points", Json::array()}}, one{{"title", "t"}, {"points", {point}}};
+  Json nulls = one;
   for (const char* key :
        {"stages", "pairs_evaluated", "pairs_in_range", "error", "front", "picture", "error_map", "tile_map"})
     nulls["points"][0][key] = nullptr;
-  json variants = madeUpVariants();
+  Json variants = madeUpVariants();
   variants["points"] = {variants["points"][0], variants["points"][3]};
-  for (const auto& [data, sections] : std::vector<std::pair<json, json>>{
-           {nothing, json::array()},
+  for (const auto& [data, sections] : std::vector<std::pair<Json, Json>>{
+           {nothing, Json::array()},
            {one, {"stages", "points"}},
            {nulls, {"stages", "points"}},
            {variants, {"compared", "stages", "growth", "error", "pictures", "points"}}}) {
@@ -616,7 +616,7 @@ TEST(Page, WorksWithOneVariantOneCountAndNothingElse) {
     EXPECT_EQ(browser.evaluate("[...document.querySelectorAll('main > section')].filter(section => "
                                "section.checkVisibility()).map(section => section.id)"),
               sections);
-    for (const json& drawn : browser.evaluate(kPlotsDrawn)) EXPECT_EQ(drawn, true);
+    for (const Json& drawn : browser.evaluate(kPlotsDrawn)) EXPECT_EQ(drawn, true);
   }
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }

@@ -17,14 +17,9 @@
 namespace luciole::test {
 namespace {
 
-std::string readText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-void writeText(const std::string& path, const std::string& text) {
+void writeTextInFolder(const std::string& path, const std::string& text) {
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
-  std::ofstream(path, std::ios::binary) << text;
+  writeText(path, text);
 }
 
 /// What an InputError says; empty where none is thrown.
@@ -157,7 +152,7 @@ void makeShard(const std::string& folder, const ScaleDescription& description, s
   const std::string point = pointName(description, description.points[index]);
   const PointCheck check = madeUpCheck(std::to_string(index), 0.5);
   for (const std::string& file : {check.picture, check.error_map, check.list_map})
-    writeText(folder + "/" + file, file);
+    writeTextInFolder(folder + "/" + file, file);
   log.append(point, check);
   log.append(point, 0, madeUpRun(1, 2));
 }
@@ -226,7 +221,7 @@ void makeShardNaming(const std::string& folder, const std::string& file) {
   std::string log = readText(folder + "/results.jsonl");
   const std::string named = "\"pictures/0.png\"";
   log.replace(log.find(named), named.size(), "\"" + file + "\"");
-  writeText(folder + "/results.jsonl", log);
+  writeTextInFolder(folder + "/results.jsonl", log);
 }
 
 TEST(ScaleLog, NamesPicturesOfItsOwnFolderOrIsRefusedWithItsLine) {
@@ -251,7 +246,7 @@ TEST(ScaleLog, LinksOutOfItsFolderAreNotFollowed) {
   namespace fs = std::filesystem;
   const TemporaryFolder folder;
   writeText(folder / "secret.png", "secret");
-  writeText(folder / "elsewhere/0.png", "secret");
+  writeTextInFolder(folder / "elsewhere/0.png", "secret");
   for (const char* name : {"file", "chain", "folder", "device"})
     makeShard(folder / name, madeUpExperiment(), 0, "one");
   const auto relink = [&](const std::string& link, const std::string& target) {

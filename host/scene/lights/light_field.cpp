@@ -18,8 +18,6 @@
 namespace luciole {
 namespace {
 
-double between(double low, double high, double u) { return std::min(low + u * (high - low), high); }
-
 void appendLights(const LightField& field, const std::function<glm::dvec3(std::uint64_t&)>& placeOf,
                   std::vector<Light>& lights) {
   const bool listed = field.shape == FieldShape::kList;

@@ -13,8 +13,6 @@ namespace {
 
 // Only + − × ÷ and square roots are used here: they round alike on every machine, sines and logarithms don't.
 
-double between(double low, double high, double u) { return std::min(low + u * (high - low), high); }
-
 double lengthOf(const glm::dvec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 
 glm::dvec3 pointInBox(const LightField& field, std::uint64_t& state) {
