@@ -45,14 +45,20 @@ TEST_P(HardShadows, ExactOnesAreWhatRaysSayEverywhere) {
   EXPECT_EQ(errors.wrong_edges, 0u);
 }
 
-TEST(ShadowErrors, OfTwoLightsAreEachItsOwnMaps) {
+// Maps of different sizes: each is looked up with a reach of its own.
+TEST(ShadowErrors, DontDependOnTheLightsOrder) {
   Scene scene = makeShadowScenes()[2];  // the fence
-  Light from_the_side = scene.lights[0];
-  from_the_side.direction = glm::normalize(glm::dvec3(-0.6, -0.5, -0.2));
-  scene.lights.push_back(from_the_side);
-  const ShadowErrors errors = errorsOf(scene, ShadowMethod::kHard);
+  scene.lights[0].half_angle = glm::radians(5.0);
+  Light lamp;
+  lamp.position = {0, 2, -1};
+  lamp.radius = 1;
+  lamp.range = 6;
+  lamp.shadow = true;
+  scene.lights.push_back(lamp);
+  const ShadowErrors errors = errorsOf(scene, ShadowMethod::kSoft);
+  std::swap(scene.lights[0], scene.lights[1]);
+  EXPECT_EQ(errorsOf(scene, ShadowMethod::kSoft), errors);
   EXPECT_GT(errors.dark, 100);
-  EXPECT_LE((errors.wrongly_dark + errors.wrongly_lit) * 200, errors.lit + errors.dark);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, HardShadows, testing::Range(0, 5), [](const auto& test) {

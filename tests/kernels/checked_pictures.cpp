@@ -17,7 +17,7 @@
 namespace luciole::test {
 namespace {
 
-constexpr int kWidth = 33, kHeight = 17;  // tiles cut on both sides
+constexpr int kWidth = 17, kHeight = 17;  // tiles cut on both sides
 
 /// Buffers with the host's bytes in place look unwritten to Oclgrind 21.10, so they are copied.
 void openChecked(int lanes, Device& device) {

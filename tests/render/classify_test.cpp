@@ -31,24 +31,26 @@ void addSheet(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v
 }
 
 /// Sheets that the eye, at the origin, sees, and covers that only the lights know. A cover lies over a half
-/// of its sheet, at a distance that is 0.2 to 30 times the one up to which shadow rays ignore it.
+/// of its sheet, at a distance that is 0.2 to most_times times the one up to which shadow rays ignore it.
 struct Sheets {
   Mesh seen, covers;
+  bool cast =
+      true;  ///< whether what is seen is in the shadow maps too; another program's G-buffer needn't be
 };
 
-Sheets coveredSheets(Random& random) {
+Sheets coveredSheets(double nearest, double farthest, double most_times, Random& random) {
   Sheets sheets;
   for (int i = 0; i < kSheets; ++i) {
     const glm::dvec3 way =
         glm::normalize(glm::dvec3(random.between(-0.6, 0.6), random.between(-0.45, 0.45), -1));
-    const glm::dvec3 center = random.between(2, 12) * way;
+    const glm::dvec3 center = random.between(nearest, farthest) * way;
     const glm::dvec3 normal = glm::normalize(random.direction() * 0.7 - way);
     const double side = 0.2 * glm::length(center);
     const glm::dvec3 u = side * glm::normalize(glm::cross(normal, random.direction()));
     const glm::dvec3 v = glm::cross(normal, u);
     addSheet(center - 0.5 * (u + v), u, v, sheets.seen);
-    const double times =
-        random.chance(0.3) ? random.between(0.8, 1.2) : std::exp(random.between(std::log(0.2), std::log(30)));
+    const double times = random.chance(0.3) ? random.between(0.8, 1.2)
+                                            : std::exp(random.between(std::log(0.2), std::log(most_times)));
     const double gap = times * double(POINT_ERROR) * glm::length(center);
     addSheet(center - 0.5 * (u + v) + gap * normal, 0.5 * u, v, sheets.covers);
   }
@@ -71,6 +73,24 @@ std::vector<Light> lightsOverSheets(Random& random) {
   return lights;
 }
 
+/// Spots 9 m away from sheets that are up to 5 m from the eye: the rounding of their maps' depths is about
+/// the distance up to which rays ignore a surface.
+std::vector<Light> farSpots(Random& random) {
+  std::vector<Light> lights;
+  const glm::dvec3 target(0, 0, -2.5);
+  for (int i = 0; i < 12; ++i) {
+    Light light;
+    light.kind = LightKind::kSpot;
+    light.shadow = true;
+    light.position =
+        target + 9.0 * glm::normalize(glm::dvec3(random.between(-1, 1), random.between(-1, 1), 1));
+    light.direction = glm::normalize(target - light.position);
+    light.cutoff = glm::radians(30.0);
+    lights.push_back(light);
+  }
+  return lights;
+}
+
 /// Whether the light may brighten the point (world space), whatever the kernel rounds.
 bool surelyReaches(const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
   const glm::dvec3 to_light =
@@ -80,65 +100,92 @@ bool surelyReaches(const Light& light, const glm::dvec3& point, const glm::dvec3
   return glm::dot(to_light, normal) > 1e-3;
 }
 
+struct Verdicts {
+  std::uint64_t pairs = 0;  ///< of a pixel and a light that may brighten it
+  std::uint64_t dark = 0, lit = 0;
+  std::uint64_t wrong = 0;  ///< of `dark` and `lit`, those of which a ray says the opposite
+};
+
+/// Adds up the verdicts on the sheets.
+void addVerdicts(const Sheets& sheets, const std::vector<Light>& lights, int map_size, int lanes,
+                 Verdicts& verdicts) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes = {sheets.seen};
+  scene.objects = {{0, glm::dmat4(1), -1}};
+  scene.lights = lights;
+  Camera camera;
+  camera.camera_to_world = glm::dmat4(1);
+  camera.near = 0.01;
+  scene.cameras = {camera};
+  const View view = cameraView(camera, kSheetsSize);
+  ShadeSettings settings;
+  settings.culling = Culling::kNone;
+  settings.shadows = ShadowMethod::kExact;
+  settings.shadow_limits.size = map_size;
+  const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
+  const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kFlat, neededPlanes(features));
+
+  scene.meshes.push_back(sheets.covers);
+  if (!sheets.cast) scene.objects.clear();
+  scene.objects.push_back({1, glm::dmat4(1), -1});
+  Device& device = deviceWithLanes(lanes);
+  Lighting lighting;
+  Stats stats;
+  prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats);
+
+  const std::size_t light_count = scene.lights.size(), stride = gbuffer.pixels();
+  const RayScene rays = buildShadowRays(scene, glm::dvec3(0.0));
+  for (std::size_t place = 0; place < stride; ++place) {
+    if (!std::isfinite(gbuffer.position[place + 2 * stride])) continue;
+    const glm::dvec3 normal(gbuffer.normal[place], gbuffer.normal[place + stride],
+                            gbuffer.normal[place + 2 * stride]);
+    const glm::dvec3 start = shadowStart(gbuffer, place);
+    const std::size_t tile = place / kTilePixels, pixel = place % kTilePixels;
+    for (std::size_t i = 0; i < light_count; ++i) {
+      const Light& light = scene.lights[lighting.order[i]];
+      if (!surelyReaches(light, start, normal)) continue;
+      const uint* words = &lit.pair_bits[(tile * light_count + i) * kPairWords];
+      const auto bit = [&](const uint* half) { return (half[pixel / 32] >> pixel % 32 & 1) != 0; };
+      ++verdicts.pairs;
+      if (bit(words + kPairWords / 2)) continue;
+      const ShadowRay ray = shadowRay(light, start);
+      const bool is_lit = !isBlocked(rays, ray.from, ray.direction, ray.distance);
+      ++(bit(words) ? verdicts.lit : verdicts.dark);
+      verdicts.wrong += bit(words) != is_lit;
+    }
+  }
+}
+
 // A verdict saves a ray and so must be the ray's. Hardest is a surface as close behind another as the points
 // on it are uncertain: whether that is a shadow depends on the last thousandth of the distance.
 TEST(Classify, AVerdictIsTheRays) {
   Random random(21);
-  std::array<std::uint64_t, 2> verdicts{};  // dark, lit
-  std::uint64_t pairs = 0, wrong = 0;
-  for (int round = 0; round < 4; ++round) {
-    const Sheets sheets = coveredSheets(random);
-    Scene scene;
-    scene.materials.resize(1);
-    scene.meshes = {sheets.seen};
-    scene.objects = {{0, glm::dmat4(1), -1}};
-    scene.lights = lightsOverSheets(random);
-    Camera camera;
-    camera.camera_to_world = glm::dmat4(1);
-    scene.cameras = {camera};
-    const View view = cameraView(camera, kSheetsSize);
-    ShadeSettings settings;
-    settings.culling = Culling::kNone;
-    settings.shadows = ShadowMethod::kExact;
-    settings.shadow_limits.size = 1024;
-    const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
-    const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kFlat, neededPlanes(features));
-
-    scene.meshes.push_back(sheets.covers);
-    scene.objects.push_back({1, glm::dmat4(1), -1});
-    Device& device = deviceWithLanes(round % 2 ? 16 : 4);
-    Lighting lighting;
-    Stats stats;
-    prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-    const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats);
-
-    const std::size_t light_count = scene.lights.size(), stride = gbuffer.pixels();
-    const RayScene rays = buildShadowRays(scene, glm::dvec3(0.0));
-    for (std::size_t place = 0; place < stride; ++place) {
-      if (!std::isfinite(gbuffer.position[place + 2 * stride])) continue;
-      const glm::dvec3 normal(gbuffer.normal[place], gbuffer.normal[place + stride],
-                              gbuffer.normal[place + 2 * stride]);
-      const glm::dvec3 start = shadowStart(gbuffer, place);
-      const std::size_t tile = place / kTilePixels, pixel = place % kTilePixels;
-      for (std::size_t i = 0; i < light_count; ++i) {
-        const Light& light = scene.lights[lighting.order[i]];
-        if (!surelyReaches(light, start, normal)) continue;
-        const uint* words = &lit.pair_bits[(tile * light_count + i) * kPairWords];
-        const auto bit = [&](const uint* half) { return (half[pixel / 32] >> pixel % 32 & 1) != 0; };
-        ++pairs;
-        if (bit(words + kPairWords / 2)) continue;
-        const ShadowRay ray = shadowRay(light, start);
-        const bool is_lit = !isBlocked(rays, ray.from, ray.direction, ray.distance);
-        ++verdicts[bit(words)];
-        wrong += bit(words) != is_lit;
-      }
-    }
+  Verdicts verdicts;
+  for (const int lanes : {1, 4, 8, 16}) {
+    const Sheets sheets = coveredSheets(2, 12, 30, random);
+    addVerdicts(sheets, lightsOverSheets(random), 1024, lanes, verdicts);
   }
-  EXPECT_EQ(wrong, 0u) << "of " << pairs << " pairs";
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
   // It decides much even here, and there are many of either verdict.
-  EXPECT_GT(verdicts[0] + verdicts[1], pairs / 3);
-  EXPECT_GT(verdicts[0], pairs / 10);
-  EXPECT_GT(verdicts[1], pairs / 10);
+  EXPECT_GT(verdicts.dark + verdicts.lit, verdicts.pairs / 3);
+  EXPECT_GT(verdicts.dark, verdicts.pairs / 10);
+  EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
+}
+
+// The surface of a point that casts no shadow itself is not among a texel's depths, and can't keep it unsure.
+TEST(Classify, AVerdictIsTheRaysOnSurfacesThatCastNothing) {
+  Random random(22);
+  Verdicts verdicts;
+  for (const int lanes : {4, 16}) {
+    Sheets sheets = coveredSheets(1, 5, 30, random);
+    sheets.cast = false;
+    addVerdicts(sheets, farSpots(random), 1024, lanes, verdicts);
+  }
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.dark, 1000u) << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.lit, 1000u);
 }
 
 }  // namespace
