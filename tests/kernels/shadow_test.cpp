@@ -566,6 +566,29 @@ TEST(ShadowKernels, OccluderAboveATiltedFloorShadows) {
   }
 }
 
+// A light so large that the filter is as wide as it may be. Towards the light the plane above hides the whole
+// filter; on the other side, from half the radius on, it has sunk below the points, and leaves (π/3 − √3/4)/π
+// = 0.196 of the disc lit.
+TEST(ShadowKernels, SoftLookupsSeeAPlaneAboveATiltedFloorOnItsUpperSide) {
+  constexpr double kReach = 6;
+  for (const double degrees : {30.0, 45.0, 60.0}) {
+    const Relief plane = tiltedPlane(degrees);
+    Map map = drawn(plane);
+    map.map.filter_radius = float(kReach + 2);
+    map.map.penumbra_scale = 1e6f;
+    std::vector<Receiver> points;
+    for (int i = 0; i < 400; ++i) {
+      const double x = 10 + 0.01 * i, y = 14 - 0.0097 * i;
+      const Slopes at = plane(x, y);
+      points.push_back({{x, y, at.z - 0.5 * kReach * std::tan(glm::radians(degrees))}, geometricNormal(at)});
+    }
+    for (const int lanes : kAllLanes)
+      for (const float lit : visibility(lanes, map, points, "-DSOFT=1 -DPCF=0"))
+        // Of 32 points, 2 may fall into a texel on the other side of the line.
+        ASSERT_NEAR(lit, 0.196, 2.0 / 32) << degrees << " degrees, " << lanes << " lanes";
+  }
+}
+
 TEST(ShadowKernels, PlaneThatFacesAwayExcusesNothing) {
   // Its shading normal may face the light. What stands above it by more than a rounding hides it, however
   // steep it is.
