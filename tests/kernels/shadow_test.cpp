@@ -589,6 +589,33 @@ TEST(ShadowKernels, SoftLookupsSeeAPlaneAboveATiltedFloorOnItsUpperSide) {
   }
 }
 
+// Beyond the map everything is lit, so such a lift would take away the shadow in which a point lies.
+TEST(ShadowKernels, ALiftThatLeadsOffTheMapIsNotTaken) {
+  constexpr int kSide = 8;
+  Map map = parallelMap(kSide);
+  map.map.kind = kPerspectiveMap;
+  map.faces = {wholeFace(2, 4, kSide, 0)};
+  map.fill(kCloser);
+  // At a distance of 1 the map's last texels end at x = 1: these points stand up to 0.2 before.
+  std::vector<Receiver> points;
+  Column lifts;
+  for (int i = 0; i < 64; ++i) {
+    points.push_back({{0.8 + i / 400.0, 0, 1}, glm::normalize(glm::dvec3(1, 0, -0.5))});
+    lifts.push_back(i % 3 == 0 ? 0.0f : 0.01f * float(i));
+  }
+  std::vector<Column> in = columnsOf(points);
+  in.push_back(lifts);
+  const auto texel_count = cl_uint(map.texels.size());
+  for (const int lanes : kAllLanes)
+    for (const Method& method : kMethods)
+      expectAllDark(
+          probe(
+              deviceWithLanes(lanes), "shadow_probe.cl", "probe_receiver", in, 1,
+              {{"map", map.map}, {"faces", map.faces}, {"texels", map.texels}, {"texel_count", texel_count}},
+              method.defines)[0],
+          traceOf(lanes, method));
+}
+
 TEST(ShadowKernels, PlaneThatFacesAwayExcusesNothing) {
   // Its shading normal may face the light. What stands above it by more than a rounding hides it, however
   // steep it is.
