@@ -209,8 +209,7 @@ MUTANTS = {
         Mutant("1.00001f", "0.9f"),
         Mutant("fma_lanes(lift, n.y, p.y)", "fma_lanes(-lift, n.y, p.y)"),
         Mutant("fma_lanes(slope_x, from_x - offset_x", "fma_lanes(slope_x, from_x"),
-        Mutant(", 0x1p-22f * point.depth", ", 0.0f",
-               same="half of a bound of roundings; the other half alone is above those of every point that a test has tried"),
+        Mutant(", 0x1p-22f * point.depth", ", 0.0f"),  # half of a bound of roundings
         Mutant("POSITION_ROUNDING 0x1p-22f", "POSITION_ROUNDING 0x1p-40f"),
         Mutant("- point.rounding - tilt", "- point.rounding"),
         Mutant("LEAST_COSINE 0.002f", "LEAST_COSINE 0.2f"),
@@ -240,7 +239,7 @@ MUTANTS = {
     ],
     "classify.cl": [
         Mutant("above > lost) |", "above > -lost) |",
-               same="a point's own triangle is the plane, and lights the point rightly, or is among the others, which the point must be before"),
+               same="in what render draws, a point's own triangle is the plane, and lights the point rightly, or is among the others, which the point must be before"),
         Mutant("tolerance * 1.001f", "-tolerance"),
         Mutant("tolerance * 0.999f", "tolerance * 1e6f"),
         Mutant("(receives & verdict.lit) << row % 32", "(receives & verdict.lit) << row % 16"),

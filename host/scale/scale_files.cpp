@@ -102,7 +102,6 @@ Json quartilesJson(const Quartiles& time) {
   return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
 }
 
-/// The number, or null if it isn't finite: JSON has no infinity.
 /// A row for each fit: its numbers, or null and the reason if there is none.
 Json growthRows(const ScaleSummary& summary) {
   Json rows = Json::array();

@@ -114,7 +114,6 @@ Machine machineOf(const Json& line) {
           .compiler = json.at("compiler").get<std::string>()};
 }
 
-/// The number, or null if it isn't finite: JSON has no infinity.
 double numberOrInfinity(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
 }

@@ -66,7 +66,7 @@ std::string pictureFile(const std::string& folder, const std::string& file);
 /// MachineError.
 ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged);
 
-/// As the log and results.json write a number: null where it is not finite.
+/// As the log and results.json write a number: null where it is not finite, for JSON has no infinity.
 nlohmann::ordered_json finiteOrNull(double number);
 
 }  // namespace luciole

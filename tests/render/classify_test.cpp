@@ -31,26 +31,26 @@ void addSheet(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v
 }
 
 /// Sheets that the eye, at the origin, sees, and covers that only the lights know. A cover lies over a half
-/// of its sheet, at a distance that is 0.2 to most_times times the one up to which shadow rays ignore it.
+/// of its sheet, at a distance that is 0.2 to 30 times the one up to which shadow rays ignore it.
 struct Sheets {
   Mesh seen, covers;
-  bool cast =
-      true;  ///< whether what is seen is in the shadow maps too; another program's G-buffer needn't be
+  /// Whether the shadow maps hold what is seen, too. Surfaces of another program's G-buffer needn't be there.
+  bool cast = true;
 };
 
-Sheets coveredSheets(double nearest, double farthest, double most_times, Random& random) {
+Sheets coveredSheets(Random& random) {
   Sheets sheets;
   for (int i = 0; i < kSheets; ++i) {
     const glm::dvec3 way =
         glm::normalize(glm::dvec3(random.between(-0.6, 0.6), random.between(-0.45, 0.45), -1));
-    const glm::dvec3 center = random.between(nearest, farthest) * way;
+    const glm::dvec3 center = random.between(2, 12) * way;
     const glm::dvec3 normal = glm::normalize(random.direction() * 0.7 - way);
     const double side = 0.2 * glm::length(center);
     const glm::dvec3 u = side * glm::normalize(glm::cross(normal, random.direction()));
     const glm::dvec3 v = glm::cross(normal, u);
     addSheet(center - 0.5 * (u + v), u, v, sheets.seen);
-    const double times = random.chance(0.3) ? random.between(0.8, 1.2)
-                                            : std::exp(random.between(std::log(0.2), std::log(most_times)));
+    const double times =
+        random.chance(0.3) ? random.between(0.8, 1.2) : std::exp(random.between(std::log(0.2), std::log(30)));
     const double gap = times * double(POINT_ERROR) * glm::length(center);
     addSheet(center - 0.5 * (u + v) + gap * normal, 0.5 * u, v, sheets.covers);
   }
@@ -73,24 +73,6 @@ std::vector<Light> lightsOverSheets(Random& random) {
   return lights;
 }
 
-/// Spots 9 m away from sheets that are up to 5 m from the eye: the rounding of their maps' depths is about
-/// the distance up to which rays ignore a surface.
-std::vector<Light> farSpots(Random& random) {
-  std::vector<Light> lights;
-  const glm::dvec3 target(0, 0, -2.5);
-  for (int i = 0; i < 12; ++i) {
-    Light light;
-    light.kind = LightKind::kSpot;
-    light.shadow = true;
-    light.position =
-        target + 9.0 * glm::normalize(glm::dvec3(random.between(-1, 1), random.between(-1, 1), 1));
-    light.direction = glm::normalize(target - light.position);
-    light.cutoff = glm::radians(30.0);
-    lights.push_back(light);
-  }
-  return lights;
-}
-
 /// Whether the light may brighten the point (world space), whatever the kernel rounds.
 bool surelyReaches(const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
   const glm::dvec3 to_light =
@@ -107,8 +89,7 @@ struct Verdicts {
 };
 
 /// Adds up the verdicts on the sheets.
-void addVerdicts(const Sheets& sheets, const std::vector<Light>& lights, int map_size, int lanes,
-                 Verdicts& verdicts) {
+void addVerdicts(const Sheets& sheets, const std::vector<Light>& lights, int lanes, Verdicts& verdicts) {
   Scene scene;
   scene.materials.resize(1);
   scene.meshes = {sheets.seen};
@@ -116,13 +97,12 @@ void addVerdicts(const Sheets& sheets, const std::vector<Light>& lights, int map
   scene.lights = lights;
   Camera camera;
   camera.camera_to_world = glm::dmat4(1);
-  camera.near = 0.01;
   scene.cameras = {camera};
   const View view = cameraView(camera, kSheetsSize);
   ShadeSettings settings;
   settings.culling = Culling::kNone;
   settings.shadows = ShadowMethod::kExact;
-  settings.shadow_limits.size = map_size;
+  settings.shadow_limits.size = 1024;
   const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
   const GBuffer gbuffer = rasterize(scene, allObjects(scene), view, Shading::kFlat, neededPlanes(features));
 
@@ -164,8 +144,8 @@ TEST(Classify, AVerdictIsTheRays) {
   Random random(21);
   Verdicts verdicts;
   for (const int lanes : {1, 4, 8, 16}) {
-    const Sheets sheets = coveredSheets(2, 12, 30, random);
-    addVerdicts(sheets, lightsOverSheets(random), 1024, lanes, verdicts);
+    const Sheets sheets = coveredSheets(random);
+    addVerdicts(sheets, lightsOverSheets(random), lanes, verdicts);
   }
   EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
   // It decides much even here, and there are many of either verdict.
@@ -179,9 +159,9 @@ TEST(Classify, AVerdictIsTheRaysOnSurfacesThatCastNothing) {
   Random random(22);
   Verdicts verdicts;
   for (const int lanes : {4, 16}) {
-    Sheets sheets = coveredSheets(1, 5, 30, random);
+    Sheets sheets = coveredSheets(random);
     sheets.cast = false;
-    addVerdicts(sheets, farSpots(random), 1024, lanes, verdicts);
+    addVerdicts(sheets, lightsOverSheets(random), lanes, verdicts);
   }
   EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
   EXPECT_GT(verdicts.dark, 1000u) << verdicts.pairs << " pairs";
