@@ -29,6 +29,8 @@ void CL_CALLBACK freeOwnArray(cl_mem, void* array) { delete static_cast<OwnArray
 /// queued works on the host's array any more.
 struct Loan {
   cl::CommandQueue queue;
+
+  explicit Loan(const cl::CommandQueue& queue) : queue(queue) {}
   ~Loan() {
     try {
       queue.finish();
