@@ -30,7 +30,7 @@ void CL_CALLBACK freeOwnArray(cl_mem, void* array) { delete static_cast<OwnArray
 struct Loan {
   cl::CommandQueue queue;
 
-  explicit Loan(const cl::CommandQueue& queue) : queue(queue) {}
+  explicit Loan(const cl::CommandQueue& lent_on) : queue(lent_on) {}
   ~Loan() {
     try {
       queue.finish();
