@@ -211,7 +211,7 @@ MUTANTS = {
         Mutant("fma_lanes(lift, n.y, p.y)", "fma_lanes(-lift, n.y, p.y)"),
         Mutant("fma_lanes(slope_x, from_x - offset_x", "fma_lanes(slope_x, from_x"),
         Mutant(", 0x1p-22f * point.depth", ", 0.0f",
-               same="way.z / way.z is 1, so the other term is at least as large, and its slack covers the roundings that this one stands for"),
+               same="way.z / way.z is 1, so the other term is at least as large; no point of the tests errs by more than that one"),
         Mutant("POSITION_ROUNDING 0x1p-22f", "POSITION_ROUNDING 0x1p-40f"),
         Mutant("- point.rounding - tilt", "- point.rounding"),
         Mutant("LEAST_COSINE 0.002f", "LEAST_COSINE 0.2f"),
