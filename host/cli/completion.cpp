@@ -158,13 +158,18 @@ std::string bashCompletion(const std::vector<CommandEntry>& table) {
 
 // zsh
 
-constexpr const char* kZshEnter = R"(# Goes to the first of these commands that was typed.
-_luciole_enter() {
+constexpr const char* kZshEnter =
+    R"(# Completes what follows the first command typed, by the function of that name with PREFIX before it. Fails where
+# none of the commands was typed.
+_luciole_enter() {  # PREFIX COMMAND...
+  local prefix=$1
   local -i i
+  shift
   for ((i = 2; i < CURRENT; ++i)); do
     (( $argv[(Ie)$words[i]] )) || continue
     shift $((i - 1)) words
     ((CURRENT -= i - 1))
+    ${prefix}_$words[1]
     return 0
   done
   return 1
@@ -246,8 +251,7 @@ std::string zshCommand(const CommandEntry& command) {
   }
   text += fmt::format("\n{}() {{\n", name);
   if (!command.commands.empty())
-    text += fmt::format("  if _luciole_enter {}; then\n    {}_$words[1]\n    return\n  fi\n",
-                        fmt::join(namesOfCommands(command), " "), name);
+    text += fmt::format("  _luciole_enter {} {} && return\n", name, fmt::join(namesOfCommands(command), " "));
   text += "  _arguments";
   for (const std::string& one : specifications) text += " \\\n    " + shellQuoted(one);
   return text + "\n}\n";

@@ -122,18 +122,23 @@ std::string roff(std::string_view text) {
 std::string boldRoff(std::string_view text) { return "\\fB" + roff(text) + "\\fR"; }
 std::string italicRoff(std::string_view text) { return "\\fI" + roff(text) + "\\fR"; }
 
-/// The value as the command line has it: its name, or the choices where they are few.
+/// Whether the choices stand beside the option's name, where others have what their value is called.
+bool showsChoices(const OptionEntry& option) {
+  return !option.names.empty() && !option.choices.empty() &&
+         fmt::format("{}", fmt::join(option.choices, "|")).size() <= 40;
+}
+
 std::string roffValue(const OptionEntry& option) {
-  const std::string choices = fmt::format("{}", fmt::join(option.choices, "|"));
-  const bool are_few = !choices.empty() && choices.size() <= 40 && !option.names.empty();
-  return (are_few ? boldRoff(choices) : italicRoff(option.value)) + (option.repeatable ? " ..." : "");
+  return (showsChoices(option) ? boldRoff(fmt::format("{}", fmt::join(option.choices, "|")))
+                               : italicRoff(option.value)) +
+         (option.repeatable ? " ..." : "");
 }
 
 /// What --help says in brackets and capitals, in words.
 std::string remarksOn(const OptionEntry& option) {
   std::vector<std::string> remarks;
   const std::string choices = fmt::format("{}", fmt::join(option.choices, ", "));
-  if (!choices.empty() && option.description.find(choices) == std::string::npos)
+  if (!choices.empty() && !showsChoices(option) && option.description.find(choices) == std::string::npos)
     remarks.push_back("one of " + choices);
   if (!option.limits.empty()) remarks.push_back(option.limits);
   if (!option.standard.empty()) remarks.push_back("default: " + option.standard);
@@ -192,6 +197,7 @@ std::string roffExamples() {
 /// The page in the man macros (man 7 man). It has no date, so that one version always makes the same page.
 std::string manualPage(const std::vector<CommandEntry>& table) {
   std::string page = ".TH LUCIOLE 1 \"\" \"luciole " + roff(LUCIOLE_VERSION) + "\" \"User Commands\"\n";
+  page += ".nh\n.ad l\n";  // a long word among a line's few leaves no even gaps
   page += ".SH NAME\nluciole \\- light scenes of very many lights on any OpenCL device\n.SH SYNOPSIS\n";
   for (const CommandEntry& command : table)
     if (command.commands.empty() || !command.arguments.empty()) page += roffUsage(command) + "\n.br\n";

@@ -134,9 +134,9 @@ TEST_F(ManualPage, GivesGroffAndManNothingToWarnOf) {
   EXPECT_THAT(groff.out, testing::HasSubstr("EXIT STATUS"));
   // Narrower than any terminal that it is read in: no word is too long for a line.
   EXPECT_EQ(told("luciole man | groff -man -Tutf8 -ww -rLL=60n"), "");
-  if (programIsThere("man"))
-    EXPECT_EQ(told("luciole man > luciole.1 && MANWIDTH=80 man --warnings -E UTF-8 -l -Tutf8 -Z ./luciole.1"),
-              "");
+  if (!programIsThere("man")) return;
+  EXPECT_EQ(told("luciole man > luciole.1 && MANWIDTH=80 man --warnings -E UTF-8 -l -Tutf8 -Z ./luciole.1"),
+            "");
 }
 
 TEST_F(ManualPage, ItsExamplesWork) {
