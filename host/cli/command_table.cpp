@@ -1,6 +1,7 @@
 #include "cli/command_table.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "cli/picture_options.hpp"
 
