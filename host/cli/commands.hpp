@@ -35,4 +35,8 @@ void addScaleCommand(CLI::App& app, CommandContext& context);
 void addGenerateCommand(CLI::App& app, CommandContext& context);
 void addDevicesCommand(CLI::App& app, CommandContext& context);
 
+// These print what `app`, the program, and all commands in it are when they run. It must outlive its parsing.
+void addManCommand(CLI::App& app);
+void addCompletionCommand(CLI::App& app);
+
 }  // namespace luciole

@@ -99,6 +99,8 @@ int main(int argument_count, char** arguments) {
   addScaleCommand(app, context);
   addGenerateCommand(app, context);
   addDevicesCommand(app, context);
+  addManCommand(app);
+  addCompletionCommand(app);
   std::string topic;
   CLI::App* help = app.add_subcommand("help", "what a command does and its options");
   help->add_option("COMMAND", topic, "the command to explain");
