@@ -57,9 +57,9 @@ InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
   install
   local place
   for place in "$checkout" "$build" "$folder/before"; do
-    ! grep -rlF "$place/" "$folder/prefix" || { echo "these know of $place" && return 1; }
+    ! grep -rlF "$place/" "$folder/prefix"/{bin,include,lib} || { echo "these know of $place" && return 1; }
   done
-  # Nor is it there while the program runs, where this may be hidden from it.
+  # (Pictures of scenes tell the command that made them.) Nor is it there while the program runs, where this may be hidden from it.
   local alone=()
   if unshare --mount true 2>/dev/null; then
     # shellcheck disable=SC2016

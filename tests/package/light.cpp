@@ -36,7 +36,7 @@ int main() {
   Stats stats;
   Scene scene;
   scene.lights = {{.diffuse = glm::vec3(6), .specular = glm::vec3(6)}};
-  RenderSettings settings{.size{kSide}, .camera{.fov_y = glm::radians(90.0)}};
+  RenderSettings settings{.size{kSide, kSide}, .camera{.fov_y = glm::radians(90.0)}};
 
   // The triangle: a G-buffer in view space, whose other pixels stay background.
   GBuffer gbuffer{.width = kSide, .height = kSide, .tiles_x = kSide / kTileSize, .tiles_y = kSide / kTileSize};
