@@ -42,7 +42,7 @@ trap 'exit 1' INT TERM HUP
 mirror=http://deb.debian.org/debian
 security=http://deb.debian.org/debian-security
 log=$root.log
-debootstrap --variant=minbase "$release" "$root" "$mirror" >"$log" 2>&1 || {
+debootstrap --variant=minbase "$release" "$root" "$mirror" </dev/null >"$log" 2>&1 || {
   tail -n 5 "$log" >&2
   cannot "debootstrap failed"
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The rooms of host/ stand on each other as CMakeLists.txt says.
+# The rooms of host/ stand on each other as host/CMakeLists.txt says.
 #
 #   rooms_test.sh                draws them, each in a row above all that it stands on
 #   rooms_test.sh TEST           runs one of the tests below
@@ -24,7 +24,7 @@ readRooms() {
     for word in "${words[@]:2}"; do
       case $word in
         ROOMS) in_rooms=yes ;;
-        LIBRARIES | FILES | WITHOUT) in_rooms= ;;
+        LIBRARIES | INCLUDES | FILES | WITHOUT) in_rooms= ;;
         *)
           [[ $in_rooms ]] || continue
           for below in ${folder_of[$word]} ${stands_on[${folder_of[$word]}]}; do
@@ -33,7 +33,7 @@ readRooms() {
           ;;
       esac
     done
-  done < <(grep '^luciole_room(' CMakeLists.txt)
+  done < <(grep "^luciole_room(" host/CMakeLists.txt)
 }
 
 # The highest room first; those of a row don't know each other.
@@ -73,7 +73,7 @@ EveryFolderIsARoom() {
   local folder status=0
   while read -r folder; do
     [[ $folder == cli || -v stands_on[$folder] ]] || {
-      echo "host/$folder has sources and is no room of CMakeLists.txt"
+      echo "host/$folder has sources and is no room of host/CMakeLists.txt"
       status=1
     }
   done < <(find host -name '*.[ch]pp' -printf '%P\n' | sed 's|/[^/]*$||' | sort -u)

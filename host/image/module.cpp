@@ -12,10 +12,12 @@
 namespace luciole {
 namespace {
 
-/// The module lies beside the program. The path is absolute, because the loader loses its search path under
-/// the address sanitizer.
+/// The module lies in a folder beside the library, which links to it don't change. The path is absolute,
+/// because the loader loses its search path under the address sanitizer.
 std::string modulePath() {
-  return std::filesystem::read_symlink("/proc/self/exe").replace_filename(LUCIOLE_IMAGE_MODULE);
+  Dl_info library;
+  dladdr(reinterpret_cast<const void*>(&modulePath), &library);
+  return std::filesystem::canonical(library.dli_fname).replace_filename(LUCIOLE_IMAGE_MODULE);
 }
 
 /// The least that OpenImageIO and its libraries need. Measured by `ulimit -v`: with 440 MiB loading hung,

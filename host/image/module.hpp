@@ -11,9 +11,9 @@
 #include "image/row_file.hpp"
 
 // OpenImageIO brings some 260 libraries along, which take the dynamic loader 0.2 s. So what includes it is a
-// module of its own, which the program loads when it first reads or writes a picture:
+// module of its own, which the library loads when it first reads or writes a picture:
 //
-//   program:  readImage() of module.cpp ──► ImageFunctions::read_image ──► module:  readImage() of image.cpp
+//   library:  readImage() of module.cpp ──► ImageFunctions::read_image ──► module:  readImage() of image.cpp
 namespace luciole {
 
 /// The functions of this folder that the module has, as their headers describe them.

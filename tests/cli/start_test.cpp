@@ -101,15 +101,15 @@ TEST(Start, NoDeviceIsOneLineAndStatus3) {
   }
 }
 
-// Whoever may write to a folder above the program's could have it load anything.
+// Whoever may write to a folder above the library's could have it load anything.
 TEST(Start, WithoutItsModuleTheProgramSaysWhatIsMissingAndLooksNowhereElse) {
   const TemporaryFolder folder;
   writeText(folder / "scene.json", kPlainScene);
   const Outcome outcome =
       runLine(folder,
-              "mkdir below && cd below && cp '" LUCIOLE_BINARY "' alone && "
-              "ln -s \"$(dirname '" LUCIOLE_BINARY "')/libluciole_image.so\" .. && "
-              "./alone render ../scene.json -o a.exr");
+              "library=\"$(dirname '" LUCIOLE_BINARY "')/lib\" && mkdir below && cd below && "
+              "cp \"$library\"/libluciole.so.* . && ln -s \"$library/luciole\" .. && "
+              "LD_LIBRARY_PATH=\"$PWD\" '" LUCIOLE_BINARY "' render ../scene.json -o a.exr");
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("libluciole_image.so"));

@@ -1,0 +1,90 @@
+# What is installed, where GNUInstallDirs says, and the Debian package made of it: cmake --build --preset package.
+include(CMakePackageConfigHelpers)
+
+# One path for both places of the program. CMake would fill a shorter one of the build folder up with colons, which to the loader
+# mean the folder that it is called in. In /usr, the loader knows the place.
+if(NOT CMAKE_SKIP_INSTALL_RPATH)
+  file(RELATIVE_PATH to_library ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(luciole PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN/lib;$ORIGIN/${to_library}")
+endif()
+install(TARGETS luciole RUNTIME)
+install(TARGETS luciole_library luciole_headers EXPORT LucioleTargets)
+foreach(level IN LISTS LUCIOLE_BUILT_LEVELS)
+  install(TARGETS luciole_library${level} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
+endforeach()
+# host/image/module.cpp looks for it there.
+install(TARGETS luciole_image_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/luciole)
+
+# Headers of the library's rooms, but those that only rooms themselves include: of libraries that no user of it needs, and what
+# includes them.
+set(headers "")
+foreach(room base image scene gbuffer raster rays load cl shadow culling render reference)
+  file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/host host/${room}/*.hpp)
+  list(APPEND headers ${found})
+endforeach()
+set(inner "<(OpenImageIO|nlohmann|png|tbb|tiny_gltf)")
+set(before "")
+while(NOT headers STREQUAL before)
+  set(before ${headers})
+  foreach(header IN LISTS before)
+    file(STRINGS host/${header} includes REGEX "^#include (${inner})")
+    if(includes)
+      list(REMOVE_ITEM headers ${header})
+      string(APPEND inner "|\"${header}\"")
+    endif()
+  endforeach()
+endwhile()
+foreach(header IN LISTS headers)
+  get_filename_component(place ${header} DIRECTORY)
+  install(FILES host/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/luciole/${place})
+endforeach()
+file(GLOB shared_headers CONFIGURE_DEPENDS kernels/*.h)
+install(FILES ${shared_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/luciole/kernels)
+
+set(config ${CMAKE_INSTALL_LIBDIR}/cmake/Luciole)
+install(EXPORT LucioleTargets NAMESPACE luciole:: DESTINATION ${config})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/LucioleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES packaging/LucioleConfig.cmake ${PROJECT_BINARY_DIR}/LucioleConfigVersion.cmake DESTINATION ${config})
+
+# Scenes to try, and the kernels as messages of an OpenCL compiler name them; the program has its own inside.
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/luciole
+  PATTERN "*.md" EXCLUDE PATTERN "*.sh" EXCLUDE PATTERN "*.py" EXCLUDE PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY kernels DESTINATION ${CMAKE_INSTALL_DATADIR}/luciole FILES_MATCHING PATTERN "*.cl" PATTERN "*.clh" PATTERN "*.h")
+
+# Debian wants long texts compressed, without the time in them.
+find_program(GZIP gzip REQUIRED)
+set(TEXTS ${PROJECT_BINARY_DIR}/texts)
+file(MAKE_DIRECTORY ${TEXTS})
+configure_file(packaging/changelog.in ${TEXTS}/changelog @ONLY)
+foreach(text ${TEXTS}/changelog ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/NOTICE)
+  get_filename_component(name ${text} NAME)
+  add_custom_command(OUTPUT ${TEXTS}/${name}.gz COMMAND ${GZIP} -9nc ${text} > ${TEXTS}/${name}.gz DEPENDS ${text} VERBATIM)
+  list(APPEND documents ${TEXTS}/${name}.gz)
+endforeach()
+install(FILES ${documents} LICENSE packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+add_custom_target(luciole_texts ALL DEPENDS ${documents})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The Luciole authors <luciole@users.noreply.github.com>")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
+# What is found while it runs: a device, without which it makes no picture, the letters of heat maps, and the plots of a page.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "fonts-dejavu-core, libjs-chart.js")
+# What its headers include.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libglm-dev, ocl-icd-opencl-dev, opencl-clhpp-headers")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Luciole (French: firefly) rasterizes a scene on the host and lights it by OpenCL
+kernels, from the command line, on any device, PoCL on a plain CPU first: point,
+directional and spot lights without limit, shadows by four methods, fog, Phong's
+model and others. It reads its own scenes, OBJ and glTF, writes EXR, PNG and what
+else OpenImageIO writes, and says what a picture cost and how wrong it is.
+
+The package holds the program, the library with its headers, and scenes to try.")
+include(CPack)

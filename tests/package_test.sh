@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# package_test.sh BUILD TEST: runs the function TEST, which installs what BUILD, a finished build folder, holds. Exit status 0 where it
+# keeps its promise.
+set -euo pipefail
+
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$(cd "$1" && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# Installed to one place and moved to another, of which nothing can know.
+install() {
+  cmake --install "$build" --prefix "$folder/before" >"$folder/log" || { cat "$folder/log" && exit 1; }
+  mv "$folder/before" "$folder/prefix"
+}
+
+configure() { # configure SOURCES OPTIONS…
+  cmake -G Ninja -S "$1" -B "$folder/build" -DCMAKE_BUILD_TYPE=Release "${@:2}" >"$folder/log" 2>&1 || { cat "$folder/log" && exit 1; }
+}
+
+FindPackageGivesTheLibraryAndItLights() {
+  install
+  configure "$checkout/tests/package" -DCMAKE_PREFIX_PATH="$folder/prefix"
+  cmake --build "$folder/build"
+  "$folder/build/light"
+}
+
+# Built it would be the same objects again, which takes minutes: what Ninja would do must do.
+AddSubdirectoryGivesTheSameTarget() {
+  local commands
+  configure "$checkout/tests/package" -DLUCIOLE_CHECKOUT="$checkout"
+  commands=$(ninja -C "$folder/build" -t commands light)
+  [[ $commands == *" $checkout/host/render/"* || $commands == *luciole_render.dir/Unity* ]] || { echo "no room is compiled" && return 1; }
+  [[ $commands == *"-o light "*"libluciole.so"* ]] || { echo "the library isn't linked" && return 1; }
+  [[ $commands != *gtest* && $commands != */host/cli/* ]] || { echo "more than the library is built" && return 1; }
+}
+
+EveryInstalledHeaderCompiles() {
+  install
+  mkdir "$folder/headers"
+  (cd "$folder/prefix/include/luciole" && find . -name '*.h' -printf '#include "%P"\n' -o -name '*.hpp' -printf '#include "%P"\n') |
+    sort >"$folder/headers/headers.cpp"
+  (($(wc -l <"$folder/headers/headers.cpp") > 50)) || { echo "headers are missing" && return 1; }
+  cat >"$folder/headers/CMakeLists.txt" <<'TEXT'
+cmake_minimum_required(VERSION 3.22)
+project(headers LANGUAGES CXX)
+find_package(Luciole REQUIRED)
+add_library(headers OBJECT headers.cpp)
+target_compile_options(headers PRIVATE -fsyntax-only)
+target_link_libraries(headers PRIVATE luciole::luciole)
+TEXT
+  configure "$folder/headers" -DCMAKE_PREFIX_PATH="$folder/prefix"
+  cmake --build "$folder/build"
+}
+
+InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
+  install
+  local place
+  for place in "$checkout" "$build" "$folder/before"; do
+    ! grep -rlF "$place/" "$folder/prefix"/{bin,include,lib} || { echo "these know of $place" && return 1; }
+  done
+  # (Pictures of scenes tell the command that made them.) Nor is it there while the program runs, where this may be hidden from it.
+  local alone=()
+  if unshare --mount true 2>/dev/null; then
+    # shellcheck disable=SC2016
+    alone=(unshare --mount bash -c 'for place in "$1" "$2"; do mount -t tmpfs none "$place"; done; shift 2; exec "$@"' bash "$build" "$checkout")
+  fi
+  mkdir "$folder/cache"
+  (cd / && "${alone[@]}" env -i PATH="$PATH" HOME="$folder" POCL_CACHE_DIR="$folder/cache" "$folder/prefix/bin/luciole" render \
+    "$folder/prefix/share/luciole/scenes/fireflies.json" --size 96x54 -o "$folder/installed.exr")
+  "$build/luciole" render "$checkout/scenes/fireflies.json" --size 96x54 -o "$folder/built.exr"
+  "$build/luciole" compare "$folder/installed.exr" "$folder/built.exr" --max-abs 0
+}
+
+"$2"
