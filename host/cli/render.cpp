@@ -47,19 +47,6 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   timed(stats, Stage::kWrite, [&] { writer->close(); });
 }
 
-/// Frames as text with ranges: "3, 7-9" for 3 7 8 9.
-std::string listFrames(const std::vector<int>& frames) {
-  std::string text;
-  for (std::size_t i = 0; i < frames.size();) {
-    std::size_t end = i + 1;
-    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", frames[i]);
-    if (end - i > 1) text += fmt::format("-{}", frames[end - 1]);
-    i = end;
-  }
-  return text;
-}
-
 /// Whether a frame's file exists. Files are written as a whole or not at all, so such a frame is done.
 bool isDone(const std::string& path) {
   std::error_code none;
