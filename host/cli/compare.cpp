@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/frames.hpp"
 #include "cli/progress.hpp"
 #include "figures/text_table.hpp"
@@ -242,6 +243,7 @@ void compareSequences(const CompareOptions& options, CommandContext& context) {
   ProgressLine progress(false);
   std::vector<ComparedFrame> compared;
   for (const int frame : frames) {
+    progress.frame = frame;
     progress.show(fmt::format("frame {}", frame), compared.size(), frames.size());
     compared.push_back({frame, comparePictures(ofFrame(options, frame), context.command_line)});
     compared.back().difference.of_pixel = std::vector<double>();
@@ -253,8 +255,9 @@ void compareSequences(const CompareOptions& options, CommandContext& context) {
   const auto over = std::count_if(compared.begin(), compared.end(),
                                   [&](const ComparedFrame& one) { return isOver(options, one.difference); });
   if (over == 0) return;
-  fmt::print(stderr, "luciole: {} of {} frames over --max-abs {}; {}\n", over, compared.size(),
-             *options.max_abs, worstLine(worst));
+  tellError(fmt::format("{} of {} frames over --max-abs {}; {}", over, compared.size(), *options.max_abs,
+                        worstLine(worst)),
+            kDifferent);
   context.status = kDifferent;
 }
 
@@ -295,6 +298,7 @@ void addCompareCommand(CLI::App& app, CommandContext& context) {
                       "write A, B and the error map in a row, with names and figures (- : PNG on standard "
                       "output)");
   command->add_option("--json", options->json, "write the figures as JSON (- : standard output)");
+  addLogOption(*command);
   command->callback([&context, options] { compare(*options, context); });
 }
 

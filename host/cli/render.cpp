@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
@@ -55,16 +56,25 @@ bool isDone(const std::string& path) {
 
 /// The frames of this run's shard, without those that --resume finds done.
 std::vector<int> framesToMake(const RenderOptions& options, const std::vector<int>& all, const Shard& shard) {
-  if (options.shard.empty() && shard.count > 1 && !options.quiet)
-    fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count);
+  if (options.shard.empty() && shard.count > 1) {
+    if (logsEvents())
+      logEvent("slurm_shard", {{"shard", shard.index + 1}, {"shards", shard.count}});
+    else if (!options.quiet)
+      fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1,
+                 shard.count);
+  }
   std::vector<int> frames, done;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!isMine(shard, i)) continue;
     const bool is_done = options.resume && isDone(frameFile(options.output, all[i]));
     (is_done ? done : frames).push_back(all[i]);
   }
-  if (!done.empty() && !options.quiet)
-    fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
+  if (!done.empty()) {
+    if (logsEvents())
+      logEvent("resumed", {{"frames_there", done.size()}, {"frames", done.size() + frames.size()}});
+    else if (!options.quiet)
+      fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
+  }
   return frames;
 }
 
@@ -83,6 +93,8 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
       progress.show(fmt::format("frame {}, {} of {}", frames[i], i + 1, frames.size()),
                     i * passes + std::size_t(done), frames.size() * passes);
     };
+    logEvent("frame_begun", {{"frame", frames[i]}});
+    progress.frame = frames[i];
     showPass(0, 1);
     PictureOptions one = options;
     one.output = frameFile(options.output, frames[i]);
@@ -95,17 +107,17 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
       poseScene(scene, frames[i]);
       renderPicture(device, scene, one, showPass, stats);
       progress.clear();
-      reportStats(one, stats);
+      reportStats(one, stats, frames[i]);
     } catch (const std::exception&) {
       progress.clear();
-      const int why = tellFailure(fmt::format("frame {}", frames[i]));
+      const int why = tellFailure(frames[i]);
       if (status == kDone) status = why;
       failed.push_back(frames[i]);
     }
   }
   if (!failed.empty())
-    fmt::print(stderr, "luciole: {} of {} frames failed: {}\n", failed.size(), frames.size(),
-               listFrames(failed));
+    tellError(fmt::format("{} of {} frames failed: {}", failed.size(), frames.size(), listFrames(failed)),
+              status);
   return status;
 }
 
@@ -162,18 +174,23 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     if (choice.is_list) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
+      logDevice(device.description);
       context.status =
           renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
       return;
     }
+    const int frame = choice.frames.front();
+    logEvent("frame_begun", {{"frame", frame}});
     ProgressLine progress(options->quiet);
+    progress.frame = frame;
     const auto showPass = [&](int done, int passes) {
+      if (done == 1) logDevice(device.description);  // the first pass needed it
       progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
                     std::size_t(passes));
     };
     renderPicture(device, scene, *options, showPass, stats);
     progress.clear();
-    reportStats(*options, stats);
+    reportStats(*options, stats, frame);
   });
 }
 
@@ -200,12 +217,14 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
       stats.device = device.description;
     }
+    if (lit) logDevice(device.description);
+    logEvent("frame_begun", {{"frame", frame}});
     const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
     timed(stats, Stage::kWrite, [&] {
       writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
                    options->format);
     });
-    reportStats(*options, stats);
+    reportStats(*options, stats, frame);
   });
 }
 
@@ -231,12 +250,14 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
         timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
     const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
+    logEvent("frame_begun", {{"frame", frame}});
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+    logDevice(device.description);
     timed(stats, Stage::kWrite, [&] {
       writeImage(image, options->output, pictureMetadata(context.command_line, &device),
                  writeOptions(*options, gbuffer));
     });
-    reportStats(*options, stats);
+    reportStats(*options, stats, frame);
   });
 }
 
