@@ -16,31 +16,42 @@
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"
+#include "image/file_format.hpp"
+#include "image/film.hpp"
 #include "render/render.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
 
+constexpr double kFramesPerSecond = 24;
+
 struct RenderOptions : PictureOptions {
   std::string scene;
   std::string shard;
+  std::optional<double> frames_per_second;
   bool resume = false;
 };
 
-/// Renders the scene at its frame and writes the picture.
-void renderPicture(Device& device, const Scene& scene, const PictureOptions& options,
+/// The part of the picture that is made.
+Crop windowOf(const RenderSettings& settings) {
+  return settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
+}
+
+/// Renders the scene at its frame and writes the picture, to the film unless that is null.
+void renderPicture(Device& device, const Scene& scene, const PictureOptions& options, Film* film,
                    const std::function<void(int, int)>& on_pass, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
-  const Crop window = settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
+  const Crop window = windowOf(settings);
+  WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
+  how.film = film;
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
-                       pictureMetadata(stats.command, &device),
-                       writeOptions(options, settings.camera, settings.size, {window.x, window.y}));
+                       pictureMetadata(stats.command, &device), how);
       writer->write(rows);
     });
   };
@@ -78,11 +89,12 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
   return frames;
 }
 
-/// Renders frame after frame. A frame that fails is reported and left out. claims: null unless other runs may
-/// be at work beside this one. started: the cost of loading, which goes into the first frame's statistics.
-/// Returns the exit status of the first failure. Throws InputError for a frame that another run has claimed.
+/// Renders frame after frame. A frame that fails is reported and left out, but of a film it is the last one.
+/// film: where frames go, or null for a file each. claims: null unless other runs may be at work beside this
+/// one. started: the cost of loading, which goes into the first frame's statistics. Returns the exit status
+/// of the first failure. Throws InputError for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-                 FrameClaims* claims, Stats started) {
+                 Film* film, FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);
   const std::string command = started.command;
   int status = kDone;
@@ -99,18 +111,20 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     PictureOptions one = options;
     one.output = frameFile(options.output, frames[i]);
     one.stats = frameFile(options.stats, frames[i]);
+    one.quiet = options.quiet || film;  // a film is told when it is whole
     Stats stats = std::exchange(started, Stats{});
     stats.command = command;
     if (i > 0) stats.began = millisecondsSinceStart();
     try {
-      checkWritable(one.output, one.format);
+      if (!film) checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);
-      renderPicture(device, scene, one, showPass, stats);
+      renderPicture(device, scene, one, film, showPass, stats);
       progress.clear();
       reportStats(one, stats, frames[i]);
     } catch (const std::exception&) {
       progress.clear();
       const int why = tellFailure(frames[i]);
+      if (film) return why;
       if (status == kDone) status = why;
       failed.push_back(frames[i]);
     }
@@ -121,7 +135,50 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
   return status;
 }
 
+/// Renders all frames into one film. Returns the exit status.
+int renderFilm(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
+               Stats started) {
+  const Crop window = windowOf(renderSettings(options, scene));
+  const double rate = options.frames_per_second.value_or(kFramesPerSecond);
+  const std::string path = frameFile(options.output, frames.front());
+  Film film(path, options.format, window.width, window.height, rate);
+  const int status = renderFrames(device, scene, options, frames, &film, nullptr, std::move(started));
+  if (status != kDone) return status;
+  film.close();
+  if (logsEvents())
+    logEvent("film_done", {{"file", path},
+                           {"frames", frames.size()},
+                           {"width", window.width},
+                           {"height", window.height},
+                           {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
+  else if (!options.quiet)
+    fmt::print(stderr, "{}: {} frames of {}x{}, {} a second, {:.0f} ms\n", path, frames.size(), window.width,
+               window.height, rate, millisecondsSinceStart());
+  return kDone;
+}
+
+/// Whether the frames become one film: its name, a film's, has no place for a frame's number.
+bool makesFilm(const RenderOptions& options, const FrameChoice& choice) {
+  return choice.is_list && isFilm(options.output, options.format) && !hasFramePlace(options.output);
+}
+
+void checkFilmOptions(const RenderOptions& options) {
+  checkFilm(frameFile(options.output, 1), options.format);
+  if (options.resume)
+    throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
+  if (!options.aovs.empty())
+    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
+}
+
 void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
+  const bool is_film = makesFilm(options, choice);
+  if (options.frames_per_second && !is_film)
+    throw InputError("--fps: goes with a film, as --frames A-B -o film.mp4");
+  if (is_film) return checkFilmOptions(options);
+  if (isFilm(options.output, options.format) && formatName(options.output, options.format) != "webp")
+    throw InputError(fmt::format(
+        "-o {}: a film goes with --frames A-B, and has no frame's number in its name", options.output));
   checkOutput(options);
   if (choice.is_list) {
     checkPattern(options.output, "-o");
@@ -148,6 +205,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       "(default: 1); #### or %04d in the output's name (and that of --stats) becomes the number; a frame "
       "that "
       "fails is told and the others are made");
+  command
+      ->add_option(
+          "--fps", options->frames_per_second,
+          "frames a second of a film: --frames A-B -o film.mp4, .webm or .webp, which ffmpeg encodes "
+          "(default: 24)")
+      ->check(CLI::Range(1.0, 240.0));
   command->add_flag("--resume", options->resume, "leave frames alone whose file is there");
   command->add_option("--shard", options->shard,
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
@@ -156,13 +219,20 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     const FrameChoice choice = chosenFrames(options->frames);
     if (!choice.is_list) useFrame(*options, "render");
     checkOptions(*options, choice);
+    const bool is_film = makesFilm(*options, choice);
     std::vector<int> frames;
     std::optional<FrameClaims> claims;
     if (choice.is_list) {
       const Shard shard = chosenShard(options->shard);
+      if (is_film && shard.count > 1)
+        throw InputError(fmt::format(
+            "{}: one process makes all frames of a film, and this is shard {} of {}; make pictures, as -o "
+            "frame.####.png, or say --shard 1/1",
+            options->output, shard.index + 1, shard.count));
       frames = framesToMake(*options, choice.frames, shard);
       if (frames.empty()) return;
-      if (shard.is_chosen) claims.emplace(options->output).claim(frames.front());  // before any work is done
+      if (shard.is_chosen && !is_film)
+        claims.emplace(options->output).claim(frames.front());  // before any work is done
     }
     Stats stats;
     stats.command = context.command_line;
@@ -175,8 +245,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
       logDevice(device.description);
-      context.status =
-          renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
+      context.status = is_film ? renderFilm(device, scene, *options, frames, std::move(stats))
+                               : renderFrames(device, scene, *options, frames, nullptr,
+                                              claims ? &*claims : nullptr, std::move(stats));
       return;
     }
     const int frame = choice.frames.front();
@@ -188,7 +259,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
                     std::size_t(passes));
     };
-    renderPicture(device, scene, *options, showPass, stats);
+    renderPicture(device, scene, *options, nullptr, showPass, stats);
     progress.clear();
     reportStats(*options, stats, frame);
   });
