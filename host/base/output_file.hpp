@@ -25,6 +25,9 @@ class OutputFile {
   /// Whether each writeAt() must begin where the one before ended.
   bool isStream() const { return is_stream_; }
 
+  /// For another program that writes the file, which is no stream, by itself.
+  int descriptor() const { return descriptor_; }
+
   /// Throws MachineError where the disk is full or `offset` is not a stream's end.
   void writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
 

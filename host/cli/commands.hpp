@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,14 @@ struct CommandContext {
   int status = kDone;
 };
 
-/// To be called in a catch block. Writes to standard error what is wrong, after `where` unless that is empty,
-/// and returns the exit status for the exception.
-int tellFailure(const std::string& where);
+/// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see
+/// event_log.hpp), and returns the exit status for the exception. frame: the one that failed, of several.
+int tellFailure(std::optional<int> frame = std::nullopt);
 
-/// Writes warnings to standard error, a line each.
+/// Writes to standard error what is wrong, as a line or an event. status: the exit status that it leads to.
+void tellError(const std::string& message, int status);
+
+/// Writes warnings to standard error, a line or an event each.
 void tellWarnings(const std::vector<std::string>& warnings);
 
 // Each adds a command to the program. The command's work runs while the command line is parsed, if it is

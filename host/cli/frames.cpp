@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/output_file.hpp"
 #include "cli/picture_options.hpp"
 
 namespace luciole {
@@ -124,11 +127,44 @@ std::string frameFile(const std::string& pattern, int frame) {
   return fmt::format("{}{:0{}}{}", name.before, frame, name.digits, name.after);
 }
 
+bool hasFramePlace(const std::string& pattern) { return parsePattern(pattern).digits > 0; }
+
 void checkPattern(const std::string& pattern, const std::string& option) {
-  if (parsePattern(pattern).digits == 0)
+  if (!hasFramePlace(pattern))
     throw InputError(fmt::format(
         "{} {}: expected a name with #### or %04d in the place of the frame's number, such as frame.####.png",
         option, pattern));
+}
+
+std::vector<int> framesThere(const std::string& pattern) {
+  const NamePattern name = parsePattern(pattern);
+  const std::string before = name.before.substr(name.before.find_last_of('/') + 1);
+  std::vector<int> frames;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(folderOf(pattern), error), end;
+  for (; !error && entry != end; entry.increment(error)) {
+    const std::string file = entry->path().filename().string();
+    const std::size_t around = before.size() + name.after.size();
+    if (file.size() <= around || !file.starts_with(before) || !file.ends_with(name.after)) continue;
+    const auto frame = frameNumber(std::string_view(file).substr(before.size(), file.size() - around));
+    // Not a number with fewer or more zeros in front than its file has.
+    if (frame && std::filesystem::path(frameFile(pattern, *frame)).filename() == file)
+      frames.push_back(*frame);
+  }
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+std::string listFrames(const std::vector<int>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t end = i + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", frames[i]);
+    if (end - i > 1) text += fmt::format("-{}", frames[end - 1]);
+    i = end;
+  }
+  return text;
 }
 
 }  // namespace luciole

@@ -29,4 +29,14 @@ std::string frameFile(const std::string& pattern, int frame);
 /// number. option: the pattern's option, for the message.
 void checkPattern(const std::string& pattern, const std::string& option);
 
+/// Whether a file's name has a place for the frame's number. Throws InputError as frameFile() does.
+bool hasFramePlace(const std::string& pattern);
+
+/// The frames, in rising order, whose files are there: those that frameFile() names for the pattern, which
+/// has a place for the number. Empty also where there is no such folder.
+std::vector<int> framesThere(const std::string& pattern);
+
+/// Frames as text with ranges: "3, 7-9" for 3 7 8 9.
+std::string listFrames(const std::vector<int>& frames);
+
 }  // namespace luciole

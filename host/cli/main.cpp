@@ -5,12 +5,15 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
+#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/suggest.hpp"
 
 namespace {
@@ -37,9 +40,21 @@ const CLI::App& findCommand(CLI::App& app, const std::string& name) {
 
 }  // namespace
 
-int luciole::tellFailure(const std::string& where) {
+void luciole::tellError(const std::string& message, int status) {
+  if (logsEvents())
+    logEvent("error", {{"message", message}, {"status", status}});
+  else
+    fmt::print(stderr, "luciole: {}\n", message);
+}
+
+int luciole::tellFailure(std::optional<int> frame) {
   const auto fail = [&](const std::string& message, int status) {
-    fmt::print(stderr, "luciole: {}{}{}\n", where, where.empty() ? "" : ": ", message);
+    if (!frame)
+      tellError(message, status);
+    else if (logsEvents())
+      logEvent("frame_failed", {{"frame", *frame}, {"message", message}, {"status", status}});
+    else
+      tellError(fmt::format("frame {}: {}", *frame, message), status);
     return status;
   };
   try {
@@ -60,7 +75,12 @@ int luciole::tellFailure(const std::string& where) {
 }
 
 void luciole::tellWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "luciole: warning: {}\n", warning);
+  for (const std::string& warning : warnings) {
+    if (logsEvents())
+      logEvent("warning", {{"message", warning}});
+    else
+      fmt::print(stderr, "luciole: warning: {}\n", warning);
+  }
 }
 
 namespace {
@@ -71,18 +91,18 @@ namespace {
   try {
     if (std::current_exception()) throw;
   } catch (const std::bad_alloc&) {
-    std::fputs("luciole: out of memory\n", stderr);
+    if (logsEvents())
+      logOutOfMemory(kMachineFailed);
+    else
+      std::fputs("luciole: out of memory\n", stderr);
     std::_Exit(kMachineFailed);
   } catch (...) {
   }
   std::abort();
 }
 
-}  // namespace
-
-int main(int argument_count, char** arguments) {
-  std::set_terminate(endUncaught);
-  CommandContext context{joinedArguments(argument_count, arguments)};
+/// Does what the command line says. Returns the exit status.
+int runCommand(int argument_count, char** arguments, CommandContext& context) {
   CLI::App app{"Luciole lights scenes with as many lights as there are fireflies, deferred, on OpenCL."};
   app.set_version_flag("--version", "luciole " LUCIOLE_VERSION);
   app.require_subcommand(1);
@@ -121,10 +141,25 @@ int main(int argument_count, char** arguments) {
     return app.exit(success);  // --help and --version
   } catch (const CLI::ParseError&) {
     const std::string unexpected = describeUnexpected(app);
-    if (unexpected.empty()) return tellFailure("");
-    fmt::print(stderr, "luciole{}\n", unexpected);
+    if (unexpected.empty()) return tellFailure();
+    if (logsEvents())
+      logEvent("error", {{"message", "luciole" + unexpected}, {"status", kWrongInput}});
+    else
+      fmt::print(stderr, "luciole{}\n", unexpected);
     return kWrongInput;
   } catch (const std::exception&) {
-    return tellFailure("");
+    return tellFailure();
   }
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  std::set_terminate(endUncaught);
+  CommandContext context{joinedArguments(argument_count, arguments)};
+  if (asksForEvents(argument_count, arguments)) startEventLog();
+  logEvent("start", {{"command", context.command_line}, {"version", LUCIOLE_VERSION}});
+  const int status = runCommand(argument_count, arguments, context);
+  logEvent("end", {{"status", status}, {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
+  return status;
 }

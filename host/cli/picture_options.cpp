@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/frames.hpp"
 #include "cli/suggest.hpp"
 #include "gbuffer/camera_header.hpp"
@@ -203,7 +204,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   if (is_one_picture)
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
-  command.add_flag("--quiet", options.quiet, "say nothing but errors");
+  CLI::Option* quiet = command.add_flag("--quiet", options.quiet, "say nothing but errors");
+  if (is_one_picture) addLogOption(command)->excludes(quiet);
 }
 
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
@@ -237,7 +239,13 @@ MissingTextures missingTexturesOf(const std::string& value) {
 }
 
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
-  Scene scene = loadScene(path, frame, missingTexturesOf(options.missing_textures));
+  Scene scene;
+  const double milliseconds =
+      millisecondsOf([&] { scene = loadScene(path, frame, missingTexturesOf(options.missing_textures)); });
+  logEvent("loaded", {{"scene", path},
+                      {"objects", scene.objects.size()},
+                      {"lights", scene.lights.size()},
+                      {"milliseconds", eventMilliseconds(milliseconds)}});
   castShadows(options, scene);
   if (!options.quiet) tellWarnings(scene.warnings);
   return scene;
@@ -332,8 +340,34 @@ Metadata pictureMetadata(const std::string& command_line, const Device* device) 
   return metadata;
 }
 
-void reportStats(const PictureOptions& options, const Stats& stats) {
+void logDevice(const DeviceDescription& device) {
+  logEvent("device", {{"name", device.name},
+                      {"platform", device.platform},
+                      {"driver", device.version},
+                      {"lanes", device.lanes}});
+}
+
+namespace {
+
+void logPicture(const PictureOptions& options, const Stats& stats, int frame) {
+  for (const auto& [stage, milliseconds] : stats.stages)
+    logEvent(
+        "stage",
+        {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
+  logEvent("frame_done", {{"frame", frame},
+                          {"file", options.output},
+                          {"width", stats.width},
+                          {"height", stats.height},
+                          {"triangles", stats.triangles},
+                          {"lights", stats.lights},
+                          {"milliseconds", eventMilliseconds(pictureMilliseconds(stats))}});
+}
+
+}  // namespace
+
+void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
+  if (logsEvents()) return logPicture(options, stats, frame);
   if (options.quiet) return;
   // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.
   const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };

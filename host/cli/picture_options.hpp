@@ -94,8 +94,12 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
 Metadata pictureMetadata(const std::string& command_line, const Device* device);
 
 /// Writes the statistics to the file that --stats names, if any. Unless --quiet, writes a line to standard
-/// error that says what was made and what it cost.
-void reportStats(const PictureOptions& options, const Stats& stats);
+/// error that says what was made and what it cost. In an event log that is an event for each stage of the
+/// frame, and one for the frame.
+void reportStats(const PictureOptions& options, const Stats& stats, int frame);
+
+/// In an event log, tells which device is used.
+void logDevice(const DeviceDescription& device);
 
 /// The parts of a text between separators; the whole text if there is no separator.
 std::vector<std::string> split(const std::string& text, char separator);

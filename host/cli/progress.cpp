@@ -3,20 +3,35 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <utility>
+
+#include "cli/event_log.hpp"
 
 namespace luciole {
 
-ProgressLine::ProgressLine(bool quiet) : is_shown(!quiet && isatty(STDERR_FILENO)) {}
+ProgressLine::ProgressLine(bool quiet) : is_shown(!quiet && !logsEvents() && isatty(STDERR_FILENO)) {}
 
 void ProgressLine::show(const std::string& what, std::size_t done, std::size_t total) {
-  if (!is_shown) return;
+  if (!is_shown && !logsEvents()) return;
+  const int percent_done = total > 0 ? int(100 * std::uint64_t(done) / total) : 0;
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+  const double left = done > 0 ? passed.count() / double(done) * double(total - done) : 0;
+  if (logsEvents()) {
+    if (std::exchange(percent, percent_done) == percent_done) return;
+    EventFields fields;
+    if (frame) fields["frame"] = *frame;
+    fields["what"] = what;
+    fields["percent"] = percent_done;
+    if (done > 0) fields["milliseconds_left"] = std::round(1000 * left);
+    logEvent("progress", fields);
+    return;
+  }
   std::string line = what;
-  if (total > 0) line += fmt::format(": {} %", 100 * std::uint64_t(done) / total);
-  if (done > 0)
-    line += fmt::format(", {} left", duration(passed.count() / double(done) * double(total - done)));
+  if (total > 0) line += fmt::format(": {} %", percent_done);
+  if (done > 0) line += fmt::format(", {} left", duration(left));
   if (line == text) return;
   text = line;
   fmt::print(stderr, "\r\x1b[K{}", text);

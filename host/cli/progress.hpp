@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace luciole {
 
 /// A line on standard error that is rewritten as work goes on: what is done, how much of it, and about how
-/// long it will still take. Only on a terminal, and not with --quiet.
+/// long it will still take. Only on a terminal, and not with --quiet. With an event log, in place of the
+/// line, an event for each percent that is done.
 struct ProgressLine {
   explicit ProgressLine(bool quiet);
 
@@ -18,7 +20,9 @@ struct ProgressLine {
 
   bool is_shown;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  std::string text;  ///< the line as it is shown
+  std::string text;          ///< the line as it is shown
+  std::optional<int> frame;  ///< that is being made, for the event
+  int percent = -1;          ///< that the last event told
 };
 
 /// A time in minutes and seconds, from an hour on in hours, too: "0:07", "12:34" or "1:02:03".

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/suggest.hpp"
@@ -162,6 +163,15 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
   stats.errors.emplace_back("gbuffer_position", check.position_error);
   stats.errors.emplace_back("gbuffer_normal", check.normal_error);
   stats.errors.emplace_back("gbuffer_lift", check.lift_error);
+  if (logsEvents()) {
+    logEvent("gbuffer_checked", {{"pixels", check.pixels},
+                                 {"beside_edges", check.beside_edges},
+                                 {"at_ties", check.at_ties},
+                                 {"unexplained", check.unexplained},
+                                 {"position_error", check.position_error},
+                                 {"normal_error", check.normal_error}});
+    return;
+  }
   if (options.quiet) return;
   fmt::print(stderr,
              "G-buffer against rays: position within {:.1e}, normal within {:.1e} rad; of {} pixels {} show "
@@ -281,11 +291,12 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
     checkOptions(*options);
     Stats stats;
     stats.command = context.command_line;
+    logEvent("frame_begun", {{"frame", options->frame}});
     if (options->gbuffer.empty())
       referenceOfScene(*options, stats);
     else
       referenceOfGBuffer(*options, stats);
-    reportStats(*options, stats);
+    reportStats(*options, stats, options->frame);
   });
 }
 

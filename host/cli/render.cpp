@@ -9,55 +9,54 @@
 #include "base/error.hpp"
 #include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"
+#include "image/file_format.hpp"
+#include "image/film.hpp"
 #include "render/render.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
 
+constexpr double kFramesPerSecond = 24;
+
 struct RenderOptions : PictureOptions {
   std::string scene;
   std::string shard;
+  std::optional<double> frames_per_second;
   bool resume = false;
 };
 
-/// Renders the scene at its frame and writes the picture.
-void renderPicture(Device& device, const Scene& scene, const PictureOptions& options,
+/// The part of the picture that is made.
+Crop windowOf(const RenderSettings& settings) {
+  return settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
+}
+
+/// Renders the scene at its frame and writes the picture, to the film unless that is null.
+void renderPicture(Device& device, const Scene& scene, const PictureOptions& options, Film* film,
                    const std::function<void(int, int)>& on_pass, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
-  const Crop window = settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
+  const Crop window = windowOf(settings);
+  WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
+  how.film = film;
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
-                       pictureMetadata(stats.command, &device),
-                       writeOptions(options, settings.camera, settings.size, {window.x, window.y}));
+                       pictureMetadata(stats.command, &device), how);
       writer->write(rows);
     });
   };
   renderBands(device, scene, settings, write, stats);
   timed(stats, Stage::kWrite, [&] { writer->close(); });
-}
-
-/// Frames as text with ranges: "3, 7-9" for 3 7 8 9.
-std::string listFrames(const std::vector<int>& frames) {
-  std::string text;
-  for (std::size_t i = 0; i < frames.size();) {
-    std::size_t end = i + 1;
-    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", frames[i]);
-    if (end - i > 1) text += fmt::format("-{}", frames[end - 1]);
-    i = end;
-  }
-  return text;
 }
 
 /// Whether a frame's file exists. Files are written as a whole or not at all, so such a frame is done.
@@ -68,24 +67,34 @@ bool isDone(const std::string& path) {
 
 /// The frames of this run's shard, without those that --resume finds done.
 std::vector<int> framesToMake(const RenderOptions& options, const std::vector<int>& all, const Shard& shard) {
-  if (options.shard.empty() && shard.count > 1 && !options.quiet)
-    fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count);
+  if (options.shard.empty() && shard.count > 1) {
+    if (logsEvents())
+      logEvent("slurm_shard", {{"shard", shard.index + 1}, {"shards", shard.count}});
+    else if (!options.quiet)
+      fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1,
+                 shard.count);
+  }
   std::vector<int> frames, done;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!isMine(shard, i)) continue;
     const bool is_done = options.resume && isDone(frameFile(options.output, all[i]));
     (is_done ? done : frames).push_back(all[i]);
   }
-  if (!done.empty() && !options.quiet)
-    fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
+  if (!done.empty()) {
+    if (logsEvents())
+      logEvent("resumed", {{"frames_there", done.size()}, {"frames", done.size() + frames.size()}});
+    else if (!options.quiet)
+      fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
+  }
   return frames;
 }
 
-/// Renders frame after frame. A frame that fails is reported and left out. claims: null unless other runs may
-/// be at work beside this one. started: the cost of loading, which goes into the first frame's statistics.
-/// Returns the exit status of the first failure. Throws InputError for a frame that another run has claimed.
+/// Renders frame after frame. A frame that fails is reported and left out, but of a film it is the last one.
+/// film: where frames go, or null for a file each. claims: null unless other runs may be at work beside this
+/// one. started: the cost of loading, which goes into the first frame's statistics. Returns the exit status
+/// of the first failure. Throws InputError for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-                 FrameClaims* claims, Stats started) {
+                 Film* film, FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);
   const std::string command = started.command;
   int status = kDone;
@@ -96,33 +105,80 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
       progress.show(fmt::format("frame {}, {} of {}", frames[i], i + 1, frames.size()),
                     i * passes + std::size_t(done), frames.size() * passes);
     };
+    logEvent("frame_begun", {{"frame", frames[i]}});
+    progress.frame = frames[i];
     showPass(0, 1);
     PictureOptions one = options;
     one.output = frameFile(options.output, frames[i]);
     one.stats = frameFile(options.stats, frames[i]);
+    one.quiet = options.quiet || film;  // a film is told when it is whole
     Stats stats = std::exchange(started, Stats{});
     stats.command = command;
     if (i > 0) stats.began = millisecondsSinceStart();
     try {
-      checkWritable(one.output, one.format);
+      if (!film) checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);
-      renderPicture(device, scene, one, showPass, stats);
+      renderPicture(device, scene, one, film, showPass, stats);
       progress.clear();
-      reportStats(one, stats);
+      reportStats(one, stats, frames[i]);
     } catch (const std::exception&) {
       progress.clear();
-      const int why = tellFailure(fmt::format("frame {}", frames[i]));
+      const int why = tellFailure(frames[i]);
+      if (film) return why;
       if (status == kDone) status = why;
       failed.push_back(frames[i]);
     }
   }
   if (!failed.empty())
-    fmt::print(stderr, "luciole: {} of {} frames failed: {}\n", failed.size(), frames.size(),
-               listFrames(failed));
+    tellError(fmt::format("{} of {} frames failed: {}", failed.size(), frames.size(), listFrames(failed)),
+              status);
   return status;
 }
 
+/// Renders all frames into one film. Returns the exit status.
+int renderFilm(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
+               Stats started) {
+  const Crop window = windowOf(renderSettings(options, scene));
+  const double rate = options.frames_per_second.value_or(kFramesPerSecond);
+  const std::string path = frameFile(options.output, frames.front());
+  Film film(path, options.format, window.width, window.height, rate);
+  const int status = renderFrames(device, scene, options, frames, &film, nullptr, std::move(started));
+  if (status != kDone) return status;
+  film.close();
+  if (logsEvents())
+    logEvent("film_done", {{"file", path},
+                           {"frames", frames.size()},
+                           {"width", window.width},
+                           {"height", window.height},
+                           {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
+  else if (!options.quiet)
+    fmt::print(stderr, "{}: {} frames of {}x{}, {} a second, {:.0f} ms\n", path, frames.size(), window.width,
+               window.height, rate, millisecondsSinceStart());
+  return kDone;
+}
+
+/// Whether the frames become one film: its name, a film's, has no place for a frame's number.
+bool makesFilm(const RenderOptions& options, const FrameChoice& choice) {
+  return choice.is_list && isFilm(options.output, options.format) && !hasFramePlace(options.output);
+}
+
+void checkFilmOptions(const RenderOptions& options) {
+  checkFilm(frameFile(options.output, 1), options.format);
+  if (options.resume)
+    throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
+  if (!options.aovs.empty())
+    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
+}
+
 void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
+  const bool is_film = makesFilm(options, choice);
+  if (options.frames_per_second && !is_film)
+    throw InputError("--fps: goes with a film, as --frames A-B -o film.mp4");
+  if (is_film) return checkFilmOptions(options);
+  if (isFilm(options.output, options.format) && formatName(options.output, options.format) != "webp")
+    throw InputError(fmt::format(
+        "-o {}: a film goes with --frames A-B, and has no frame's number in its name", options.output));
   checkOutput(options);
   if (choice.is_list) {
     checkPattern(options.output, "-o");
@@ -149,6 +205,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       "(default: 1); #### or %04d in the output's name (and that of --stats) becomes the number; a frame "
       "that "
       "fails is told and the others are made");
+  command
+      ->add_option(
+          "--fps", options->frames_per_second,
+          "frames a second of a film: --frames A-B -o film.mp4, .webm or .webp, which ffmpeg encodes "
+          "(default: 24)")
+      ->check(CLI::Range(1.0, 240.0));
   command->add_flag("--resume", options->resume, "leave frames alone whose file is there");
   command->add_option("--shard", options->shard,
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
@@ -157,13 +219,20 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     const FrameChoice choice = chosenFrames(options->frames);
     if (!choice.is_list) useFrame(*options, "render");
     checkOptions(*options, choice);
+    const bool is_film = makesFilm(*options, choice);
     std::vector<int> frames;
     std::optional<FrameClaims> claims;
     if (choice.is_list) {
       const Shard shard = chosenShard(options->shard);
+      if (is_film && shard.count > 1)
+        throw InputError(fmt::format(
+            "{}: one process makes all frames of a film, and this is shard {} of {}; make pictures, as -o "
+            "frame.####.png, or say --shard 1/1",
+            options->output, shard.index + 1, shard.count));
       frames = framesToMake(*options, choice.frames, shard);
       if (frames.empty()) return;
-      if (shard.is_chosen) claims.emplace(options->output).claim(frames.front());  // before any work is done
+      if (shard.is_chosen && !is_film)
+        claims.emplace(options->output).claim(frames.front());  // before any work is done
     }
     Stats stats;
     stats.command = context.command_line;
@@ -175,18 +244,24 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     if (choice.is_list) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
-      context.status =
-          renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
+      logDevice(device.description);
+      context.status = is_film ? renderFilm(device, scene, *options, frames, std::move(stats))
+                               : renderFrames(device, scene, *options, frames, nullptr,
+                                              claims ? &*claims : nullptr, std::move(stats));
       return;
     }
+    const int frame = choice.frames.front();
+    logEvent("frame_begun", {{"frame", frame}});
     ProgressLine progress(options->quiet);
+    progress.frame = frame;
     const auto showPass = [&](int done, int passes) {
+      if (done == 1) logDevice(device.description);  // the first pass needed it
       progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
                     std::size_t(passes));
     };
-    renderPicture(device, scene, *options, showPass, stats);
+    renderPicture(device, scene, *options, nullptr, showPass, stats);
     progress.clear();
-    reportStats(*options, stats);
+    reportStats(*options, stats, frame);
   });
 }
 
@@ -213,12 +288,14 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
       stats.device = device.description;
     }
+    if (lit) logDevice(device.description);
+    logEvent("frame_begun", {{"frame", frame}});
     const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
     timed(stats, Stage::kWrite, [&] {
       writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
                    options->format);
     });
-    reportStats(*options, stats);
+    reportStats(*options, stats, frame);
   });
 }
 
@@ -244,12 +321,14 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
         timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
     const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
+    logEvent("frame_begun", {{"frame", frame}});
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+    logDevice(device.description);
     timed(stats, Stage::kWrite, [&] {
       writeImage(image, options->output, pictureMetadata(context.command_line, &device),
                  writeOptions(*options, gbuffer));
     });
-    reportStats(*options, stats);
+    reportStats(*options, stats, frame);
   });
 }
 

@@ -33,13 +33,15 @@ std::string lowerCase(std::string text) {
 
 }  // namespace
 
+std::string formatName(const std::string& path, const std::string& named) {
+  if (!named.empty()) return lowerCase(named);
+  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  return extension.empty() ? "" : extension.substr(1);
+}
+
 FileFormat outputFormat(const std::string& path, const std::string& named) {
   if (path == "-" && named.empty()) return kFormats[0];
-  std::string extension = lowerCase(named);
-  if (named.empty()) {
-    extension = lowerCase(std::filesystem::path(path).extension().string());
-    if (!extension.empty()) extension.erase(0, 1);
-  }
+  const std::string extension = formatName(path, named);
   for (const FileFormat& format : kFormats) {
     if (extension == format.extension) return format;
   }

@@ -5,34 +5,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "image/drawing.hpp"
 #include "image/label_font.hpp"
 
 namespace luciole {
 namespace {
 
 using OIIO::ImageBuf;
-using OIIO::ROI;
 using OIIO::ImageBufAlgo::TextAlignX;
-using Color = std::array<float, 3>;
 
 // Linear, as the colours of OpenImageIO's color_map are: its viridis runs from 68 1 84 to 253 231 37 in 8-bit
 // sRGB.
-constexpr Color kZeroColor{0.0f, 0.0f, 0.0f};
-constexpr Color kNotComparedColor{0.05f, 0.05f, 0.05f};
-constexpr Color kNotFiniteColor{1.0f, 0.0f, 0.0f};
-constexpr Color kPaper{1.0f, 1.0f, 1.0f};
-constexpr Color kInk{0.0f, 0.0f, 0.0f};
+constexpr LinearColor kZeroColor{0.0f, 0.0f, 0.0f};
+constexpr LinearColor kNotComparedColor{0.05f, 0.05f, 0.05f};
+constexpr LinearColor kNotFiniteColor{1.0f, 0.0f, 0.0f};
 
 constexpr int kMinDecades = 3;
 constexpr int kMaxDecades = 6;
-constexpr int kMinWidth = 480;  ///< pixels that the bar and its labels need
-constexpr int kMinTextSize = 14;
-constexpr double kPanelHeight = 8.6;  ///< in text sizes, as all lengths in the panel are
 
 /// From 10^low to 10^high.
 struct Scale {
@@ -42,7 +35,7 @@ struct Scale {
 
 /// A colour off the scale and what it means.
 struct Swatch {
-  Color color;
+  LinearColor color;
   std::string meaning;
 };
 
@@ -94,50 +87,14 @@ ImageBuf colorPixels(const Content& content) {
   for (std::size_t p = 0; p < content.values.size(); ++p) {
     const double value = content.values[p];
     if (isOnScale(value)) continue;
-    const Color& color = value == 0              ? kZeroColor
-                         : value == kNotCompared ? kNotComparedColor
-                                                 : kNotFiniteColor;
+    const LinearColor& color = value == 0              ? kZeroColor
+                               : value == kNotCompared ? kNotComparedColor
+                                                       : kNotFiniteColor;
     colors.setpixel(int(p % content.width), int(p / content.width), color.data());
   }
   return colors;
 }
 
-/// Lays a picture on the canvas, every pixel as a square of `factor` a side.
-void lay(ImageBuf& canvas, int x, int y, const ImageBuf& picture, int factor) {
-  const ROI enlarged(0, picture.spec().width * factor, 0, picture.spec().height * factor, 0, 1, 0, 3);
-  OIIO::ImageBufAlgo::paste(canvas, x, y, 0, 0, OIIO::ImageBufAlgo::resample(picture, false, enlarged));
-}
-
-/// The paper under the picture, and lengths on it: x from the left and y from the picture's bottom, both in
-/// text sizes.
-struct Panel {
-  ImageBuf& canvas;
-  int top;
-  int text_size;
-  std::string font;  ///< a file; "": nothing is written
-
-  int pixels(double length) const { return int(std::lround(length * text_size)); }
-  double width() const { return double(canvas.spec().width) / text_size; }
-  double textWidth(const std::string& text) const {
-    const ROI box = font.empty() ? ROI() : OIIO::ImageBufAlgo::text_size(text, text_size, font);
-    return box.defined() ? double(box.width()) / text_size : 0;
-  }
-
-  /// In y both edges are rounded, so that neighbours meet without a gap. In x the width is rounded, so that
-  /// equal widths stay equal.
-  void fill(double x, double y, double across, double down, const Color& color) const {
-    const int left = pixels(x), right = left + pixels(across);
-    OIIO::ImageBufAlgo::fill(canvas, color, ROI(left, right, top + pixels(y), top + pixels(y + down)));
-  }
-  /// Without a font labels are left out; the colours are of use without them.
-  void write(double x, double baseline, const std::string& text, TextAlignX align) const {
-    if (font.empty()) return;
-    OIIO::ImageBufAlgo::render_text(canvas, pixels(x), top + pixels(baseline), text, text_size, font, kInk,
-                                    align);
-  }
-};
-
-constexpr double kMargin = 2.0;
 constexpr double kTickWidth = 0.1;
 
 void drawBar(const Panel& panel, const Content& content) {
@@ -168,7 +125,6 @@ void drawBar(const Panel& panel, const Content& content) {
 }
 
 void drawPanel(const Panel& panel, const Content& content) {
-  panel.fill(0, 0, panel.width(), kPanelHeight, kPaper);
   panel.write(kMargin, 1.5, content.title, TextAlignX::Left);
   panel.write(panel.width() - kMargin, 1.5, content.figures, TextAlignX::Right);
   drawBar(panel, content);
@@ -181,24 +137,12 @@ void drawPanel(const Panel& panel, const Content& content) {
   }
 }
 
-/// The whole factor that a picture is enlarged by. A wide picture fills the map's width exactly, so that maps
-/// and pictures can be overlaid. A tall one becomes at most kMinWidth high, or keeps its height if that is
-/// more.
-int enlargement(int width, int height) {
-  return width >= height ? std::max(1, (kMinWidth + width - 1) / width) : std::max(1, kMinWidth / height);
-}
-
 Image drawMap(const Content& content) {
-  const int factor = enlargement(content.width, content.height);
-  const int picture_width = content.width * factor, picture_height = content.height * factor;
-  Image map{std::max(kMinWidth, picture_width), 0, {"R", "G", "B"}, {}};
-  const int text_size = std::max(kMinTextSize, map.width / 64);
-  map.height = picture_height + int(std::lround(kPanelHeight * text_size));
-  map.pixels.assign(std::size_t(map.width) * map.height * 3, 1.0f);
-
+  const CaptionedSize size = captionedSize(content.width, content.height);
+  Image map = blankPaper(size.width, size.height);
   ImageBuf canvas(OIIO::ImageSpec(map.width, map.height, 3, OIIO::TypeDesc::FLOAT), map.pixels.data());
-  lay(canvas, (map.width - picture_width) / 2, 0, colorPixels(content), factor);
-  drawPanel({canvas, picture_height, text_size, findLabelFont()}, content);
+  lay(canvas, size.left, 0, colorPixels(content), size.factor);
+  drawPanel({canvas, size.caption_top, size.text_size, findLabelFont()}, content);
   return map;
 }
 

@@ -26,6 +26,8 @@ struct ExrAttributes {
   std::vector<std::pair<std::string, glm::mat4>> matrices;
 };
 
+class Film;
+
 /// How a picture is written.
 struct WriteOptions {
   std::string format = {};     ///< an extension that overrides the path's own; empty: doesn't
@@ -33,6 +35,7 @@ struct WriteOptions {
   glm::ivec2 picture_size{0};  ///< of the whole picture where this is a crop; 0: this is the whole
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   ExrAttributes exr = {};
+  Film* film = nullptr;  ///< whose next frame this is, rather than a file of its own: 8-bit R, G, B
 };
 
 /// Reads any picture OpenImageIO reads; 8- and 16-bit integer files are taken as sRGB and linearized (alpha

@@ -9,6 +9,7 @@
 #include "image/layers.hpp"
 #include "image/read_texture.hpp"
 #include "image/row_file.hpp"
+#include "image/side_by_side.hpp"
 
 // OpenImageIO brings some 260 libraries along, which take the dynamic loader 0.2 s. So what includes it is a
 // module of its own, which the library loads when it first reads or writes a picture:
@@ -26,6 +27,7 @@ struct ImageFunctions {
   Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);
   decltype(&errorMap) error_map;
   decltype(&listMap) list_map;
+  decltype(&sideBySide) side_by_side;
   decltype(&openImageIOWrites) open_image_io_writes;
 };
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "image/dither.hpp"
 #include "image/file_format.hpp"
+#include "image/film.hpp"
 #include "image/image.hpp"
 #include "image/row_file.hpp"
 #include "image/srgb.hpp"
@@ -34,6 +35,8 @@ std::vector<int> colorChannels(const std::vector<std::string>& channels, const F
   if (format.max_channels >= 4 && alpha >= 0) colors.push_back(alpha);
   return colors;
 }
+
+const FileFormat kFilmFrame{"", false, 3};
 
 constexpr float kHalfUp = 0.5f;  ///< rounds to nearest
 
@@ -71,8 +74,11 @@ struct ImageWriter::State {
 ImageWriter::ImageWriter(const std::string& path, int width, int height,
                          const std::vector<std::string>& channels, const Metadata& metadata,
                          const WriteOptions& options)
-    : state_(
-          new State{outputFormat(path, options.format), {}, options.dither, options.crop_origin, nullptr}) {
+    : state_(new State{options.film ? kFilmFrame : outputFormat(path, options.format),
+                       {},
+                       options.dither,
+                       options.crop_origin,
+                       nullptr}) {
   const FileFormat& format = state_->format;
   std::vector<std::string> names = channels;
   if (format.max_channels <= 4) {
@@ -80,7 +86,8 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
     names = {"R", "G", "B", "A"};
     names.resize(state_->sources.size());
   }
-  state_->file = format.extension == "png"
+  state_->file = options.film ? options.film->addFrame()
+                 : format.extension == "png"
                      ? openPngFile(path, width, height, int(names.size()), metadata)
                      : openPictureFile(path, width, height, names, format, metadata, options);
 }

@@ -84,5 +84,12 @@ TEST_F(Progress, IsNotInAPipeNorWhereQuietIsAsked) {
   EXPECT_EQ(runOnTerminal(folder, "render scene.json --quiet -o out.png"), "");
 }
 
+TEST_F(Progress, IsAnEventForEachPercentInALog) {
+  const std::string text = runOnTerminal(folder, "render scene.json --samples 4 --log json -o out.png");
+  EXPECT_THAT(text, Not(HasSubstr("\x1b")));
+  for (const char* percent : {"25", "50", "75", "100"})
+    EXPECT_THAT(text, HasSubstr(std::string("\"what\":\"out.png\",\"percent\":") + percent + ","));
+}
+
 }  // namespace
 }  // namespace luciole::test

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace luciole {
+
+/// What an event tells besides its time and name, in this order.
+using EventFields = nlohmann::ordered_json;
+
+/// Adds the option --log to a command.
+CLI::Option* addLogOption(CLI::App& command);
+
+/// Whether a command line has --log json. Asked before it is parsed, so that what is wrong with it is an
+/// event, too.
+bool asksForEvents(int argument_count, char** arguments);
+
+/// From here on standard error gets events alone, each a line of JSON; see logEvent().
+void startEventLog();
+
+/// Whether startEventLog() was called.
+bool logsEvents();
+
+/// Writes an event at once: {"time": "2026-01-31T12:34:56.789Z", "event": name, and the fields}. Bytes of a
+/// text that are no UTF-8 become U+FFFD. Without an event log it does nothing.
+void logEvent(const char* name, const EventFields& fields = EventFields::object());
+
+/// Milliseconds as events tell them: to the microsecond.
+double eventMilliseconds(double milliseconds);
+
+/// Writes the event `error` of a process that is out of memory, taking none.
+void logOutOfMemory(int status) noexcept;
+
+}  // namespace luciole

@@ -1,0 +1,113 @@
+#include "image/side_by_side.hpp"
+
+#include <OpenImageIO/imagebuf.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/machine_memory.hpp"
+#include "base/picture_size.hpp"
+#include "image/drawing.hpp"
+#include "image/heat_map.hpp"
+#include "image/label_font.hpp"
+
+namespace luciole {
+namespace {
+
+/// Where a picture's red, green and blue lie in a pixel.
+std::array<std::size_t, 3> colorPlaces(const Image& image) {
+  const auto place = [&](const char* name) {
+    return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) -
+                       image.channels.begin());
+  };
+  std::array<std::size_t, 3> places{place("R"), place("G"), place("B")};
+  const std::size_t none = image.channels.size();
+  if (std::count(places.begin(), places.end(), none) > 0) places.fill(place("Y"));
+  if (places[0] == none)
+    throw InputError(
+        fmt::format("channels '{}', expected R G B or Y to look at", fmt::join(image.channels, " ")));
+  return places;
+}
+
+std::vector<float> colorsOf(const Image& image) {
+  const std::array<std::size_t, 3> places = colorPlaces(image);
+  std::vector<float> colors;
+  colors.reserve(std::size_t(image.width) * image.height * 3);
+  for (std::size_t p = 0; p < image.pixels.size(); p += image.channels.size())
+    for (const std::size_t place : places) colors.push_back(image.pixels[p + place]);
+  return colors;
+}
+
+bool continuesCharacter(char byte) { return (byte & 0xC0) == 0x80; }
+
+/// UTF-8 text on one line and no wider than `width` text sizes: what is left out of the middle becomes "...".
+std::string fitted(const Panel& panel, std::string text, double width) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  std::string shown = text;
+  for (std::size_t kept = text.size(); kept > 1 && panel.textWidth(shown) > width;) {
+    std::size_t head = --kept / 2, tail = text.size() - (kept - head);
+    while (head > 0 && continuesCharacter(text[head])) --head;
+    while (tail < text.size() && continuesCharacter(text[tail])) ++tail;
+    shown = text.substr(0, head) + "..." + text.substr(tail);
+  }
+  return shown;
+}
+
+/// A picture with lines of text below it.
+Image captioned(const Image& image, const CaptionedSize& size, const std::vector<std::string>& lines) {
+  Image paper = blankPaper(size.width, size.height);
+  OIIO::ImageBuf canvas(OIIO::ImageSpec(paper.width, paper.height, 3, OIIO::TypeDesc::FLOAT),
+                        paper.pixels.data());
+  std::vector<float> colors = colorsOf(image);
+  const OIIO::ImageBuf picture(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT),
+                               colors.data());
+  lay(canvas, size.left, 0, picture, size.factor);
+  const Panel panel{canvas, size.caption_top, size.text_size, findLabelFont()};
+  double baseline = 1.5;
+  for (const std::string& line : lines) {
+    panel.write(kMargin, baseline, fitted(panel, line, panel.width() - 2 * kMargin));
+    baseline += 1.5;
+  }
+  return paper;
+}
+
+/// Copies a picture to the column `left` of a row of the same height.
+void putInRow(const Image& picture, Image& row, int left) {
+  for (int y = 0; y < picture.height; ++y)
+    std::copy_n(picture.pixels.begin() + std::ptrdiff_t(y) * picture.width * 3, picture.width * 3,
+                row.pixels.begin() + (std::ptrdiff_t(y) * row.width + left) * 3);
+}
+
+}  // namespace
+
+Image sideBySide(const Image& a, const Image& b, const ImageDifference& difference, const std::string& name_a,
+                 const std::string& name_b) {
+  const CaptionedSize size = captionedSize(a.width, a.height);
+  const int step = size.width + size.text_size;
+  const int width = 2 * step + size.width;
+  if (width > kLargestSide)
+    throw InputError(
+        fmt::format("side by side they are {} pixels wide, expected at most {}", width, kLargestSide));
+  // The row, one picture with its caption, and its enlarged pixels on the way there.
+  requireMemory(3.0 * sizeof(float) * size.height * (double(width) + 2.0 * size.width),
+                fmt::format("a picture of {} x {} pixels", width, size.height));
+  Image row = blankPaper(width, size.height);
+  const std::string factor = size.factor > 1 ? fmt::format(", enlarged {} times", size.factor) : "";
+  putInRow(captioned(a, size, {"A  " + name_a, fmt::format("{} x {} pixels{}", a.width, a.height, factor)}),
+           row, 0);
+  const auto& [x, y] = difference.worst_pixel;
+  putInRow(captioned(b, size,
+                     {"B  " + name_b, fmt::format("max_abs {:.4g} at ({}, {})", difference.max_abs, x, y),
+                      fmt::format("psnr {:.2f} dB", difference.psnr)}),
+           row, step);
+  putInRow(errorMap(difference), row, 2 * step);
+  return row;
+}
+
+}  // namespace luciole
