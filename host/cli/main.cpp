@@ -98,6 +98,7 @@ int main(int argument_count, char** arguments) {
   addBenchCommand(app, context);
   addScaleCommand(app, context);
   addGenerateCommand(app, context);
+  addInfoCommand(app, context);
   addDevicesCommand(app, context);
   std::string topic;
   CLI::App* help = app.add_subcommand("help", "what a command does and its options");

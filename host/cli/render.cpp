@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
@@ -100,15 +99,17 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     PictureOptions one = options;
     one.output = frameFile(options.output, frames[i]);
     one.stats = frameFile(options.stats, frames[i]);
-    Stats stats = std::exchange(started, Stats{});
-    stats.command = command;
-    if (i > 0) stats.began = millisecondsSinceStart();
     try {
-      checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);
-      renderPicture(device, scene, one, showPass, stats);
-      progress.clear();
-      reportStats(one, stats);
+      for (const PictureOptions& picture : optionsOfCameras(one, scene)) {
+        if (options.resume && isDone(picture.output)) continue;
+        checkWritable(picture.output, picture.format);
+        Stats stats = std::exchange(started, Stats{});
+        if (stats.command.empty()) stats = laterStats(command);
+        renderPicture(device, scene, picture, showPass, stats);
+        progress.clear();
+        reportStats(picture, stats);
+      }
     } catch (const std::exception&) {
       progress.clear();
       const int why = tellFailure(fmt::format("frame {}", frames[i]));
@@ -173,20 +174,25 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
     if (choice.is_list) {
-      renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
+      // Before any frame: what is wrong with it is so with all.
+      renderSettings(optionsOfCameras(*options, scene).front(), scene);
       awaitDevice(device);
       context.status =
           renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
       return;
     }
-    ProgressLine progress(options->quiet);
-    const auto showPass = [&](int done, int passes) {
-      progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
-                    std::size_t(passes));
-    };
-    renderPicture(device, scene, *options, showPass, stats);
-    progress.clear();
-    reportStats(*options, stats);
+    for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
+      checkWritable(picture.output, picture.format);
+      ProgressLine progress(options->quiet);
+      const auto showPass = [&](int done, int passes) {
+        progress.show(std::filesystem::path(picture.output).filename(), std::size_t(done),
+                      std::size_t(passes));
+      };
+      renderPicture(device, scene, picture, showPass, stats);
+      progress.clear();
+      reportStats(picture, stats);
+      stats = laterStats(context.command_line);
+    }
   });
 }
 
@@ -205,20 +211,23 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     const Scene scene =
         timed(stats, Stage::kLoadScene, [&] { return openLitScene(*scene_path, frame, *options); });
-    const RenderSettings settings = renderSettings(*options, scene);
+    const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;
-    const bool lit = settings.shading == Shading::kGouraud;
-    if (lit) {
-      timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
-      stats.device = device.description;
+    const bool lit = options->shading == "gouraud";
+    if (lit) timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
+    for (const PictureOptions& picture : pictures) {
+      checkWritable(picture.output, picture.format);
+      const RenderSettings settings = renderSettings(picture, scene);
+      if (lit) stats.device = device.description;
+      const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
+      timed(stats, Stage::kWrite, [&] {
+        writeGBuffer(gbuffer, picture.output, pictureMetadata(context.command_line, lit ? &device : nullptr),
+                     picture.format);
+      });
+      reportStats(picture, stats);
+      stats = laterStats(context.command_line);
     }
-    const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
-    timed(stats, Stage::kWrite, [&] {
-      writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
-                   options->format);
-    });
-    reportStats(*options, stats);
   });
 }
 
