@@ -118,6 +118,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addBenchCommand(app, context);
   addScaleCommand(app, context);
   addGenerateCommand(app, context);
+  addInfoCommand(app, context);
   addDevicesCommand(app, context);
   addManCommand(app);
   addCompletionCommand(app);

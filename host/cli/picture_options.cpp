@@ -11,6 +11,8 @@
 
 #include "base/error.hpp"
 #include "base/write_file.hpp"
+#include "cl/kernel_cache.hpp"
+#include "cli/cameras.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frames.hpp"
@@ -46,22 +48,6 @@ std::vector<Aov> parseAovs(const std::string& text) {
     if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
   }
   return aovs;
-}
-
-const Camera& findCamera(const Scene& scene, const std::string& wanted) {
-  if (wanted.empty()) return scene.cameras.front();
-  for (const Camera& camera : scene.cameras)
-    if (camera.name == wanted) return camera;
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-  if (error == std::errc() && end == wanted.data() + wanted.size() && index < scene.cameras.size())
-    return scene.cameras[index];
-  std::string names;
-  for (const Camera& camera : scene.cameras) names += (names.empty() ? "" : ", ") + camera.name;
-  throw InputError(
-      fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
-                  scene.cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", scene.cameras.size()),
-                  names.empty() ? "unnamed" : names));
 }
 
 void castShadows(const PictureOptions& options, Scene& scene) {
@@ -129,7 +115,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option("--size", options.size,
                        "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or "
                        "1280x720)");
-    command.add_option("--camera", options.camera, "one of the scene's cameras, by name or index");
+    command.add_option(
+        "--camera", options.camera,
+        is_one_picture ? "one of the scene's cameras, by name or index, or all: a picture of each; {camera} in "
+                         "the output's name becomes the camera's"
+                       : "one of the scene's cameras, by name or index");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
@@ -272,7 +262,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   RenderSettings settings;
   if (scene.size) settings.size = *scene.size;
   if (!options.size.empty()) settings.size = typedSize(options.size, settings.size);
-  settings.camera = findCamera(scene, options.camera);
+  const bool is_chosen = options.camera_index >= 0;
+  settings.camera = scene.cameras[is_chosen ? std::size_t(options.camera_index) : findCamera(scene, options.camera)];
   if (!options.crop.empty()) {
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");
     settings.crop = Crop{crop[0], crop[1], crop[2], crop[3]};
@@ -314,6 +305,21 @@ int useFrame(PictureOptions& options, const std::string& command) {
   options.output = frameFile(options.output, frame);
   options.stats = frameFile(options.stats, frame);
   return frame;
+}
+
+std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, const Scene& scene) {
+  const std::vector<std::size_t> cameras = chosenCameras(scene, options.camera);
+  const std::vector<std::string> outputs = cameraFiles(options.output, scene, cameras, "-o");
+  const bool have_stats = !options.stats.empty() && options.stats != "-";
+  std::vector<std::string> stats;
+  if (have_stats) stats = cameraFiles(options.stats, scene, cameras, "--stats");
+  std::vector<PictureOptions> all(cameras.size(), options);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].camera_index = int(cameras[i]);
+    all[i].output = outputs[i];
+    if (have_stats) all[i].stats = stats[i];
+  }
+  return all;
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
@@ -364,6 +370,13 @@ void logPicture(const PictureOptions& options, const Stats& stats, int frame) {
 }
 
 }  // namespace
+
+Stats laterStats(const std::string& command) {
+  Stats stats;
+  stats.command = command;
+  stats.began = millisecondsSinceStart();
+  return stats;
+}
 
 void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));

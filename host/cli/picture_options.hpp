@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cl/device.hpp"
 #include "image/image.hpp"
@@ -17,6 +18,7 @@ struct PictureOptions {
   std::string format;
   std::string size;
   std::string camera;
+  int camera_index = -1;  ///< replaces `camera`, see optionsOfCameras(); -1: doesn't
   int samples = 1;
   std::string crop;
   std::string shading = "phong";
@@ -84,6 +86,10 @@ void checkOutput(const PictureOptions& options);
 /// file names in `options`. Throws InputError.
 int useFrame(PictureOptions& options, const std::string& command);
 
+/// The options of each picture that --camera asks for: one, or for "all" one of each camera. Puts the camera's
+/// name into the file names. Throws InputError, see cameraFiles().
+std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, const Scene& scene);
+
 /// How to write a picture that this camera sees, or the part of it that starts at crop_origin.
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
                           glm::ivec2 picture_size, glm::ivec2 crop_origin);
@@ -92,6 +98,9 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
 
 /// Text attributes for the picture's file: software, command and device. device: null if none was used.
 Metadata pictureMetadata(const std::string& command_line, const Device* device);
+
+/// The statistics of a picture that is begun now, after others.
+Stats laterStats(const std::string& command);
 
 /// Writes the statistics to the file that --stats names, if any. Unless --quiet, writes a line to standard
 /// error that says what was made and what it cost. In an event log that is an event for each stage of the

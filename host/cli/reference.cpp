@@ -181,9 +181,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 }
 
 /// Makes the reference picture of a scene, and compares the rasterizer's G-buffer with rays.
-void referenceOfScene(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene =
-      timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, options.frame, options); });
+void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats& stats) {
   const RenderSettings settings = renderSettings(options, scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
@@ -292,11 +290,20 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     logEvent("frame_begun", {{"frame", options->frame}});
-    if (options->gbuffer.empty())
-      referenceOfScene(*options, stats);
-    else
+    if (!options->gbuffer.empty()) {
       referenceOfGBuffer(*options, stats);
-    reportStats(*options, stats, options->frame);
+      reportStats(*options, stats, options->frame);
+      return;
+    }
+    const Scene scene = timed(stats, Stage::kLoadScene,
+                              [&] { return openLitScene(options->scene, options->frame, *options); });
+    for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
+      checkWritable(picture.output, picture.format);
+      static_cast<PictureOptions&>(*options) = picture;
+      referenceOfScene(*options, scene, stats);
+      reportStats(picture, stats, options->frame);
+      stats = laterStats(context.command_line);
+    }
   });
 }
 

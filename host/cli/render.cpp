@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frame_claims.hpp"
@@ -112,15 +111,17 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     one.output = frameFile(options.output, frames[i]);
     one.stats = frameFile(options.stats, frames[i]);
     one.quiet = options.quiet || film;  // a film is told when it is whole
-    Stats stats = std::exchange(started, Stats{});
-    stats.command = command;
-    if (i > 0) stats.began = millisecondsSinceStart();
     try {
-      if (!film) checkWritable(one.output, one.format);
       poseScene(scene, frames[i]);
-      renderPicture(device, scene, one, film, showPass, stats);
-      progress.clear();
-      reportStats(one, stats, frames[i]);
+      for (const PictureOptions& picture : optionsOfCameras(one, scene)) {
+        if (options.resume && isDone(picture.output)) continue;
+        if (!film) checkWritable(picture.output, picture.format);
+        Stats stats = std::exchange(started, Stats{});
+        if (stats.command.empty()) stats = laterStats(command);
+        renderPicture(device, scene, picture, film, showPass, stats);
+        progress.clear();
+        reportStats(picture, stats, frames[i]);
+      }
     } catch (const std::exception&) {
       progress.clear();
       const int why = tellFailure(frames[i]);
@@ -138,9 +139,10 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
 /// Renders all frames into one film. Returns the exit status.
 int renderFilm(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
                Stats started) {
-  const Crop window = windowOf(renderSettings(options, scene));
+  const PictureOptions picture = optionsOfCameras(options, scene).front();
+  const Crop window = windowOf(renderSettings(picture, scene));
   const double rate = options.frames_per_second.value_or(kFramesPerSecond);
-  const std::string path = frameFile(options.output, frames.front());
+  const std::string path = frameFile(picture.output, frames.front());
   Film film(path, options.format, window.width, window.height, rate);
   const int status = renderFrames(device, scene, options, frames, &film, nullptr, std::move(started));
   if (status != kDone) return status;
@@ -242,7 +244,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
     if (choice.is_list) {
-      renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
+      // Before any frame: what is wrong with it is so with all.
+      const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
+      renderSettings(pictures.front(), scene);
+      if (is_film && pictures.size() > 1)
+        throw InputError(fmt::format("--camera all: a film is of one camera, and {} has {}", scene.name, pictures.size()));
       awaitDevice(device);
       logDevice(device.description);
       context.status = is_film ? renderFilm(device, scene, *options, frames, std::move(stats))
@@ -252,16 +258,22 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     }
     const int frame = choice.frames.front();
     logEvent("frame_begun", {{"frame", frame}});
-    ProgressLine progress(options->quiet);
-    progress.frame = frame;
-    const auto showPass = [&](int done, int passes) {
-      if (done == 1) logDevice(device.description);  // the first pass needed it
-      progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
-                    std::size_t(passes));
-    };
-    renderPicture(device, scene, *options, nullptr, showPass, stats);
-    progress.clear();
-    reportStats(*options, stats, frame);
+    bool device_is_told = false;
+    for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
+      checkWritable(picture.output, picture.format);
+      ProgressLine progress(options->quiet);
+      progress.frame = frame;
+      const auto showPass = [&](int done, int passes) {
+        // The first pass needed it.
+        if (!std::exchange(device_is_told, true)) logDevice(device.description);
+        progress.show(std::filesystem::path(picture.output).filename(), std::size_t(done),
+                      std::size_t(passes));
+      };
+      renderPicture(device, scene, picture, nullptr, showPass, stats);
+      progress.clear();
+      reportStats(picture, stats, frame);
+      stats = laterStats(context.command_line);
+    }
   });
 }
 
@@ -280,22 +292,27 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     const Scene scene =
         timed(stats, Stage::kLoadScene, [&] { return openLitScene(*scene_path, frame, *options); });
-    const RenderSettings settings = renderSettings(*options, scene);
+    const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
     Device device;
-    const bool lit = settings.shading == Shading::kGouraud;
+    const bool lit = options->shading == "gouraud";
     if (lit) {
       timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
-      stats.device = device.description;
+      logDevice(device.description);
     }
-    if (lit) logDevice(device.description);
     logEvent("frame_begun", {{"frame", frame}});
-    const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
-    timed(stats, Stage::kWrite, [&] {
-      writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
-                   options->format);
-    });
-    reportStats(*options, stats, frame);
+    for (const PictureOptions& picture : pictures) {
+      checkWritable(picture.output, picture.format);
+      const RenderSettings settings = renderSettings(picture, scene);
+      if (lit) stats.device = device.description;
+      const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
+      timed(stats, Stage::kWrite, [&] {
+        writeGBuffer(gbuffer, picture.output, pictureMetadata(context.command_line, lit ? &device : nullptr),
+                     picture.format);
+      });
+      reportStats(picture, stats, frame);
+      stats = laterStats(context.command_line);
+    }
   });
 }
 

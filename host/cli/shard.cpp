@@ -69,12 +69,12 @@ Shard chosenShard(const std::string& option) {
   if (option.empty()) return std::getenv("SLURM_ARRAY_TASK_ID") ? slurmShard() : Shard{};
   const std::size_t slash = option.find('/');
   const std::string_view text = option;
-  const std::string_view after = slash == std::string::npos ? "" : text.substr(slash + 1);
-  const std::optional<int> number = wholeNumber(text.substr(0, slash)), count = wholeNumber(after);
-  if (!number || !count || *number < 1 || *number > *count)
+  const int number = wholeNumber(text.substr(0, slash)).value_or(0);
+  const int count = slash == std::string::npos ? 0 : wholeNumber(text.substr(slash + 1)).value_or(0);
+  if (number < 1 || number > count)
     throw InputError(fmt::format(
         "--shard {}: expected I/N with I from 1 to N, such as 2/8 for the second of eight", option));
-  return {*number - 1, *count, true};
+  return {number - 1, count, true};
 }
 
 }  // namespace luciole

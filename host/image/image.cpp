@@ -52,6 +52,36 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
   return spec;
 }
 
+/// Texts and 4 × 4 matrices.
+ExrAttributes attributesOf(const OIIO::ImageSpec& spec) {
+  ExrAttributes attributes;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (value.type() == OIIO::TypeDesc::STRING)
+      attributes.texts.emplace_back(name, value.get_string());
+    else if (value.type() == kMatrix)
+      attributes.matrices.emplace_back(name, glm::make_mat4(static_cast<const float*>(value.data())));
+  }
+  return attributes;
+}
+
+/// Where in the whole picture pixel (0,0) of its data lies.
+glm::ivec2 cropOrigin(const OIIO::ImageSpec& spec) { return {spec.x - spec.full_x, spec.y - spec.full_y}; }
+
+PicturePart partOf(const OIIO::ImageSpec& spec) {
+  PicturePart part{.name = spec.get_string_attribute("oiio:subimagename"),
+                   .size = {spec.width, spec.height},
+                   .picture_size = {spec.full_width, spec.full_height},
+                   .crop_origin = cropOrigin(spec),
+                   .channels = spec.channelnames,
+                   .types = {},
+                   .compression = spec.get_string_attribute("compression"),
+                   .attributes = attributesOf(spec)};
+  for (int channel = 0; channel < spec.nchannels; ++channel)
+    part.types.emplace_back(spec.channelformat(channel).c_str());
+  return part;
+}
+
 }  // namespace
 
 Image readImage(const std::string& path) {
@@ -88,19 +118,26 @@ LayerFile readLayers(const std::string& path) {
   LayerFile file{.path = path,
                  .size = {spec.width, spec.height},
                  .picture_size = {spec.full_width, spec.full_height},
-                 .crop_origin = {spec.x - spec.full_x, spec.y - spec.full_y},
+                 .crop_origin = cropOrigin(spec),
                  .channels = spec.channelnames,
                  .values = std::make_unique_for_overwrite<float[]>(values),
-                 .attributes = {}};
-  for (const OIIO::ParamValue& value : spec.extra_attribs) {
-    const std::string name = value.name().string();
-    if (value.type() == OIIO::TypeDesc::STRING)
-      file.attributes.texts.emplace_back(name, value.get_string());
-    else if (value.type() == kMatrix)
-      file.attributes.matrices.emplace_back(name, glm::make_mat4(static_cast<const float*>(value.data())));
-  }
+                 .attributes = attributesOf(spec)};
   readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
   return file;
+}
+
+std::vector<PicturePart> readParts(const std::string& path) {
+  const auto input = openPicture(path, path);
+  const bool is_exr = std::string(input->format_name()) == "openexr";
+  std::vector<PicturePart> parts;
+  do {
+    const OIIO::ImageSpec spec = input->spec();
+    parts.push_back(partOf(spec));
+    if (!is_exr || spec.deep || spec.tile_width > 0) continue;
+    checkRow(*input, path, spec.y);
+    checkRow(*input, path, spec.y + spec.height - 1);
+  } while (is_exr && input->seek_subimage(int(parts.size()), 0));
+  return parts;
 }
 
 std::string readAttribute(const std::string& path, const std::string& name) {

@@ -22,6 +22,20 @@ struct LayerFile {
   ExrAttributes attributes;  ///< texts and 4 × 4 float matrices; upper and lower case of names vary
 };
 
+/// What the header of a part of a picture file says. Most files are of one part.
+struct PicturePart {
+  std::string name;  ///< of a part of an EXR; may be empty
+  glm::ivec2 size{0}, picture_size{0}, crop_origin{0};  ///< as in LayerFile
+  std::vector<std::string> channels;
+  std::vector<std::string> types;  ///< of each channel: "half", "float", "uint8" …
+  std::string compression;         ///< by its name in OpenImageIO; empty where the format knows none
+  ExrAttributes attributes;        ///< as in LayerFile
+};
+
+/// Reads the headers of a picture file, of any format that OpenImageIO reads. Of an EXR whose pixels lie in
+/// rows it reads the first and the last row too, so that one that ends early is told. Throws InputError.
+std::vector<PicturePart> readParts(const std::string& path);
+
 /// Reads the first part of a file, of any format that OpenImageIO reads. Sizes are checked before anything is
 /// allocated. Throws InputError, or MachineError where it doesn't fit into memory.
 LayerFile readLayers(const std::string& path);

@@ -56,6 +56,8 @@ std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int
 
 LayerFile readLayers(const std::string& path) { return functions().read_layers(path); }
 
+std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
+
 Texture readTexture(const std::string& path) { return functions().read_texture(path); }
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {

@@ -23,6 +23,7 @@ struct ImageFunctions {
   decltype(&readAttribute) read_attribute;
   decltype(&openPictureFile) open_picture_file;
   decltype(&readLayers) read_layers;
+  decltype(&readParts) read_parts;
   Texture (*read_texture)(const std::string& path);
   Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);
   decltype(&errorMap) error_map;

@@ -12,8 +12,10 @@
 #include <new>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/picture_size.hpp"
 #include "image/exr_header.hpp"
@@ -130,6 +132,19 @@ void readValues(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc
   // Of a truncated file some decoders fill the rest with grey and return success, with an error message.
   const bool read =
       decoded(name, [&] { return input.read_image(0, 0, 0, input.spec().nchannels, type, values); });
+  const std::string message = input.geterror();
+  if (!read || !message.empty()) throw InputError(fmt::format("{}: damaged: {}", name, oneLine(message)));
+}
+
+void checkRow(OIIO::ImageInput& input, const std::string& name, int y) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const std::size_t values = std::size_t(spec.width) * spec.nchannels;
+  requireMemory(double(values) * sizeof(float), name);
+  std::vector<float> row(values);
+  const bool read = decoded(name, [&] {
+    return input.read_scanlines(input.current_subimage(), 0, y, y + 1, 0, 0, spec.nchannels,
+                                OIIO::TypeDesc::FLOAT, row.data());
+  });
   const std::string message = input.geterror();
   if (!read || !message.empty()) throw InputError(fmt::format("{}: damaged: {}", name, oneLine(message)));
 }

@@ -41,6 +41,10 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
 /// Reads the open picture as `type` into `values`, width × height × channels of them. Throws InputError.
 void readValues(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, void* values);
 
+/// Reads a row of the open picture, counted as its data window does, to see whether it is there. Throws
+/// InputError.
+void checkRow(OIIO::ImageInput& input, const std::string& name, int y);
+
 /// Whether colours are stored as linear light: float formats, and integer ones that say so.
 bool isLinear(const OIIO::ImageSpec& spec);
 

@@ -60,7 +60,10 @@ bool isDark(const Scene& scene) {
 void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
   if (fields.empty()) return;
   poseScene(scene, 1);  // the surfaces that lights lie on
-  if (scene.cameras.empty()) scene.cameras.push_back(frameScene(scene).camera);
+  if (scene.cameras.empty()) {
+    scene.cameras.push_back(frameScene(scene).camera);
+    scene.adds_camera = true;
+  }
   for (const LightField& field : fields) expandLightField(field, scene);
 }
 
@@ -98,7 +101,11 @@ void completeScene(Scene& scene, bool is_mesh_file) {
   if (!needs_lights && isDark(scene)) scene.warnings.push_back(nothingLights(scene));
   if (!scene.cameras.empty() && !needs_lights) return;
   const Framing framing = frameScene(scene);
-  if (scene.cameras.empty()) scene.cameras.push_back(framing.camera);
+  if (scene.cameras.empty()) {
+    scene.cameras.push_back(framing.camera);
+    scene.adds_camera = true;
+  }
+  scene.adds_lights = needs_lights;
   if (!needs_lights) return;
   if (framing.inside) {
     lightHall(framing, scene);

@@ -45,6 +45,13 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
 }};
 
+std::vector<std::string> featureNames(const FeatureSet& features) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    if (features.has(static_cast<Feature>(i))) names.push_back(kFeatureTable[i].name);
+  return names;
+}
+
 SurfaceTraits materialTraits(const Scene& scene) {
   SurfaceTraits traits;
   for (const Material& material : scene.materials) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <bitset>
 #include <string>
+#include <vector>
 
 #include "raster/rasterize.hpp"
 #include "scene/model.hpp"
@@ -68,6 +69,9 @@ class FeatureSet {
  private:
   std::bitset<kFeatureCount> bits_;
 };
+
+/// The names in --stats of the features that are set, in the table's order.
+std::vector<std::string> featureNames(const FeatureSet& features);
 
 /// What surfaces need of shading, whether they come from a scene's materials or from a G-buffer file.
 struct SurfaceTraits {

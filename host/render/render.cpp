@@ -199,14 +199,25 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
 
 }  // namespace
 
+PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings) {
+  SurfaceTraits surfaces = materialTraits(scene);
+  surfaces.smooth &= settings.shading != Shading::kFlat;
+  PictureFeatures result;
+  result.all = neededFeatures(scene, settings.camera, surfaces, shadeSettings(settings));
+  result.pixels = settings.shading == Shading::kGouraud ? fogOnly(result.all) : result.all;
+  result.planes = neededPlanes(result.pixels);
+  if (!scene.lighting) result.planes.ambient = false;  // diffuse takes its place
+  if (wants(settings, Aov::kMaterial))
+    result.planes.specular = result.planes.ambient = result.planes.emission = true;
+  return result;
+}
+
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats) {
   stats.triangles = 0;
   for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
   stats.lights = scene.lights.size();
   stats.warnings = scene.warnings;
-  stats.features.clear();
-  for (std::size_t i = 0; i < kFeatureCount; ++i)
-    if (features.has(static_cast<Feature>(i))) stats.features.push_back(kFeatureTable[i].name);
+  stats.features = featureNames(features);
 }
 
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
@@ -214,12 +225,11 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const ShadeSettings shade = shadeSettings(settings);
-  SurfaceTraits surfaces = materialTraits(scene);
-  surfaces.smooth &= settings.shading != Shading::kFlat;
-  const FeatureSet features = neededFeatures(scene, settings.camera, surfaces, shade);
+  const auto [features, pixel_features, planes] = pictureFeatures(scene, settings);
   const bool gouraud = settings.shading == Shading::kGouraud;
   Prepared prepared;
-  prepared.features = gouraud ? fogOnly(features) : features;
+  prepared.features = pixel_features;
+  prepared.planes = planes;
   std::vector<FeatureSet> passes{prepared.features};
   if (gouraud) passes.push_back(vertexFeatures(features));
   std::future<double> compiling = startCompiling(device, passes, shade);
@@ -228,10 +238,6 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   awaitKernels(compiling, device, stats);
   if (gouraud)
     prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
-  prepared.planes = neededPlanes(prepared.features);
-  if (!scene.lighting) prepared.planes.ambient = false;  // diffuse takes its place
-  if (wants(settings, Aov::kMaterial))
-    prepared.planes.specular = prepared.planes.ambient = prepared.planes.emission = true;
 
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;

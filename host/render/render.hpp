@@ -44,6 +44,14 @@ struct RenderSettings {
   std::function<void(int done, int passes)> on_pass;  ///< called after each sample of each band, if set
 };
 
+/// What a picture of a scene needs.
+struct PictureFeatures {
+  FeatureSet all;     ///< of the passes together
+  FeatureSet pixels;  ///< of the pass that shades pixels: with Gouraud shading, others light vertices
+  PlaneSet planes;    ///< the G-buffer groups of that pass
+};
+PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings);
+
 /// Sets what the statistics say of the scene: triangles, lights, warnings, and the names of the features.
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 

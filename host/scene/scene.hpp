@@ -136,6 +136,8 @@ struct Scene {
   /// Picture files that the scene names and that don't exist, a line each as above. Materials are loaded
   /// without them; loadScene() decides whether that is an error.
   std::vector<std::string> missing_textures;
+  /// glTF extensions that a file uses and that are not supported, each once. There is a warning of each.
+  std::vector<std::string> ignored_extensions;
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
@@ -146,9 +148,11 @@ struct Scene {
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
   Fog fog;
-  bool says_light = false;  ///< its file says what lights it, even if that is nothing: see completeScene()
-  bool lighting = true;     ///< false: every surface shows its emission + diffuse colour unlit
-  Animation animation;      ///< what moves: poseScene() sets cameras, lights and objects by it
+  bool says_light = false;   ///< its file says what lights it, even if that is nothing: see completeScene()
+  bool adds_camera = false;  ///< its file has no camera: this one was chosen, see completeScene()
+  bool adds_lights = false;  ///< its file says nothing of light: these lights were chosen
+  bool lighting = true;      ///< false: every surface shows its emission + diffuse colour unlit
+  Animation animation;       ///< what moves: poseScene() sets cameras, lights and objects by it
 };
 
 /// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "base/text_file.hpp"
 #include "scene/gltf/gltf_animation.hpp"
 #include "scene/gltf/gltf_material.hpp"
 #include "scene/gltf/gltf_mesh.hpp"
@@ -252,8 +253,12 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
 
 void loadGltf(const std::string& path, Scene& scene) {
   const GltfModel model = readGltfModel(path);
-  const std::vector<std::string> ignored = ignoredExtensions(model);
-  scene.warnings.insert(scene.warnings.end(), ignored.begin(), ignored.end());
+  for (const std::string& extension : ignoredExtensions(model)) {
+    scene.warnings.push_back(fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path,
+                                         forMessage(extension)));
+    std::vector<std::string>& all = scene.ignored_extensions;
+    if (std::find(all.begin(), all.end(), extension) == all.end()) all.push_back(extension);
+  }
   const std::vector<PlacedNode> nodes = placedNodes(model, scene.animation);
   const std::size_t before = scene.objects.size() + scene.cameras.size() + scene.lights.size();
   addObjects(model, nodes, scene);

@@ -148,14 +148,11 @@ std::span<const std::byte> imageBytes(const GltfModel& model, int image) {
 }
 
 std::vector<std::string> ignoredExtensions(const GltfModel& model) {
-  std::vector<std::string> warnings;
-  const std::vector<std::string>& used = model.file.extensionsUsed;
-  for (auto extension = used.begin(); extension != used.end(); ++extension) {
-    if (isSupported(*extension) || std::find(used.begin(), extension, *extension) != extension) continue;
-    warnings.push_back(fmt::format("{}: extensionsUsed: '{}' is not supported and left out", model.path,
-                                   forMessage(*extension)));
-  }
-  return warnings;
+  std::vector<std::string> ignored;
+  for (const std::string& extension : model.file.extensionsUsed)
+    if (!isSupported(extension) && std::find(ignored.begin(), ignored.end(), extension) == ignored.end())
+      ignored.push_back(extension);
+  return ignored;
 }
 
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,

@@ -21,7 +21,7 @@ struct GltfModel {
 /// than 2.x, a missing buffer, and a required extension that is not supported.
 GltfModel readGltfModel(const std::string& path);
 
-/// A warning for each extension that the file uses, that it doesn't require, and that is not supported.
+/// The extensions, each once, that the file uses, that it doesn't require, and that are not supported.
 std::vector<std::string> ignoredExtensions(const GltfModel& model);
 
 /// `list[index]`, or an InputError: "`place` refers to `what` `index`, but the file has only …".

@@ -1,0 +1,34 @@
+#include "render/estimate.hpp"
+
+#include "render/memory.hpp"
+
+namespace luciole {
+
+double estimatedMilliseconds(const PictureWork& work) {
+  const bool exact = work.shadows == ShadowMethod::kExact;
+  const double start = 115, image_module = work.texels > 0 ? 190 : 0, rays = work.frames_scene || exact ? 25 : 0;
+  const double load = 8e-4 * work.mesh_triangles + 33e-6 * work.texels + 35e-5 * work.lights;
+  const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.triangles;
+  const double cull = 3e-5 * work.list_entries +
+                      work.samples * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
+  const double of_shadow_pair = work.shadows == ShadowMethod::kSoft  ? 50e-6
+                                : work.shadows == ShadowMethod::kPcf ? 10e-6
+                                : exact                              ? 15e-6
+                                                                     : 7e-6;
+  const double shade =
+      work.samples * 3e-6 * work.pixels + 6e-7 * work.pairs + of_shadow_pair * work.shadow_pairs;
+  const double of_texel = exact ? 80e-6 : 3e-6, of_caster = exact ? 4e-4 : 1e-4;
+  const double shadow_maps =
+      of_texel * work.shadow_texels + (work.shadow_texels > 0 ? of_caster * work.triangles : 0);
+  const double write = (9e-6 + 2e-6 * (work.samples - 1) + 16e-5) * work.pixels;
+  return start + image_module + rays + load + work.samples * raster + cull + shade + shadow_maps + write;
+}
+
+double estimatedBytes(const PictureWork& work) {
+  const double program = 95e6, image_module = work.texels > 0 ? 60e6 : 0;
+  return program + image_module + work.scene_bytes + 100 * work.triangles +
+         double(kBytesPerLight) * work.lights + work.pixel_bytes +
+         double(sizeof(ListEntry)) * work.list_entries / work.samples + work.shadow_map_bytes;
+}
+
+}  // namespace luciole

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "render/render.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// How much there is to do for a picture.
+struct PictureWork {
+  double pixels = 0;
+  int samples = 1;
+  double triangles = 0;       ///< drawn
+  double mesh_triangles = 0;  ///< loaded
+  double texels = 0;          ///< loaded
+  double textured = 0;        ///< pixels that show a surface of a scene with textures
+  bool frames_scene = false;  ///< a camera or lights are chosen, by rays
+  double lights = 0;
+  double list_entries = 0;   ///< of all tiles' light lists
+  double tree_levels = 0;    ///< of the tree over the lights that every tile walks; 0 without lists
+  double pairs = 0;          ///< points that are shaded, times the lights that they are shaded with
+  double shadow_pairs = 0;   ///< of these, with lights that cast shadows
+  double shadow_texels = 0;  ///< drawn
+  ShadowMethod shadows = ShadowMethod::kOff;
+  double scene_bytes = 0;       ///< of meshes and textures
+  double pixel_bytes = 0;       ///< of a band's pixels, see bytesPerPixel
+  double shadow_map_bytes = 0;  ///< of the texels drawn
+};
+
+/// What the picture that the settings mean would be. Deterministic. O(vertices), and up to 10⁸ tests of
+/// lights, in parallel. Throws as renderBands does.
+PictureWork pictureWork(const Scene& scene, const RenderSettings& settings);
+
+}  // namespace luciole
