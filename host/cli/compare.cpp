@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
+#include "cli/picture_options.hpp"
 #include "image/heat_map.hpp"
 
 namespace luciole {
@@ -127,6 +128,7 @@ void addCompareCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--error-map", options->error_map,
                       "write |B - A| in false colours with a scale bar (- : PNG on standard output)");
   command->add_option("--json", options->json, "write the figures as JSON (- : standard output)");
+  addThreadsOption(*command);
   command->callback([&context, options] { compareFiles(*options, context); });
 }
 

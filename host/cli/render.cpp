@@ -15,6 +15,8 @@
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"
+#include "image/exposure.hpp"
+#include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "scene/pose.hpp"
 
@@ -27,18 +29,27 @@ struct RenderOptions : PictureOptions {
   bool resume = false;
 };
 
-/// Renders the scene at its frame and writes the picture.
+/// If the options ask for it, poses the scene at this frame and measures its picture's exposure.
+void chooseExposure(Device& device, Scene& scene, int frame, const RenderOptions& options, Stats& stats) {
+  if (!measuresExposure(options, options.scene)) return;
+  poseScene(scene, frame);
+  stats.measured_exposure = measureExposure(device, scene, renderSettings(options, scene), stats);
+}
+
+/// Renders the scene at its frame, with the exposure that was measured or that the options say, and writes
+/// the picture.
 void renderPicture(Device& device, const Scene& scene, const PictureOptions& options,
                    const std::function<void(int, int)>& on_pass, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
+  if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
   const Crop window = settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
-                       pictureMetadata(stats.command, &device),
+                       pictureMetadata(stats, &device),
                        writeOptions(options, settings.camera, settings.size, {window.x, window.y}));
       writer->write(rows);
     });
@@ -81,13 +92,15 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
   return frames;
 }
 
-/// Renders frame after frame. A frame that fails is reported and left out. claims: null unless other runs may
-/// be at work beside this one. started: the cost of loading, which goes into the first frame's statistics.
-/// Returns the exit status of the first failure. Throws InputError for a frame that another run has claimed.
+/// Renders frame after frame, all with one exposure. A frame that fails is reported and left out. claims:
+/// null unless other runs may be at work beside this one. started: the cost of loading and measuring, which
+/// goes into the first frame's statistics. Returns the exit status of the first failure. Throws InputError
+/// for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
                  FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);
   const std::string command = started.command;
+  const std::optional<double> measured_exposure = started.measured_exposure;
   int status = kDone;
   std::vector<int> failed;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -102,6 +115,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     one.stats = frameFile(options.stats, frames[i]);
     Stats stats = std::exchange(started, Stats{});
     stats.command = command;
+    stats.measured_exposure = measured_exposure;
     if (i > 0) stats.began = millisecondsSinceStart();
     try {
       checkWritable(one.output, one.format);
@@ -175,6 +189,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     if (choice.is_list) {
       renderSettings(*options, scene);  // before any frame: what is wrong with it is so with all
       awaitDevice(device);
+      // By the first frame of all, also of those that aren't made here: every shard measures the same.
+      chooseExposure(device, scene, choice.frames.front(), *options, stats);
       context.status =
           renderFrames(device, scene, *options, frames, claims ? &*claims : nullptr, std::move(stats));
       return;
@@ -184,6 +200,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       progress.show(std::filesystem::path(options->output).filename(), std::size_t(done),
                     std::size_t(passes));
     };
+    chooseExposure(device, scene, choice.frames.front(), *options, stats);
     renderPicture(device, scene, *options, showPass, stats);
     progress.clear();
     reportStats(*options, stats);
@@ -215,7 +232,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     }
     const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
     timed(stats, Stage::kWrite, [&] {
-      writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
+      writeGBuffer(gbuffer, options->output, pictureMetadata(stats, lit ? &device : nullptr),
                    options->format);
     });
     reportStats(*options, stats);
@@ -244,10 +261,15 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
         timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
     const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
-    const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+    Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+    if (measuresExposure(*options, *scene_path)) {
+      timed(stats, Stage::kMeasureExposure, [&] {
+        stats.measured_exposure = measureExposure(image, gbuffer);
+        expose(image, *stats.measured_exposure);
+      });
+    }
     timed(stats, Stage::kWrite, [&] {
-      writeImage(image, options->output, pictureMetadata(context.command_line, &device),
-                 writeOptions(*options, gbuffer));
+      writeImage(image, options->output, pictureMetadata(stats, &device), writeOptions(*options, gbuffer));
     });
     reportStats(*options, stats);
   });

@@ -64,6 +64,7 @@ struct ImageWriter::State {
   FileFormat format;
   std::vector<int> sources;  ///< which channels the file takes; all where it takes any
   bool dither;
+  ToneCurve tone;
   glm::ivec2 place;  ///< of the next row's first pixel in the whole picture
   std::unique_ptr<RowFile> file;
 };
@@ -71,8 +72,12 @@ struct ImageWriter::State {
 ImageWriter::ImageWriter(const std::string& path, int width, int height,
                          const std::vector<std::string>& channels, const Metadata& metadata,
                          const WriteOptions& options)
-    : state_(
-          new State{outputFormat(path, options.format), {}, options.dither, options.crop_origin, nullptr}) {
+    : state_(new State{outputFormat(path, options.format),
+                       {},
+                       options.dither,
+                       options.tone,
+                       options.crop_origin,
+                       nullptr}) {
   const FileFormat& format = state_->format;
   std::vector<std::string> names = channels;
   if (format.max_channels <= 4) {
@@ -97,7 +102,8 @@ void ImageWriter::write(const Image& rows) {
     const auto byte = [&](float value, std::size_t channel, int x, int y) {
       if (channel == 3) return alphaByte(value);
       const glm::ivec2 pixel = state_->place + glm::ivec2(x, y);
-      return colorByte(value, state_->dither ? ditherThreshold(pixel.x, pixel.y) : kHalfUp);
+      const float shown = state_->tone == ToneCurve::kFilmic ? filmicTone(value) : value;
+      return colorByte(shown, state_->dither ? ditherThreshold(pixel.x, pixel.y) : kHalfUp);
     };
     state_->file->write(convertRows<std::uint8_t>(rows, state_->sources, byte).data(), rows.height);
   }
