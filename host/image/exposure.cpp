@@ -13,7 +13,7 @@ namespace luciole {
 namespace {
 
 constexpr double kKey = 0.18;
-constexpr std::uint64_t kLeftOutPercent = 5;  ///< at each end
+constexpr std::uint64_t kLeftOutPercent = 10;  ///< at each end
 constexpr int kLongestSide = 256;
 
 // Luminances are counted in bins, which makes the result exact whatever their order. A bin holds the floats
