@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/threads.hpp"
 #include "render/stats.hpp"
 
 namespace luciole {
@@ -89,6 +90,11 @@ ScratchFolder::ScratchFolder() {
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<std::string> sameThreads() {
+  if (!threadLimit()) return {};
+  return {"--threads", std::to_string(*threadLimit())};
 }
 
 double runChild(const std::string& program, const std::vector<std::string>& arguments,

@@ -21,6 +21,9 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+/// Options that make another run of luciole take as many threads as this process may.
+std::vector<std::string> sameThreads();
+
 /// Runs a program and waits for its end. environment: variables that are set in addition to the caller's.
 /// Returns the milliseconds from its start to its end. Throws MachineError if it can't be run, or with the
 /// first line that it wrote to standard error if its exit status isn't 0.

@@ -43,11 +43,12 @@ std::string sceneText(std::uint64_t lights) {
 /// Bytes of a run: the process's peak, and the device's buffers as the program counts them.
 std::vector<double> bytesOf(const SpeedInput& input, const ScratchFolder& folder, const Case& which) {
   writeTextFile(folder / "scene.json", sceneText(which.lights));
-  runChild(input.program,
-           {"render", folder / "scene.json", "--size", fmt::format("{}x{}", which.size.x, which.size.y), "-o",
-            folder / "picture.exr", "--stats", folder / "stats.json", "--device", input.device_selector,
-            "--quiet"},
-           {});
+  std::vector<std::string> arguments{
+      "render",   folder / "scene.json",  "--size",  fmt::format("{}x{}", which.size.x, which.size.y),
+      "-o",       folder / "picture.exr", "--stats", folder / "stats.json",
+      "--device", input.device_selector,  "--quiet"};
+  for (const std::string& option : sameThreads()) arguments.push_back(option);
+  runChild(input.program, arguments, {});
   std::ifstream file(folder / "stats.json");
   const auto memory = nlohmann::json::parse(file)["memory"];
   return {memory["peak_bytes"], memory["device_bytes"]};

@@ -4,6 +4,9 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <algorithm>
+
+#include "base/threads.hpp"
 #include "bench/speed_scenes.hpp"
 #include "raster/rasterize.hpp"
 #include "render/render.hpp"
@@ -43,7 +46,7 @@ SpeedTable measureRasterizer(const SpeedInput& input) {
   const Scene hall = input.scene ? Scene{} : makeHall();
   const Scene& scene = input.scene ? *input.scene : hall;
   const glm::ivec2 size = input.size.value_or(kGBufferSize), map_size = input.size.value_or(kMapSize);
-  const int threads = tbb::info::default_concurrency();
+  const int threads = std::min(tbb::info::default_concurrency(), int(threadCount()));
   SpeedTable table{.name = "rasterizer",
                    .measured = fmt::format("{}, {} triangles, by one thread and by {}", scene.name,
                                            triangleCount(scene), threads),

@@ -27,9 +27,9 @@ constexpr int kWarmRuns = 3;  ///< after each cold one
 SpeedTable measureStart(const SpeedInput& input) {
   const ScratchFolder folder;
   writeTextFile(folder / "scene.json", kScene);
-  const std::vector<std::string> arguments{
-      "render",   folder / "scene.json", "-o",     folder / "picture.png",
-      "--device", input.device_selector, "--quiet"};
+  std::vector<std::string> arguments{"render",   folder / "scene.json", "-o",     folder / "picture.png",
+                                     "--device", input.device_selector, "--quiet"};
+  for (const std::string& option : sameThreads()) arguments.push_back(option);
   const int rounds = (input.repeats + kWarmRuns - 1) / kWarmRuns;
   std::vector<double> cold, warm;
   for (int round = 0; round < rounds; ++round) {

@@ -7,10 +7,10 @@
 #include <charconv>
 #include <chrono>
 #include <optional>
-#include <thread>
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/threads.hpp"
 #include "cl/device_error.hpp"
 
 namespace luciole {
@@ -47,7 +47,7 @@ constexpr double kPlatformBytes = 192 << 20, kPlatformAddresses = 640 << 20, kPl
 
 std::vector<FoundDevice> findDevices() {
   requireMemory(kPlatformBytes, "OpenCL");
-  requireMappings(kPlatformAddresses, kPlatformData, 2 * std::thread::hardware_concurrency(), "OpenCL");
+  requireMappings(kPlatformAddresses, kPlatformData, 2 * threadCount(), "OpenCL");
   std::vector<FoundDevice> found;
   std::vector<cl::Platform> platforms;
   try {
@@ -64,7 +64,8 @@ std::vector<FoundDevice> findDevices() {
             {platform,
              device,
              {trimmed(platform.getInfo<CL_PLATFORM_NAME>()), trimmed(device.getInfo<CL_DEVICE_NAME>()),
-              trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device)}});
+              trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device),
+              device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()}});
     } catch (const cl::Error&) {
       continue;  // a platform without usable devices
     }

@@ -18,6 +18,7 @@ struct DeviceDescription {
   std::string name;
   std::string version;  ///< the driver's
   int lanes = 1;        ///< pixels a work-item shades: 16, 8, 4 or 1, by the device's native vector width
+  unsigned compute_units = 0;  ///< work-groups that run at once; on a CPU, the device's threads
 };
 
 /// Bytes that buffers have copied and allocated. A device that shares the host's memory copies nothing.

@@ -92,6 +92,7 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
                       "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   addCastShadowsOption(*command, options->picture);
   addMissingTexturesOption(*command, options->picture.missing_textures);
+  addThreadsOption(*command);
   command->add_flag("--quiet", options->picture.quiet, "no progress line");
   command->callback([options] { bench(*options); });
 }

@@ -19,6 +19,7 @@
 #include "cli/frames.hpp"
 #include "cli/progress.hpp"
 #include "figures/text_table.hpp"
+#include "cli/picture_options.hpp"
 #include "image/heat_map.hpp"
 #include "image/side_by_side.hpp"
 
@@ -299,6 +300,7 @@ void addCompareCommand(CLI::App& app, CommandContext& context) {
                       "output)");
   command->add_option("--json", options->json, "write the figures as JSON (- : standard output)");
   addLogOption(*command);
+  addThreadsOption(*command);
   command->callback([&context, options] { compare(*options, context); });
 }
 

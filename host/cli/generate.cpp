@@ -260,6 +260,7 @@ void addGenerateCommand(CLI::App& app, CommandContext&) {
       ->check(not_negative);
   lights->add_flag("--shadow", options->shadow, "all lights cast shadows");
   addMissingTexturesOption(*lights, options->missing_textures);
+  addThreadsOption(*lights);
   lights->add_option("-o,--output", options->output, "scene file (- : standard output)")
       ->capture_default_str();
   lights->callback([options] {

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/threads.hpp"
 #include "base/write_file.hpp"
 #include "cl/kernel_cache.hpp"
 #include "cli/cameras.hpp"
@@ -18,10 +19,12 @@
 #include "cli/frames.hpp"
 #include "cli/suggest.hpp"
 #include "gbuffer/camera_header.hpp"
+#include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "load/load_scene.hpp"
 #include "render/coarse_triangles.hpp"
 #include "scene/json/json_scene.hpp"
+#include "scene/json/mesh_file.hpp"
 #include "shadow/shadow_sizes.hpp"
 
 namespace luciole {
@@ -60,6 +63,26 @@ void castShadows(const PictureOptions& options, Scene& scene) {
   if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
     scene.warnings.push_back(
         fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows));
+}
+
+/// The stops that --exposure names. Nothing for another text.
+std::optional<double> exposureStops(const std::string& text) {
+  const char* start = text.c_str() + (text.starts_with("+") ? 1 : 0);
+  const char* const text_end = text.c_str() + text.size();
+  double stops = 0;
+  const auto [end, error] = std::from_chars(start, text_end, stops);
+  if (error != std::errc() || end != text_end || !(std::abs(stops) <= kMostStops)) return std::nullopt;
+  return stops;
+}
+
+/// Accepts stops, and "auto" if the command measures exposures.
+CLI::Validator exposureCheck(bool or_auto) {
+  return {[or_auto](std::string& text) {
+            if ((or_auto && text == "auto") || exposureStops(text)) return std::string();
+            return fmt::format("expected stops between {} and {}{}, got {}", -kMostStops, kMostStops,
+                               or_auto ? ", or auto" : "", text);
+          },
+          ""};
 }
 
 /// What --size says: "WxH", or "W" for a picture of the same shape as the scene's own.
@@ -139,12 +162,29 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             "rough ones do")
         ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
         ->capture_default_str();
-    command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
+    if (is_one_picture)
+      command
+          .add_option("--exposure", options.exposure,
+                      "stops: colours times 2^STOPS; or auto: what brings the picture's mean to middle grey, "
+                      "measured in the first of --frames (default: 0, but auto for an .obj, .gltf or .glb "
+                      "made into integers)")
+          ->check(exposureCheck(true));
+    else
+      command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")
+          ->check(exposureCheck(false))
+          ->default_str("0");
     if (is_one_picture)
       command
           .add_option("--dither", options.dither,
                       "of integer formats (png, jpg ...): a grain of half a step in place of bands")
           ->check(oneOf({"on", "off"}))
+          ->capture_default_str();
+    if (is_one_picture)
+      command
+          .add_option("--tone", options.tone,
+                      "of integer formats: what is brighter than white is clipped, or goes through a film's "
+                      "curve (Narkowicz's, of the ACES)")
+          ->check(oneOf({"clip", "filmic"}))
           ->capture_default_str();
   }
   if (groups & kShadeOptions) {
@@ -194,6 +234,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   if (is_one_picture)
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
+  addThreadsOption(command);
   CLI::Option* quiet = command.add_flag("--quiet", options.quiet, "say nothing but errors");
   if (is_one_picture) addLogOption(command)->excludes(quiet);
 }
@@ -222,6 +263,15 @@ void addMissingTexturesOption(CLI::App& command, std::string& value) {
                   "materials are drawn without it")
       ->check(oneOf({"error", "warn"}))
       ->capture_default_str();
+}
+
+void addThreadsOption(CLI::App& command) {
+  command
+      .add_option_function<int>(
+          "--threads", [](int count) { limitThreads(count); },
+          "how many the host may use, and as many a device that is a CPU; never changes a result (default: "
+          "the machine's)")
+      ->check(CLI::Range(1, 1024));
 }
 
 MissingTextures missingTexturesOf(const std::string& value) {
@@ -284,15 +334,22 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;
   settings.aovs = parseAovs(options.aovs);
-  if (!(std::abs(options.exposure) <= 100))
-    throw InputError("--exposure: expected stops between -100 and 100");
-  settings.exposure = float(options.exposure);
+  settings.exposure = float(exposureStops(options.exposure).value_or(0));
   settings.count_lights = !options.stats.empty();
   return settings;
 }
 
+bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
+  if (!options.exposure.empty()) return options.exposure == "auto";
+  return isMeshFile(scene_path) && !outputFormat(options.output, options.format).is_float;
+}
+
 void checkOutput(const PictureOptions& options) {
   checkWritable(options.output, options.format);
+  if (options.tone != "clip" && outputFormat(options.output, options.format).is_float)
+    throw InputError(fmt::format(
+        "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
+        options.tone, options.output));
   if (!parseAovs(options.aovs).empty() && outputFormat(options.output, options.format).extension != "exr")
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats == options.output)
@@ -326,6 +383,7 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
                           glm::ivec2 picture_size, glm::ivec2 crop_origin) {
   return {.format = options.format,
           .dither = options.dither == "on",
+          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
           .picture_size = picture_size,
           .crop_origin = crop_origin,
           .exr = camera ? cameraAttributes(*camera, picture_size) : ExrAttributes{}};
@@ -336,8 +394,10 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
   return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
 }
 
-Metadata pictureMetadata(const std::string& command_line, const Device* device) {
-  Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", command_line}};
+Metadata pictureMetadata(const Stats& stats, const Device* device) {
+  Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
+  if (stats.measured_exposure)
+    metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));
   if (device)
     metadata.emplace_back(
         "luciole:device",
@@ -388,8 +448,10 @@ void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   for (const auto& stage : stats.stages)
     if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
       stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {} ms{}{}\n", options.output, stats.width,
-             stats.height, stats.triangles, stats.lights, whole(pictureMilliseconds(stats)), stages,
+  const std::string exposure =
+      stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}\n", options.output, stats.width,
+             stats.height, stats.triangles, stats.lights, exposure, whole(pictureMilliseconds(stats)), stages,
              stages.empty() ? "" : ")");
 }
 

@@ -32,8 +32,9 @@ struct PictureOptions {
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   int shadow_size = ShadowLimits{}.size;
   std::string aovs;
-  double exposure = 0;
+  std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
   std::string dither = "on";
+  std::string tone = "clip";
   std::string device;
   std::string missing_textures = "error";
   std::string stats;
@@ -45,12 +46,13 @@ struct PictureOptions {
 enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
-  kModelOptions = 4,   ///< --model, --exposure, --dither
+  kModelOptions = 4,   ///< --model, --exposure, --dither, --tone
   kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
-  kManyPictures = 64,  ///< for many files, so without -o, --format, --dither, --stats, --crop, --aov
+  kManyPictures = 64,  ///< for many files, so without -o, --format, --dither, --tone, --stats, --crop, --aov,
+                       ///< and with stops alone for --exposure
 };
 /// Adds the options of these groups (OptionGroup, or'ed) to a command. `options` must outlive it.
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
@@ -61,6 +63,8 @@ CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const 
 /// Add the options --cast-shadows and --missing-textures.
 void addCastShadowsOption(CLI::App& command, PictureOptions& options);
 void addMissingTexturesOption(CLI::App& command, std::string& value);
+/// Adds the option --threads, which limits the process's threads before the command runs.
+void addThreadsOption(CLI::App& command);
 MissingTextures missingTexturesOf(const std::string& value);
 
 /// Loads the scene at a frame (see loadScene). Shadows are cast by the lights that --cast-shadows says;
@@ -79,7 +83,12 @@ Model modelOf(const PictureOptions& options);
 /// scene, else it is 1280x720; the camera is found by name or index. Throws InputError that names the option.
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene);
 
-/// Checks before any work what can be wrong with the output: extension, folder, layers. Throws InputError.
+/// Whether the picture's exposure is to be measured: with --exposure auto, and without --exposure for a mesh
+/// file (.obj, .gltf, .glb), whose lights may be of any strength, in a picture of integers.
+bool measuresExposure(const PictureOptions& options, const std::string& scene_path);
+
+/// Checks before any work what can be wrong with the output: extension, folder, layers, tone. Throws
+/// InputError.
 void checkOutput(const PictureOptions& options);
 
 /// The frame that --frames names for a command that makes one picture; 1 without it. Puts its number into the
@@ -96,8 +105,9 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
 /// How to write the picture of all pixels of a G-buffer.
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
 
-/// Text attributes for the picture's file: software, command and device. device: null if none was used.
-Metadata pictureMetadata(const std::string& command_line, const Device* device);
+/// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
+/// device: null if none was used.
+Metadata pictureMetadata(const Stats& stats, const Device* device);
 
 /// The statistics of a picture that is begun now, after others.
 Stats laterStats(const std::string& command);

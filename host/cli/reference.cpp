@@ -99,7 +99,7 @@ std::string requestText(const ReferenceOptions& options, const Scene& scene, con
       "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
       options.scene, sceneDigest(scene), options.frame, settings.size.x, settings.size.y,
       settings.camera.name, settings.samples, options.shading, options.model, options.shadows,
-      options.shadow_samples, options.exposure);
+      options.shadow_samples, settings.exposure);
 }
 
 /// The union of two rectangles if it is a rectangle.
@@ -182,7 +182,16 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 
 /// Makes the reference picture of a scene, and compares the rasterizer's G-buffer with rays.
 void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats& stats) {
-  const RenderSettings settings = renderSettings(options, scene);
+  RenderSettings settings = renderSettings(options, scene);
+  if (measuresExposure(options, options.scene)) {
+    stats.measured_exposure = timed(stats, Stage::kMeasureExposure, [&] {
+      const auto rays = shadowRays(options, scene, settings.camera);
+      ProgressLine unseen(true);
+      return referenceExposure(scene, settings.camera, settings.size, settings.shading,
+                               referenceSettings(options, rays, unseen));
+    });
+    settings.exposure = float(*stats.measured_exposure);
+  }
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const Crop window{view.crop_origin.x, view.crop_origin.y, view.crop_size.x, view.crop_size.y};
   const std::string request = requestText(options, scene, settings);
@@ -207,7 +216,7 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
   Piece piece{makePicture(view.crop_size, pixels, colors, settings.exposure), window};
   if (earlier) piece = joinPieces(*earlier, piece);
 
-  Metadata metadata = pictureMetadata(stats.command, nullptr);
+  Metadata metadata = pictureMetadata(stats, nullptr);
   metadata.emplace_back(kRequest, request);
   metadata.emplace_back(kWindow, fmt::format("{},{},{},{}", piece.window.x, piece.window.y,
                                              piece.window.width, piece.window.height));
@@ -237,9 +246,14 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
     progress.clear();
     return shaded;
   });
+  float exposure = renderSettings(options, scene).exposure;
+  if (measuresExposure(options, options.lights)) {
+    stats.measured_exposure = referenceExposure(gbuffer, pixels, colors);
+    exposure = float(*stats.measured_exposure);
+  }
   timed(stats, Stage::kWrite, [&] {
-    writeImage(makePicture(size, pixels, colors, options.exposure), options.output,
-               pictureMetadata(stats.command, nullptr), writeOptions(options, gbuffer));
+    writeImage(makePicture(size, pixels, colors, exposure), options.output, pictureMetadata(stats, nullptr),
+               writeOptions(options, gbuffer));
   });
   describeScene(scene, {}, stats);
   stats.width = gbuffer.width;

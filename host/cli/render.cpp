@@ -17,6 +17,8 @@
 #include "gbuffer/gbuffer_file.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "image/exposure.hpp"
+#include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "scene/pose.hpp"
 
@@ -37,11 +39,25 @@ Crop windowOf(const RenderSettings& settings) {
   return settings.crop.value_or(Crop{0, 0, settings.size.x, settings.size.y});
 }
 
-/// Renders the scene at its frame and writes the picture, to the film unless that is null.
+/// The exposure of each picture, by one a camera: measured at this frame, or none where the options say it.
+std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene, int frame,
+                                                   const RenderOptions& options,
+                                                   const std::vector<PictureOptions>& pictures, Stats& stats) {
+  std::vector<std::optional<double>> exposures(pictures.size());
+  if (!measuresExposure(options, options.scene)) return exposures;
+  poseScene(scene, frame);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    exposures[i] = measureExposure(device, scene, renderSettings(pictures[i], scene), stats);
+  return exposures;
+}
+
+/// Renders the scene at its frame, with the exposure that was measured or that the options say, and writes
+/// the picture, to the film unless that is null.
 void renderPicture(Device& device, const Scene& scene, const PictureOptions& options, Film* film,
                    const std::function<void(int, int)>& on_pass, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
+  if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
   const Crop window = windowOf(settings);
   WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
   how.film = film;
@@ -50,7 +66,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
     timed(stats, Stage::kWrite, [&] {
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
-                       pictureMetadata(stats.command, &device), how);
+                       pictureMetadata(stats, &device), how);
       writer->write(rows);
     });
   };
@@ -89,11 +105,13 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
 }
 
 /// Renders frame after frame. A frame that fails is reported and left out, but of a film it is the last one.
-/// film: where frames go, or null for a file each. claims: null unless other runs may be at work beside this
-/// one. started: the cost of loading, which goes into the first frame's statistics. Returns the exit status
-/// of the first failure. Throws InputError for a frame that another run has claimed.
+/// exposures: those measured, by one a camera, the same for all frames. film: where frames go, or null for a
+/// file each. claims: null unless other runs may be at work beside this one. started: the cost of loading and
+/// measuring, which goes into the first frame's statistics. Returns the exit status of the first failure.
+/// Throws InputError for a frame that another run has claimed.
 int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-                 Film* film, FrameClaims* claims, Stats started) {
+                 const std::vector<std::optional<double>>& exposures, Film* film, FrameClaims* claims,
+                 Stats started) {
   ProgressLine progress(options.quiet);
   const std::string command = started.command;
   int status = kDone;
@@ -113,11 +131,14 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     one.quiet = options.quiet || film;  // a film is told when it is whole
     try {
       poseScene(scene, frames[i]);
-      for (const PictureOptions& picture : optionsOfCameras(one, scene)) {
+      const std::vector<PictureOptions> pictures = optionsOfCameras(one, scene);
+      for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
+        const PictureOptions& picture = pictures[camera];
         if (options.resume && isDone(picture.output)) continue;
         if (!film) checkWritable(picture.output, picture.format);
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
+        stats.measured_exposure = exposures[camera];
         renderPicture(device, scene, picture, film, showPass, stats);
         progress.clear();
         reportStats(picture, stats, frames[i]);
@@ -138,13 +159,13 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
 
 /// Renders all frames into one film. Returns the exit status.
 int renderFilm(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-               Stats started) {
+               const std::vector<std::optional<double>>& exposures, Stats started) {
   const PictureOptions picture = optionsOfCameras(options, scene).front();
   const Crop window = windowOf(renderSettings(picture, scene));
   const double rate = options.frames_per_second.value_or(kFramesPerSecond);
   const std::string path = frameFile(picture.output, frames.front());
   Film film(path, options.format, window.width, window.height, rate);
-  const int status = renderFrames(device, scene, options, frames, &film, nullptr, std::move(started));
+  const int status = renderFrames(device, scene, options, frames, exposures, &film, nullptr, std::move(started));
   if (status != kDone) return status;
   film.close();
   if (logsEvents())
@@ -251,27 +272,33 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
         throw InputError(fmt::format("--camera all: a film is of one camera, and {} has {}", scene.name, pictures.size()));
       awaitDevice(device);
       logDevice(device.description);
-      context.status = is_film ? renderFilm(device, scene, *options, frames, std::move(stats))
-                               : renderFrames(device, scene, *options, frames, nullptr,
+      // By the first frame of all, also of those that aren't made here: every shard measures the same.
+      const auto exposures =
+          chooseExposures(device, scene, choice.frames.front(), *options, pictures, stats);
+      context.status = is_film ? renderFilm(device, scene, *options, frames, exposures, std::move(stats))
+                               : renderFrames(device, scene, *options, frames, exposures, nullptr,
                                               claims ? &*claims : nullptr, std::move(stats));
       return;
     }
     const int frame = choice.frames.front();
+    const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
+    for (const PictureOptions& picture : pictures) checkWritable(picture.output, picture.format);
     logEvent("frame_begun", {{"frame", frame}});
     bool device_is_told = false;
-    for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
-      checkWritable(picture.output, picture.format);
+    const auto exposures = chooseExposures(device, scene, frame, *options, pictures, stats);
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
       ProgressLine progress(options->quiet);
       progress.frame = frame;
       const auto showPass = [&](int done, int passes) {
         // The first pass needed it.
         if (!std::exchange(device_is_told, true)) logDevice(device.description);
-        progress.show(std::filesystem::path(picture.output).filename(), std::size_t(done),
+        progress.show(std::filesystem::path(pictures[i].output).filename(), std::size_t(done),
                       std::size_t(passes));
       };
-      renderPicture(device, scene, picture, nullptr, showPass, stats);
+      stats.measured_exposure = exposures[i];
+      renderPicture(device, scene, pictures[i], nullptr, showPass, stats);
       progress.clear();
-      reportStats(picture, stats, frame);
+      reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);
     }
   });
@@ -307,7 +334,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       if (lit) stats.device = device.description;
       const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
       timed(stats, Stage::kWrite, [&] {
-        writeGBuffer(gbuffer, picture.output, pictureMetadata(context.command_line, lit ? &device : nullptr),
+        writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, lit ? &device : nullptr),
                      picture.format);
       });
       reportStats(picture, stats, frame);
@@ -339,11 +366,16 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     logEvent("frame_begun", {{"frame", frame}});
-    const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+    Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
     logDevice(device.description);
+    if (measuresExposure(*options, *scene_path)) {
+      timed(stats, Stage::kMeasureExposure, [&] {
+        stats.measured_exposure = measureExposure(image, gbuffer);
+        expose(image, *stats.measured_exposure);
+      });
+    }
     timed(stats, Stage::kWrite, [&] {
-      writeImage(image, options->output, pictureMetadata(context.command_line, &device),
-                 writeOptions(*options, gbuffer));
+      writeImage(image, options->output, pictureMetadata(stats, &device), writeOptions(*options, gbuffer));
     });
     reportStats(*options, stats, frame);
   });

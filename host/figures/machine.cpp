@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <fstream>
-#include <thread>
 
 #include "base/machine_memory.hpp"
+#include "base/threads.hpp"
 
 namespace luciole {
 namespace {
@@ -28,7 +28,7 @@ std::string systemName() {
 
 Machine describeMachine(const Device& device) {
   return {.processor = processorName(),
-          .threads = std::thread::hardware_concurrency(),
+          .threads = threadCount(),
           .memory_bytes = std::uint64_t(machineMemory()),
           .system = systemName(),
           .device = device.description,

@@ -10,7 +10,7 @@ namespace luciole {
 /// The machine that figures were measured on.
 struct Machine {
   std::string processor;
-  unsigned threads = 0;
+  unsigned threads = 0;  ///< see threadCount()
   std::uint64_t memory_bytes = 0;
   std::string system;  ///< the operating system's name and version
   DeviceDescription device;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "image/tone.hpp"
+
 namespace luciole {
 
 /// A picture in memory: linear float, row-major, channels interleaved, pixel (0,0) top left.
@@ -30,10 +32,11 @@ class Film;
 
 /// How a picture is written.
 struct WriteOptions {
-  std::string format = {};     ///< an extension that overrides the path's own; empty: doesn't
-  bool dither = false;         ///< integer formats, see dither.hpp
-  glm::ivec2 picture_size{0};  ///< of the whole picture where this is a crop; 0: this is the whole
-  glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
+  std::string format = {};            ///< an extension that overrides the path's own; empty: doesn't
+  bool dither = false;                ///< integer formats, see dither.hpp
+  ToneCurve tone = ToneCurve::kClip;  ///< integer formats
+  glm::ivec2 picture_size{0};         ///< of the whole picture where this is a crop; 0: this is the whole
+  glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
   ExrAttributes exr = {};
   Film* film = nullptr;  ///< whose next frame this is, rather than a file of its own: 8-bit R, G, B
 };

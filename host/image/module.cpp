@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <thread>
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/threads.hpp"
 
 namespace luciole {
 namespace {
@@ -27,7 +27,7 @@ constexpr double kModuleBytes = 32 << 20, kModuleAddresses = 500 << 20, kModuleD
 const ImageFunctions& load() {
   constexpr const char* kWhat = "reading and writing pictures";
   requireMemory(kModuleBytes, kWhat);
-  requireMappings(kModuleAddresses, kModuleData, std::thread::hardware_concurrency(), kWhat);
+  requireMappings(kModuleAddresses, kModuleData, threadCount(), kWhat);
   void* module = dlopen(modulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
   void* functions = module ? dlsym(module, "luciole_image_functions") : nullptr;
   if (!functions)

@@ -67,6 +67,7 @@ struct ImageWriter::State {
   FileFormat format;
   std::vector<int> sources;  ///< which channels the file takes; all where it takes any
   bool dither;
+  ToneCurve tone;
   glm::ivec2 place;  ///< of the next row's first pixel in the whole picture
   std::unique_ptr<RowFile> file;
 };
@@ -77,6 +78,7 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
     : state_(new State{options.film ? kFilmFrame : outputFormat(path, options.format),
                        {},
                        options.dither,
+                       options.tone,
                        options.crop_origin,
                        nullptr}) {
   const FileFormat& format = state_->format;
@@ -104,7 +106,8 @@ void ImageWriter::write(const Image& rows) {
     const auto byte = [&](float value, std::size_t channel, int x, int y) {
       if (channel == 3) return alphaByte(value);
       const glm::ivec2 pixel = state_->place + glm::ivec2(x, y);
-      return colorByte(value, state_->dither ? ditherThreshold(pixel.x, pixel.y) : kHalfUp);
+      const float shown = state_->tone == ToneCurve::kFilmic ? filmicTone(value) : value;
+      return colorByte(shown, state_->dither ? ditherThreshold(pixel.x, pixel.y) : kHalfUp);
     };
     state_->file->write(convertRows<std::uint8_t>(rows, state_->sources, byte).data(), rows.height);
   }

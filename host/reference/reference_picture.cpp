@@ -1,5 +1,9 @@
 #include "reference/reference_picture.hpp"
 
+#include <cmath>
+
+#include "image/exposure.hpp"
+
 namespace luciole {
 namespace {
 
@@ -41,6 +45,25 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += colors[i] / double(samples);
   }
   return sum;
+}
+
+double referenceExposure(const Scene& scene, const Camera& camera, glm::ivec2 size, Shading shading,
+                         const ReferenceSettings& settings) {
+  const View view = cameraView(camera, measuringSize(size));
+  const std::vector<glm::ivec2> pixels = allPixels(view.crop_size);
+  const GBuffer surfaces = rasterize(scene, allObjects(scene), view, Shading::kPhong, {});
+  return referenceExposure(surfaces, pixels, referencePicture(scene, view, shading, 1, pixels, settings));
+}
+
+double referenceExposure(const GBuffer& gbuffer, std::span<const glm::ivec2> pixels,
+                         std::span<const glm::dvec3> colors) {
+  const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
+  std::vector<glm::vec3> covered;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!std::isfinite(depth[gbuffer.index(pixels[i].x, pixels[i].y)])) continue;
+    covered.emplace_back(pictureValue(colors[i].r), pictureValue(colors[i].g), pictureValue(colors[i].b));
+  }
+  return suitableExposure(covered);
 }
 
 }  // namespace luciole

@@ -17,4 +17,13 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
                                          std::span<const glm::ivec2> pixels,
                                          const ReferenceSettings& settings);
 
+/// The exposure that suits a scene's picture of this size (see suitableExposure), in stops, measured on such
+/// pixels as the renderer's measureExposure() looks at.
+double referenceExposure(const Scene& scene, const Camera& camera, glm::ivec2 size, Shading shading,
+                         const ReferenceSettings& settings);
+
+/// The exposure that suits these pixels of a lit G-buffer. colors: one for each of `pixels`.
+double referenceExposure(const GBuffer& gbuffer, std::span<const glm::ivec2> pixels,
+                         std::span<const glm::dvec3> colors);
+
 }  // namespace luciole

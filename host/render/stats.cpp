@@ -5,17 +5,34 @@
 #include <nlohmann/json.hpp>
 
 #include "base/peak_memory.hpp"
+#include "base/threads.hpp"
 #include "cl/kernel_cache.hpp"
 
 namespace luciole {
 
 const char* stageName(Stage stage) {
   static constexpr const char* kNames[]{
-      "load scene",      "read G-buffer",    "open device",  "compile kernels",
-      "wait for device", "wait for kernels", "ray tree",     "prepare lights",
-      "gather vertices", "rasterize",        "cull",         "find shadow texels",
-      "shadow maps",     "classify",         "trace unsure", "shade",
-      "read back",       "resolve",          "count lights", "check G-buffer",
+      "load scene",
+      "read G-buffer",
+      "open device",
+      "compile kernels",
+      "wait for device",
+      "wait for kernels",
+      "measure exposure",
+      "ray tree",
+      "prepare lights",
+      "gather vertices",
+      "rasterize",
+      "cull",
+      "find shadow texels",
+      "shadow maps",
+      "classify",
+      "trace unsure",
+      "shade",
+      "read back",
+      "resolve",
+      "count lights",
+      "check G-buffer",
       "write",
   };
   static_assert(std::size(kNames) == std::size_t(Stage::kWrite) + 1);
@@ -64,10 +81,12 @@ std::string statsJson(const Stats& stats) {
   json["device"] = {{"platform", stats.device.platform},
                     {"name", stats.device.name},
                     {"driver", stats.device.version},
-                    {"lanes", stats.device.lanes}};
+                    {"lanes", stats.device.lanes},
+                    {"compute_units", stats.device.compute_units}};
   json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
   json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
+  if (stats.measured_exposure) json["image"]["measured_exposure"] = *stats.measured_exposure;
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();
   for (const auto& timed : stats.stages) {
@@ -85,6 +104,7 @@ std::string statsJson(const Stats& stats) {
                     {"uploaded_bytes", stats.traffic.bytes_up},
                     {"downloaded_bytes", stats.traffic.bytes_down},
                     {"made_bytes", stats.traffic.bytes_made}};
+  json["threads"] = livingThreads();
   json["cold_start_milliseconds"] = cold_start;
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,7 @@ enum class Stage : std::uint8_t {
   kCompileKernels,
   kWaitForDevice,
   kWaitForKernels,
+  kMeasureExposure,
   kRayTree,
   kPrepareLights,
   kGatherVertices,
@@ -52,6 +54,7 @@ struct Stats {
   std::vector<std::string> features;
   std::vector<std::string> warnings;  ///< see Scene::warnings
   int width = 0, height = 0, samples = 1;
+  std::optional<double> measured_exposure;  ///< stops, if the picture's exposure was measured
   std::vector<std::pair<Stage, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
   /// Of the stages, those that ran in threads of their own beside others
@@ -113,6 +116,7 @@ double pictureMilliseconds(const Stats& stats);
 /// - cold_start_milliseconds: opening the device and compiling the kernels.
 /// - kernels_compiled: how many kernels weren't in the cache: 0 if the start was a warm one, null if the
 ///   platform doesn't tell (see kernelsCompiled).
+/// - threads: those that the process has now. device.compute_units: see DeviceDescription.
 /// About memory it says:
 /// - peak_bytes: of the process, as the system counts it. device_bytes: see Stats.
 /// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.

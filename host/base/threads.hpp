@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+namespace luciole {
+
+/// Lets this process's work take at most `count` threads (1 or more): the host's own, by oneTBB, and those
+/// that libraries start themselves, by the environment that they read: PoCL and OpenImageIO. A library that
+/// has started keeps its threads, so this must come before the first call of OpenCL and the first picture
+/// file that OpenImageIO reads or writes. Results don't depend on it. While the device opens and compiles
+/// kernels, a thread or two wait beside these. Child processes inherit the environment only.
+void limitThreads(int count);
+
+/// The count of the last limitThreads(); nothing without one.
+std::optional<int> threadLimit();
+
+/// Threads that work is spread over: threadLimit(), else as many as this process may run at once.
+unsigned threadCount();
+
+/// Threads that this process has now, idle ones too.
+unsigned livingThreads();
+
+}  // namespace luciole

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+#include "image/image.hpp"
+
+namespace luciole {
+
+/// Exposures are in stops: colours are multiplied by 2^stops. An exposure is at most so large, and at least
+/// minus that.
+inline constexpr double kMostStops = 100;
+
+/// The exposure, in whole hundredths of a stop, that brings the logarithmic mean of the colours' luminances
+/// to 0.18, a photographer's middle grey (E. Reinhard et al., "Photographic Tone Reproduction for Digital
+/// Images", 2002, section 3.1: its equation 1 and key value). Black doesn't count, since no exposure changes
+/// it; nor do the darkest and the brightest tenth of the rest, so that sparks of a few pixels don't matter. 0
+/// where nothing is left. colors: linear Rec.709; their order doesn't matter. NaN counts as black.
+double suitableExposure(std::span<const glm::vec3> colors);
+
+/// The size in which a picture is measured: of its shape, at most 256 pixels a side. So crops, bands, frames
+/// and pictures of several sizes get the same exposure.
+glm::ivec2 measuringSize(glm::ivec2 picture_size);
+
+/// Multiplies R, G and B by 2^stops. What would be infinite becomes the largest finite value.
+void expose(Image& image, double stops);
+
+}  // namespace luciole
