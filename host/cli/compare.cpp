@@ -101,7 +101,9 @@ void compareFiles(const CompareOptions& options, CommandContext& context) {
   const bool wants_difference = !options.difference.empty(), wants_map = !options.error_map.empty();
   const Image difference = wants_difference ? differencePicture(a, b, kDifferenceGain) : Image{};
   const Image error_map = wants_map ? errorMap(d) : Image{};
-  if (wants_difference) writeImage(difference, options.difference, metadata);
+  if (wants_difference)
+    writeImage(difference, options.difference, metadata,
+               {.picture_size = a.picture_size, .crop_origin = a.crop_origin});
   if (wants_map) writeImage(error_map, options.error_map, metadata);
   if (!options.json.empty()) writeTextFile(options.json, differenceJson(d).dump(2) + "\n");
   if (options.difference != "-" && options.error_map != "-" && options.json != "-") printFigures(d);

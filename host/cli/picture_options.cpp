@@ -29,6 +29,9 @@ const std::map<std::string, Aov> kAovs{
     {"diffuse", Aov::kDiffuse},        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
     {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow}};
 
+/// What rounding to a 16-bit float changes: at most this share of a value, or this much of one below 2⁻¹⁴.
+constexpr double kHalfRelative = 0x1p-11, kHalfAbsolute = 0x1p-25;
+
 std::vector<Aov> parseAovs(const std::string& text) {
   std::vector<Aov> aovs;
   if (text.empty()) return aovs;
@@ -73,6 +76,13 @@ void castShadows(const PictureOptions& options, Scene& scene) {
   if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
     scene.warnings.push_back(
         fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows));
+}
+
+std::vector<std::string> compressionNames(bool only_lossless) {
+  std::vector<std::string> names;
+  for (const ExrCompression& one : kExrCompressions)
+    if (one.is_lossless || !only_lossless) names.push_back(one.name);
+  return names;
 }
 
 /// What --size says: "WxH", or "W" for a picture of the same shape as the scene's own.
@@ -124,6 +134,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (is_one_picture)
     command.add_option("--format", options.format,
                        "png, exr ...: what to write, whatever the name says (default: its extension)");
+  if (is_one_picture)
+    command
+        .add_option("--compression", options.compression,
+                    fmt::format("of an EXR (default: {}); from pxr24 on they change the picture", kExrCompression))
+        ->check(oneOf(compressionNames(false)));
   if (groups & kViewOptions) {
     command.add_option("--size", options.size,
                        "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or "
@@ -149,12 +164,23 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
         ->capture_default_str();
     command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")->capture_default_str();
-    if (is_one_picture)
+    if (is_one_picture) {
       command
           .add_option("--dither", options.dither,
-                      "of integer formats (png, jpg ...): a grain of half a step in place of bands")
+                      "of 8-bit formats (png, jpg ...): a grain of half a step in place of bands")
           ->check(oneOf({"on", "off"}))
           ->capture_default_str();
+      command
+          .add_option("--bits", options.bits,
+                      "of the sRGB codes of a png (default: 8) or tif (default: 32-bit floats): 8 or 16")
+          ->check(CLI::IsMember({8, 16}));
+      command.add_flag("--half", options.half,
+                       "an EXR's colours as 16-bit floats: half the size, each within 2^-11 of itself or, if "
+                       "below 2^-14, within 2^-25; at most 65504; positions, depths and counts keep 32 bits");
+      command.add_flag("--alpha", options.alpha,
+                       "no background, and a channel A: the share of a pixel's samples that show a surface; "
+                       "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
+    }
   }
   if (groups & kShadeOptions) {
     command
@@ -269,6 +295,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");
     settings.crop = Crop{crop[0], crop[1], crop[2], crop[3]};
   }
+  settings.alpha = options.alpha;
   settings.samples = options.samples;
   settings.shading = options.shading == "flat"      ? Shading::kFlat
                      : options.shading == "gouraud" ? Shading::kGouraud
@@ -292,12 +319,30 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   return settings;
 }
 
+WriteOptions fileOptions(const PictureOptions& options) {
+  return {.format = options.format,
+          .dither = options.dither == "on",
+          .bits = options.bits,
+          .half = options.half,
+          .compression = options.compression,
+          .alpha = options.alpha};
+}
+
 void checkOutput(const PictureOptions& options) {
-  checkWritable(options.output, options.format);
+  checkWritable(options.output, fileOptions(options));
   if (!parseAovs(options.aovs).empty() && outputFormat(options.output, options.format).extension != "exr")
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+}
+
+void checkDataOutput(const PictureOptions& options, const std::string& what) {
+  checkOutput(options);
+  const std::vector<std::string> lossless = compressionNames(true);
+  if (!options.compression.empty() &&
+      std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+    throw InputError(fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                                 options.compression, what, fmt::join(lossless, ", ")));
 }
 
 int useFrame(PictureOptions& options, const std::string& command) {
@@ -310,16 +355,28 @@ int useFrame(PictureOptions& options, const std::string& command) {
 
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
                           glm::ivec2 picture_size, glm::ivec2 crop_origin) {
-  return {.format = options.format,
-          .dither = options.dither == "on",
-          .picture_size = picture_size,
-          .crop_origin = crop_origin,
-          .exr = camera ? cameraAttributes(*camera, picture_size) : ExrAttributes{}};
+  WriteOptions file = fileOptions(options);
+  file.picture_size = picture_size;
+  file.crop_origin = crop_origin;
+  if (camera) file.exr = cameraAttributes(*camera, picture_size);
+  return file;
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
   const auto camera = gbuffer.knows_camera ? std::optional(gbuffer.camera) : std::nullopt;
   return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
+}
+
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
+  if (options.half) {
+    stats.errors.emplace_back("half_relative", kHalfRelative);
+    stats.errors.emplace_back("half_absolute", kHalfAbsolute);
+  }
+  if (limited == 0) return;
+  stats.warnings.push_back(fmt::format("{}: {} pixel{} brighter than {}, the largest 16-bit float, which they "
+                                       "became; darken by --exposure, or store 32-bit floats",
+                                       options.output, limited, limited == 1 ? " was" : "s were", kLargestHalf));
+  if (!options.quiet) tellWarnings({stats.warnings.back()});
 }
 
 Metadata pictureMetadata(const std::string& command_line, const Device* device) {
@@ -341,9 +398,9 @@ void reportStats(const PictureOptions& options, const Stats& stats) {
   for (const auto& stage : stats.stages)
     if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
       stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {} ms{}{}\n", options.output, stats.width,
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {} ms{}{}{}\n", options.output, stats.width,
              stats.height, stats.triangles, stats.lights, whole(pictureMilliseconds(stats)), stages,
-             stages.empty() ? "" : ")");
+             stages.empty() ? "" : ")", options.half ? ", colours rounded by up to 2^-11 of themselves" : "");
 }
 
 }  // namespace luciole

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,10 @@ struct PictureOptions {
   std::string aovs;
   double exposure = 0;
   std::string dither = "on";
+  int bits = 0;             ///< 0: what the format usually holds
+  bool half = false;
+  std::string compression;  ///< empty: kExrCompression
+  bool alpha = false;
   std::string device;
   std::string missing_textures = "error";
   std::string stats;
@@ -39,16 +44,16 @@ struct PictureOptions {
   bool quiet = false;
 };
 
-/// Groups of options that a command takes, in addition to -o, --format, --stats and --quiet.
+/// Groups of options that a command takes, in addition to -o, --format, --compression, --stats and --quiet.
 enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
-  kModelOptions = 4,   ///< --model, --exposure, --dither
+  kModelOptions = 4,   ///< --model, --exposure, --dither, --bits, --half, --alpha
   kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
-  kManyPictures = 64,  ///< for many files, so without -o, --format, --dither, --stats, --crop, --aov
+  kManyPictures = 64,  ///< for many files, so without options about one: -o, --format, --dither, --crop ...
 };
 /// Adds the options of these groups (OptionGroup, or'ed) to a command. `options` must outlive it.
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
@@ -77,8 +82,15 @@ Model modelOf(const PictureOptions& options);
 /// scene, else it is 1280x720; the camera is found by name or index. Throws InputError that names the option.
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene);
 
-/// Checks before any work what can be wrong with the output: extension, folder, layers. Throws InputError.
+/// What the options say of the picture's file, apart from what part of which view it shows.
+WriteOptions fileOptions(const PictureOptions& options);
+
+/// Checks before any work what can be wrong with the output: extension, folder, layers, and what else the
+/// format has no place for. Throws InputError.
 void checkOutput(const PictureOptions& options);
+
+/// The same for `what`, a file of data ("a G-buffer"), which no compression may change.
+void checkDataOutput(const PictureOptions& options, const std::string& what);
 
 /// The frame that --frames names for a command that makes one picture; 1 without it. Puts its number into the
 /// file names in `options`. Throws InputError.
@@ -89,6 +101,10 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
                           glm::ivec2 picture_size, glm::ivec2 crop_origin);
 /// How to write the picture of all pixels of a G-buffer.
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
+
+/// Says what a file of 16-bit floats does to colours, in the statistics, and in a warning of those that were
+/// too bright for it. limited: as writeImage returns.
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
 
 /// Text attributes for the picture's file: software, command and device. device: null if none was used.
 Metadata pictureMetadata(const std::string& command_line, const Device* device);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -44,7 +45,8 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
     });
   };
   renderBands(device, scene, settings, write, stats);
-  timed(stats, Stage::kWrite, [&] { writer->close(); });
+  const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
+  reportHalves(options, limited, stats);
 }
 
 /// Frames as text with ranges: "3, 7-9" for 3 7 8 9.
@@ -104,7 +106,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
     stats.command = command;
     if (i > 0) stats.began = millisecondsSinceStart();
     try {
-      checkWritable(one.output, one.format);
+      checkOutput(one);
       poseScene(scene, frames[i]);
       renderPicture(device, scene, one, showPass, stats);
       progress.clear();
@@ -200,7 +202,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path] {
     const int frame = useFrame(*options, "gbuffer");
-    checkOutput(*options);
+    checkDataOutput(*options, "a G-buffer");
     Stats stats;
     stats.command = context.command_line;
     const Scene scene =
@@ -216,7 +218,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
     timed(stats, Stage::kWrite, [&] {
       writeGBuffer(gbuffer, options->output, pictureMetadata(context.command_line, lit ? &device : nullptr),
-                   options->format);
+                   options->format, options->compression);
     });
     reportStats(*options, stats);
   });
@@ -245,10 +247,11 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
     const RenderSettings settings = renderSettings(*options, scene);
     const Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
-    timed(stats, Stage::kWrite, [&] {
-      writeImage(image, options->output, pictureMetadata(context.command_line, &device),
-                 writeOptions(*options, gbuffer));
+    const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+      return writeImage(image, options->output, pictureMetadata(context.command_line, &device),
+                        writeOptions(*options, gbuffer));
     });
+    reportHalves(*options, limited, stats);
     reportStats(*options, stats);
   });
 }

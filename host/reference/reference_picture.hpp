@@ -17,4 +17,12 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
                                          std::span<const glm::ivec2> pixels,
                                          const ReferenceSettings& settings);
 
+/// The coverage of some pixels of a scene's picture, counted likewise: the share of each one's samples that
+/// show a surface.
+std::vector<double> referenceCoverage(const Scene& scene, const View& view, int samples,
+                                      std::span<const glm::ivec2> pixels);
+
+/// The same of a G-buffer, which has one sample a pixel: 0 or 1.
+std::vector<double> referenceCoverage(const GBuffer& gbuffer, std::span<const glm::ivec2> pixels);
+
 }  // namespace luciole
