@@ -373,9 +373,10 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
     stats.errors.emplace_back("half_absolute", kHalfAbsolute);
   }
   if (limited == 0) return;
-  stats.warnings.push_back(fmt::format("{}: {} pixel{} brighter than {}, the largest 16-bit float, which they "
-                                       "became; darken by --exposure, or store 32-bit floats",
-                                       options.output, limited, limited == 1 ? " was" : "s were", kLargestHalf));
+  stats.warnings.push_back(
+      fmt::format("{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
+                  "--exposure, or take 32-bit floats and a lossless --compression",
+                  options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
   if (!options.quiet) tellWarnings({stats.warnings.back()});
 }
 

@@ -102,8 +102,8 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
 /// How to write the picture of all pixels of a G-buffer.
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
 
-/// Says what a file of 16-bit floats does to colours, in the statistics, and in a warning of those that were
-/// too bright for it. limited: as writeImage returns.
+/// Adds to the statistics how far 16-bit floats round colours, and warns of pixels that were too bright for
+/// the file. limited: as writeImage returns.
 void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
 
 /// Text attributes for the picture's file: software, command and device. device: null if none was used.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/write_file.hpp"
@@ -71,6 +72,11 @@ FileFormat pictureFormat(const std::string& path, const WriteOptions& options) {
   format.bits = options.bits;
   format.max_channels = std::min(format.max_channels, 4);
   return format;
+}
+
+float largestColor(const WriteOptions& options) {
+  if (options.compression == "dwaa" || options.compression == "dwab") return kLargestHalf / 2;
+  return options.half ? kLargestHalf : std::numeric_limits<float>::infinity();
 }
 
 bool isColorChannel(const std::string& name) {

@@ -41,7 +41,9 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
   const bool is_tiff = format.extension == "tif" || format.extension == "tiff";
   if (is_tiff) spec.attribute("compression", "zip");
   if (format.max_channels > 4) spec.attribute("oiio:ColorSpace", "Linear");
-  if (!format.is_float) spec.attribute("oiio:ColorSpace", "sRGB");
+  // For a TIFF this would make an Exif directory, for which OpenImageIO reads the file that it writes. Its integers
+  // are taken as sRGB without.
+  if (!format.is_float && !is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
   if (format.extension == "exr") {
     spec.attribute("compression", options.compression.empty() ? kExrCompression : options.compression);
     const glm::ivec2 whole = options.picture_size.x > 0 ? options.picture_size : glm::ivec2(width, height);

@@ -55,8 +55,8 @@ std::string readAttribute(const std::string& path, const std::string& name);
 /// tga) as sRGB, rounded to nearest or dithered, NaN as 0; exr and tif every channel as it is, 32-bit float;
 /// hdr R, G, B. Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
 /// An EXR of a crop has it as data window inside the display window.
-/// Where an EXR stores colours as halves, as dwaa and dwab always do, those beyond ±kLargestHalf become
-/// ±kLargestHalf. Returns the number of pixels with such a colour.
+/// Colours of an EXR whose magnitude is beyond largestColor() become that. Returns the number of pixels with
+/// such a colour.
 /// The file appears whole or not at all (see OutputFile). "-" writes a PNG to standard output.
 /// Throws InputError (unknown extension, options that the format has no place for, no such folder, read-only
 /// folder) or MachineError (disk full).

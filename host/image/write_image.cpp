@@ -68,13 +68,9 @@ std::vector<T> convertRows(const Image& rows, const std::vector<int>& sources, C
   return values;
 }
 
-/// Whether OpenEXR makes halves of colours: dwaa and dwab do so whatever the channels' type is.
-bool storesHalves(const WriteOptions& options) {
-  return options.half || options.compression == "dwaa" || options.compression == "dwab";
-}
-
-/// Limits the colours of pixels to finite halves; NaN stays. Returns how many pixels had others.
-std::uint64_t limitToHalf(const std::vector<std::string>& channels, std::vector<float>& pixels) {
+/// Limits the magnitude of colours; NaN stays. Returns how many pixels had a larger one.
+std::uint64_t limitColors(const std::vector<std::string>& channels, float largest,
+                          std::vector<float>& pixels) {
   std::vector<std::size_t> colors;
   for (std::size_t c = 0; c < channels.size(); ++c)
     if (isColorChannel(channels[c])) colors.push_back(c);
@@ -83,8 +79,8 @@ std::uint64_t limitToHalf(const std::vector<std::string>& channels, std::vector<
     bool is_beyond = false;
     for (const std::size_t c : colors) {
       float& value = pixels[pixel + c];
-      if (!(std::abs(value) > kLargestHalf)) continue;
-      value = std::copysign(kLargestHalf, value);
+      if (!(std::abs(value) > largest)) continue;
+      value = std::copysign(largest, value);
       is_beyond = true;
     }
     limited += is_beyond;
@@ -99,7 +95,7 @@ struct ImageWriter::State {
   std::vector<int> sources;  ///< which channels the file takes; all where it takes any
   WriteOptions options;
   glm::ivec2 place;           ///< of the next row's first pixel in the whole picture
-  std::uint64_t limited = 0;  ///< pixels with a colour beyond the largest half
+  std::uint64_t limited = 0;  ///< pixels with a colour beyond largestColor()
   std::unique_ptr<RowFile> file = nullptr;
 
   /// Writes R, G, B and perhaps A as integers.
@@ -138,9 +134,10 @@ ImageWriter::~ImageWriter() = default;
 
 void ImageWriter::write(const Image& rows) {
   State& state = *state_;
-  if (state.sources.empty() && storesHalves(state.options)) {
+  const float largest = largestColor(state.options);
+  if (state.sources.empty() && std::isfinite(largest)) {
     std::vector<float> pixels = rows.pixels;
-    state.limited += limitToHalf(rows.channels, pixels);
+    state.limited += limitColors(rows.channels, largest, pixels);
     state.file->write(pixels.data(), rows.height);
   } else if (state.sources.empty()) {
     state.file->write(rows.pixels.data(), rows.height);

@@ -68,11 +68,10 @@ TEST_F(PictureFiles, HalfIsTheSamePictureRoundedAndSaysSo) {
     const bool is_color = name == "R" || name == "G" || name == "B" || name.find(".R") != std::string::npos ||
                           name.find(".G") != std::string::npos || name.find(".B") != std::string::npos;
     const double value = whole.pixels[i];
-    if (is_color)
-      ASSERT_LE(std::abs(half.pixels[i] - value), std::max(0x1p-11 * std::abs(value), 0x1p-25)) << name;
-    else
-      ASSERT_EQ(half.pixels[i], whole.pixels[i]) << name;
-    any_rounded |= half.pixels[i] != whole.pixels[i];
+    if (half.pixels[i] == whole.pixels[i]) continue;  // an infinite depth, for one
+    const double bound = is_color ? std::max(0x1p-11 * std::abs(value), 0x1p-25) : 0;
+    ASSERT_LE(std::abs(half.pixels[i] - value), bound) << name;
+    any_rounded = true;
   }
   EXPECT_TRUE(any_rounded);
   EXPECT_THAT(told("luciole render scene.json -o float.exr"), Not(HasSubstr("rounded")));
@@ -153,8 +152,8 @@ TEST_F(PictureFiles, AlphaOverTheBackgroundIsThePicture) {
   for (std::size_t i = 0; i < layer.pixels.size(); i += 4) {
     const float alpha = layer.pixels[i + 3];
     ++(alpha == 0 ? none : alpha == 1 ? all : some);
-    if (alpha == 0)
-      for (int c = 0; c < 3; ++c) ASSERT_EQ(layer.pixels[i + c], 0);
+    if (alpha > 0) continue;
+    for (int c = 0; c < 3; ++c) ASSERT_EQ(layer.pixels[i + c], 0);
   }
   EXPECT_GT(none, 0);
   EXPECT_GT(some, 0);

@@ -77,7 +77,7 @@ TEST(WriteOptions, ColorsBeyondAHalfBecomeTheLargestAndAreCounted) {
                                                  65505, 0, 0, 1e30f,         // just beyond
                                                  kInf, -kInf, 1e30f, -kInf,  // one pixel, three times
                                                  0, -1e6f, 0, 0, kNaN, 1, 1, 0}};
-  for (const char* compression : {"zip", "none", "b44", "dwaa"}) {
+  for (const char* compression : {"zip", "none", "b44"}) {
     EXPECT_EQ(writeImage(image, folder / "a.exr", {}, {.half = true, .compression = compression}), 3u);
     const Image read = readImage(folder / "a.exr");
     for (std::size_t pixel = 0; pixel < 4; ++pixel)
@@ -93,6 +93,11 @@ TEST(WriteOptions, ColorsBeyondAHalfBecomeTheLargestAndAreCounted) {
   EXPECT_EQ(valueOf(read, 2, "G"), -65504);
   EXPECT_EQ(valueOf(read, 3, "G"), -65504);
   EXPECT_TRUE(std::isnan(valueOf(read, 4, "R")));
+  // What overshoots has room to do so, of whatever type the channels are.
+  for (const bool half : {false, true})
+    EXPECT_EQ(writeImage({1, 1, {"R", "G", "B"}, {32752, 32753, 0}}, folder / "c.exr", {},
+                         {.half = half, .compression = "dwaa"}),
+              1u);
   // 32-bit floats keep all.
   EXPECT_EQ(writeImage(image, folder / "b.exr", {}), 0u);
   EXPECT_EQ(valueOf(readImage(folder / "b.exr"), 1, "R"), 65505);
@@ -139,12 +144,16 @@ TEST(WriteOptions, LossyCompressionLeavesNothingInfinite) {
   const TemporaryFolder folder;
   // The largest halves beside the smallest, where a transform overshoots most.
   Image image{64, 64, {"R", "G", "B"}, {}};
-  for (int i = 0; i < 64 * 64 * 3; ++i) image.pixels.push_back(i * 7 % 5 < 2 ? 1e9f : 0.0f);
+  for (unsigned i = 0, state = 1; i < 64 * 64 * 3; ++i) {
+    state = state * 1664525u + 1013904223u;
+    image.pixels.push_back(state >> 31 ? 1e9f : 0.0f);
+  }
   for (const bool half : {false, true})
     for (const auto& [name, is_lossless] : kExrCompressions) {
       writeImage(image, folder / "a.exr", {}, {.half = half, .compression = name});
-      for (const float value : readImage(folder / "a.exr").pixels)
-        ASSERT_TRUE(std::isfinite(value)) << name << (half ? ", half" : ", float");
+      const Image read = readImage(folder / "a.exr");
+      EXPECT_TRUE(std::all_of(read.pixels.begin(), read.pixels.end(), [](float v) { return std::isfinite(v); }))
+          << name << (half ? ", half" : ", float");
     }
 }
 
