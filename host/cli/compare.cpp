@@ -120,15 +120,20 @@ ImageDifference comparePictures(const CompareOptions& options, const std::string
   const Metadata metadata{{"ImageDescription", command_line}};
   // All are made before any is written, so that a failure leaves no file.
   std::vector<std::pair<Image, std::string>> pictures;
-  if (!options.difference.empty())
+  if (!options.difference.empty()) {
     pictures.emplace_back(differencePicture(a, b, kDifferenceGain), options.difference);
+    pictures.back().first.picture_size = a.picture_size;
+    pictures.back().first.crop_origin = a.crop_origin;
+  }
   if (!options.error_map.empty()) pictures.emplace_back(errorMap(d), options.error_map);
   if (!options.side_by_side.empty()) {
     const auto names = shortNames(options.a, options.b);
     pictures.emplace_back(ofPictures(options, [&] { return sideBySide(a, b, d, names.first, names.second); }),
                           options.side_by_side);
   }
-  for (const auto& [picture, path] : pictures) writeImage(picture, path, metadata);
+  for (const auto& [picture, path] : pictures) 
+    writeImage(picture, path, metadata,
+               {.picture_size = picture.picture_size, .crop_origin = picture.crop_origin});
   return d;
 }
 

@@ -35,6 +35,9 @@ const std::map<std::string, Aov> kAovs{
     {"diffuse", Aov::kDiffuse},        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
     {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow}};
 
+/// What rounding to a 16-bit float changes: at most this share of a value, or this much of one below 2⁻¹⁴.
+constexpr double kHalfRelative = 0x1p-11, kHalfAbsolute = 0x1p-25;
+
 std::vector<Aov> parseAovs(const std::string& text) {
   std::vector<Aov> aovs;
   if (text.empty()) return aovs;
@@ -83,6 +86,13 @@ CLI::Validator exposureCheck(bool or_auto) {
                                or_auto ? ", or auto" : "", text);
           },
           ""};
+}
+
+std::vector<std::string> compressionNames(bool only_lossless) {
+  std::vector<std::string> names;
+  for (const ExrCompression& one : kExrCompressions)
+    if (one.is_lossless || !only_lossless) names.push_back(one.name);
+  return names;
 }
 
 /// What --size says: "WxH", or "W" for a picture of the same shape as the scene's own.
@@ -134,6 +144,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (is_one_picture)
     command.add_option("--format", options.format,
                        "png, exr ...: what to write, whatever the name says (default: its extension)");
+  if (is_one_picture)
+    command
+        .add_option("--compression", options.compression,
+                    fmt::format("of an EXR (default: {}); from pxr24 on they change the picture", kExrCompression))
+        ->check(oneOf(compressionNames(false)));
   if (groups & kViewOptions) {
     command.add_option("--size", options.size,
                        "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or "
@@ -173,19 +188,29 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
       command.add_option("--exposure", options.exposure, "stops: colours times 2^STOPS")
           ->check(exposureCheck(false))
           ->default_str("0");
-    if (is_one_picture)
+    if (is_one_picture) {
       command
           .add_option("--dither", options.dither,
-                      "of integer formats (png, jpg ...): a grain of half a step in place of bands")
+                      "of 8-bit formats (png, jpg ...): a grain of half a step in place of bands")
           ->check(oneOf({"on", "off"}))
           ->capture_default_str();
-    if (is_one_picture)
       command
           .add_option("--tone", options.tone,
                       "of integer formats: what is brighter than white is clipped, or goes through a film's "
                       "curve (Narkowicz's, of the ACES)")
           ->check(oneOf({"clip", "filmic"}))
           ->capture_default_str();
+      command
+          .add_option("--bits", options.bits,
+                      "of the sRGB codes of a png (default: 8) or tif (default: 32-bit floats): 8 or 16")
+          ->check(CLI::IsMember({8, 16}));
+      command.add_flag("--half", options.half,
+                       "an EXR's colours as 16-bit floats: half the size, each within 2^-11 of itself or, if "
+                       "below 2^-14, within 2^-25; at most 65504; positions, depths and counts keep 32 bits");
+      command.add_flag("--alpha", options.alpha,
+                       "no background, and a channel A: the share of a pixel's samples that show a surface; "
+                       "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
+    }
   }
   if (groups & kShadeOptions) {
     command
@@ -318,6 +343,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");
     settings.crop = Crop{crop[0], crop[1], crop[2], crop[3]};
   }
+  settings.alpha = options.alpha;
   settings.samples = options.samples;
   settings.shading = options.shading == "flat"      ? Shading::kFlat
                      : options.shading == "gouraud" ? Shading::kGouraud
@@ -339,14 +365,24 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   return settings;
 }
 
+WriteOptions fileOptions(const PictureOptions& options) {
+  return {.format = options.format,
+          .dither = options.dither == "on",
+          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
+          .bits = options.bits,
+          .half = options.half,
+          .compression = options.compression,
+          .alpha = options.alpha};
+}
+
 bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
   if (!options.exposure.empty()) return options.exposure == "auto";
-  return isMeshFile(scene_path) && !outputFormat(options.output, options.format).is_float;
+  return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
 }
 
 void checkOutput(const PictureOptions& options) {
-  checkWritable(options.output, options.format);
-  if (options.tone != "clip" && outputFormat(options.output, options.format).is_float)
+  checkWritable(options.output, fileOptions(options));
+  if (options.tone != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
     throw InputError(fmt::format(
         "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
         options.tone, options.output));
@@ -354,6 +390,15 @@ void checkOutput(const PictureOptions& options) {
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+}
+
+void checkDataOutput(const PictureOptions& options, const std::string& what) {
+  checkOutput(options);
+  const std::vector<std::string> lossless = compressionNames(true);
+  if (!options.compression.empty() &&
+      std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+    throw InputError(fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                                 options.compression, what, fmt::join(lossless, ", ")));
 }
 
 int useFrame(PictureOptions& options, const std::string& command) {
@@ -381,17 +426,29 @@ std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, cons
 
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
                           glm::ivec2 picture_size, glm::ivec2 crop_origin) {
-  return {.format = options.format,
-          .dither = options.dither == "on",
-          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
-          .picture_size = picture_size,
-          .crop_origin = crop_origin,
-          .exr = camera ? cameraAttributes(*camera, picture_size) : ExrAttributes{}};
+  WriteOptions file = fileOptions(options);
+  file.picture_size = picture_size;
+  file.crop_origin = crop_origin;
+  if (camera) file.exr = cameraAttributes(*camera, picture_size);
+  return file;
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
   const auto camera = gbuffer.knows_camera ? std::optional(gbuffer.camera) : std::nullopt;
   return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
+}
+
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
+  if (options.half) {
+    stats.errors.emplace_back("half_relative", kHalfRelative);
+    stats.errors.emplace_back("half_absolute", kHalfAbsolute);
+  }
+  if (limited == 0) return;
+  stats.warnings.push_back(
+      fmt::format("{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
+                  "--exposure, or take 32-bit floats and a lossless --compression",
+                  options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
+  if (!options.quiet) tellWarnings({stats.warnings.back()});
 }
 
 Metadata pictureMetadata(const Stats& stats, const Device* device) {
@@ -450,9 +507,9 @@ void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
       stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
   const std::string exposure =
       stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}\n", options.output, stats.width,
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
              stats.height, stats.triangles, stats.lights, exposure, whole(pictureMilliseconds(stats)), stages,
-             stages.empty() ? "" : ")");
+             stages.empty() ? "" : ")", options.half ? ", colours rounded by up to 2^-11 of themselves" : "");
 }
 
 }  // namespace luciole

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,10 @@ struct PictureOptions {
   std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
   std::string dither = "on";
   std::string tone = "clip";
+  int bits = 0;             ///< 0: what the format usually holds
+  bool half = false;
+  std::string compression;  ///< empty: kExrCompression
+  bool alpha = false;
   std::string device;
   std::string missing_textures = "error";
   std::string stats;
@@ -42,16 +47,16 @@ struct PictureOptions {
   bool quiet = false;
 };
 
-/// Groups of options that a command takes, in addition to -o, --format, --stats and --quiet.
+/// Groups of options that a command takes, in addition to -o, --format, --compression, --stats and --quiet.
 enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
-  kModelOptions = 4,   ///< --model, --exposure, --dither, --tone
+  kModelOptions = 4,   ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
   kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
-  kManyPictures = 64,  ///< for many files, so without -o, --format, --dither, --tone, --stats, --crop, --aov,
+  kManyPictures = 64,  ///< for many files, so without options about one: -o, --format, --dither, --crop ...,
                        ///< and with stops alone for --exposure
 };
 /// Adds the options of these groups (OptionGroup, or'ed) to a command. `options` must outlive it.
@@ -87,9 +92,15 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
 /// file (.obj, .gltf, .glb), whose lights may be of any strength, in a picture of integers.
 bool measuresExposure(const PictureOptions& options, const std::string& scene_path);
 
-/// Checks before any work what can be wrong with the output: extension, folder, layers, tone. Throws
-/// InputError.
+/// What the options say of the picture's file, apart from what part of which view it shows.
+WriteOptions fileOptions(const PictureOptions& options);
+
+/// Checks before any work what can be wrong with the output: extension, folder, layers, tone, and what else
+/// the format has no place for. Throws InputError.
 void checkOutput(const PictureOptions& options);
+
+/// The same for `what`, a file of data ("a G-buffer"), which no compression may change.
+void checkDataOutput(const PictureOptions& options, const std::string& what);
 
 /// The frame that --frames names for a command that makes one picture; 1 without it. Puts its number into the
 /// file names in `options`. Throws InputError.
@@ -104,6 +115,10 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
                           glm::ivec2 picture_size, glm::ivec2 crop_origin);
 /// How to write the picture of all pixels of a G-buffer.
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
+
+/// Adds to the statistics how far 16-bit floats round colours, and warns of pixels that were too bright for
+/// the file. limited: as writeImage returns.
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
 
 /// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
 /// device: null if none was used.

@@ -38,9 +38,11 @@ struct ReferenceOptions : PictureOptions {
 constexpr const char* kRequest = "luciole:reference";
 constexpr const char* kWindow = "luciole:window";
 
-/// Bytes of memory for a pixel: in the G-buffer, its place, a colour and the sum of colours, in the picture.
+/// Bytes of memory for a pixel: in the G-buffer, its place, a colour and the sum of colours, in the picture; and
+/// under --alpha two coverages and the picture's.
 constexpr double kBytesPerPixel =
     kGBufferBytesPerPixel + sizeof(glm::ivec2) + 2 * sizeof(glm::dvec3) + 3 * sizeof(float);
+constexpr double kAlphaBytesPerPixel = 2 * sizeof(double) + sizeof(float);
 
 /// A part of a larger picture, and where in that it lies.
 struct Piece {
@@ -76,19 +78,22 @@ std::vector<glm::ivec2> choosePixels(const glm::ivec2& size, std::size_t count, 
   return chosen;
 }
 
-/// A picture with channels R G B, and `sampled` unless it has all pixels. colors: one for each of `pixels`;
-/// exposure: stops.
+/// A picture with channels R G B, A unless `coverage` is empty, and `sampled` unless it has all pixels. colors
+/// and coverage: one for each of `pixels`; exposure: stops.
 Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
-                  const std::vector<glm::dvec3>& colors, double exposure) {
+                  const std::vector<glm::dvec3>& colors, const std::vector<double>& coverage,
+                  double exposure) {
   const bool sparse = pixels.size() < std::size_t(size.x) * size.y;
   Image image{size.x, size.y, {"R", "G", "B"}, {}};
+  if (!coverage.empty()) image.channels.push_back("A");
   if (sparse) image.channels.push_back("sampled");
   const std::size_t channels = image.channels.size();
   image.pixels.resize(std::size_t(size.x) * size.y * channels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     float* pixel = image.pixels.data() + (std::size_t(pixels[i].y) * size.x + pixels[i].x) * channels;
     for (int c = 0; c < 3; ++c) pixel[c] = pictureValue(colors[i][c] * std::exp2(exposure));
-    if (sparse) pixel[3] = 1;
+    if (!coverage.empty()) pixel[3] = float(coverage[i]);
+    if (sparse) pixel[channels - 1] = 1;
   }
   return image;
 }
@@ -96,10 +101,10 @@ Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
 /// A text that is equal for two crops if they are parts of the same picture.
 std::string requestText(const ReferenceOptions& options, const Scene& scene, const RenderSettings& settings) {
   return fmt::format(
-      "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}",
+      "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}{}{}",
       options.scene, sceneDigest(scene), options.frame, settings.size.x, settings.size.y,
       settings.camera.name, settings.samples, options.shading, options.model, options.shadows,
-      options.shadow_samples, settings.exposure);
+      options.shadow_samples, settings.exposure, options.alpha ? " alpha" : "", options.half ? " half" : "");
 }
 
 /// The union of two rectangles if it is a rectangle.
@@ -133,11 +138,14 @@ std::optional<Piece> findEarlierPiece(const ReferenceOptions& options, const std
   namespace fs = std::filesystem;
   std::error_code none;
   if (options.pixels > 0 || !fs::is_regular_file(options.output, none)) return std::nullopt;
+  // Colours that were divided by A and rounded don't come back.
+  if (options.alpha && !pictureFormat(options.output, fileOptions(options)).is_float)
+    return std::nullopt;
   if (readAttribute(options.output, kRequest) != request) return std::nullopt;
   const std::vector<int> window =
       parseInts(readAttribute(options.output, kWindow), ',', 4, options.output, "a window X,Y,W,H");
   Piece piece{readImage(options.output), {window[0], window[1], window[2], window[3]}};
-  if (piece.image.channels.size() != 3) return std::nullopt;
+  if (piece.image.channels.size() != (options.alpha ? 4 : 3)) return std::nullopt;
   if (!unite(piece.window, crop))
     throw InputError(fmt::format(
         "--crop {},{},{},{}: makes no rectangle with the part {},{},{},{} that {} holds "
@@ -153,6 +161,11 @@ Piece joinPieces(const Piece& earlier, const Piece& later) {
   paste(earlier, joined);
   paste(later, joined);
   return joined;
+}
+
+/// What shows no surface is black under --alpha: A tells it apart.
+void removeBackground(const ReferenceOptions& options, Scene& scene) {
+  if (options.alpha) scene.background = glm::vec3(0.0f);
 }
 
 void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Stats& stats) {
@@ -198,7 +211,8 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
   std::optional<Piece> earlier;
   if (settings.crop) earlier = findEarlierPiece(options, request, window);
 
-  requireMemory(kBytesPerPixel * view.crop_size.x * view.crop_size.y,
+  const double pixel_bytes = kBytesPerPixel + (options.alpha ? kAlphaBytesPerPixel : 0);
+  requireMemory(pixel_bytes * view.crop_size.x * view.crop_size.y,
                 fmt::format("a reference of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<glm::ivec2> pixels = choosePixels(view.crop_size, options.pixels, options.seed);
   const GBufferCheck check = timed(stats, Stage::kCheckGBuffer, [&] {
@@ -213,18 +227,22 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
     progress.clear();
     return shaded;
   });
-  Piece piece{makePicture(view.crop_size, pixels, colors, settings.exposure), window};
+  const std::vector<double> coverage = options.alpha
+                                           ? referenceCoverage(scene, view, settings.samples, pixels)
+                                           : std::vector<double>{};
+  Piece piece{makePicture(view.crop_size, pixels, colors, coverage, settings.exposure), window};
   if (earlier) piece = joinPieces(*earlier, piece);
 
   Metadata metadata = pictureMetadata(stats, nullptr);
   metadata.emplace_back(kRequest, request);
   metadata.emplace_back(kWindow, fmt::format("{},{},{},{}", piece.window.x, piece.window.y,
                                              piece.window.width, piece.window.height));
-  timed(stats, Stage::kWrite, [&] {
-    writeImage(piece.image, options.output, metadata,
-               writeOptions(options, settings.camera, settings.size, {piece.window.x, piece.window.y}));
+  const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+    return writeImage(piece.image, options.output, metadata,
+                      writeOptions(options, settings.camera, settings.size, {piece.window.x, piece.window.y}));
   });
   describeScene(scene, {}, stats);
+  reportHalves(options, limited, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
   stats.samples = settings.samples;
@@ -234,8 +252,9 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
 
 /// Makes the reference picture of a G-buffer file.
 void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
-  const Scene scene =
+  Scene scene =
       timed(stats, Stage::kLoadScene, [&] { return openScene(options.lights, options.frame, options); });
+  removeBackground(options, scene);
   const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(options.gbuffer); });
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
@@ -251,18 +270,21 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
     stats.measured_exposure = referenceExposure(gbuffer, pixels, colors);
     exposure = float(*stats.measured_exposure);
   }
-  timed(stats, Stage::kWrite, [&] {
-    writeImage(makePicture(size, pixels, colors, exposure), options.output, pictureMetadata(stats, nullptr),
-               writeOptions(options, gbuffer));
+  const std::vector<double> coverage =
+      options.alpha ? referenceCoverage(gbuffer, pixels) : std::vector<double>{};
+  const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+    return writeImage(makePicture(size, pixels, colors, coverage, exposure), options.output,
+                      pictureMetadata(stats, nullptr), writeOptions(options, gbuffer));
   });
   describeScene(scene, {}, stats);
+  reportHalves(options, limited, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;
   stats.counts.emplace_back("pixels_shaded", pixels.size());
 }
 
 void checkOptions(const ReferenceOptions& options) {
-  checkOutput(options);
+  checkDataOutput(options, "a reference");
   if (options.scene.empty() == options.gbuffer.empty())
     throw InputError("reference: expected a scene, or --gbuffer with --scene");
   if (options.gbuffer.empty() != options.lights.empty())
@@ -309,10 +331,11 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
       reportStats(*options, stats, options->frame);
       return;
     }
-    const Scene scene = timed(stats, Stage::kLoadScene,
-                              [&] { return openLitScene(options->scene, options->frame, *options); });
+    Scene scene = timed(stats, Stage::kLoadScene,
+                        [&] { return openLitScene(options->scene, options->frame, *options); });
+    removeBackground(*options, scene);
     for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
-      checkWritable(picture.output, picture.format);
+      checkOutput(picture);
       static_cast<PictureOptions&>(*options) = picture;
       referenceOfScene(*options, scene, stats);
       reportStats(picture, stats, options->frame);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -71,7 +72,8 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
     });
   };
   renderBands(device, scene, settings, write, stats);
-  timed(stats, Stage::kWrite, [&] { writer->close(); });
+  const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
+  reportHalves(options, limited, stats);
 }
 
 /// Whether a frame's file exists. Files are written as a whole or not at all, so such a frame is done.
@@ -135,7 +137,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
       for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
         const PictureOptions& picture = pictures[camera];
         if (options.resume && isDone(picture.output)) continue;
-        if (!film) checkWritable(picture.output, picture.format);
+        if (!film) checkOutput(picture);
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
@@ -189,6 +191,9 @@ void checkFilmOptions(const RenderOptions& options) {
   checkFilm(frameFile(options.output, 1), options.format);
   if (options.resume)
     throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
+  if (options.bits == 16 || options.half || options.alpha || !options.compression.empty())
+    throw InputError(fmt::format("{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
+                                 options.output));
   if (!options.aovs.empty())
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
@@ -282,7 +287,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     }
     const int frame = choice.frames.front();
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
-    for (const PictureOptions& picture : pictures) checkWritable(picture.output, picture.format);
+    for (const PictureOptions& picture : pictures) checkOutput(picture);
     logEvent("frame_begun", {{"frame", frame}});
     bool device_is_told = false;
     const auto exposures = chooseExposures(device, scene, frame, *options, pictures, stats);
@@ -314,7 +319,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path] {
     const int frame = useFrame(*options, "gbuffer");
-    checkOutput(*options);
+    checkDataOutput(*options, "a G-buffer");
     Stats stats;
     stats.command = context.command_line;
     const Scene scene =
@@ -329,13 +334,13 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     }
     logEvent("frame_begun", {{"frame", frame}});
     for (const PictureOptions& picture : pictures) {
-      checkWritable(picture.output, picture.format);
+      checkDataOutput(picture, "a G-buffer");
       const RenderSettings settings = renderSettings(picture, scene);
       if (lit) stats.device = device.description;
       const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
       timed(stats, Stage::kWrite, [&] {
         writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, lit ? &device : nullptr),
-                     picture.format);
+                     picture.format, picture.compression);
       });
       reportStats(picture, stats, frame);
       stats = laterStats(context.command_line);
@@ -374,9 +379,11 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
         expose(image, *stats.measured_exposure);
       });
     }
-    timed(stats, Stage::kWrite, [&] {
-      writeImage(image, options->output, pictureMetadata(stats, &device), writeOptions(*options, gbuffer));
+    const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+      return writeImage(image, options->output, pictureMetadata(stats, &device),
+                        writeOptions(*options, gbuffer));
     });
+    reportHalves(*options, limited, stats);
     reportStats(*options, stats, frame);
   });
 }

@@ -262,11 +262,12 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
 }  // namespace
 
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
-                  const std::string& format) {
+                  const std::string& format, const std::string& compression) {
   if (outputFormat(path, format).extension != "exr") {
     throw InputError(path + ": a G-buffer has many float channels, expected .exr");
   }
   const WriteOptions options{.format = "exr",
+                             .compression = compression,
                              .picture_size = gbuffer.picture_size,
                              .crop_origin = gbuffer.crop_origin,
                              .exr = cameraAttributes(gbuffer.camera, gbuffer.picture_size)};

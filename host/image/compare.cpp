@@ -78,6 +78,10 @@ Overlap overlapOf(const Image& a, const Image& b) {
     throw InputError(fmt::format("{} x {} and {} x {} pixels, expected the same size", a.width, a.height,
                                  b.width, b.height));
   }
+  if (a.picture_size == b.picture_size && a.crop_origin != b.crop_origin) {
+    throw InputError(fmt::format("parts of a picture that start at {},{} and {},{}, expected the same part",
+                                 a.crop_origin.x, a.crop_origin.y, b.crop_origin.x, b.crop_origin.y));
+  }
   return {sharedChannels(a, b), sampledPixels(a, b)};
 }
 

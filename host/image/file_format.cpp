@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/write_file.hpp"
-#include "image/image.hpp"
 
 namespace luciole {
 namespace {
@@ -53,8 +54,42 @@ FileFormat outputFormat(const std::string& path, const std::string& named) {
                                extension.empty() ? " (or --format)" : ""));
 }
 
-void checkWritable(const std::string& path, const std::string& format) {
-  outputFormat(path, format);
+FileFormat pictureFormat(const std::string& path, const WriteOptions& options) {
+  FileFormat format = outputFormat(path, options.format);
+  const auto refuse = [&](const std::string& what, const std::string& expected) {
+    throw InputError(fmt::format("{}: .{} has no {}, expected {}", path, format.extension, what, expected));
+  };
+  const bool is_exr = format.extension == "exr";
+  const bool is_tiff = format.extension == "tif" || format.extension == "tiff";
+  if (options.half && !is_exr) refuse("16-bit floats (--half)", ".exr");
+  if (!options.compression.empty() && !is_exr)
+    refuse(fmt::format("compression to choose (--compression {})", options.compression), ".exr");
+  if (options.alpha && format.max_channels < 4) refuse("coverage (--alpha)", ".exr, .png, .tif or .tga");
+  if (options.bits == 0) return format;
+  const bool has_codes = options.bits == 8    ? !format.is_float || is_tiff
+                         : options.bits == 16 ? format.extension == "png" || is_tiff
+                                              : false;
+  if (!has_codes) refuse(fmt::format("{}-bit codes (--bits)", options.bits), ".png or .tif");
+  format.is_float = false;
+  format.bits = options.bits;
+  format.max_channels = std::min(format.max_channels, 4);
+  return format;
+}
+
+float largestColor(const WriteOptions& options) {
+  if (options.compression == "dwaa" || options.compression == "dwab") return kLargestHalf / 2;
+  return options.half ? kLargestHalf : std::numeric_limits<float>::infinity();
+}
+
+bool isColorChannel(const std::string& name) {
+  if (name == "Y") return true;
+  const std::size_t dot = name.rfind('.');
+  const std::string component = dot == std::string::npos ? name : name.substr(dot + 1);
+  return component == "R" || component == "G" || component == "B" || component == "A";
+}
+
+void checkWritable(const std::string& path, const WriteOptions& options) {
+  pictureFormat(path, options);
   checkPlace(path);
 }
 

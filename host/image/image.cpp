@@ -24,20 +24,28 @@ constexpr OIIO::TypeDesc kMatrix(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44
 
 OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& channels,
                          const FileFormat& format, const Metadata& metadata, const WriteOptions& options) {
-  const bool is_byte = !format.is_float;
   OIIO::ImageSpec spec(width, height, int(channels.size()),
-                       is_byte ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+                       format.is_float      ? OIIO::TypeDesc::FLOAT
+                       : format.bits == 16 ? OIIO::TypeDesc::UINT16
+                                            : OIIO::TypeDesc::UINT8);
   spec.channelnames = channels;
+  if (options.half)
+    for (const std::string& name : channels)
+      spec.channelformats.push_back(isColorChannel(name) ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
   const auto alpha = std::find(channels.begin(), channels.end(), "A");
   spec.alpha_channel = alpha == channels.end() ? -1 : int(alpha - channels.begin());
-  spec.attribute("oiio:UnassociatedAlpha", 1);
+  // Otherwise OpenImageIO divides the colours of integer formats by A itself, in sRGB codes.
+  const bool is_multiplied = options.alpha && format.is_float;
+  spec.attribute("oiio:UnassociatedAlpha", is_multiplied ? 0 : 1);
   for (const auto& [name, value] : metadata) spec.attribute(name, value);
-  if (format.max_channels > 4) {
-    spec.attribute("compression", "zip");
-    spec.attribute("oiio:ColorSpace", "Linear");
-  }
-  if (is_byte) spec.attribute("oiio:ColorSpace", "sRGB");
+  const bool is_tiff = format.extension == "tif" || format.extension == "tiff";
+  if (is_tiff) spec.attribute("compression", "zip");
+  if (format.max_channels > 4) spec.attribute("oiio:ColorSpace", "Linear");
+  // For a TIFF this would make an Exif directory, for which OpenImageIO reads the file that it writes. Its integers
+  // are taken as sRGB without.
+  if (!format.is_float && !is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
   if (format.extension == "exr") {
+    spec.attribute("compression", options.compression.empty() ? kExrCompression : options.compression);
     const glm::ivec2 whole = options.picture_size.x > 0 ? options.picture_size : glm::ivec2(width, height);
     spec.x = options.crop_origin.x;
     spec.y = options.crop_origin.y;
@@ -91,6 +99,8 @@ Image readImage(const std::string& path) {
   image.width = spec.width;
   image.height = spec.height;
   image.channels = spec.channelnames;
+  image.picture_size = {spec.full_width, spec.full_height};
+  image.crop_origin = {spec.x - spec.full_x, spec.y - spec.full_y};
   const std::size_t channels = image.channels.size();
   // Integer files are read as 16-bit codes first, which lie beside the floats.
   requireMemory(double(spec.width) * spec.height * channels * (sizeof(float) + sizeof(std::uint16_t)), path);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <string>
@@ -16,6 +17,8 @@ struct Image {
   int height = 0;
   std::vector<std::string> channels;  ///< names as EXR has them: "R", "G", "B", "normal.X" …
   std::vector<float> pixels;          ///< width × height × channels.size()
+  glm::ivec2 picture_size{0};         ///< of the whole picture, of which the file says that this is a part
+  glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
 };
 
 /// Text attributes to store with a picture, by the names OpenImageIO gives them ("Software",
@@ -33,8 +36,12 @@ class Film;
 /// How a picture is written.
 struct WriteOptions {
   std::string format = {};            ///< an extension that overrides the path's own; empty: doesn't
-  bool dither = false;                ///< integer formats, see dither.hpp
+  bool dither = false;                ///< 8-bit codes, see dither.hpp
   ToneCurve tone = ToneCurve::kClip;  ///< integer formats
+  int bits = 0;                       ///< of sRGB codes: 8, or in png and tif 16; 0: what the format usually holds
+  bool half = false;                  ///< exr: colours (isColorChannel) as 16-bit floats; all else stays 32-bit
+  std::string compression = {};       ///< exr: a name of kExrCompressions; empty: zip
+  bool alpha = false;                 ///< colours are multiplied by A; integer formats then get them divided by A
   glm::ivec2 picture_size{0};         ///< of the whole picture where this is a crop; 0: this is the whole
   glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
   ExrAttributes exr = {};
@@ -54,10 +61,13 @@ std::string readAttribute(const std::string& path, const std::string& name);
 /// tga) as sRGB, rounded to nearest or dithered, NaN as 0; exr and tif every channel as it is, 32-bit float;
 /// hdr R, G, B. Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
 /// An EXR of a crop has it as data window inside the display window.
+/// Colours of an EXR whose magnitude is beyond largestColor() become that. Returns the number of pixels with
+/// such a colour.
 /// The file appears whole or not at all (see OutputFile). "-" writes a PNG to standard output.
-/// Throws InputError (unknown extension, no such folder, read-only folder) or MachineError (disk full).
-void writeImage(const Image& image, const std::string& path, const Metadata& metadata,
-                const WriteOptions& options = {});
+/// Throws InputError (unknown extension, options that the format has no place for, no such folder, read-only
+/// folder) or MachineError (disk full).
+std::uint64_t writeImage(const Image& image, const std::string& path, const Metadata& metadata,
+                         const WriteOptions& options = {});
 
 /// Writes like writeImage a picture that comes in pieces: whole rows, from the top down. Most formats need no
 /// memory for the rows written before (see PictureFile). Without close() no file appears.
@@ -71,8 +81,8 @@ class ImageWriter {
   /// The next rows; `rows` has the picture's width and channels. Throws MachineError.
   void write(const Image& rows);
 
-  /// After the last row: puts the file in place. Throws as writeImage does.
-  void close();
+  /// After the last row: puts the file in place. Returns and throws as writeImage does.
+  std::uint64_t close();
 
  private:
   struct State;
@@ -80,7 +90,8 @@ class ImageWriter {
 };
 
 /// Throws the InputError that writing to `path` would meet, before any work is done: an unknown extension, a
-/// folder that isn't there or can't be written to, a folder in the file's place. `format` as in WriteOptions.
-void checkWritable(const std::string& path, const std::string& format = "");
+/// folder that isn't there or can't be written to, a folder in the file's place, an option that the format has
+/// no place for.
+void checkWritable(const std::string& path, const WriteOptions& options = {});
 
 }  // namespace luciole

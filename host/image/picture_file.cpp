@@ -95,7 +95,7 @@ struct PictureFile::State {
 };
 
 PictureFile::PictureFile(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec) {
-  checkWritable(path, extension);
+  checkWritable(path, {.format = extension});
   checkSizeLimit(spec.image_bytes(), path);
   state_ = std::make_unique<State>(path, extension, spec);
   std::string name = path;

@@ -41,17 +41,20 @@ class PngFile : public RowFile {
   }
   ~PngFile() override { png_destroy_write_struct(&png_, &info_); }
 
-  void begin(int width, int height, int channels, const Metadata& metadata) {
-    row_bytes_ = std::size_t(width) * channels;
+  void begin(int width, int height, int channels, const Metadata& metadata, int bits) {
+    row_bytes_ = std::size_t(width) * channels * bits / 8;
     call([&] {
       png_set_write_fn(png_, this, writeBytes, nullptr);
-      png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), 8,
+      png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), bits,
                    channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                    PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
       png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
     });
     for (const auto& [name, value] : metadata) addText(name, value);
-    call([&] { png_write_info(png_, info_); });
+    call([&] {
+      png_write_info(png_, info_);
+      if (bits == 16) png_set_swap(png_);  // the file's codes are big-endian
+    });
   }
 
   void write(const void* values, int rows) override {
@@ -128,11 +131,11 @@ class PngFile : public RowFile {
 }  // namespace
 
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
-                                     const Metadata& metadata) {
-  checkWritable(path, "png");
-  checkSizeLimit(std::uint64_t(width) * height * channels, path);
+                                     const Metadata& metadata, int bits) {
+  checkWritable(path, {.format = "png"});
+  checkSizeLimit(std::uint64_t(width) * height * channels * bits / 8, path);
   auto file = std::make_unique<PngFile>(path);
-  file->begin(width, height, channels, metadata);
+  file->begin(width, height, channels, metadata, bits);
   return file;
 }
 

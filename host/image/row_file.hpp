@@ -15,21 +15,21 @@ class RowFile {
  public:
   virtual ~RowFile() = default;
 
-  /// The next `rows` rows, channels interleaved, in the file's type of values (8-bit unsigned or float).
-  /// Throws MachineError.
+  /// The next `rows` rows, channels interleaved, in the type of values that the file takes: 8- or 16-bit
+  /// unsigned, or 32-bit float. Throws MachineError.
   virtual void write(const void* values, int rows) = 0;
 
   /// After the last row: puts the file in place. Throws as writeImage does.
   virtual void close() = 0;
 };
 
-/// A PNG of 8-bit R G B (3 channels) or R G B A (4), in sRGB. It calls libpng itself: loading OpenImageIO
-/// takes longer than making a small picture. Throws as writeImage does.
+/// A PNG of R G B (3 channels) or R G B A (4), in sRGB codes of 8 or 16 bits. It calls libpng itself: loading
+/// OpenImageIO takes longer than making a small picture. Throws as writeImage does.
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
-                                     const Metadata& metadata);
+                                     const Metadata& metadata, int bits = 8);
 
-/// A file that OpenImageIO writes, of 32-bit float or 8-bit sRGB values. Of `options` only those about an
-/// EXR's header are used. Throws as writeImage does.
+/// A file that OpenImageIO writes, of 32-bit float values, which it may store as halves, or of sRGB codes of
+/// format.bits. Throws as writeImage does.
 std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
                                          const std::vector<std::string>& channels, const FileFormat& format,
                                          const Metadata& metadata, const WriteOptions& options);

@@ -66,4 +66,27 @@ double referenceExposure(const GBuffer& gbuffer, std::span<const glm::ivec2> pix
   return suitableExposure(covered);
 }
 
+std::vector<double> referenceCoverage(const GBuffer& gbuffer, std::span<const glm::ivec2> pixels) {
+  const float* z = gbuffer.position.data() + 2 * gbuffer.pixels();
+  std::vector<double> coverage;
+  coverage.reserve(pixels.size());
+  for (const glm::ivec2& pixel : pixels)
+    coverage.push_back(std::isfinite(z[gbuffer.index(pixel.x, pixel.y)]) ? 1 : 0);
+  return coverage;
+}
+
+std::vector<double> referenceCoverage(const Scene& scene, const View& view, int samples,
+                                      std::span<const glm::ivec2> pixels) {
+  std::vector<double> covered(pixels.size());
+  View sample_view = view;
+  for (int sample = 0; sample < samples; ++sample) {
+    sample_view.sample = samplePoint(sample, samples);
+    const GBuffer gbuffer = rasterize(scene, allObjects(scene), sample_view, Shading::kFlat, {});
+    const std::vector<double> of_sample = referenceCoverage(gbuffer, pixels);
+    for (std::size_t i = 0; i < covered.size(); ++i) covered[i] += of_sample[i];
+  }
+  for (double& share : covered) share /= samples;
+  return covered;
+}
+
 }  // namespace luciole

@@ -26,4 +26,12 @@ double referenceExposure(const Scene& scene, const Camera& camera, glm::ivec2 si
 double referenceExposure(const GBuffer& gbuffer, std::span<const glm::ivec2> pixels,
                          std::span<const glm::dvec3> colors);
 
+/// The coverage of some pixels of a scene's picture, counted likewise: the share of each one's samples that
+/// show a surface.
+std::vector<double> referenceCoverage(const Scene& scene, const View& view, int samples,
+                                      std::span<const glm::ivec2> pixels);
+
+/// The same of a G-buffer, which has one sample a pixel: 0 or 1.
+std::vector<double> referenceCoverage(const GBuffer& gbuffer, std::span<const glm::ivec2> pixels);
+
 }  // namespace luciole

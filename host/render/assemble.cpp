@@ -70,7 +70,7 @@ bool wants(const RenderSettings& settings, Aov aov) {
 }
 
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes) {
-  std::size_t count = 3;
+  std::size_t count = settings.alpha ? 4 : 3;
   for (const Aov aov : settings.aovs) {
     switch (aov) {
       case Aov::kPosition:
@@ -132,20 +132,32 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
     }
   }
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
+  if (settings.alpha) image.channels.push_back("A");
+  const std::size_t first_layer = image.channels.size();
   for (const Layer& layer : layers) image.channels.push_back(layer.name);
   image.pixels.resize(std::size_t(image.width) * image.height * image.channels.size());
   if (layers.empty()) return image;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
-    for (std::size_t c = 0; c < layers.size(); ++c) pixel[3 + c] = layers[c].plane[place];
+    for (std::size_t c = 0; c < layers.size(); ++c) pixel[first_layer + c] = layers[c].plane[place];
   });
   return image;
 }
 
-void setColors(const GBuffer& gbuffer, const Plane& color_sum, const RenderSettings& settings, Image& image) {
+void countCovered(const GBuffer& gbuffer, Plane& covered) {
+  const std::size_t n = gbuffer.pixels();
+  covered.resize(n);
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    covered[i] += std::isfinite(gbuffer.position[i + 2 * n]) ? 1.0f : 0.0f;
+  });
+}
+
+void setColors(const GBuffer& gbuffer, const Plane& color_sum, const Plane& covered,
+               const RenderSettings& settings, Image& image) {
   const std::size_t n = gbuffer.pixels();
   const float scale = std::exp2(settings.exposure) / float(settings.samples);
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(color_sum[place + c * n] * scale);
+    if (settings.alpha) pixel[3] = covered[place] / float(settings.samples);
   });
 }
 

@@ -26,8 +26,10 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
       wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
   // Colours and counts are counted twice: on the device and on the host. From the second sample on the sum
   // and the picture with its layers are there, too.
-  const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels : 0);
-  const std::size_t assembling = gbuffer + lit + counted + channels + (world ? 7 : 0) +
+  const std::size_t covered = settings.alpha ? 1 : 0;
+  const std::size_t lighting =
+      gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels + covered : 0);
+  const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
                                  (wants(settings, Aov::kShadow) ? 1 : 0);
   const std::size_t everywhere =

@@ -171,7 +171,7 @@ struct Progress {
 Image renderBand(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
                  View view, RasterCounts& triangles, Progress& progress, Stats& stats) {
   Image picture;
-  Plane sum;
+  Plane sum, covered;
   for (int sample = 0; sample < settings.samples; ++sample) {
     view.sample = samplePoint(sample, settings.samples);
     GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
@@ -190,7 +190,8 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
         tbb::parallel_for(std::size_t(0), 3 * gbuffer.pixels(),
                           [&](std::size_t i) { sum[i] += lit.color[i]; });
       }
-      if (sample + 1 == settings.samples) setColors(gbuffer, sum, settings, picture);
+      if (settings.alpha) countCovered(gbuffer, covered);
+      if (sample + 1 == settings.samples) setColors(gbuffer, sum, covered, settings, picture);
     });
     progress.step();
   }
@@ -233,8 +234,11 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   std::vector<FeatureSet> passes{prepared.features};
   if (gouraud) passes.push_back(vertexFeatures(features));
   std::future<double> compiling = startCompiling(device, passes, shade);
-  prepared.objects = objectsInSight(scene, view, settings.exposure, settings.shade.model);
+  prepared.objects = settings.alpha
+                         ? allObjects(scene)
+                         : objectsInSight(scene, view, settings.exposure, settings.shade.model);
   prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats);
+  if (settings.alpha) prepared.lighting.frame.background = {};
   awaitKernels(compiling, device, stats);
   if (gouraud)
     prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
@@ -316,6 +320,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   Lighting lighting;
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   prepareLighting(device, scene, gbuffer.camera, view, features, shade, lighting, stats);
+  if (settings.alpha) lighting.frame.background = {};
   awaitKernels(compiling, device, stats);
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
@@ -328,7 +333,9 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   one_sample.samples = 1;
   return timed(stats, Stage::kResolve, [&] {
     Image picture = startPicture(gbuffer, lit, one_sample);
-    setColors(gbuffer, lit.color, one_sample, picture);
+    Plane covered;
+    if (settings.alpha) countCovered(gbuffer, covered);
+    setColors(gbuffer, lit.color, covered, one_sample, picture);
     return picture;
   });
 }

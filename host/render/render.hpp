@@ -37,6 +37,10 @@ struct RenderSettings {
   ShadeSettings shade;
   std::vector<Aov> aovs;  ///< layers; they show the first sample
   float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
+  /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
+  /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that the
+  /// fog hides are drawn too: they look like the scene's background, but hide any other.
+  bool alpha = false;
   /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
   bool count_lights = false;
   /// Rows that are rendered at a time; 0: as bandHeight() says. The picture's colours don't depend on it.
@@ -58,9 +62,9 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 /// Takes the next rows of a picture, from the top down. `rows` lasts until it returns.
 using RowSink = std::function<void(const Image& rows)>;
 
-/// Makes a scene's picture (channels R G B, linear, then the layers) and hands it to `take` band by band:
-/// rasterizes, draws shadow maps, culls and shades. Adds to the statistics. Throws InputError for a crop
-/// outside the picture, MachineError, and what `take` throws.
+/// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
+/// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. Throws InputError for
+/// a crop outside the picture, MachineError, and what `take` throws.
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
                  Stats& stats);
 
@@ -73,8 +77,8 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
 /// The second half: lights a G-buffer by the scene's lights, ambient light and fog, with shadows that the
-/// scene's objects cast. Uses of the settings `shade`, `aovs`, `exposure` and `count_lights` only; the camera
-/// is the G-buffer's. Throws MachineError.
+/// scene's objects cast. Uses of the settings `shade`, `aovs`, `exposure`, `alpha` and `count_lights` only;
+/// the camera is the G-buffer's. Throws MachineError.
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats);
 

@@ -193,5 +193,19 @@ TEST(Compare, DifferencePictureScalesAndShowsNonFinite) {
   EXPECT_EQ(differencePicture(a, b, 10).pixels, (std::vector<float>{2.5f, 0, 0, kInf, kInf, 1.25f}));
 }
 
+TEST(Compare, PartsOfAPictureMustStartAtTheSamePixel) {
+  Image a = grey(4, 3, 0.5f), b = a;
+  a.picture_size = b.picture_size = {40, 30};
+  a.crop_origin = b.crop_origin = {7, 9};
+  EXPECT_EQ(compareImages(a, b).max_abs, 0);
+  b.crop_origin.y = 10;
+  EXPECT_THROW(compareImages(a, b), InputError);
+  EXPECT_THROW(differencePicture(a, b, 1), InputError);
+  // A format that doesn't tell where a crop lies has it for a whole picture.
+  b.picture_size = {4, 3};
+  b.crop_origin = {0, 0};
+  EXPECT_EQ(compareImages(a, b).max_abs, 0);
+}
+
 }  // namespace
 }  // namespace luciole
