@@ -161,7 +161,7 @@ TEST_P(SectionOfReadme, CommandsSucceed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Readme, SectionOfReadme, testing::ValuesIn(sectionsToRun()),
-                         [](const testing::TestParamInfo<Section>& info) { return info.param.name; });
+                         [](const testing::TestParamInfo<Section>& one) { return one.param.name; });
 
 TEST(Readme, EveryTextForReadersIsLookedAt) {
   std::set<std::string> there;
@@ -265,8 +265,9 @@ TEST(Readme, LinksLeadSomewhereAndFilesItNamesExist) {
     for (auto i = std::sregex_iterator(text.begin(), text.end(), link); i != std::sregex_iterator(); ++i) {
       const fs::path target = (*i)[1].length() ? file.parent_path() / (*i)[1].str() : file;
       EXPECT_TRUE(fs::exists(target)) << readme << " links to " << (*i)[1];
-      if ((*i)[2].matched && fs::exists(target))
+      if ((*i)[2].matched && fs::exists(target)) {
         EXPECT_TRUE(anchorsOf(target).count((*i)[2])) << readme << " links to " << (*i)[0];
+      }
     }
     for (auto i = std::sregex_iterator(text.begin(), text.end(), path); i != std::sregex_iterator(); ++i)
       EXPECT_TRUE(fs::exists(fs::path(kSource) / (*i)[1].str())) << readme << " names " << (*i)[1];
