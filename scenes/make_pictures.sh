@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Makes every picture that a README shows, anew.
+#
+#   scenes/make_pictures.sh          all of them; the plots are measurements, which take minutes and want a quiet machine
+#   scenes/make_pictures.sh PART     those with PART in their path
+#
+# tests/cli/readme_test.cpp holds the lines below against the READMEs.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+part=${1-}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+ln -s "$root/luciole" "$root/scenes" "$work"
+cd "$work"
+
+wanted() { [[ $1 == *"$part"* ]]; }
+
+# picture FILE COMMAND…: the command's last word is the option that takes the file's name.
+picture() {
+  local file=$1 name=${1##*/}
+  shift
+  wanted "$file" || return 0
+  echo "$file"
+  ./luciole "$@" "$name"
+  mv -f "$name" "$root/$file"
+}
+
+picture scenes/fireflies.jpg render scenes/fireflies.json --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/colonnade.jpg render scenes/colonnade.json --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/underwater.jpg render scenes/underwater.json --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/city.jpg render scenes/city.json --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/spheres.jpg render scenes/spheres.json --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/cornell.jpg render scenes/cornell.json --shadows pcf --size 960x540 --samples 16 -o
+
+picture scenes/spheres_flat.jpg render scenes/spheres.json --shading flat --crop 190,50,450,470 --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/spheres_gouraud.jpg render scenes/spheres.json --shading gouraud --crop 190,50,450,470 --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/spheres_phong.jpg render scenes/spheres.json --shading phong --crop 190,50,450,470 --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/spheres_toon.jpg render scenes/spheres.json --model toon --crop 190,50,450,470 --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/spheres_cook.jpg render scenes/spheres.json --model cook-torrance --crop 190,50,450,470 --shadows pcf --size 960x540 --samples 16 -o
+
+picture scenes/lesson/flat.jpg render scenes/lesson/shading.json --shading flat --shadows pcf --samples 16 -o
+picture scenes/lesson/gouraud.jpg render scenes/lesson/shading.json --shading gouraud --shadows pcf --samples 16 -o
+picture scenes/lesson/phong.jpg render scenes/lesson/shading.json --shading phong --shadows pcf --samples 16 -o
+picture scenes/lesson/spot_cutoff.jpg render scenes/lesson/spot_cutoff.json --shadows pcf --samples 16 -o
+picture scenes/lesson/spot_exponent.jpg render scenes/lesson/spot_exponent.json --shadows pcf --samples 16 -o
+picture scenes/lesson/attenuation.jpg render scenes/lesson/attenuation.json --shadows pcf --samples 16 -o
+picture scenes/lesson/fog_linear.jpg render scenes/lesson/fog_linear.json --shadows pcf --samples 16 -o
+picture scenes/lesson/fog_exp.jpg render scenes/lesson/fog_exp.json --shadows pcf --samples 16 -o
+picture scenes/lesson/fog_exp2.jpg render scenes/lesson/fog_exp2.json --shadows pcf --samples 16 -o
+picture scenes/lesson/shadows_hard.jpg render scenes/lesson/shadows.json --shadows hard --shadow-size 128 --samples 16 -o
+picture scenes/lesson/shadows_pcf.jpg render scenes/lesson/shadows.json --shadows pcf --shadow-size 128 --samples 16 -o
+picture scenes/lesson/shadows_soft.jpg render scenes/lesson/shadows.json --shadows soft --samples 16 -o
+picture scenes/lesson/shadows_exact.jpg render scenes/lesson/shadows.json --shadows exact --shadow-size 128 --samples 16 -o
+
+picture scenes/colonnade_rays.jpg reference scenes/colonnade.json --size 960x540 -o
+if wanted scenes/colonnade_error.png; then
+  ./luciole reference scenes/colonnade.json --size 960x540 -o rays.exr
+  ./luciole render scenes/colonnade.json --size 960x540 -o maps.exr
+fi
+picture scenes/colonnade_error.png compare rays.exr maps.exr --error-map
+picture scenes/speed_against_error.svg bench --json bench.json --plot
+picture scenes/scale.svg scale scenes/fireflies.json --lights 1,10,...,100000 --vary culling -o fireflies --plot
