@@ -45,7 +45,8 @@ void expectCullingChangesNoBitOfAnyPart(const Scene& scene, glm::ivec2 size) {
 std::vector<std::string> ownScenes() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(LUCIOLE_SOURCE_DIR "/scenes"))
-    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    if (entry.path().extension() == ".json" && !entry.path().stem().has_extension())  // not scene.schema.json
+      names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }

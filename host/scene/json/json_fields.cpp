@@ -136,7 +136,9 @@ std::uint64_t readCount(const JsonNode& node, std::uint64_t largest) {
   const Json& json = *node.json;
   constexpr double kWholeDoubles = 9007199254740992.0;  // every whole number up to 2^53 is a double
   std::optional<std::uint64_t> count;
-  if (json.is_number_unsigned()) count = json.get<std::uint64_t>();
+  // A parsed integer is signed if it has a minus: also -0.
+  if (json.is_number_integer() && (json.is_number_unsigned() || json.get<std::int64_t>() == 0))
+    count = json.get<std::uint64_t>();
   if (json.is_number_float()) {
     const double number = json.get<double>();
     if (number >= 0 && number <= kWholeDoubles && number == std::floor(number))

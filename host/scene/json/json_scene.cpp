@@ -178,9 +178,13 @@ void checkPictureSize(glm::ivec2 size, const std::string& where) {
 }
 
 SceneFile loadJsonScene(const std::string& path) {
+  if (path == "-") return parseJsonScene(readWhole(path), "standard input", "");
+  return parseJsonScene(readWhole(path), path, std::filesystem::path(path).parent_path().string());
+}
+
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const std::string& folder) {
   SceneFile read;
   Scene& scene = read.scene;
-  const std::string file = path == "-" ? "standard input" : path;
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
   // there may be a million, cameras because their order counts and a JSON object has none.
   const auto take = [&scene](const JsonNode& node) {
@@ -195,11 +199,12 @@ SceneFile loadJsonScene(const std::string& path) {
     }
     return false;
   };
-  const Json json = parseJson(readWhole(path), file, take);
+  const Json json = parseJson(text, file, take);
 
   const JsonNode top{&json, nullptr, file, JsonNode::kNoIndex};
-  allowKeys(top, {"camera", "cameras", "size", "background", "ambient", "fog", "materials", "objects",
-                  "lights", "light_fields", "lighting", "frame_rate"});
+  allowKeys(top, {"$schema", "camera", "cameras", "size", "background", "ambient", "fog", "materials",
+                  "objects", "lights", "light_fields", "lighting", "frame_rate"});
+  if (const auto n = find(top, "$schema")) readText(*n);  // it is the editors'
   if (const auto n = find(top, "lights")) needArray(*n);
   if (const auto n = find(top, "cameras")) {
     refuseKeys(top, {"camera"}, "beside cameras");
@@ -213,7 +218,6 @@ SceneFile loadJsonScene(const std::string& path) {
   if (const auto n = find(top, "fog")) scene.fog = readFog(*n);
   if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
   if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
-  const std::string folder = path == "-" ? "" : std::filesystem::path(path).parent_path().string();
   scene.name = file;
   if (const auto n = find(top, "light_fields"))
     read.light_fields = readLightFields(*n, folder, scene.lights.size());

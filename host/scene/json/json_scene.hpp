@@ -19,6 +19,9 @@ struct SceneFile {
 /// "file: place: what is wrong".
 SceneFile loadJsonScene(const std::string& path);
 
+/// The same of a file's text. `file` is its name for messages; relative paths in it start at `folder`.
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const std::string& folder);
+
 /// Throws InputError "where: …" unless each side is from 1 to kLargestSide pixels.
 void checkPictureSize(glm::ivec2 size, const std::string& where);
 

@@ -94,6 +94,9 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
   }
   if (scene.contains("objects"))
     for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
+  // A schema may be a path or a URL.
+  if (scene.contains("$schema") && scene["$schema"].get<std::string>().find(':') == std::string::npos)
+    movePath(scene, "$schema");
 
   std::string text = "{\n";
   if (!scene.contains("camera") && !scene.contains("cameras")) text += cameraLine(camera);

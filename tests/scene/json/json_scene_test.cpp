@@ -360,6 +360,7 @@ TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
   write("parts/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   write("parts/p.ppm", std::string("P6 1 1 255\n") + "abc");
   write("scene.json", R"({ // a comment
+    "$schema": "parts/scene.schema.json",
     "cameras": {"zoom": {"eye": [0,0,5], "target": [0,0,0]}, "all": {"eye": [0,0,9], "target": [0,0,0]}},
     "materials": {"z": {"diffuse_map": "parts/p.ppm"}, "a": {"diffuse": 0.1, "emission_map": ")" +
                           (folder_ / "parts/p.ppm") + R"("}},
@@ -381,9 +382,12 @@ TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
   EXPECT_EQ(copy.meshes[0].positions, scene.meshes[0].positions);
   EXPECT_EQ(copy.textures.size(), scene.textures.size());
   EXPECT_EQ(copy.size, scene.size);
-  write("bare.json", "{}");
+  EXPECT_THAT(test::readText(folder_ / "copies/lit.json"), HasSubstr("\"../parts/scene.schema.json\""));
+  write("bare.json", R"({"$schema": "https://example.org/scene.schema.json"})");
   write("copies/bare.json", sceneWithLights(folder_ / "bare.json", folder_ / "copies", {}, {}));
   EXPECT_TRUE(loadScene(folder_ / "copies/bare.json").lights.empty());
+  EXPECT_THAT(test::readText(folder_ / "copies/bare.json"),
+              HasSubstr("\"https://example.org/scene.schema.json\""));
 }
 
 TEST_F(JsonScene, HugeCountsAreRefusedBeforeTheyAreAllocated) {
