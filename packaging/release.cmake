@@ -71,7 +71,6 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 # What is found while it runs: a device, without which it makes no picture, the letters of heat maps, and the plots of a page.
@@ -80,11 +79,17 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "fonts-dejavu-core, libjs-chart.js")
 # What its headers include.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libglm-dev, ocl-icd-opencl-dev, opencl-clhpp-headers")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"Luciole (French: firefly) rasterizes a scene on the host and lights it by OpenCL
-kernels, from the command line, on any device, PoCL on a plain CPU first: point,
-directional and spot lights without limit, shadows by four methods, fog, Phong's
-model and others. It reads its own scenes, OBJ and glTF, writes EXR, PNG and what
-else OpenImageIO writes, and says what a picture cost and how wrong it is.
+"Luciole (French: firefly) rasterizes a scene on the host and lights it by
+OpenCL kernels, on any device, PoCL on a plain CPU first: point, directional
+and spot lights without limit, shadows by four methods, fog, Phong's model and
+others. It reads its own scenes, OBJ and glTF, writes EXR, PNG and what else
+OpenImageIO writes, and says what a picture cost and how wrong it is.
 
-The package holds the program, the library with its headers, and scenes to try.")
+The package holds the program, the library with its headers, and scenes to
+try.")
+# Who links the library asks for this package, and the loader learns of it. (CPack's own does so once a level, and by a script.)
+set(soname "libluciole ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+file(WRITE ${PROJECT_BINARY_DIR}/debian/shlibs "${soname} luciole (>= ${PROJECT_VERSION})\n")
+file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/shlibs ${PROJECT_BINARY_DIR}/debian/triggers)
 include(CPack)
