@@ -13,7 +13,7 @@ inline constexpr double kMostStops = 100;
 
 /// The exposure, in whole hundredths of a stop, that brings the logarithmic mean of the colours' luminances
 /// to 0.18, a photographer's middle grey (E. Reinhard et al., "Photographic Tone Reproduction for Digital
-/// Images", 2002, section 3.1: its equation 1 and key value). Black doesn't count, since no exposure changes
+/// Images", 2002, equations 1 and 2, with the key 0.18). Black doesn't count, since no exposure changes
 /// it; nor do the darkest and the brightest tenth of the rest, so that sparks of a few pixels don't matter. 0
 /// where nothing is left. colors: linear Rec.709; their order doesn't matter. NaN counts as black.
 double suitableExposure(std::span<const glm::vec3> colors);
