@@ -89,6 +89,13 @@ TEST(Memory, BytesPerPixelOfSeveralSamplesWithStatisticsAreAsStated) {
   expectBytesPerPixel(sceneFromJson(floorScene(kSun)), settings);
 }
 
+TEST(Memory, BytesPerPixelOfSeveralSamplesWithCoverageAreAsStated) {
+  RenderSettings settings;
+  settings.samples = 2;
+  settings.alpha = true;
+  expectBytesPerPixel(sceneFromJson(floorScene(kSun)), settings);
+}
+
 TEST(Memory, BytesPerPixelOfAllLayersAreAsStated) {
   RenderSettings settings;
   settings.aovs = {Aov::kPosition, Aov::kNormal,     Aov::kDepth,      Aov::kDiffuse,
