@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frame_claims.hpp"
@@ -16,9 +17,9 @@
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"
+#include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
-#include "image/exposure.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "scene/pose.hpp"

@@ -583,8 +583,9 @@ TEST(SceneSchema, KnowsEveryKeyThatTheLoaderKnows) {
           ++known;
           for (const char* value : {"0.5", "7", "true", "\"text\"", "[1,2,3]", "[1,2]", "{}", "[]"}) {
             scene[place][word] = json::parse(value);
-            if (judges.refusal(scene.dump()).empty())
+            if (judges.refusal(scene.dump()).empty()) {
               EXPECT_TRUE(judges.schemaAccepts(asSchemasSeeIt(scene))) << scene;
+            }
           }
         }
         scene[place].erase(word);
@@ -698,7 +699,9 @@ TEST(SceneSchema, EveryKeyHasADescriptionWithItsUnitADefaultAndARange) {
     const std::string name = key.first->at("title").get<std::string>() + ": " + key.second;
     const std::string description = value->value("description", "");
     EXPECT_FALSE(description.empty()) << name;
-    if (holdsNumbers(*value)) EXPECT_TRUE(std::regex_search(description, unit)) << name << ": no unit";
+    if (holdsNumbers(*value)) {
+      EXPECT_TRUE(std::regex_search(description, unit)) << name << ": no unit";
+    }
     const json required = key.first->value("required", json::array());
     const bool is_required = std::find(required.begin(), required.end(), key.second) != required.end();
     const bool says_without = description.find("Without it, ") != std::string::npos;
@@ -712,8 +715,9 @@ TEST(SceneSchema, EveryKeyHasADescriptionWithItsUnitADefaultAndARange) {
       EXPECT_TRUE(node.contains("minimum") || node.contains("exclusiveMinimum")) << node;
       EXPECT_TRUE(node.contains("maximum") || node.contains("exclusiveMaximum")) << node;
     }
-    if (type == "object" && node.contains("properties"))
+    if (type == "object" && node.contains("properties")) {
       EXPECT_EQ(node.value("additionalProperties", json()), false) << node;
+    }
   });
 }
 
@@ -744,8 +748,9 @@ TEST(SceneSchema, DefaultsAreTheLoaders) {
     });
   }
   for (const auto& [key, value] : schemaKeys())
-    if (value->contains("default"))
+    if (value->contains("default")) {
       EXPECT_TRUE(tried.contains(key)) << key.first->at("title") << " " << key.second;
+    }
 }
 
 }  // namespace
