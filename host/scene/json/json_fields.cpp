@@ -184,7 +184,8 @@ glm::dvec3 readVector(const JsonNode& node) {
 glm::dvec3 readDirection(const JsonNode& node) {
   const glm::dvec3 vector = readVector(node);
   const double length = glm::length(vector);
-  if (!(length >= 1 / kLargestNumber)) refuse(node, "expected a direction, got the zero vector");
+  if (vector == glm::dvec3(0)) refuse(node, "expected a direction, got the zero vector");
+  if (!(length >= 1 / kLargestNumber)) refuse(node, "expected a direction, got a vector shorter than 1e-18");
   return vector / length;
 }
 

@@ -78,7 +78,7 @@ std::string faultOfPath(const std::string& path);
 std::string readPath(const JsonNode& node, const std::string& folder);
 /// [x,y,z], each of magnitude at most kLargestNumber.
 glm::dvec3 readVector(const JsonNode& node);
-/// A vector's direction, unit. Refuses the zero vector.
+/// A vector's direction, unit. Refuses a vector shorter than 1 / kLargestNumber.
 glm::dvec3 readDirection(const JsonNode& node);
 /// [r,g,b], or one number for all three; each ≥ 0.
 glm::vec3 readColor(const JsonNode& node);
