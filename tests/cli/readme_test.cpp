@@ -154,7 +154,7 @@ TEST_P(SectionOfReadme, CommandsSucceed) {
   const TemporaryFolder folder;
   prepareCheckout(folder);
   for (const std::string& command : GetParam().commands) {
-    if (command.find("img2webp") != std::string::npos) LUCIOLE_NEEDS_PROGRAM("img2webp", "webp");
+    if (command.find(".mp4") != std::string::npos) LUCIOLE_NEEDS_PROGRAM("ffmpeg", "ffmpeg");
     const Outcome outcome = runLine(folder, atLittleCost(command));
     EXPECT_EQ(outcome.status, 0) << command << "\n" << outcome.err;
   }
