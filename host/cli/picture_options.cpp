@@ -11,14 +11,11 @@
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
-#include "base/write_file.hpp"
-#include "cl/kernel_cache.hpp"
 #include "cli/cameras.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frames.hpp"
 #include "cli/suggest.hpp"
-#include "gbuffer/camera_header.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "load/load_scene.hpp"
@@ -35,25 +32,10 @@ const std::map<std::string, Aov> kAovs{
     {"diffuse", Aov::kDiffuse},        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
     {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow}};
 
-/// What rounding to a 16-bit float changes: at most this share of a value, or this much of one below 2⁻¹⁴.
-constexpr double kHalfRelative = 0x1p-11, kHalfAbsolute = 0x1p-25;
-
-std::vector<Aov> parseAovs(const std::string& text) {
-  std::vector<Aov> aovs;
-  if (text.empty()) return aovs;
-  for (const std::string& name : split(text, ',')) {
-    const auto found = kAovs.find(name);
-    if (found == kAovs.end()) {
-      std::vector<std::string> names;
-      for (const auto& [known, aov] : kAovs) names.push_back(known);
-      throw InputError(
-          fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
-                      "list_length, shadow{}",
-                      name, didYouMean(name, names)));
-    }
-    if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
-  }
-  return aovs;
+std::vector<std::string> compressionNames() {
+  std::vector<std::string> names;
+  for (const ExrCompression& one : kExrCompressions) names.push_back(one.name);
+  return names;
 }
 
 void castShadows(const PictureOptions& options, Scene& scene) {
@@ -86,13 +68,6 @@ CLI::Validator exposureCheck(bool or_auto) {
                                or_auto ? ", or auto" : "", text);
           },
           ""};
-}
-
-std::vector<std::string> compressionNames(bool only_lossless) {
-  std::vector<std::string> names;
-  for (const ExrCompression& one : kExrCompressions)
-    if (one.is_lossless || !only_lossless) names.push_back(one.name);
-  return names;
 }
 
 /// What --size says: "WxH", or "W" for a picture of the same shape as the scene's own.
@@ -148,7 +123,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command
         .add_option("--compression", options.compression,
                     fmt::format("of an EXR (default: {}); from pxr24 on they change the picture", kExrCompression))
-        ->check(oneOf(compressionNames(false)));
+        ->check(oneOf(compressionNames()));
   if (groups & kViewOptions) {
     command.add_option("--size", options.size,
                        "WxH pixels, or W, as high as the scene's shape makes it (default: the scene's, or "
@@ -328,6 +303,24 @@ Scene openLitScene(const std::string& path, double frame, const PictureOptions& 
   return scene;
 }
 
+std::vector<Aov> aovsOf(const PictureOptions& options) {
+  std::vector<Aov> aovs;
+  if (options.aovs.empty()) return aovs;
+  for (const std::string& name : split(options.aovs, ',')) {
+    const auto found = kAovs.find(name);
+    if (found == kAovs.end()) {
+      std::vector<std::string> names;
+      for (const auto& [known, aov] : kAovs) names.push_back(known);
+      throw InputError(
+          fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
+                      "list_length, shadow{}",
+                      name, didYouMean(name, names)));
+    }
+    if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
+  }
+  return aovs;
+}
+
 Model modelOf(const PictureOptions& options) {
   return *std::find_if(std::begin(kAllModels), std::end(kAllModels),
                        [&](Model model) { return options.model == modelName(model); });
@@ -359,46 +352,10 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;
-  settings.aovs = parseAovs(options.aovs);
+  settings.aovs = aovsOf(options);
   settings.exposure = float(exposureStops(options.exposure).value_or(0));
   settings.count_lights = !options.stats.empty();
   return settings;
-}
-
-WriteOptions fileOptions(const PictureOptions& options) {
-  return {.format = options.format,
-          .dither = options.dither == "on",
-          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
-          .bits = options.bits,
-          .half = options.half,
-          .compression = options.compression,
-          .alpha = options.alpha};
-}
-
-bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
-  if (!options.exposure.empty()) return options.exposure == "auto";
-  return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
-}
-
-void checkOutput(const PictureOptions& options) {
-  checkWritable(options.output, fileOptions(options));
-  if (options.tone != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
-    throw InputError(fmt::format(
-        "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
-        options.tone, options.output));
-  if (!parseAovs(options.aovs).empty() && outputFormat(options.output, options.format).extension != "exr")
-    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
-  if (!options.stats.empty() && options.stats == options.output)
-    throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
-}
-
-void checkDataOutput(const PictureOptions& options, const std::string& what) {
-  checkOutput(options);
-  const std::vector<std::string> lossless = compressionNames(true);
-  if (!options.compression.empty() &&
-      std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
-    throw InputError(fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
-                                 options.compression, what, fmt::join(lossless, ", ")));
 }
 
 int useFrame(PictureOptions& options, const std::string& command) {
@@ -422,94 +379,6 @@ std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, cons
     if (have_stats) all[i].stats = stats[i];
   }
   return all;
-}
-
-WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
-                          glm::ivec2 picture_size, glm::ivec2 crop_origin) {
-  WriteOptions file = fileOptions(options);
-  file.picture_size = picture_size;
-  file.crop_origin = crop_origin;
-  if (camera) file.exr = cameraAttributes(*camera, picture_size);
-  return file;
-}
-
-WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
-  const auto camera = gbuffer.knows_camera ? std::optional(gbuffer.camera) : std::nullopt;
-  return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
-}
-
-void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
-  if (options.half) {
-    stats.errors.emplace_back("half_relative", kHalfRelative);
-    stats.errors.emplace_back("half_absolute", kHalfAbsolute);
-  }
-  if (limited == 0) return;
-  stats.warnings.push_back(
-      fmt::format("{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
-                  "--exposure, or take 32-bit floats and a lossless --compression",
-                  options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
-  if (!options.quiet) tellWarnings({stats.warnings.back()});
-}
-
-Metadata pictureMetadata(const Stats& stats, const Device* device) {
-  Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
-  if (stats.measured_exposure)
-    metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));
-  if (device)
-    metadata.emplace_back(
-        "luciole:device",
-        fmt::format("{}, {}, driver {}, {} lanes", device->description.name, device->description.platform,
-                    device->description.version, device->description.lanes));
-  return metadata;
-}
-
-void logDevice(const DeviceDescription& device) {
-  logEvent("device", {{"name", device.name},
-                      {"platform", device.platform},
-                      {"driver", device.version},
-                      {"lanes", device.lanes}});
-}
-
-namespace {
-
-void logPicture(const PictureOptions& options, const Stats& stats, int frame) {
-  for (const auto& [stage, milliseconds] : stats.stages)
-    logEvent(
-        "stage",
-        {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
-  logEvent("frame_done", {{"frame", frame},
-                          {"file", options.output},
-                          {"width", stats.width},
-                          {"height", stats.height},
-                          {"triangles", stats.triangles},
-                          {"lights", stats.lights},
-                          {"milliseconds", eventMilliseconds(pictureMilliseconds(stats))}});
-}
-
-}  // namespace
-
-Stats laterStats(const std::string& command) {
-  Stats stats;
-  stats.command = command;
-  stats.began = millisecondsSinceStart();
-  return stats;
-}
-
-void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
-  if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
-  if (logsEvents()) return logPicture(options, stats, frame);
-  if (options.quiet) return;
-  // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.
-  const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };
-  std::string stages;
-  for (const auto& stage : stats.stages)
-    if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
-      stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
-  const std::string exposure =
-      stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
-             stats.height, stats.triangles, stats.lights, exposure, whole(pictureMilliseconds(stats)), stages,
-             stages.empty() ? "" : ")", options.half ? ", colours rounded by up to 2^-11 of themselves" : "");
 }
 
 }  // namespace luciole

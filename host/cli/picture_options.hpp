@@ -81,26 +81,15 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
 /// that are too large for it (coarseTriangleWidth).
 Scene openLitScene(const std::string& path, double frame, const PictureOptions& options);
 
+/// The layers that --aov names, each once. Throws InputError.
+std::vector<Aov> aovsOf(const PictureOptions& options);
+
 /// The model that --model names.
 Model modelOf(const PictureOptions& options);
 
 /// The settings that the options mean for this scene. The picture's size comes from --size, else from the
 /// scene, else it is 1280x720; the camera is found by name or index. Throws InputError that names the option.
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene);
-
-/// Whether the picture's exposure is to be measured: with --exposure auto, and without --exposure for a mesh
-/// file (.obj, .gltf, .glb), whose lights may be of any strength, in a picture of integers.
-bool measuresExposure(const PictureOptions& options, const std::string& scene_path);
-
-/// What the options say of the picture's file, apart from what part of which view it shows.
-WriteOptions fileOptions(const PictureOptions& options);
-
-/// Checks before any work what can be wrong with the output: extension, folder, layers, tone, and what else
-/// the format has no place for. Throws InputError.
-void checkOutput(const PictureOptions& options);
-
-/// The same for `what`, a file of data ("a G-buffer"), which no compression may change.
-void checkDataOutput(const PictureOptions& options, const std::string& what);
 
 /// The frame that --frames names for a command that makes one picture; 1 without it. Puts its number into the
 /// file names in `options`. Throws InputError.
@@ -109,31 +98,6 @@ int useFrame(PictureOptions& options, const std::string& command);
 /// The options of each picture that --camera asks for: one, or for "all" one of each camera. Puts the camera's
 /// name into the file names. Throws InputError, see cameraFiles().
 std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, const Scene& scene);
-
-/// How to write a picture that this camera sees, or the part of it that starts at crop_origin.
-WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
-                          glm::ivec2 picture_size, glm::ivec2 crop_origin);
-/// How to write the picture of all pixels of a G-buffer.
-WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
-
-/// Adds to the statistics how far 16-bit floats round colours, and warns of pixels that were too bright for
-/// the file. limited: as writeImage returns.
-void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
-
-/// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
-/// device: null if none was used.
-Metadata pictureMetadata(const Stats& stats, const Device* device);
-
-/// The statistics of a picture that is begun now, after others.
-Stats laterStats(const std::string& command);
-
-/// Writes the statistics to the file that --stats names, if any. Unless --quiet, writes a line to standard
-/// error that says what was made and what it cost. In an event log that is an event for each stage of the
-/// frame, and one for the frame.
-void reportStats(const PictureOptions& options, const Stats& stats, int frame);
-
-/// In an event log, tells which device is used.
-void logDevice(const DeviceDescription& device);
 
 /// The parts of a text between separators; the whole text if there is no separator.
 std::vector<std::string> split(const std::string& text, char separator);

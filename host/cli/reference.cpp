@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/picture_output.hpp"
 #include "cli/progress.hpp"
 #include "cli/suggest.hpp"
 #include "gbuffer/gbuffer_file.hpp"

@@ -14,6 +14,7 @@
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/picture_output.hpp"
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"

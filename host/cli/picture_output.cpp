@@ -1,0 +1,148 @@
+#include "cli/picture_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/write_file.hpp"
+#include "cl/kernel_cache.hpp"
+#include "cli/commands.hpp"
+#include "cli/event_log.hpp"
+#include "gbuffer/camera_header.hpp"
+#include "image/file_format.hpp"
+#include "scene/json/mesh_file.hpp"
+
+namespace luciole {
+namespace {
+
+/// What rounding to a 16-bit float changes: at most this share of a value, or this much of one below 2⁻¹⁴.
+constexpr double kHalfRelative = 0x1p-11, kHalfAbsolute = 0x1p-25;
+
+void logPicture(const PictureOptions& options, const Stats& stats, int frame) {
+  for (const auto& [stage, milliseconds] : stats.stages)
+    logEvent(
+        "stage",
+        {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
+  logEvent("frame_done", {{"frame", frame},
+                          {"file", options.output},
+                          {"width", stats.width},
+                          {"height", stats.height},
+                          {"triangles", stats.triangles},
+                          {"lights", stats.lights},
+                          {"milliseconds", eventMilliseconds(pictureMilliseconds(stats))}});
+}
+
+}  // namespace
+
+WriteOptions fileOptions(const PictureOptions& options) {
+  return {.format = options.format,
+          .dither = options.dither == "on",
+          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
+          .bits = options.bits,
+          .half = options.half,
+          .compression = options.compression,
+          .alpha = options.alpha};
+}
+
+bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
+  if (!options.exposure.empty()) return options.exposure == "auto";
+  return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
+}
+
+void checkOutput(const PictureOptions& options) {
+  checkWritable(options.output, fileOptions(options));
+  if (options.tone != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
+    throw InputError(fmt::format(
+        "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
+        options.tone, options.output));
+  if (!aovsOf(options).empty() && outputFormat(options.output, options.format).extension != "exr")
+    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  if (!options.stats.empty() && options.stats == options.output)
+    throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+}
+
+void checkDataOutput(const PictureOptions& options, const std::string& what) {
+  checkOutput(options);
+  if (options.compression.empty()) return;
+  std::vector<std::string> lossless;
+  for (const ExrCompression& one : kExrCompressions)
+    if (one.is_lossless) lossless.push_back(one.name);
+  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+    throw InputError(fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                                 options.compression, what, fmt::join(lossless, ", ")));
+}
+
+WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
+                          glm::ivec2 picture_size, glm::ivec2 crop_origin) {
+  WriteOptions file = fileOptions(options);
+  file.picture_size = picture_size;
+  file.crop_origin = crop_origin;
+  if (camera) file.exr = cameraAttributes(*camera, picture_size);
+  return file;
+}
+
+WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
+  const auto camera = gbuffer.knows_camera ? std::optional(gbuffer.camera) : std::nullopt;
+  return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
+}
+
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
+  if (options.half) {
+    stats.errors.emplace_back("half_relative", kHalfRelative);
+    stats.errors.emplace_back("half_absolute", kHalfAbsolute);
+  }
+  if (limited == 0) return;
+  stats.warnings.push_back(
+      fmt::format("{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
+                  "--exposure, or take 32-bit floats and a lossless --compression",
+                  options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
+  if (!options.quiet) tellWarnings({stats.warnings.back()});
+}
+
+Metadata pictureMetadata(const Stats& stats, const Device* device) {
+  Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
+  if (stats.measured_exposure)
+    metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));
+  if (device)
+    metadata.emplace_back(
+        "luciole:device",
+        fmt::format("{}, {}, driver {}, {} lanes", device->description.name, device->description.platform,
+                    device->description.version, device->description.lanes));
+  return metadata;
+}
+
+void logDevice(const DeviceDescription& device) {
+  logEvent("device", {{"name", device.name},
+                      {"platform", device.platform},
+                      {"driver", device.version},
+                      {"lanes", device.lanes}});
+}
+
+Stats laterStats(const std::string& command) {
+  Stats stats;
+  stats.command = command;
+  stats.began = millisecondsSinceStart();
+  return stats;
+}
+
+void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
+  if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
+  if (logsEvents()) return logPicture(options, stats, frame);
+  if (options.quiet) return;
+  // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.
+  const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };
+  std::string stages;
+  for (const auto& stage : stats.stages)
+    if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
+      stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
+  const std::string exposure =
+      stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
+  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
+             stats.height, stats.triangles, stats.lights, exposure, whole(pictureMilliseconds(stats)), stages,
+             stages.empty() ? "" : ")", options.half ? ", colours rounded by up to 2^-11 of themselves" : "");
+}
+
+}  // namespace luciole

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "cl/device.hpp"
+#include "cli/picture_options.hpp"
+#include "gbuffer/gbuffer.hpp"
+#include "image/image.hpp"
+#include "render/stats.hpp"
+#include "scene/scene.hpp"
+
+namespace luciole {
+
+/// Whether the picture's exposure is to be measured: with --exposure auto, and without --exposure for a mesh
+/// file (.obj, .gltf, .glb), whose lights may be of any strength, in a picture of integers.
+bool measuresExposure(const PictureOptions& options, const std::string& scene_path);
+
+/// What the options say of the picture's file, apart from what part of which view it shows.
+WriteOptions fileOptions(const PictureOptions& options);
+
+/// Checks before any work what can be wrong with the output: extension, folder, layers, tone, and what else
+/// the format has no place for. Throws InputError.
+void checkOutput(const PictureOptions& options);
+
+/// The same for `what`, a file of data ("a G-buffer"), which no compression may change.
+void checkDataOutput(const PictureOptions& options, const std::string& what);
+
+/// How to write a picture that this camera sees, or the part of it that starts at crop_origin.
+WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
+                          glm::ivec2 picture_size, glm::ivec2 crop_origin);
+/// How to write the picture of all pixels of a G-buffer.
+WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer);
+
+/// Adds to the statistics how far 16-bit floats round colours, and warns of pixels that were too bright for
+/// the file. limited: as writeImage returns.
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
+
+/// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
+/// device: null if none was used.
+Metadata pictureMetadata(const Stats& stats, const Device* device);
+
+/// The statistics of a picture that is begun now, after others.
+Stats laterStats(const std::string& command);
+
+/// Writes the statistics to the file that --stats names, if any. Unless --quiet, writes a line to standard
+/// error that says what was made and what it cost. In an event log that is an event for each stage of the
+/// frame, and one for the frame.
+void reportStats(const PictureOptions& options, const Stats& stats, int frame);
+
+/// In an event log, tells which device is used.
+void logDevice(const DeviceDescription& device);
+
+}  // namespace luciole
