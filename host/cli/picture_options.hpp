@@ -86,8 +86,8 @@ void checkOutput(const PictureOptions& options);
 /// file names in `options`. Throws InputError.
 int useFrame(PictureOptions& options, const std::string& command);
 
-/// The options of each picture that --camera asks for: one, or for "all" one of each camera. Puts the camera's
-/// name into the file names. Throws InputError, see cameraFiles().
+/// The options of each picture that --camera asks for: one, or for "all" one of each camera. Puts the
+/// camera's name into the file names. Throws InputError, see cameraFiles().
 std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, const Scene& scene);
 
 /// How to write a picture that this camera sees, or the part of it that starts at crop_origin.
