@@ -64,16 +64,18 @@ std::string cameraFile(const std::string& pattern, const Scene& scene, std::size
 std::vector<std::string> cameraFiles(const std::string& pattern, const Scene& scene,
                                      const std::vector<std::size_t>& cameras, const std::string& option) {
   if (cameras.size() > 1 && cameraPlace(pattern) == std::string::npos)
-    throw InputError(fmt::format(
-        "{} {}: expected a name with {} in the place of the camera's, such as view_{}.png, for the {} cameras of {}",
-        option, pattern, kCameraPlace, kCameraPlace, cameras.size(), scene.name));
+    throw InputError(
+        fmt::format("{} {}: expected a name with {} in the place of the camera's, such as view_{}.png, for "
+                    "the {} cameras of {}",
+                    option, pattern, kCameraPlace, kCameraPlace, cameras.size(), scene.name));
   std::vector<std::string> files;
   for (const std::size_t camera : cameras) {
     files.push_back(cameraFile(pattern, scene, camera));
     const auto same = std::find(files.begin(), files.end(), files.back());
     if (same + 1 != files.end())
-      throw InputError(fmt::format("{} {}: cameras {} and {} of {} would both be written to {}", option, pattern,
-                                   cameras[std::size_t(same - files.begin())], camera, scene.name, files.back()));
+      throw InputError(fmt::format("{} {}: cameras {} and {} of {} would both be written to {}", option,
+                                   pattern, cameras[std::size_t(same - files.begin())], camera, scene.name,
+                                   files.back()));
   }
   return files;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -73,7 +74,7 @@ Json cameraJson(const Camera& camera) {
 
 std::string cameraText(const Camera& camera) {
   const glm::dmat4& place = camera.camera_to_world;
-  return fmt::format("{}{} at {} looks along {}", printable(camera.name), camera.name.empty() ? "" : ":",
+  return fmt::format("{}{}at {} looks along {}", printable(camera.name), camera.name.empty() ? "" : ": ",
                      vectorText(place[3]), vectorText(glm::dvec3(0) - glm::dvec3(place[2])));
 }
 
@@ -87,9 +88,10 @@ void addShape(const Scene& scene, const SceneInfo& info, Report& report) {
   report.json["mesh_triangles"] = info.mesh_triangles;
   report.json["objects"] = scene.objects.size();
   report.json["meshes"] = info.meshes;
-  addLine(report, "triangles",
-          fmt::format("{} in {}; {} in {}", info.triangles, counted(scene.objects.size(), "object"),
-                      info.mesh_triangles, info.meshes == 1 ? "1 mesh" : fmt::format("{} meshes", info.meshes)));
+  addLine(
+      report, "triangles",
+      fmt::format("{} in {}; {} in {}", info.triangles, counted(scene.objects.size(), "object"),
+                  info.mesh_triangles, info.meshes == 1 ? "1 mesh" : fmt::format("{} meshes", info.meshes)));
   report.json["bounds"] = nullptr;
   if (const auto& [low, high] = info.bounds; low.x <= high.x) {
     report.json["bounds"] = {{"low", vectorJson(low)}, {"high", vectorJson(high)}};
@@ -98,7 +100,8 @@ void addShape(const Scene& scene, const SceneInfo& info, Report& report) {
   report.json["frames"] = nullptr;
   if (info.moves) {
     report.json["frames"] = {{"first", info.moves->first}, {"last", info.moves->last}};
-    addLine(report, "frames", fmt::format("moves from {:.6g} to {:.6g}", info.moves->first, info.moves->last));
+    addLine(report, "frames",
+            fmt::format("moves from {:.6g} to {:.6g}", info.moves->first, info.moves->last));
   }
 }
 
@@ -115,19 +118,27 @@ void addMaterials(const Scene& scene, const SceneInfo& info, Report& report) {
   addLine(report, "materials", fmt::format("{}", scene.materials.size()));
   Json& textures = report.json["textures"] = Json::array();
   addLine(report, "textures",
-          info.texels == 0 ? "0" : fmt::format("{}, {:.3g} megatexels", scene.textures.size(), info.texels / 1e6));
+          info.texels == 0 ? "0"
+                           : fmt::format("{}, {:.3g} megatexels", scene.textures.size(), info.texels / 1e6));
+  const std::string folder = std::filesystem::path(scene.name).parent_path().string() + "/";
   for (const Texture& texture : scene.textures) {
-    const glm::ivec2 size = texture.levels.empty() ? glm::ivec2(0)
-                                                   : glm::ivec2(texture.levels[0].width, texture.levels[0].height);
+    const bool is_beside = texture.name.starts_with(folder);
+    const glm::ivec2 size = texture.levels.empty()
+                                ? glm::ivec2(0)
+                                : glm::ivec2(texture.levels[0].width, texture.levels[0].height);
     textures.push_back({{"name", texture.name}, {"width", size.x}, {"height", size.y}});
-    addLine(report, "", fmt::format("{:<11}{}", sizeText(size), printable(texture.name)));
+    addLine(report, "",
+            fmt::format("{:<11}{}", sizeText(size),
+                        printable(texture.name.substr(is_beside ? folder.size() : 0))));
   }
 }
 
 void addCameras(const Scene& scene, Report& report) {
   Json& cameras = report.json["cameras"] = Json::array();
   report.json["adds_camera"] = scene.adds_camera;
-  addLine(report, "cameras", scene.adds_camera ? "0 in the file; this one would be taken" : fmt::format("{}", scene.cameras.size()));
+  addLine(
+      report, "cameras",
+      scene.adds_camera ? "0 in the file; this one would be taken" : fmt::format("{}", scene.cameras.size()));
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const Camera& camera = scene.cameras[i];
     Json& json = cameras.emplace_back(cameraJson(camera));
@@ -138,19 +149,20 @@ void addCameras(const Scene& scene, Report& report) {
 }
 
 void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
-  report.json["lights"] = {{"count", scene.lights.size()},    {"point", lights.point},
+  report.json["lights"] = {{"count", scene.lights.size()},      {"point", lights.point},
                            {"directional", lights.directional}, {"spot", lights.spot},
                            {"casting", lights.casting},         {"everywhere", lights.everywhere}};
   report.json["adds_lights"] = scene.adds_lights;
-  std::string kinds;
+  std::string kinds =
+      scene.adds_lights ? "0 in the file; these would be added: " : fmt::format("{}", scene.lights.size());
+  const char* separator = scene.adds_lights ? "" : ": ";
   for (const auto& [count, kind] :
        {std::pair(lights.point, "point"), {lights.directional, "directional"}, {lights.spot, "spot"}})
-    if (count > 0) kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", count, kind);
-  addLine(report, "lights",
-          fmt::format("{}{}{}", scene.adds_lights ? "0 in the file; these would be added: " : "",
-                      scene.lights.size(), kinds));
+    if (count > 0) kinds += fmt::format("{}{} {}", std::exchange(separator, ", "), count, kind);
+  addLine(report, "lights", kinds);
   if (!scene.lights.empty())
-    addLine(report, "", fmt::format("{} cast shadows, {} reach everywhere", lights.casting, lights.everywhere));
+    addLine(report, "",
+            fmt::format("{} cast shadows, {} reach everywhere", lights.casting, lights.everywhere));
 }
 
 /// Two digits of a duration: "450 ms", "1.5 s", "12 min".
@@ -168,12 +180,8 @@ std::string addRender(const Scene& scene, const RenderSettings& settings, Report
   report.json["features"] = features;
   addLine(report, "features", features.empty() ? "none" : fmt::format("{}", fmt::join(features, ", ")));
   Json& json = report.json["render"];
-  json = {{"width", settings.size.x},
-          {"height", settings.size.y},
-          {"samples", settings.samples},
-          {"milliseconds", nullptr},
-          {"memory_bytes", nullptr},
-          {"machine", kEstimateMachine}};
+  json = {{"width", settings.size.x}, {"height", settings.size.y}, {"samples", settings.samples},
+          {"milliseconds", nullptr},  {"memory_bytes", nullptr},   {"machine", kEstimateMachine}};
   try {
     const PictureWork work = pictureWork(scene, settings);
     const double milliseconds = estimatedMilliseconds(work), bytes = estimatedBytes(work);
@@ -256,13 +264,14 @@ void addPart(const PicturePart& part, Report& report) {
                         printable(fmt::format("{}", fmt::join(layer.channels, " "))),
                         is_uniform ? layer.types[0] : fmt::format("{}", fmt::join(layer.types, " "))));
   }
-  report.json["parts"].push_back({{"name", part.name},
-                                  {"width", part.size.x},
-                                  {"height", part.size.y},
-                                  {"picture", {{"width", part.picture_size.x}, {"height", part.picture_size.y}}},
-                                  {"origin", {part.crop_origin.x, part.crop_origin.y}},
-                                  {"compression", part.compression},
-                                  {"layers", layers}});
+  report.json["parts"].push_back(
+      {{"name", part.name},
+       {"width", part.size.x},
+       {"height", part.size.y},
+       {"picture", {{"width", part.picture_size.x}, {"height", part.picture_size.y}}},
+       {"origin", {part.crop_origin.x, part.crop_origin.y}},
+       {"compression", part.compression},
+       {"layers", layers}});
 }
 
 /// Returns what is wrong with the camera of a picture's header, or "".
@@ -299,9 +308,9 @@ Report pictureReport(const std::string& file) {
   for (const PicturePart& part : parts) addPart(part, report);
   const std::string fault = addCamera(file, parts.front(), report);
   const bool is_ours = findText(parts.front(), "Software").starts_with("Luciole");
-  for (const auto& [key, attribute] :
-       {std::pair("software", "Software"), {is_ours ? "command" : "description", "ImageDescription"},
-        {"device", "luciole:device"}}) {
+  for (const auto& [key, attribute] : {std::pair("software", "Software"),
+                                       {is_ours ? "command" : "description", "ImageDescription"},
+                                       {"device", "luciole:device"}}) {
     const std::string text = findText(parts.front(), attribute);
     if (text.empty()) continue;
     report.json[key] = text;
@@ -313,7 +322,8 @@ Report pictureReport(const std::string& file) {
 
 void showInfo(const InfoOptions& options) {
   if (!options.json.empty()) checkPlace(options.json);
-  const bool is_scene = options.file == "-" || extensionOf(options.file) == ".json" || isMeshFile(options.file);
+  const bool is_scene =
+      options.file == "-" || extensionOf(options.file) == ".json" || isMeshFile(options.file);
   const Report report = is_scene ? sceneReport(options) : pictureReport(options.file);
   // Texts of other programs' files may be no UTF-8, which JSON is.
   if (!options.json.empty())
@@ -325,15 +335,17 @@ void showInfo(const InfoOptions& options) {
 
 void addInfoCommand(CLI::App& app, CommandContext&) {
   CLI::App* command = app.add_subcommand(
-      "info", "what a scene holds, what a render with these options would use and cost; or what a picture holds");
+      "info",
+      "what a scene holds, what a render with these options would use and cost; or what a picture holds");
   auto options = std::make_shared<InfoOptions>();
   command
       ->add_option("FILE", options->file,
                    "a .json, .obj, .gltf or .glb file (- : JSON on standard input), or a picture: an .exr's "
                    "layers, camera and command")
       ->required();
-  addPictureOptions(*command, *options,
-                    kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kManyPictures);
+  addPictureOptions(
+      *command, *options,
+      kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kManyPictures);
   command->add_option("--json", options->json, "write it all as JSON (- : standard output)");
   command->callback([options] { showInfo(*options); });
 }

@@ -130,9 +130,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                        "1280x720)");
     command.add_option(
         "--camera", options.camera,
-        is_one_picture ? "one of the scene's cameras, by name or index, or all: a picture of each; {camera} in "
-                         "the output's name becomes the camera's"
-                       : "one of the scene's cameras, by name or index");
+        is_one_picture
+            ? "one of the scene's cameras, by name or index, or all: a picture of each; {camera} in "
+              "the output's name becomes the camera's"
+            : "one of the scene's cameras, by name or index");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
@@ -331,7 +332,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   if (scene.size) settings.size = *scene.size;
   if (!options.size.empty()) settings.size = typedSize(options.size, settings.size);
   const bool is_chosen = options.camera_index >= 0;
-  settings.camera = scene.cameras[is_chosen ? std::size_t(options.camera_index) : findCamera(scene, options.camera)];
+  settings.camera =
+      scene.cameras[is_chosen ? std::size_t(options.camera_index) : findCamera(scene, options.camera)];
   if (!options.crop.empty()) {
     const std::vector<int> crop = parseInts(options.crop, ',', 4, "--crop", "X,Y,W,H, such as 0,0,64,64");
     settings.crop = Crop{crop[0], crop[1], crop[2], crop[3]};

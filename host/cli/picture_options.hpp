@@ -95,8 +95,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
 /// file names in `options`. Throws InputError.
 int useFrame(PictureOptions& options, const std::string& command);
 
-/// The options of each picture that --camera asks for: one, or for "all" one of each camera. Puts the camera's
-/// name into the file names. Throws InputError, see cameraFiles().
+/// The options of each picture that --camera asks for: one, or for "all" one of each camera. Puts the
+/// camera's name into the file names. Throws InputError, see cameraFiles().
 std::vector<PictureOptions> optionsOfCameras(const PictureOptions& options, const Scene& scene);
 
 /// The parts of a text between separators; the whole text if there is no separator.

@@ -24,7 +24,7 @@ struct LayerFile {
 
 /// What the header of a part of a picture file says. Most files are of one part.
 struct PicturePart {
-  std::string name;  ///< of a part of an EXR; may be empty
+  std::string name;                                     ///< of a part of an EXR; may be empty
   glm::ivec2 size{0}, picture_size{0}, crop_origin{0};  ///< as in LayerFile
   std::vector<std::string> channels;
   std::vector<std::string> types;  ///< of each channel: "half", "float", "uint8" …

@@ -1,12 +1,16 @@
 #include "render/estimate.hpp"
 
+#include <algorithm>
+
 #include "render/memory.hpp"
 
 namespace luciole {
 
+// Of each sum the parts are in the order of their stages. Costs are milliseconds a pixel, triangle, light …
 double estimatedMilliseconds(const PictureWork& work) {
   const bool exact = work.shadows == ShadowMethod::kExact;
-  const double start = 115, image_module = work.texels > 0 ? 190 : 0, rays = work.frames_scene || exact ? 25 : 0;
+  const double start = 115, image_module = work.texels > 0 ? 190 : 0,
+               rays = work.frames_scene || exact ? 25 : 0;
   const double load = 8e-4 * work.mesh_triangles + 33e-6 * work.texels + 35e-5 * work.lights;
   const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.triangles;
   const double cull = 3e-5 * work.list_entries +
@@ -25,10 +29,13 @@ double estimatedMilliseconds(const PictureWork& work) {
 }
 
 double estimatedBytes(const PictureWork& work) {
-  const double program = 95e6, image_module = work.texels > 0 ? 60e6 : 0;
-  return program + image_module + work.scene_bytes + 100 * work.triangles +
-         double(kBytesPerLight) * work.lights + work.pixel_bytes +
-         double(sizeof(ListEntry)) * work.list_entries / work.samples + work.shadow_map_bytes;
+  const double image_module = work.texels > 0 ? 120e6 : 0;
+  const double loaded = 95e6 + image_module + work.scene_bytes + double(kBytesPerLight) * work.lights;
+  const double ray_tree = work.shadows == ShadowMethod::kExact ? 300 * work.triangles : 0;
+  const double picture = 100 * work.triangles + work.pixel_bytes +
+                         double(sizeof(ListEntry)) * work.list_entries / work.samples +
+                         work.shadow_map_bytes + ray_tree;
+  return loaded + std::max(picture, 30 * work.decoded_texels);
 }
 
 }  // namespace luciole

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 #include <vector>
 
 #include "render/memory.hpp"
@@ -12,7 +13,7 @@
 namespace luciole {
 namespace {
 
-constexpr int kGridSide = 64;     ///< pixels a side of the grid, at most
+constexpr int kGridSide = 64;       ///< pixels a side of the grid, at most
 constexpr double kMostTests = 1e8;  ///< of lights at points of the grid
 
 /// A point that the picture shows; world space.
@@ -23,8 +24,7 @@ struct SeenPoint {
 
 /// Whether a square or tile of this radius around a point keeps a light in its list. Follows kernels/cull.cl.
 bool reaches(const Light& light, const SeenPoint& point, double radius, bool by_facing) {
-  if (light.kind == LightKind::kDirectional)
-    return !by_facing || glm::dot(point.normal, light.direction) < 0;
+  if (light.kind == LightKind::kDirectional) return !by_facing || glm::dot(point.normal, light.direction) < 0;
   const glm::dvec3 way = point.position - light.position;
   const double distance = glm::length(way);
   if (distance >= light.range + radius || (by_facing && glm::dot(point.normal, way) >= radius)) return false;
@@ -108,8 +108,9 @@ double bytesOf(const std::vector<T>& values) {
 double sceneBytes(const Scene& scene) {
   double bytes = 0;
   const auto add = [&](const Mesh& mesh) {
-    bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) + bytesOf(mesh.emission_uvs) +
-             bytesOf(mesh.colors) + bytesOf(mesh.triangles) + bytesOf(mesh.triangle_materials);
+    bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) +
+             bytesOf(mesh.emission_uvs) + bytesOf(mesh.colors) + bytesOf(mesh.triangles) +
+             bytesOf(mesh.triangle_materials);
   };
   for (const Mesh& mesh : scene.meshes) {
     add(mesh);
@@ -118,6 +119,15 @@ double sceneBytes(const Scene& scene) {
   for (const Texture& texture : scene.textures)
     for (const MipLevel& level : texture.levels) bytes += bytesOf(level.texels);
   return bytes;
+}
+
+/// About the most texels that are decoded at the same time.
+double decodedTexels(const Scene& scene) {
+  double largest = 0;
+  for (const Texture& texture : scene.textures)
+    if (!texture.levels.empty())
+      largest = std::max(largest, double(texture.levels[0].width) * texture.levels[0].height);
+  return largest * double(std::min<std::size_t>(scene.textures.size(), std::thread::hardware_concurrency()));
 }
 
 /// The vertices that Gouraud shading lights.
@@ -146,6 +156,7 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
                    .triangles = double(info.triangles),
                    .mesh_triangles = double(info.mesh_triangles),
                    .texels = double(info.texels),
+                   .decoded_texels = decodedTexels(scene),
                    .textured = info.texels > 0 ? pixels * covered : 0,
                    .frames_scene = scene.adds_camera || scene.adds_lights,
                    .lights = double(scene.lights.size()),
@@ -165,9 +176,9 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   work.shadows = settings.shade.shadows;
   work.shadow_pairs = shaded * mean.shadowed;
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do
-  work.shadow_map_bytes = work.shadow_texels * double(work.shadows == ShadowMethod::kExact
-                                                          ? sizeof(BoundTexel)
-                                                          : sizeof(ShadowTexel));
+  work.shadow_map_bytes =
+      work.shadow_texels *
+      double(work.shadows == ShadowMethod::kExact ? sizeof(BoundTexel) : sizeof(ShadowTexel));
   return work;
 }
 

@@ -12,6 +12,7 @@ struct PictureWork {
   double triangles = 0;       ///< drawn
   double mesh_triangles = 0;  ///< loaded
   double texels = 0;          ///< loaded
+  double decoded_texels = 0;  ///< of these, decoded at the same time: a texture a thread
   double textured = 0;        ///< pixels that show a surface of a scene with textures
   bool frames_scene = false;  ///< a camera or lights are chosen, by rays
   double lights = 0;

@@ -254,8 +254,8 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
 void loadGltf(const std::string& path, Scene& scene) {
   const GltfModel model = readGltfModel(path);
   for (const std::string& extension : ignoredExtensions(model)) {
-    scene.warnings.push_back(fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path,
-                                         forMessage(extension)));
+    scene.warnings.push_back(
+        fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path, forMessage(extension)));
     std::vector<std::string>& all = scene.ignored_extensions;
     if (std::find(all.begin(), all.end(), extension) == all.end()) all.push_back(extension);
   }
