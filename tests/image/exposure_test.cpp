@@ -88,7 +88,7 @@ TEST(SuitableExposure, FewSparksAndFewNearlyBlackPixelsChangeNothingAndManyDo) {
 
 TEST(SuitableExposure, BlackDoesNotCount) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const glm::vec3 black : {glm::vec3(0), glm::vec3(-1), glm::vec3(0.3f, nan, 0.3f)}) {
+  for (const glm::vec3& black : {glm::vec3(0), glm::vec3(-1), glm::vec3(0.3f, nan, 0.3f)}) {
     std::vector<glm::vec3> colors = greys(10, 0.3f);
     colors.resize(1000, black);
     EXPECT_EQ(suitableExposure(colors), suitableExposure(greys(10, 0.3f)));
