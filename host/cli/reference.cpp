@@ -200,9 +200,11 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
   if (measuresExposure(options, options.scene)) {
     stats.measured_exposure = timed(stats, Stage::kMeasureExposure, [&] {
       const auto rays = shadowRays(options, scene, settings.camera);
-      ProgressLine unseen(true);
-      return referenceExposure(scene, settings.camera, settings.size, settings.shading,
-                               referenceSettings(options, rays, unseen));
+      ProgressLine progress(options.quiet);
+      const double stops = referenceExposure(scene, settings.camera, settings.size, settings.shading,
+                                             referenceSettings(options, rays, progress));
+      progress.clear();
+      return stops;
     });
     settings.exposure = float(*stats.measured_exposure);
   }
