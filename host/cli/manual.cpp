@@ -38,6 +38,7 @@ const Terms kManualVariables{
     {"SLURM_STEP_NUM_TASKS", "must not be more than 1 then: several processes would do the same part"},
     {"XDG_DATA_HOME, HOME, XDG_DATA_DIRS",
      "in the folders fonts of these places DejaVuSans.ttf is looked for, which labels are drawn with"},
+    {"PATH", "where the program ffmpeg is looked for, which makes films"},
     {"POCL_CACHE_DIR, XDG_CACHE_HOME", "read by PoCL: where it keeps the kernels that it compiled"},
     {"OCL_ICD_VENDORS", "read by the OpenCL loader: where it looks for devices' drivers"}};
 
@@ -218,7 +219,7 @@ std::string manualPage(const std::vector<CommandEntry>& table) {
   page += ".SH ENVIRONMENT\n" + roffTerms(kManualVariables);
   page += ".SH FILES\n" + roffTerms(kManualFiles);
   page += ".SH EXAMPLES\n" + roffExamples();
-  page += ".SH SEE ALSO\n.BR clinfo (1),\n.BR oiiotool (1)\n";
+  page += ".SH SEE ALSO\n.BR clinfo (1),\n.BR ffmpeg (1),\n.BR oiiotool (1)\n";
   return page;
 }
 
