@@ -1,6 +1,7 @@
 #include "render/estimate.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/memory.hpp"
 
@@ -22,9 +23,9 @@ double estimatedMilliseconds(const PictureWork& work) {
   const double shade =
       work.samples * 3e-6 * work.pixels + 6e-7 * work.pairs + of_shadow_pair * work.shadow_pairs;
   const double of_texel = exact ? 80e-6 : 3e-6, of_caster = exact ? 4e-4 : 1e-4;
-  const double shadow_maps =
-      of_texel * work.shadow_texels + (work.shadow_texels > 0 ? of_caster * work.triangles : 0);
-  const double write = (9e-6 + 2e-6 * (work.samples - 1) + 16e-5) * work.pixels;
+  const double shadow_maps = of_texel * work.shadow_texels + 0.1 * work.shadow_faces +
+                             (work.shadow_texels > 0 ? of_caster * work.triangles : 0);
+  const double write = (9e-6 + 2e-6 * (work.samples - 1) + 18e-5) * work.pixels;
   return start + image_module + rays + load + work.samples * raster + cull + shade + shadow_maps + write;
 }
 
@@ -32,7 +33,9 @@ double estimatedBytes(const PictureWork& work) {
   const double image_module = work.texels > 0 ? 120e6 : 0;
   const double loaded = 95e6 + image_module + work.scene_bytes + double(kBytesPerLight) * work.lights;
   const double ray_tree = work.shadows == ShadowMethod::kExact ? 300 * work.triangles : 0;
-  const double picture = 100 * work.triangles + work.pixel_bytes +
+  // What is freed between samples is not all used again.
+  const double raster = (100 + 120 * std::log2(work.samples)) * work.triangles;
+  const double picture = raster + work.pixel_bytes +
                          double(sizeof(ListEntry)) * work.list_entries / work.samples +
                          work.shadow_map_bytes + ray_tree;
   return loaded + std::max(picture, 30 * work.decoded_texels);

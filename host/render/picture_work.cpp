@@ -176,6 +176,7 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   work.shadows = settings.shade.shadows;
   work.shadow_pairs = shaded * mean.shadowed;
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do
+  work.shadow_faces = double(maps.planned.size());
   work.shadow_map_bytes =
       work.shadow_texels *
       double(work.shadows == ShadowMethod::kExact ? sizeof(BoundTexel) : sizeof(ShadowTexel));

@@ -21,6 +21,7 @@ struct PictureWork {
   double pairs = 0;          ///< points that are shaded, times the lights that they are shaded with
   double shadow_pairs = 0;   ///< of these, with lights that cast shadows
   double shadow_texels = 0;  ///< drawn
+  double shadow_faces = 0;
   ShadowMethod shadows = ShadowMethod::kOff;
   double scene_bytes = 0;       ///< of meshes and textures
   double pixel_bytes = 0;       ///< of a band's pixels, see bytesPerPixel

@@ -139,7 +139,7 @@ TEST_F(Info, FeaturesAreThoseOfARender) {
 TEST_F(Info, MemoryIsAboutWhatARenderTakes) {
   // Within 1.5 times. Counting for --stats takes more memory where lists of lights are long: none are here.
   for (const char* scene : {"cornell", "colonnade", "underwater", "spheres"})
-    for (const char* options : {"--size 320x180", "--size 1280x720", "--size 1280x720 --samples 2"}) {
+    for (const char* options : {"--size 320x180", "--size 1280x720", "--size 640x360 --samples 8"}) {
       const std::string arguments = fmt::format("{}{}.json {}", kOwnScenes, scene, options);
       // The second time, with all kernels compiled.
       succeed("luciole render --quiet -o a.png " + arguments);

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// An EXR of two parts: half colours in rows, a crop, and float depth in tiles.
+/// An EXR of two parts: half colours, a crop, and float depth.
 void writeTwoParts(const std::string& path) {
   OIIO::ImageSpec color(20, 10, 3, OIIO::TypeDesc::HALF), depth(40, 30, 1, OIIO::TypeDesc::FLOAT);
   color.channelnames = {"beauty.R", "beauty.G", "beauty.B"};
@@ -30,7 +30,6 @@ void writeTwoParts(const std::string& path) {
   color.full_height = 30;
   depth.channelnames = {"Z"};
   depth.attribute("oiio:subimagename", "depth");
-  depth.tile_width = depth.tile_height = 16;
   const std::vector<float> values(40 * 30, 0.5f);
   const auto output = OIIO::ImageOutput::create("exr");
   const OIIO::ImageSpec specs[]{color, depth};
