@@ -65,7 +65,8 @@ install(FILES ${documents} LICENSE packaging/copyright DESTINATION ${CMAKE_INSTA
 
 # The program knows its options: it writes its manual page and what shells complete by.
 set(manual ${TEXTS}/luciole.1.gz)
-add_custom_command(OUTPUT ${manual} COMMAND luciole man > ${TEXTS}/luciole.1 COMMAND ${GZIP} -9nf ${TEXTS}/luciole.1 VERBATIM)
+add_custom_command(OUTPUT ${manual}
+  COMMAND luciole man > ${TEXTS}/luciole.1 COMMAND ${GZIP} -9nf ${TEXTS}/luciole.1 DEPENDS luciole VERBATIM)
 install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 # Debian's zsh looks for those of packages elsewhere than zsh's own does.
 set(zsh_folder site-functions)
@@ -74,7 +75,7 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND EXISTS /etc/debian_version)
 endif()
 function(install_completion shell place name)
   set(output ${TEXTS}/${name})
-  add_custom_command(OUTPUT ${output} COMMAND luciole completion ${shell} > ${output} VERBATIM)
+  add_custom_command(OUTPUT ${output} COMMAND luciole completion ${shell} > ${output} DEPENDS luciole VERBATIM)
   install(FILES ${output} DESTINATION ${CMAKE_INSTALL_DATADIR}/${place})
 endfunction()
 install_completion(bash bash-completion/completions luciole)
