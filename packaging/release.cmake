@@ -62,7 +62,26 @@ foreach(text ${TEXTS}/changelog ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOU
   list(APPEND documents ${TEXTS}/${name}.gz)
 endforeach()
 install(FILES ${documents} LICENSE packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
-add_custom_target(luciole_texts ALL DEPENDS ${documents})
+
+# The program knows its options: it writes its manual page and what shells complete by.
+set(manual ${TEXTS}/luciole.1.gz)
+add_custom_command(OUTPUT ${manual}
+  COMMAND luciole man > ${TEXTS}/luciole.1 COMMAND ${GZIP} -9nf ${TEXTS}/luciole.1 DEPENDS luciole VERBATIM)
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+# Debian's zsh looks for those of packages elsewhere than zsh's own does.
+set(zsh_folder site-functions)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND EXISTS /etc/debian_version)
+  set(zsh_folder vendor-completions)
+endif()
+function(install_completion shell place name)
+  set(output ${TEXTS}/${name})
+  add_custom_command(OUTPUT ${output} COMMAND luciole completion ${shell} > ${output} DEPENDS luciole VERBATIM)
+  install(FILES ${output} DESTINATION ${CMAKE_INSTALL_DATADIR}/${place})
+endfunction()
+install_completion(bash bash-completion/completions luciole)
+install_completion(zsh zsh/${zsh_folder} _luciole)
+install_completion(fish fish/vendor_completions.d luciole.fish)
+add_custom_target(luciole_texts ALL DEPENDS ${documents} ${manual} ${TEXTS}/luciole ${TEXTS}/_luciole ${TEXTS}/luciole.fish)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Luciole authors <luciole@users.noreply.github.com>")

@@ -68,6 +68,7 @@ InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
   mkdir "$folder/cache"
   (cd / && "${alone[@]}" env -i PATH="$PATH" HOME="$folder" POCL_CACHE_DIR="$folder/cache" "$folder/prefix/bin/luciole" render \
     "$folder/prefix/share/luciole/scenes/fireflies.json" --size 96x54 -o "$folder/installed.exr")
+  [[ $(zcat "$folder"/prefix/share/man/man1/luciole.1.gz) == "$("$build/luciole" man)" ]] || { echo "the manual is another program's" && return 1; }
   "$build/luciole" render "$checkout/scenes/fireflies.json" --size 96x54 -o "$folder/built.exr"
   "$build/luciole" compare "$folder/installed.exr" "$folder/built.exr" --max-abs 0
 }
