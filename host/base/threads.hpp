@@ -7,8 +7,9 @@ namespace luciole {
 /// Lets this process's work take at most `count` threads (1 or more): the host's own, by oneTBB, and those
 /// that libraries start themselves, by the environment that they read: PoCL and OpenImageIO. A library that
 /// has started keeps its threads, so this must come before the first call of OpenCL and the first picture
-/// file that OpenImageIO reads or writes. Results don't depend on it. While the device opens and compiles
-/// kernels, a thread or two wait beside these. Child processes inherit the environment only.
+/// file that OpenImageIO reads or writes. Results don't depend on it. Beside these, a thread opens the device
+/// and one compiles kernels, at the start; and libraries that OpenImageIO loads may keep idle ones (log4cplus
+/// has 4). Child processes inherit the environment only.
 void limitThreads(int count);
 
 /// The count of the last limitThreads(); nothing without one.

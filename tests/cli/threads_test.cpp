@@ -59,6 +59,18 @@ TEST_F(Threads, BoundThoseOfTheProcess) {
   }
 }
 
+TEST_F(Threads, BoundThoseThatWriteAnExrToo) {
+  const auto living = [&](int threads, const std::string& picture) {
+    succeed(fmt::format("luciole render scene.json --threads {} --quiet --stats stats.json -o {}", threads,
+                        picture));
+    return nlohmann::json::parse(readText(folder / "stats.json"))["threads"].get<int>();
+  };
+  for (const int threads : {1, 2, 3})
+    // OpenImageIO is loaded for both, but for the one alone OpenEXR starts its threads, and OpenImageIO those
+    // that it has beside its caller's.
+    EXPECT_LE(living(threads, "a.exr") - living(threads, "a.jpg"), threads + (threads - 1));
+}
+
 TEST_F(Threads, AreAtLeastOneAndWhole) {
   succeed("luciole gbuffer scene.json --quiet -o g.exr");
   for (const char* command :
