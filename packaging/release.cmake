@@ -84,7 +84,7 @@ install_completion(fish fish/vendor_completions.d luciole.fish)
 add_custom_target(luciole_texts ALL DEPENDS ${documents} ${manual} ${TEXTS}/luciole ${TEXTS}/_luciole ${TEXTS}/luciole.fish)
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_CONTACT "The Luciole authors <luciole@users.noreply.github.com>")
+set(CPACK_PACKAGE_CONTACT "The Luciole authors <maintainers@luciole.example>")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
