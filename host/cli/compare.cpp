@@ -17,9 +17,9 @@
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frames.hpp"
+#include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "figures/text_table.hpp"
-#include "cli/picture_options.hpp"
 #include "image/heat_map.hpp"
 #include "image/side_by_side.hpp"
 
@@ -131,7 +131,7 @@ ImageDifference comparePictures(const CompareOptions& options, const std::string
     pictures.emplace_back(ofPictures(options, [&] { return sideBySide(a, b, d, names.first, names.second); }),
                           options.side_by_side);
   }
-  for (const auto& [picture, path] : pictures) 
+  for (const auto& [picture, path] : pictures)
     writeImage(picture, path, metadata,
                {.picture_size = picture.picture_size, .crop_origin = picture.crop_origin});
   return d;

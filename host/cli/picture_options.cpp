@@ -121,8 +121,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                        "png, exr ...: what to write, whatever the name says (default: its extension)");
   if (is_one_picture)
     command
-        .add_option("--compression", options.compression,
-                    fmt::format("of an EXR (default: {}); from pxr24 on they change the picture", kExrCompression))
+        .add_option(
+            "--compression", options.compression,
+            fmt::format("of an EXR (default: {}); from pxr24 on they change the picture", kExrCompression))
         ->check(oneOf(compressionNames()));
   if (groups & kViewOptions) {
     command.add_option("--size", options.size,
@@ -183,9 +184,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
       command.add_flag("--half", options.half,
                        "an EXR's colours as 16-bit floats: half the size, each within 2^-11 of itself or, if "
                        "below 2^-14, within 2^-25; at most 65504; positions, depths and counts keep 32 bits");
-      command.add_flag("--alpha", options.alpha,
-                       "no background, and a channel A: the share of a pixel's samples that show a surface; "
-                       "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
+      command.add_flag(
+          "--alpha", options.alpha,
+          "no background, and a channel A: the share of a pixel's samples that show a surface; "
+          "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
     }
   }
   if (groups & kShadeOptions) {

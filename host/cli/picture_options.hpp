@@ -36,7 +36,7 @@ struct PictureOptions {
   std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
   std::string dither = "on";
   std::string tone = "clip";
-  int bits = 0;             ///< 0: what the format usually holds
+  int bits = 0;  ///< 0: what the format usually holds
   bool half = false;
   std::string compression;  ///< empty: kExrCompression
   bool alpha = false;

@@ -71,8 +71,9 @@ void checkDataOutput(const PictureOptions& options, const std::string& what) {
   for (const ExrCompression& one : kExrCompressions)
     if (one.is_lossless) lossless.push_back(one.name);
   if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
-    throw InputError(fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
-                                 options.compression, what, fmt::join(lossless, ", ")));
+    throw InputError(
+        fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                    options.compression, what, fmt::join(lossless, ", ")));
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
@@ -95,10 +96,10 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
     stats.errors.emplace_back("half_absolute", kHalfAbsolute);
   }
   if (limited == 0) return;
-  stats.warnings.push_back(
-      fmt::format("{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
-                  "--exposure, or take 32-bit floats and a lossless --compression",
-                  options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
+  stats.warnings.push_back(fmt::format(
+      "{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
+      "--exposure, or take 32-bit floats and a lossless --compression",
+      options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
   if (!options.quiet) tellWarnings({stats.warnings.back()});
 }
 

@@ -39,8 +39,8 @@ struct ReferenceOptions : PictureOptions {
 constexpr const char* kRequest = "luciole:reference";
 constexpr const char* kWindow = "luciole:window";
 
-/// Bytes of memory for a pixel: in the G-buffer, its place, a colour and the sum of colours, in the picture; and
-/// under --alpha two coverages and the picture's.
+/// Bytes of memory for a pixel: in the G-buffer, its place, a colour and the sum of colours, in the picture;
+/// and under --alpha two coverages and the picture's.
 constexpr double kBytesPerPixel =
     kGBufferBytesPerPixel + sizeof(glm::ivec2) + 2 * sizeof(glm::dvec3) + 3 * sizeof(float);
 constexpr double kAlphaBytesPerPixel = 2 * sizeof(double) + sizeof(float);
@@ -79,8 +79,8 @@ std::vector<glm::ivec2> choosePixels(const glm::ivec2& size, std::size_t count, 
   return chosen;
 }
 
-/// A picture with channels R G B, A unless `coverage` is empty, and `sampled` unless it has all pixels. colors
-/// and coverage: one for each of `pixels`; exposure: stops.
+/// A picture with channels R G B, A unless `coverage` is empty, and `sampled` unless it has all pixels.
+/// colors and coverage: one for each of `pixels`; exposure: stops.
 Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
                   const std::vector<glm::dvec3>& colors, const std::vector<double>& coverage,
                   double exposure) {
@@ -140,8 +140,7 @@ std::optional<Piece> findEarlierPiece(const ReferenceOptions& options, const std
   std::error_code none;
   if (options.pixels > 0 || !fs::is_regular_file(options.output, none)) return std::nullopt;
   // Colours that were divided by A and rounded don't come back.
-  if (options.alpha && !pictureFormat(options.output, fileOptions(options)).is_float)
-    return std::nullopt;
+  if (options.alpha && !pictureFormat(options.output, fileOptions(options)).is_float) return std::nullopt;
   if (readAttribute(options.output, kRequest) != request) return std::nullopt;
   const std::vector<int> window =
       parseInts(readAttribute(options.output, kWindow), ',', 4, options.output, "a window X,Y,W,H");
@@ -230,9 +229,8 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
     progress.clear();
     return shaded;
   });
-  const std::vector<double> coverage = options.alpha
-                                           ? referenceCoverage(scene, view, settings.samples, pixels)
-                                           : std::vector<double>{};
+  const std::vector<double> coverage =
+      options.alpha ? referenceCoverage(scene, view, settings.samples, pixels) : std::vector<double>{};
   Piece piece{makePicture(view.crop_size, pixels, colors, coverage, settings.exposure), window};
   if (earlier) piece = joinPieces(*earlier, piece);
 
@@ -241,8 +239,9 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
   metadata.emplace_back(kWindow, fmt::format("{},{},{},{}", piece.window.x, piece.window.y,
                                              piece.window.width, piece.window.height));
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
-    return writeImage(piece.image, options.output, metadata,
-                      writeOptions(options, settings.camera, settings.size, {piece.window.x, piece.window.y}));
+    return writeImage(
+        piece.image, options.output, metadata,
+        writeOptions(options, settings.camera, settings.size, {piece.window.x, piece.window.y}));
   });
   describeScene(scene, {}, stats);
   reportHalves(options, limited, stats);

@@ -45,7 +45,8 @@ Crop windowOf(const RenderSettings& settings) {
 /// The exposure of each picture, by one a camera: measured at this frame, or none where the options say it.
 std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene, int frame,
                                                    const RenderOptions& options,
-                                                   const std::vector<PictureOptions>& pictures, Stats& stats) {
+                                                   const std::vector<PictureOptions>& pictures,
+                                                   Stats& stats) {
   std::vector<std::optional<double>> exposures(pictures.size());
   if (!measuresExposure(options, options.scene)) return exposures;
   poseScene(scene, frame);
@@ -169,7 +170,8 @@ int renderFilm(Device& device, Scene& scene, const RenderOptions& options, const
   const double rate = options.frames_per_second.value_or(kFramesPerSecond);
   const std::string path = frameFile(picture.output, frames.front());
   Film film(path, options.format, window.width, window.height, rate);
-  const int status = renderFrames(device, scene, options, frames, exposures, &film, nullptr, std::move(started));
+  const int status =
+      renderFrames(device, scene, options, frames, exposures, &film, nullptr, std::move(started));
   if (status != kDone) return status;
   film.close();
   if (logsEvents())
@@ -194,8 +196,9 @@ void checkFilmOptions(const RenderOptions& options) {
   if (options.resume)
     throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
   if (options.bits == 16 || options.half || options.alpha || !options.compression.empty())
-    throw InputError(fmt::format("{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
-                                 options.output));
+    throw InputError(fmt::format(
+        "{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
+        options.output));
   if (!options.aovs.empty())
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
@@ -276,12 +279,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
       renderSettings(pictures.front(), scene);
       if (is_film && pictures.size() > 1)
-        throw InputError(fmt::format("--camera all: a film is of one camera, and {} has {}", scene.name, pictures.size()));
+        throw InputError(
+            fmt::format("--camera all: a film is of one camera, and {} has {}", scene.name, pictures.size()));
       awaitDevice(device);
       logDevice(device.description);
       // By the first frame of all, also of those that aren't made here: every shard measures the same.
-      const auto exposures =
-          chooseExposures(device, scene, choice.frames.front(), *options, pictures, stats);
+      const auto exposures = chooseExposures(device, scene, choice.frames.front(), *options, pictures, stats);
       context.status = is_film ? renderFilm(device, scene, *options, frames, exposures, std::move(stats))
                                : renderFrames(device, scene, *options, frames, exposures, nullptr,
                                               claims ? &*claims : nullptr, std::move(stats));
@@ -341,8 +344,8 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       if (lit) stats.device = device.description;
       const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
       timed(stats, Stage::kWrite, [&] {
-        writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, lit ? &device : nullptr),
-                     picture.format, picture.compression);
+        writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, lit ? &device : nullptr), picture.format,
+                     picture.compression);
       });
       reportStats(picture, stats, frame);
       stats = laterStats(context.command_line);

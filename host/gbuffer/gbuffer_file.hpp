@@ -20,8 +20,8 @@ namespace luciole {
 ///     lift                       metres along N to where shadow tests start (see raster/lift.hpp)
 ///
 /// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC and as our own attributes (see
-/// camera_header.hpp). A crop becomes the data window inside the display window. `format` and `compression` as
-/// in WriteOptions. Throws as writeImage does, and InputError for a format other than exr.
+/// camera_header.hpp). A crop becomes the data window inside the display window. `format` and `compression`
+/// as in WriteOptions. Throws as writeImage does, and InputError for a format other than exr.
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
                   const std::string& format = "", const std::string& compression = "");
 

@@ -40,9 +40,9 @@ inline constexpr std::array<double, 3> kOverLimits{0.5 / 255, 1.0 / 255, 4.0 / 2
 inline constexpr double kNotCompared = -1.0;
 
 /// Compares the channels that both pictures have under the same names, except A, the coverage. Sizes must be
-/// equal, and R, G, B and Y be in both pictures or in neither. Parts of pictures of one size must start at the
-/// same pixel. Where a picture has a channel `sampled`, only pixels where it is not 0 are compared. Throws
-/// InputError when sizes, parts or channels don't match or no pixel is left.
+/// equal, and R, G, B and Y be in both pictures or in neither. Parts of pictures of one size must start at
+/// the same pixel. Where a picture has a channel `sampled`, only pixels where it is not 0 are compared.
+/// Throws InputError when sizes, parts or channels don't match or no pixel is left.
 ImageDifference compareImages(const Image& a, const Image& b);
 
 /// |B − A| × gain of the same channels as a picture to look at; +inf where only one is not finite, 0 where

@@ -42,13 +42,14 @@ inline constexpr const char* kExrCompression = "zip";
 /// The largest finite 16-bit float.
 inline constexpr float kLargestHalf = 65504.0f;
 
-/// The largest magnitude of a colour that a file of these options holds: infinity, for halves kLargestHalf, and
-/// half of that for dwaa and dwab. Those make halves of colours whatever the channels' type is, and what they
-/// lose may make a value larger.
+/// The largest magnitude of a colour that a file of these options holds: infinity, for halves kLargestHalf,
+/// and half of that for dwaa and dwab. Those make halves of colours whatever the channels' type is, and what
+/// they lose may make a value larger.
 float largestColor(const WriteOptions& options);
 
-/// Whether an EXR's channel holds a colour or a coverage, which 16-bit floats show well enough: R, G, B, A and
-/// Y, and R, G, B, A of layers. Others, as positions, depths and counts, are data and need all their bits.
+/// Whether an EXR's channel holds a colour or a coverage, which 16-bit floats show well enough: R, G, B, A
+/// and Y, and R, G, B, A of layers. Others, as positions, depths and counts, are data and need all their
+/// bits.
 bool isColorChannel(const std::string& name);
 
 /// The format of a file to write. `named` is an extension; where it is empty the path's own counts, and for

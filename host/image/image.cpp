@@ -25,9 +25,9 @@ constexpr OIIO::TypeDesc kMatrix(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44
 OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& channels,
                          const FileFormat& format, const Metadata& metadata, const WriteOptions& options) {
   OIIO::ImageSpec spec(width, height, int(channels.size()),
-                       format.is_float      ? OIIO::TypeDesc::FLOAT
+                       format.is_float     ? OIIO::TypeDesc::FLOAT
                        : format.bits == 16 ? OIIO::TypeDesc::UINT16
-                                            : OIIO::TypeDesc::UINT8);
+                                           : OIIO::TypeDesc::UINT8);
   spec.channelnames = channels;
   if (options.half)
     for (const std::string& name : channels)
@@ -41,8 +41,8 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
   const bool is_tiff = format.extension == "tif" || format.extension == "tiff";
   if (is_tiff) spec.attribute("compression", "zip");
   if (format.max_channels > 4) spec.attribute("oiio:ColorSpace", "Linear");
-  // For a TIFF this would make an Exif directory, for which OpenImageIO reads the file that it writes. Its integers
-  // are taken as sRGB without.
+  // For a TIFF this would make an Exif directory, for which OpenImageIO reads the file that it writes. Its
+  // integers are taken as sRGB without.
   if (!format.is_float && !is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
   if (format.extension == "exr") {
     spec.attribute("compression", options.compression.empty() ? kExrCompression : options.compression);

@@ -38,12 +38,12 @@ struct WriteOptions {
   std::string format = {};            ///< an extension that overrides the path's own; empty: doesn't
   bool dither = false;                ///< 8-bit codes, see dither.hpp
   ToneCurve tone = ToneCurve::kClip;  ///< integer formats
-  int bits = 0;                       ///< of sRGB codes: 8, or in png and tif 16; 0: what the format usually holds
-  bool half = false;                  ///< exr: colours (isColorChannel) as 16-bit floats; all else stays 32-bit
-  std::string compression = {};       ///< exr: a name of kExrCompressions; empty: zip
-  bool alpha = false;                 ///< colours are multiplied by A; integer formats then get them divided by A
-  glm::ivec2 picture_size{0};         ///< of the whole picture where this is a crop; 0: this is the whole
-  glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
+  int bits = 0;                  ///< of sRGB codes: 8, or in png and tif 16; 0: what the format usually holds
+  bool half = false;             ///< exr: colours (isColorChannel) as 16-bit floats; all else stays 32-bit
+  std::string compression = {};  ///< exr: a name of kExrCompressions; empty: zip
+  bool alpha = false;            ///< colours are multiplied by A; integer formats then get them divided by A
+  glm::ivec2 picture_size{0};    ///< of the whole picture where this is a crop; 0: this is the whole
+  glm::ivec2 crop_origin{0};     ///< where in the whole picture pixel (0,0) lies
   ExrAttributes exr = {};
   Film* film = nullptr;  ///< whose next frame this is, rather than a file of its own: 8-bit R, G, B
 };
@@ -90,8 +90,8 @@ class ImageWriter {
 };
 
 /// Throws the InputError that writing to `path` would meet, before any work is done: an unknown extension, a
-/// folder that isn't there or can't be written to, a folder in the file's place, an option that the format has
-/// no place for.
+/// folder that isn't there or can't be written to, a folder in the file's place, an option that the format
+/// has no place for.
 void checkWritable(const std::string& path, const WriteOptions& options = {});
 
 }  // namespace luciole

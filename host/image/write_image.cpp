@@ -121,7 +121,8 @@ struct ImageWriter::State {
 ImageWriter::ImageWriter(const std::string& path, int width, int height,
                          const std::vector<std::string>& channels, const Metadata& metadata,
                          const WriteOptions& options)
-    : state_(new State{options.film ? kFilmFrame : pictureFormat(path, options), {}, options, options.crop_origin}) {
+    : state_(new State{
+          options.film ? kFilmFrame : pictureFormat(path, options), {}, options, options.crop_origin}) {
   const FileFormat& format = state_->format;
   std::vector<std::string> names = channels;
   if (format.max_channels <= 4) {

@@ -13,9 +13,9 @@ bool wants(const RenderSettings& settings, Aov aov);
 /// Number of channels of a picture whose G-buffer has these groups: R G B, A and the layers asked for.
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes);
 
-/// A picture of the G-buffer's size with channels R G B and, if asked for, A, all still 0, and the layers that
-/// the settings ask for, from the first sample's G-buffer and lit planes. Its positions and normals are in
-/// world space.
+/// A picture of the G-buffer's size with channels R G B and, if asked for, A, all still 0, and the layers
+/// that the settings ask for, from the first sample's G-buffer and lit planes. Its positions and normals are
+/// in world space.
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings);
 
 /// Adds 1 to each pixel of `covered` that shows a surface in this sample's G-buffer. An empty plane is made.

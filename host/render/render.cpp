@@ -234,9 +234,8 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   std::vector<FeatureSet> passes{prepared.features};
   if (gouraud) passes.push_back(vertexFeatures(features));
   std::future<double> compiling = startCompiling(device, passes, shade);
-  prepared.objects = settings.alpha
-                         ? allObjects(scene)
-                         : objectsInSight(scene, view, settings.exposure, settings.shade.model);
+  prepared.objects = settings.alpha ? allObjects(scene)
+                                    : objectsInSight(scene, view, settings.exposure, settings.shade.model);
   prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats);
   if (settings.alpha) prepared.lighting.frame.background = {};
   awaitKernels(compiling, device, stats);

@@ -38,8 +38,8 @@ struct RenderSettings {
   std::vector<Aov> aovs;  ///< layers; they show the first sample
   float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
-  /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that the
-  /// fog hides are drawn too: they look like the scene's background, but hide any other.
+  /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that
+  /// the fog hides are drawn too: they look like the scene's background, but hide any other.
   bool alpha = false;
   /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
   bool count_lights = false;
@@ -63,8 +63,8 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 using RowSink = std::function<void(const Image& rows)>;
 
 /// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
-/// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. Throws InputError for
-/// a crop outside the picture, MachineError, and what `take` throws.
+/// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. Throws InputError
+/// for a crop outside the picture, MachineError, and what `take` throws.
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
                  Stats& stats);
 

@@ -1,4 +1,5 @@
-// What --half, --compression, --alpha, --bits and --crop make of a picture's file, as a person would type them.
+// What --half, --compression, --alpha, --bits and --crop make of a picture's file, as a person would type
+// them.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,7 +31,8 @@ class PictureFiles : public ProgramTest {
 
   /// Expects that a picture with A, laid over the background, is the picture without. Both are means of
   /// `samples` samples.
-  void expectOverBackground(const std::string& with, const std::string& without, int samples, double exposed) {
+  void expectOverBackground(const std::string& with, const std::string& without, int samples,
+                            double exposed) {
     const Image layer = read(with), whole = read(without);
     ASSERT_EQ(layer.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
     ASSERT_EQ(whole.pixels.size() / 3, layer.pixels.size() / 4);
@@ -100,10 +102,12 @@ TEST_F(PictureFiles, LosslessCompressionKeepsPicturesAndGBuffers) {
   EXPECT_EQ(readAttribute(folder / "usual.exr", "compression"), "zip");
   for (const std::string name : {"none", "rle", "zips", "zip", "piz"}) {
     const std::string choice = " --quiet --compression " + name;
-    succeed("luciole render scene.json -o a.exr" + choice + " && luciole compare usual.exr a.exr --max-abs 0");
+    succeed("luciole render scene.json -o a.exr" + choice +
+            " && luciole compare usual.exr a.exr --max-abs 0");
     EXPECT_EQ(readAttribute(folder / "a.exr", "compression"), name);
-    succeed("luciole gbuffer scene.json -o g.exr" + choice + " && luciole shade g.exr --scene scene.json -o b.exr" +
-            choice + " && luciole compare usual.exr b.exr --max-abs 0");
+    succeed("luciole gbuffer scene.json -o g.exr" + choice +
+            " && luciole shade g.exr --scene scene.json -o b.exr" + choice +
+            " && luciole compare usual.exr b.exr --max-abs 0");
     EXPECT_EQ(readAttribute(folder / "g.exr", "compression"), name);
     EXPECT_EQ(readAttribute(folder / "b.exr", "compression"), name);
   }
@@ -139,8 +143,9 @@ TEST_F(PictureFiles, WhatDoesNotGoTogetherIsRefusedBeforeAnyWork) {
 }
 
 TEST_F(PictureFiles, AlphaOverTheBackgroundIsThePicture) {
-  for (const std::string options : {"", "--samples 5", "--samples 4 --shading gouraud --exposure 1.5",
-                                    "--samples 3 --crop 20,0,50,40", "--samples 8 --shading flat --shadows off"}) {
+  for (const std::string options :
+       {"", "--samples 5", "--samples 4 --shading gouraud --exposure 1.5", "--samples 3 --crop 20,0,50,40",
+        "--samples 8 --shading flat --shadows off"}) {
     const int samples = options.find("--samples") == 0 ? options[10] - '0' : 1;
     const double exposed = options.find("--exposure") == std::string::npos ? 1 : std::exp2(1.5);
     succeed("luciole render scene.json --quiet -o a.exr " + options);
@@ -165,7 +170,8 @@ TEST_F(PictureFiles, AlphaIsTheSameByEveryCommand) {
   succeed("luciole gbuffer scene.json --quiet -o g.exr");
   succeed("luciole shade g.exr --scene scene.json --quiet --alpha --shadows off -o shaded.exr");
   succeed("luciole reference scene.json --quiet --alpha --shadows off -o reference.exr");
-  succeed("luciole reference --gbuffer g.exr --scene scene.json --quiet --alpha --shadows off -o of_file.exr");
+  succeed(
+      "luciole reference --gbuffer g.exr --scene scene.json --quiet --alpha --shadows off -o of_file.exr");
   succeed("luciole render scene.json --quiet --alpha --shadows off --frames 1-2 -o f.#.exr");
   const Image picture = read("a.exr");
   EXPECT_EQ(read("shaded.exr").pixels, picture.pixels);
@@ -204,8 +210,10 @@ TEST_F(PictureFiles, WhatTheFogHidesCoversAllTheSame) {
 TEST_F(PictureFiles, AlphaInAPngIsLaidOverTheBackgroundByTheBook) {
   succeed("luciole render scene.json --quiet --samples 6 --exposure -1 -o a.exr");
   for (const int bits : {8, 16}) {
-    succeed(fmt::format("luciole render scene.json --quiet --samples 6 --exposure -1 --alpha --dither off "
-                        "--bits {} -o b.png", bits));
+    succeed(
+        fmt::format("luciole render scene.json --quiet --samples 6 --exposure -1 --alpha --dither off "
+                    "--bits {} -o b.png",
+                    bits));
     const Image whole = read("a.exr"), layer = read("b.png");
     ASSERT_EQ(layer.channels.size(), 4u);
     const double half_step = 0.5 / (bits == 8 ? 255 : 65535);
@@ -240,16 +248,19 @@ TEST_F(PictureFiles, SixteenBitsAreFinerThanEightAndHaveNoGrain) {
       // Half a step; each encoding here and there rounds three times, 3 · 2⁻²⁴ · 65535 < 0.015 of a step.
       ASSERT_LE(std::abs(encodeSrgb(codes.pixels[i]) - encodeSrgb(whole.pixels[i])), 0.53 / 65535) << name;
   }
-  succeed("luciole render scene.json --quiet --bits 8 -o c.png && luciole render scene.json --quiet -o d.png");
+  succeed(
+      "luciole render scene.json --quiet --bits 8 -o c.png && luciole render scene.json --quiet -o d.png");
   EXPECT_EQ(read("c.png").pixels, read("d.png").pixels);
 }
 
 TEST_F(PictureFiles, CropsLandInTheirPlaceAndAreComparedThereOnly) {
-  for (const std::string line : {"render scene.json", "render scene.json --half --alpha", "reference scene.json",
-                                 "gbuffer scene.json", "render scene.json --frames 1-1"}) {
+  for (const std::string line :
+       {"render scene.json", "render scene.json --half --alpha", "reference scene.json", "gbuffer scene.json",
+        "render scene.json --frames 1-1"}) {
     succeed("rm -f *.exr && luciole " + line + " --quiet --crop 8,4,40,30 -o crop." +
             (line.find("frames") == std::string::npos ? "" : "#.") + "exr");
-    const LayerFile file = readLayers(folder / (line.find("frames") == std::string::npos ? "crop.exr" : "crop.1.exr"));
+    const LayerFile file =
+        readLayers(folder / (line.find("frames") == std::string::npos ? "crop.exr" : "crop.1.exr"));
     EXPECT_EQ(file.picture_size, glm::ivec2(96, 54)) << line;
     EXPECT_EQ(file.crop_origin, glm::ivec2(8, 4)) << line;
     EXPECT_EQ(file.size, glm::ivec2(40, 30)) << line;
@@ -261,7 +272,8 @@ TEST_F(PictureFiles, CropsLandInTheirPlaceAndAreComparedThereOnly) {
   succeed("luciole compare a.exr same.exr --diff diff.exr && luciole compare a.exr same.png");
   EXPECT_EQ(read("diff.exr").crop_origin, glm::ivec2(8, 4));
   EXPECT_EQ(read("diff.exr").picture_size, glm::ivec2(96, 54));
-  refuse("luciole compare a.exr beside.exr", 2, "a.exr, beside.exr: parts of a picture that start at 8,4 and 9,4");
+  refuse("luciole compare a.exr beside.exr", 2,
+         "a.exr, beside.exr: parts of a picture that start at 8,4 and 9,4");
 }
 
 TEST_F(PictureFiles, AReferenceGrowsCropByCropWithAlphaAndHalves) {

@@ -1,4 +1,5 @@
-// What a file of a picture holds by choice: 16-bit floats, codes of 8 or 16 bits, compression, coverage, a place.
+// What a file of a picture holds by choice: 16-bit floats, codes of 8 or 16 bits, compression, coverage, a
+// place.
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,8 +57,8 @@ TEST(WriteOptions, HalfRoundsColorsToNearestAndLeavesDataAlone) {
   const OIIO::ImageSpec header = headerOf(folder / "a.exr");
   for (int c = 0; c < header.nchannels; ++c) {
     const std::string name = header.channelnames[c];
-    const bool is_color =
-        name == "R" || name == "G" || name == "B" || name == "A" || name == "diffuse.R" || name == "specular.G";
+    const bool is_color = name == "R" || name == "G" || name == "B" || name == "A" || name == "diffuse.R" ||
+                          name == "specular.G";
     EXPECT_EQ(header.channelformat(c), is_color ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT) << name;
     EXPECT_EQ(isColorChannel(name), is_color) << name;
   }
@@ -73,10 +74,10 @@ TEST(WriteOptions, HalfRoundsColorsToNearestAndLeavesDataAlone) {
 
 TEST(WriteOptions, ColorsBeyondAHalfBecomeTheLargestAndAreCounted) {
   const TemporaryFolder folder;
-  const Image image{5, 1, {"R", "G", "B", "Z"}, {65504, 1, -65504, kInf,     // a half holds it
-                                                 65505, 0, 0, 1e30f,         // just beyond
-                                                 kInf, -kInf, 1e30f, -kInf,  // one pixel, three times
-                                                 0, -1e6f, 0, 0, kNaN, 1, 1, 0}};
+  const Image image{5, 1, {"R", "G", "B", "Z"}, {65504, 1,     -65504, kInf,   // a half holds it
+                                                 65505, 0,     0,      1e30f,  // just beyond
+                                                 kInf,  -kInf, 1e30f,  -kInf,  // one pixel, three times
+                                                 0,     -1e6f, 0,      0,     kNaN, 1, 1, 0}};
   for (const char* compression : {"zip", "none", "b44"}) {
     EXPECT_EQ(writeImage(image, folder / "a.exr", {}, {.half = true, .compression = compression}), 3u);
     const Image read = readImage(folder / "a.exr");
@@ -112,7 +113,9 @@ TEST(WriteOptions, HalvesInPiecesAreThoseOfTheWhole) {
   const std::size_t row = image.width * image.channels.size();
   for (int y = 0; y < image.height; y += 11) {
     const int rows = std::min(11, image.height - y);
-    writer.write({image.width, rows, image.channels,
+    writer.write({image.width,
+                  rows,
+                  image.channels,
                   {image.pixels.begin() + y * row, image.pixels.begin() + (y + rows) * row}});
   }
   EXPECT_EQ(writer.close(), 3u);
@@ -152,7 +155,8 @@ TEST(WriteOptions, LossyCompressionLeavesNothingInfinite) {
     for (const auto& [name, is_lossless] : kExrCompressions) {
       writeImage(image, folder / "a.exr", {}, {.half = half, .compression = name});
       const Image read = readImage(folder / "a.exr");
-      EXPECT_TRUE(std::all_of(read.pixels.begin(), read.pixels.end(), [](float v) { return std::isfinite(v); }))
+      EXPECT_TRUE(
+          std::all_of(read.pixels.begin(), read.pixels.end(), [](float v) { return std::isfinite(v); }))
           << name << (half ? ", half" : ", float");
     }
 }
@@ -205,8 +209,8 @@ TEST(WriteOptions, ColorsMultipliedByAlphaAreDividedInCodesAloneAndAllSaySo) {
   const auto expectDivided = [&](const std::string& name, double steps) {
     const Image read = readImage(folder / name);
     for (int pixel = 0; pixel < 4; ++pixel) {
-      // Half a step either way, in codes; alpha's is linear. Each encoding rounds three times, 3 · 2⁻²⁴ · 65535
-      // < 0.015 of the smaller step.
+      // Half a step either way, in codes; alpha's is linear. Each encoding rounds three times, 3 · 2⁻²⁴ ·
+      // 65535 < 0.015 of the smaller step.
       EXPECT_NEAR(read.pixels[4 * pixel + 3], image.pixels[4 * pixel + 3], 0.53 / steps) << name;
       for (int c = 0; c < 3; ++c) {
         const float color = pixel < 3 ? colors[c] : 0;
@@ -237,8 +241,10 @@ TEST(WriteOptions, WhatAFormatHasNoPlaceForIsRefusedBeforeAnyWork) {
   const TemporaryFolder folder;
   const Image image{1, 1, {"R", "G", "B", "A"}, {1, 1, 1, 1}};
   const auto refuses = [&](const std::string& name, const WriteOptions& options, const std::string& what) {
-    EXPECT_THAT(messageOf<InputError>([&] { checkWritable(folder / name, options); }), HasSubstr(what)) << name;
-    EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / name, {}, options); }), HasSubstr(what));
+    EXPECT_THAT(messageOf<InputError>([&] { checkWritable(folder / name, options); }), HasSubstr(what))
+        << name;
+    EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / name, {}, options); }),
+                HasSubstr(what));
   };
   for (const char* name : {"a.png", "a.tif", "a.hdr", "a.jpg", "a.webp"}) {
     refuses(name, {.half = true}, "16-bit floats (--half), expected .exr");

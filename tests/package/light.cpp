@@ -1,5 +1,6 @@
-// Lights a triangle, given as the planes of a G-buffer, and a mesh, both to memory. Headers lie in the target's include folder, by
-// the names that they have in host/. Prints the brightest colours, and how far both pictures are from the formula.
+// Lights a triangle, given as the planes of a G-buffer, and a mesh, both to memory. Headers lie in the
+// target's include folder, by the names that they have in host/. Prints the brightest colours, and how far
+// both pictures are from the formula.
 #include <cmath>
 #include <cstdio>
 
@@ -14,9 +15,11 @@ constexpr int kSide = 32;  // pixels of both pictures
 /// What the eye, at the origin, sees at a pixel 2 m ahead, where 90° span 4 m.
 glm::vec3 pointAt(int x, int y) { return {(x + 0.5f) / 8 - 2, 2 - (y + 0.5f) / 8, -2}; }
 
-/// The largest difference between a picture and Phong's formula. Light L and eye V are both at the origin, so for a surface that
-/// faces +z they enclose one angle with its normal, of cosine c = 2 m / distance, and with it L mirrored and V enclose twice that:
-///   colour = 6 (diffuse · c + specular · (2c² − 1)⁸), with diffuse ½, specular ¼ and, where 2c² < 1, no specular.
+/// The largest difference between a picture and Phong's formula. Light L and eye V are both at the origin, so
+/// for a surface that faces +z they enclose one angle with its normal, of cosine c = 2 m / distance, and with
+/// it L mirrored and V enclose twice that:
+///   colour = 6 (diffuse · c + specular · (2c² − 1)⁸), with diffuse ½, specular ¼ and, where 2c² < 1, no
+///   specular.
 template <class Covers>
 float errorOf(const Image& picture, Covers&& covers) {
   float error = 0;
@@ -39,7 +42,8 @@ int main() {
   RenderSettings settings{.size{kSide, kSide}, .camera{.fov_y = glm::radians(90.0)}};
 
   // The triangle: a G-buffer in view space, whose other pixels stay background.
-  GBuffer gbuffer{.width = kSide, .height = kSide, .tiles_x = kSide / kTileSize, .tiles_y = kSide / kTileSize};
+  GBuffer gbuffer{
+      .width = kSide, .height = kSide, .tiles_x = kSide / kTileSize, .tiles_y = kSide / kTileSize};
   gbuffer.camera = settings.camera;
   gbuffer.picture_size = settings.size;
   allocatePlanes({.specular = true}, gbuffer);
@@ -66,8 +70,9 @@ int main() {
   const std::size_t middle = 3 * (16 * kSide + 16);
   std::printf("triangle %.6f, error %.1e; mesh %.6f, error %.1e\n", triangle.pixels[middle], triangle_error,
               mesh.pixels[middle], mesh_error);
-  // A float's half ulp is u = 2⁻²⁴ of it. Position, distance and cosine each take fewer than 8 roundings; the lobe's power of 8 has
-  // 8 times the relative error of its base, and exp2 and log2 (kernels/math.clh) add 2⁻²². Colours are at most 4.5.
+  // A float's half ulp is u = 2⁻²⁴ of it. Position, distance and cosine each take fewer than 8 roundings; the
+  // lobe's power of 8 has 8 times the relative error of its base, and exp2 and log2 (kernels/math.clh) add
+  // 2⁻²². Colours are at most 4.5.
   constexpr double kUnit = 1.0 / (1 << 24);
   return triangle_error <= 4.5 * 128 * kUnit && mesh_error <= 4.5 * 128 * kUnit ? 0 : 1;
 }
