@@ -44,4 +44,7 @@ void addDevicesCommand(CLI::App& app, CommandContext& context);
 void addManCommand(CLI::App& app);
 void addCompletionCommand(CLI::App& app);
 
+/// Names the values of all options that take a text, in help, manual page and completions: FILE, WxH ...
+void nameValues(CLI::App& app);
+
 }  // namespace luciole

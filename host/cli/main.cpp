@@ -125,6 +125,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   std::string topic;
   CLI::App* help = app.add_subcommand("help", "what a command does and its options");
   help->add_option("COMMAND", topic, "the command to explain");
+  nameValues(app);
   help->callback([&] {
     if (topic.empty()) {
       // Not app.help(): that would print the help of the command that runs, which is this one.

@@ -97,9 +97,10 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--repeat", options->repeats, "timed runs of each point")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option(
-      "-o,--output", options->output,
-      "folder for results and report.html; what it holds of this experiment isn't done again");
+  command
+      ->add_option("-o,--output", options->output,
+                   "folder for results and report.html; what it holds of this experiment isn't done again")
+      ->type_name("FOLDER");
   command->add_option("--plot", options->plot, "also write time against lights as an SVG picture");
   command
       ->add_option("--check-pixels", options->check_pixels,
@@ -141,7 +142,7 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   CLI::App* merge = command->add_subcommand("merge", "put the results of shards together");
   auto merging = std::make_shared<MergeOptions>();
   merge->add_option("FOLDER", merging->folders, "the shards' folders")->required();
-  merge->add_option("-o,--output", merging->output, "a new folder")->required();
+  merge->add_option("-o,--output", merging->output, "a new folder")->required()->type_name("FOLDER");
   merge->add_option("--plot", merging->plot, "as for scale");
   merge->callback([&context, merging] {
     checkDrawing(merging->plot);
