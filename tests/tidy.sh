@@ -32,7 +32,7 @@ for file in "${files[@]}"; do
       file=${file%.hpp}.cpp
     else
       name=${file#host/}
-      file=$(git grep -lF "#include \"${name#tests/}\"" -- '*.cpp' | head -n 1)
+      file=$(git grep -lF "#include \"${name#tests/}\"" -- '*.cpp' | head -n 1 || true)  # head ends it early
     fi
   fi
   [[ -z $file ]] || sources+=("$file")
