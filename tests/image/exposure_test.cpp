@@ -98,7 +98,8 @@ TEST(SuitableExposure, BlackDoesNotCount) {
 }
 
 TEST(SuitableExposure, StaysWithinWhatTheOptionTakes) {
-  constexpr float kLargest = std::numeric_limits<float>::max(), kInfinite = kLargest * 2;
+  constexpr float kLargest = std::numeric_limits<float>::max(),
+                  kInfinite = std::numeric_limits<float>::infinity();
   EXPECT_EQ(suitableExposure(greys(9, kLargest)), -100);
   EXPECT_EQ(suitableExposure(greys(9, kInfinite)), -100);
   EXPECT_EQ(suitableExposure(greys(9, std::numeric_limits<float>::min())), 100);
