@@ -5,8 +5,7 @@
 
 namespace luciole {
 
-/// Milliseconds since this process started. The system rounds the start down to steps of 10 ms, so the result
-/// may be up to 10 ms too large.
+/// Milliseconds since the program was loaded into this process. A shell may have lived in it before.
 double millisecondsSinceStart();
 
 /// How many kernels this process has compiled because the platform's cache on disk hadn't got them: 0 is a

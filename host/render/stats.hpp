@@ -112,7 +112,7 @@ double pictureMilliseconds(const Stats& stats);
 ///   picture had to wait for them. wall_milliseconds of a stage: its share of the whole (see ownShare).
 /// - picture_milliseconds: the whole, from the picture's beginning to this text. The first picture's is the
 ///   process's start.
-/// - wall_milliseconds: from the process's start to this text (see millisecondsSinceStart).
+/// - wall_milliseconds: from the program's start to this text (see millisecondsSinceStart).
 /// - cold_start_milliseconds: opening the device and compiling the kernels.
 /// - kernels_compiled: how many kernels weren't in the cache: 0 if the start was a warm one, null if the
 ///   platform doesn't tell (see kernelsCompiled).

@@ -105,20 +105,6 @@ BuildsAgainOnlyWhenASourceIsNewer() {
   expect "number of configurations" "$(callsOf cmake)" 1
 }
 
-# The program tells its time from the start of its process, field 22 of its stat.
-TimeOfSetUpIsNotTheProgramsTime() {
-  # shellcheck disable=SC2016
-  standIn ninja <<'END'
-sleep 0.5
-printf '%s\n' '#!/usr/bin/env bash' 'cut -d " " -f 22 "/proc/$$/stat"' >"$2/luciole"
-chmod +x "$2/luciole"
-END
-  local begun started
-  begun=$(cut -d ' ' -f 22 "/proc/$BASHPID/stat")
-  started=$("$project/luciole" </dev/null 2>/dev/null)
-  expect "starts after set-up" "$((started - begun >= $(getconf CLK_TCK) / 2))" 1
-}
-
 FailedBuildShowsItsLogAndIsTriedAgain() {
   local status=0
   touch "$folder/broken"
