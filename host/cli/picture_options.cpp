@@ -325,8 +325,9 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
 }
 
 Model modelOf(const PictureOptions& options) {
-  return *std::find_if(std::begin(kAllModels), std::end(kAllModels),
-                       [&](Model model) { return options.model == modelName(model); });
+  std::size_t model = 0;  // one of them it is: the option's check lets no other name through
+  while (model + 1 < kModelNames.size() && options.model != kModelNames[model]) ++model;
+  return kAllModels[model];
 }
 
 RenderSettings renderSettings(const PictureOptions& options, const Scene& scene) {

@@ -20,7 +20,8 @@ constexpr int kNone = -1;
 
 /// Where R, G, B and A of a texel lie in a pixel of the file; A may be kNone.
 std::array<int, 4> channelPlaces(const OIIO::ImageSpec& spec, const std::string& name) {
-  const int alpha = spec.alpha_channel;
+  // A damaged TIFF may name an alpha that it hasn't got.
+  const int alpha = spec.alpha_channel < spec.nchannels ? spec.alpha_channel : kNone;
   const auto place = [&](const char* channel) { return spec.channelindex(channel); };
   if (place("R") >= 0 && place("G") >= 0 && place("B") >= 0)
     return {place("R"), place("G"), place("B"), alpha};
