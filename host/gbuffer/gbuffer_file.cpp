@@ -190,8 +190,9 @@ class Surface {
  private:
   /// The view-space point that lies at depth |Z| behind the centre of a pixel; not finite for Z = 0.
   glm::vec3 unproject(std::size_t pixel) const {
-    const glm::dvec2 centre{double(pixel % channels_.file.size.x) + channels_.file.crop_origin.x + 0.5,
-                            double(pixel / channels_.file.size.x) + channels_.file.crop_origin.y + 0.5};
+    const std::size_t column = pixel % channels_.file.size.x, row = pixel / channels_.file.size.x;
+    const glm::dvec2 centre{double(column) + channels_.file.crop_origin.x + 0.5,
+                            double(row) + channels_.file.crop_origin.y + 0.5};
     const double depth = std::abs(channels_.value(pixel, depth_));
     if (depth == 0) return glm::vec3(kInfinity);
     const glm::dvec2 screen = (2.0 * centre / glm::dvec2(channels_.file.picture_size) - 1.0) * half_extent_;
