@@ -130,8 +130,9 @@ LayerFile readLayers(const std::string& path) {
                  .picture_size = {spec.full_width, spec.full_height},
                  .crop_origin = cropOrigin(spec),
                  .channels = spec.channelnames,
-                 .values = std::make_unique_for_overwrite<float[]>(values),
+                 .values = {},
                  .attributes = attributesOf(spec)};
+  file.values = std::make_unique_for_overwrite<float[]>(values);
   readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
   return file;
 }
