@@ -65,16 +65,17 @@ constexpr std::string_view kernelTypeName<ShadeFrame>() {
 /// An argument for launch(): the name that it has in the kernel's source, and its value.
 struct KernelArgument {
   template <class T>
-  KernelArgument(std::string_view name_, const T& value_) : name(name_), type(kernelTypeName<T>()) {
+  KernelArgument(std::string_view argument_name, const T& argument_value)
+      : name(argument_name), type(kernelTypeName<T>()) {
     static_assert(std::is_trivially_copyable_v<T>);
-    const auto as_bytes = std::as_bytes(std::span(&value_, 1));
+    const auto as_bytes = std::as_bytes(std::span(&argument_value, 1));
     value.assign(as_bytes.begin(), as_bytes.end());
   }
 
   /// A buffer without memory is passed as a null pointer, which the kernel may not access.
   template <class T>
-  KernelArgument(std::string_view name_, const Buffer<T>& buffer)
-      : name(name_),
+  KernelArgument(std::string_view argument_name, const Buffer<T>& buffer)
+      : name(argument_name),
         type(std::string(kernelTypeName<std::remove_const_t<T>>()) + "*"),
         is_buffer(true),
         is_read_only(std::is_const_v<T>) {
