@@ -51,7 +51,8 @@ TEST(Start, WhatAShellDidBeforeItBecameTheProgramIsNotTheProgramsTime) {
   const TemporaryFolder folder;
   writeText(folder / "scene.json", kPlainScene);
   const auto begin = std::chrono::steady_clock::now();
-  const nlohmann::json stats = statsOf(folder, "sleep 0.5; exec '" LUCIOLE_BINARY "' render scene.json -o a.png");
+  const nlohmann::json stats =
+      statsOf(folder, "sleep 0.5; exec '" LUCIOLE_BINARY "' render scene.json -o a.png");
   const std::chrono::duration<double, std::milli> outside = std::chrono::steady_clock::now() - begin;
   EXPECT_LE(stats["wall_milliseconds"], outside.count() - 500);
 }
