@@ -59,7 +59,7 @@ struct Stats {
       stages;  ///< milliseconds, summed over the samples, in order of first use
   /// Of the stages, those that ran in threads of their own beside others
   std::vector<Stage> beside;
-  double began = 0;  ///< when the picture was begun, in milliseconds since the process's start
+  double began = 0;  ///< when the picture was begun, in milliseconds since the program's start
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< by name, if the command measures any
   /// Bytes of OpenCL buffers for one sample of the largest band, including those in the host's arrays
@@ -111,7 +111,7 @@ double pictureMilliseconds(const Stats& stats);
 ///   their own beside other stages, so the sum may be more than the whole; "wait for …" is the time that the
 ///   picture had to wait for them. wall_milliseconds of a stage: its share of the whole (see ownShare).
 /// - picture_milliseconds: the whole, from the picture's beginning to this text. The first picture's is the
-///   process's start.
+///   program's start.
 /// - wall_milliseconds: from the program's start to this text (see millisecondsSinceStart).
 /// - cold_start_milliseconds: opening the device and compiling the kernels.
 /// - kernels_compiled: how many kernels weren't in the cache: 0 if the start was a warm one, null if the
