@@ -38,20 +38,13 @@ struct FilmFormat {
 
 // Of what ffmpeg leaves open: R G B becomes Y Cb Cr by Rec.709, whose primaries are sRGB's, and the file says
 // so. Its own choice, Rec.601 and nothing said, is shown in other colours by players that take films for
-// Rec.709.
+// Rec.709. What the file says is set on the frames: ffmpeg 7 forgets it where it is asked of the encoder
+// alone.
 const std::vector<std::string> kRec709{
     "-vf",
-    "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+full_chroma_int",
-    "-pix_fmt",
-    "yuv420p",
-    "-color_range",
-    "tv",
-    "-colorspace",
-    "bt709",
-    "-color_primaries",
-    "bt709",
-    "-color_trc",
-    "iec61966-2-1"};
+    "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+full_chroma_int,"
+    "setparams=range=tv:colorspace=bt709:color_primaries=bt709:color_trc=iec61966-2-1",
+    "-pix_fmt", "yuv420p"};
 
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
