@@ -22,7 +22,6 @@ namespace {
 using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 using Bytes = std::vector<unsigned char>;
 
