@@ -60,7 +60,7 @@ struct Section {
   std::string name{};  ///< of the file and the heading, in letters, digits and _
   std::vector<std::string> commands{};
 };
-void PrintTo(const Section& section, std::ostream* out) { *out << section.name; }
+std::ostream& operator<<(std::ostream& out, const Section& section) { return out << section.name; }
 
 std::string plainName(const std::string& text) {
   std::string name;
