@@ -76,15 +76,15 @@ TEST(SideBySide, NamesAndFiguresAreWrittenBelow) {
   EXPECT_GT(writtenTo(both, 320, 0, 480), 0);
   EXPECT_GT(writtenTo(both, 320, kStep, kStep + 480), kStep);
   const Image renamed = row(kA, kB, "a.png", "c.png"), other = row(kA, kA);
-  const auto captionOfB = [](const Image& image) {
+  const auto captionOfSecond = [](const Image& image) {
     std::vector<float> pixels;
     for (int y = 320; y < image.height; ++y)
       for (int x = kStep; x < kStep + 480; ++x)
         for (const float value : colorAt(image, x, y)) pixels.push_back(value);
     return pixels;
   };
-  EXPECT_NE(captionOfB(both), captionOfB(renamed));
-  EXPECT_NE(captionOfB(both), captionOfB(other));
+  EXPECT_NE(captionOfSecond(both), captionOfSecond(renamed));
+  EXPECT_NE(captionOfSecond(both), captionOfSecond(other));
 }
 
 TEST(SideBySide, LongNamesLoseTheirMiddleAndStayInTheirColumn) {

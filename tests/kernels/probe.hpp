@@ -51,11 +51,11 @@ using Column = std::vector<float>;
 /// What a kernel reads beside the columns: the name of its argument, and the struct or the elements there.
 struct ProbeInput {
   template <class Struct>
-  ProbeInput(const char* name_, const Struct& value)
-      : name(name_), bytes(std::as_bytes(std::span(&value, 1))), argument(argumentOf<Struct>) {}
+  ProbeInput(const char* of_argument, const Struct& value)
+      : name(of_argument), bytes(std::as_bytes(std::span(&value, 1))), argument(argumentOf<Struct>) {}
   template <class Element>
-  ProbeInput(const char* name_, const std::vector<Element>& values)
-      : name(name_), bytes(std::as_bytes(std::span(values))), argument(argumentOf<Element>) {}
+  ProbeInput(const char* of_argument, const std::vector<Element>& values)
+      : name(of_argument), bytes(std::as_bytes(std::span(values))), argument(argumentOf<Element>) {}
 
   const char* name;
   std::span<const std::byte> bytes;

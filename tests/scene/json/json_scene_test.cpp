@@ -24,15 +24,15 @@ using testing::HasSubstr;
 
 class JsonScene : public testing::Test {
  protected:
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
   Scene load(const std::string& text) {
     write("scene.json", text);
-    return loadJsonScene(folder_ / "scene.json").scene;
+    return loadJsonScene(folder / "scene.json").scene;
   }
   /// With what is made of it.
   Scene loadWhole(const std::string& text) {
     write("scene.json", text);
-    return loadScene(folder_ / "scene.json");
+    return loadScene(folder / "scene.json");
   }
   /// The message for a scene that must be refused, without the path before the file's name.
   std::string refusal(const std::string& text) {
@@ -41,12 +41,12 @@ class JsonScene : public testing::Test {
     } catch (const InputError& error) {
       const std::string message = error.what();
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-      return message.substr(folder_.path().string().size() + 1);
+      return message.substr(folder.path().string().size() + 1);
     }
     ADD_FAILURE() << "accepted: " << text.substr(0, 300);
     return "";
   }
-  test::TemporaryFolder folder_;
+  test::TemporaryFolder folder;
 };
 
 TEST_F(JsonScene, EmptySceneHasTheDocumentedDefaults) {
@@ -173,7 +173,7 @@ TEST_F(JsonScene, MessagesNameFilePlaceFaultAndExpectation) {
   EXPECT_EQ(refusal(light(R"("position": [0,0,0], "cutoff": 30)")),
             "scene.json: lights[0].cutoff: means nothing for a light that isn't a spot");
   EXPECT_EQ(refusal(R"({"objects": [{"mesh": "gone.obj"}]})"),
-            "scene.json: objects[0].mesh: there is no file " + folder_ / "gone.obj");
+            "scene.json: objects[0].mesh: there is no file " + folder / "gone.obj");
   EXPECT_EQ(refusal(R"({"objects": [{"primitive": "box", "material": "gold"}]})"),
             "scene.json: objects[0].material: no material is called \"gold\"");
   EXPECT_EQ(refusal(R"({"size": [0, 5]})"), "scene.json: size: 0x5 pixels, expected 1 to 32768 a side");
@@ -191,7 +191,7 @@ TEST_F(JsonScene, AMissingPictureIsToldByItsPlaceAndItsMaterialDoesWithout) {
       R"({"materials": {"m": {"diffuse_map": "gone.png", "emission_map": "gone.png", "alpha_map": "gone.png"}}})");
   ASSERT_EQ(scene.missing_textures.size(), 3u);
   EXPECT_EQ(scene.missing_textures[0], fmt::format("{}: materials.m.diffuse_map: there is no file {}",
-                                                   folder_ / "scene.json", folder_ / "gone.png"));
+                                                   folder / "scene.json", folder / "gone.png"));
   const Material& material = scene.materials.back();
   EXPECT_EQ(material.diffuse_map.texture, -1);
   EXPECT_EQ(material.emission, glm::vec3(0));
@@ -355,23 +355,23 @@ TEST_F(JsonScene, MistakesInListsOfLightsNameTheirFileAndLine) {
 }
 
 TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
-  std::filesystem::create_directory(folder_ / "parts");
-  std::filesystem::create_directory(folder_ / "copies");
+  std::filesystem::create_directory(folder / "parts");
+  std::filesystem::create_directory(folder / "copies");
   write("parts/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   write("parts/p.ppm", std::string("P6 1 1 255\n") + "abc");
   write("scene.json", R"({ // a comment
     "$schema": "parts/scene.schema.json",
     "cameras": {"zoom": {"eye": [0,0,5], "target": [0,0,0]}, "all": {"eye": [0,0,9], "target": [0,0,0]}},
     "materials": {"z": {"diffuse_map": "parts/p.ppm"}, "a": {"diffuse": 0.1, "emission_map": ")" +
-                          (folder_ / "parts/p.ppm") + R"("}},
+                          (folder / "parts/p.ppm") + R"("}},
     "lights": [{"type": "directional", "direction": [0,-1,0]}],
     "objects": [{"mesh": "parts/t.obj", "material": "z", "translate": [0.1, 1e-7, 3]}, {"primitive": "box"}],
     "light_fields": [{"count": 3, "shape": "surface"}], "size": [7, 5]})");
   std::vector<Light> lights(2);
   lights[1].position = {1, 2, 3};
-  write("copies/lit.json", sceneWithLights(folder_ / "scene.json", folder_ / "copies", {}, lights));
-  const Scene scene = loadScene(folder_ / "scene.json");
-  const Scene copy = loadScene(folder_ / "copies/lit.json");
+  write("copies/lit.json", sceneWithLights(folder / "scene.json", folder / "copies", {}, lights));
+  const Scene scene = loadScene(folder / "scene.json");
+  const Scene copy = loadScene(folder / "copies/lit.json");
   ASSERT_EQ(copy.lights.size(), 2u);
   EXPECT_EQ(copy.lights[1].position, glm::dvec3(1, 2, 3));
   ASSERT_EQ(copy.cameras.size(), 2u);
@@ -382,11 +382,11 @@ TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
   EXPECT_EQ(copy.meshes[0].positions, scene.meshes[0].positions);
   EXPECT_EQ(copy.textures.size(), scene.textures.size());
   EXPECT_EQ(copy.size, scene.size);
-  EXPECT_THAT(test::readText(folder_ / "copies/lit.json"), HasSubstr("\"../parts/scene.schema.json\""));
+  EXPECT_THAT(test::readText(folder / "copies/lit.json"), HasSubstr("\"../parts/scene.schema.json\""));
   write("bare.json", R"({"$schema": "https://example.org/scene.schema.json"})");
-  write("copies/bare.json", sceneWithLights(folder_ / "bare.json", folder_ / "copies", {}, {}));
-  EXPECT_TRUE(loadScene(folder_ / "copies/bare.json").lights.empty());
-  EXPECT_THAT(test::readText(folder_ / "copies/bare.json"),
+  write("copies/bare.json", sceneWithLights(folder / "bare.json", folder / "copies", {}, {}));
+  EXPECT_TRUE(loadScene(folder / "copies/bare.json").lights.empty());
+  EXPECT_THAT(test::readText(folder / "copies/bare.json"),
               HasSubstr("\"https://example.org/scene.schema.json\""));
 }
 
@@ -416,14 +416,14 @@ TEST_F(JsonScene, EveryTruncatedSceneIsRefusedInOneLine) {
 }
 
 TEST_F(JsonScene, MissingFileAndFolderAreRefused) {
-  EXPECT_THROW(loadJsonScene(folder_ / "none.json"), InputError);
-  EXPECT_THROW(loadJsonScene(folder_.path().string()), InputError);
-  EXPECT_THROW(loadScene(folder_ / "scene.txt"), InputError);
+  EXPECT_THROW(loadJsonScene(folder / "none.json"), InputError);
+  EXPECT_THROW(loadJsonScene(folder.path().string()), InputError);
+  EXPECT_THROW(loadScene(folder / "scene.txt"), InputError);
 }
 
 TEST_F(JsonScene, LightsAreNotAddedToWhatAFileSays) {
   write("scene.json", R"({"objects": [{"primitive": "box"}], "lights": []})");
-  const Scene scene = loadScene(folder_ / "scene.json");
+  const Scene scene = loadScene(folder / "scene.json");
   EXPECT_EQ(scene.cameras.size(), 1u);
   EXPECT_TRUE(scene.lights.empty());
   EXPECT_EQ(scene.ambient, glm::vec3(0));
