@@ -33,7 +33,7 @@ const std::map<std::string, Aov> kAovs{
     {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow}};
 
 std::vector<std::string> compressionNames() {
-  std::vector<std::string> names;
+  std::vector<std::string> names(kPngCompressions.begin(), kPngCompressions.end());
   for (const ExrCompression& one : kExrCompressions) names.push_back(one.name);
   return names;
 }
@@ -123,7 +123,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command
         .add_option(
             "--compression", options.compression,
-            fmt::format("of an EXR (default: {}); from pxr24 on they change the picture", kExrCompression))
+            fmt::format("of a PNG: fast (default) or small; the others of an EXR (default: {}); from pxr24 "
+                        "on they change the picture",
+                        kExrCompression))
         ->check(oneOf(compressionNames()));
   if (groups & kViewOptions) {
     command.add_option("--size", options.size,

@@ -62,8 +62,13 @@ FileFormat pictureFormat(const std::string& path, const WriteOptions& options) {
   const bool is_exr = format.extension == "exr";
   const bool is_tiff = format.extension == "tif" || format.extension == "tiff";
   if (options.half && !is_exr) refuse("16-bit floats (--half)", ".exr");
-  if (!options.compression.empty() && !is_exr)
-    refuse(fmt::format("compression to choose (--compression {})", options.compression), ".exr");
+  if (!options.compression.empty()) {
+    const bool is_of_png = std::any_of(kPngCompressions.begin(), kPngCompressions.end(),
+                                       [&](const char* name) { return options.compression == name; });
+    if (format.extension != (is_of_png ? "png" : "exr"))
+      refuse(fmt::format("such compression (--compression {})", options.compression),
+             is_of_png ? ".png" : ".exr");
+  }
   if (options.alpha && format.max_channels < 4) refuse("coverage (--alpha)", ".exr, .png, .tif or .tga");
   if (options.bits == 0) return format;
   const bool has_codes = options.bits == 8    ? !format.is_float || is_tiff

@@ -39,6 +39,11 @@ inline constexpr std::array<ExrCompression, 10> kExrCompressions{{{"none", true}
 /// 16 and 32 bits of three scenes; the files of zip are smaller.
 inline constexpr const char* kExrCompression = "zip";
 
+/// How PNGs may be compressed, without loss as all PNGs are. Over pictures of six scenes the files of fast
+/// have 1.12 times the bytes of zlib's usual level and take 1/20 of its time; those of small have 0.98 and
+/// take 2 times as long.
+inline constexpr std::array<const char*, 2> kPngCompressions{"fast", "small"};
+
 /// The largest finite 16-bit float.
 inline constexpr float kLargestHalf = 65504.0f;
 

@@ -38,12 +38,13 @@ struct WriteOptions {
   std::string format = {};            ///< an extension that overrides the path's own; empty: doesn't
   bool dither = false;                ///< 8-bit codes, see dither.hpp
   ToneCurve tone = ToneCurve::kClip;  ///< integer formats
-  int bits = 0;                  ///< of sRGB codes: 8, or in png and tif 16; 0: what the format usually holds
-  bool half = false;             ///< exr: colours (isColorChannel) as 16-bit floats; all else stays 32-bit
-  std::string compression = {};  ///< exr: a name of kExrCompressions; empty: zip
-  bool alpha = false;            ///< colours are multiplied by A; integer formats then get them divided by A
-  glm::ivec2 picture_size{0};    ///< of the whole picture where this is a crop; 0: this is the whole
-  glm::ivec2 crop_origin{0};     ///< where in the whole picture pixel (0,0) lies
+  int bits = 0;       ///< of sRGB codes: 8, or in png and tif 16; 0: what the format usually holds
+  bool half = false;  ///< exr: colours (isColorChannel) as 16-bit floats; all else stays 32-bit
+  /// exr: a name of kExrCompressions, empty: zip. png: one of kPngCompressions, empty: fast.
+  std::string compression = {};
+  bool alpha = false;          ///< colours are multiplied by A; integer formats then get them divided by A
+  glm::ivec2 picture_size{0};  ///< of the whole picture where this is a crop; 0: this is the whole
+  glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   ExrAttributes exr = {};
   Film* film = nullptr;  ///< whose next frame this is, rather than a file of its own: 8-bit R, G, B
 };

@@ -23,10 +23,12 @@ class RowFile {
   virtual void close() = 0;
 };
 
-/// A PNG of R G B (3 channels) or R G B A (4), in sRGB codes of 8 or 16 bits. It calls libpng itself: loading
-/// OpenImageIO takes longer than making a small picture. Throws as writeImage does.
+/// A PNG of R G B (3 channels) or R G B A (4), in sRGB codes of 8 or 16 bits. Its rows are filtered and
+/// compressed by all threads, which OpenImageIO and libpng don't do; its bytes don't depend on how many there
+/// are. `compression`: as in WriteOptions. Throws as writeImage does.
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
-                                     const Metadata& metadata, int bits = 8);
+                                     const Metadata& metadata, int bits = 8,
+                                     const std::string& compression = "");
 
 /// A file that OpenImageIO writes, of 32-bit float values, which it may store as halves, or of sRGB codes of
 /// format.bits. Throws as writeImage does.

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "base/error.hpp"
 #include "image/dither.hpp"
@@ -13,7 +15,7 @@
 #include "image/film.hpp"
 #include "image/image.hpp"
 #include "image/row_file.hpp"
-#include "image/srgb.hpp"
+#include "image/srgb_codes.hpp"
 
 namespace luciole {
 namespace {
@@ -43,32 +45,32 @@ const FileFormat kFilmFrame{"", false, 3};
 constexpr float kHalfUp = 0.5f;  ///< rounds to nearest
 
 template <class Code>
-constexpr float kLargestCode = float(std::numeric_limits<Code>::max());
-
-template <class Code>
-Code colorCode(float value, float threshold) {
-  return Code(encodeSrgb(value) * kLargestCode<Code> + threshold);
-}
-template <class Code>
 Code alphaCode(float value) {
-  return Code((value > 0.0f ? std::min(value, 1.0f) : 0.0f) * kLargestCode<Code> + kHalfUp);
+  constexpr float kLargest = float(std::numeric_limits<Code>::max());
+  return Code((value > 0.0f ? std::min(value, 1.0f) : 0.0f) * kLargest + kHalfUp);
 }
 
 /// A colour that was multiplied by alpha; black where nothing is left of it.
 float divided(float color, float alpha) { return alpha > 0.0f ? color / alpha : 0.0f; }
 
-/// The values of a picture's rows that its file takes, converted by `convert(pixel, channel, x, y)`.
+/// The values of a picture's rows that its file takes. `convert(pixels, y, values)` makes those of a row from
+/// its pixels with all channels.
 template <class T, class Convert>
-std::vector<T> convertRows(const Image& rows, const std::vector<int>& sources, Convert convert) {
-  std::vector<T> values(std::size_t(rows.width) * rows.height * sources.size());
-  const std::size_t channels = rows.channels.size();
+std::unique_ptr<T[]> convertRows(const Image& rows, std::size_t channels, Convert convert) {
+  const std::size_t row_values = rows.width * channels;
+  auto values = std::make_unique_for_overwrite<T[]>(row_values * rows.height);
   tbb::parallel_for(0, rows.height, [&](int y) {
-    const float* in = rows.pixels.data() + std::size_t(y) * rows.width * channels;
-    T* out = values.data() + std::size_t(y) * rows.width * sources.size();
-    for (int x = 0; x < rows.width; ++x, in += channels)
-      for (std::size_t c = 0; c < sources.size(); ++c) *out++ = convert(in, c, x, y);
+    convert(rows.pixels.data() + std::size_t(y) * rows.width * rows.channels.size(), y,
+            values.get() + y * row_values);
   });
   return values;
+}
+
+/// The channels `sources` of a row of pixels of `channels`.
+void takeChannels(const float* pixels, std::size_t channels, const std::vector<int>& sources, int width,
+                  float* values) {
+  for (int x = 0; x < width; ++x, pixels += channels)
+    for (const int source : sources) *values++ = pixels[source];
 }
 
 /// Limits the magnitude of colours; NaN stays. Returns how many pixels had a larger one.
@@ -104,17 +106,26 @@ struct ImageWriter::State {
   /// Writes R, G, B and perhaps A as integers.
   template <class Code>
   void writeCodes(const Image& rows) {
+    const std::size_t channels = sources.size(), row_values = rows.width * channels;
     const bool dither = options.dither && format.bits == 8;
-    const bool divide = options.alpha && sources.size() == 4;
-    const auto code = [&](const float* pixel, std::size_t channel, int x, int y) {
-      const float value = pixel[sources[channel]];
-      if (channel == 3) return alphaCode<Code>(value);
-      const glm::ivec2 at = place + glm::ivec2(x, y);
-      const float color = divide ? divided(value, pixel[sources[3]]) : value;
-      return colorCode<Code>(options.tone == ToneCurve::kFilmic ? filmicTone(color) : color,
-                             dither ? ditherThreshold(at.x, at.y) : kHalfUp);
-    };
-    file->write(convertRows<Code>(rows, sources, code).data(), rows.height);
+    const bool divide = options.alpha && channels == 4;
+    const auto codes = convertRows<Code>(rows, channels, [&](const float* pixels, int y, Code* row) {
+      std::vector<float> values(row_values), thresholds(row_values, kHalfUp);
+      takeChannels(pixels, rows.channels.size(), sources, rows.width, values.data());
+      if (divide)
+        for (std::size_t i = 0; i < row_values; ++i)
+          if (i % 4 < 3) values[i] = divided(values[i], values[i - i % 4 + 3]);
+      if (options.tone == ToneCurve::kFilmic)
+        for (float& value : values) value = filmicTone(value);
+      if (dither)
+        for (int x = 0; x < rows.width; ++x)
+          std::fill_n(thresholds.begin() + x * channels, 3, ditherThreshold(place.x + x, place.y + y));
+      srgbCodes(values.data(), thresholds.data(), row_values, row);
+      if (channels == 4)
+        for (int x = 0; x < rows.width; ++x)
+          row[4 * x + 3] = alphaCode<Code>(pixels[x * rows.channels.size() + sources[3]]);
+    });
+    file->write(codes.get(), rows.height);
   }
 };
 
@@ -130,10 +141,11 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
     names = {"R", "G", "B", "A"};
     names.resize(state_->sources.size());
   }
-  state_->file = options.film ? options.film->addFrame()
-                 : format.extension == "png"
-                     ? openPngFile(path, width, height, int(names.size()), metadata, format.bits)
-                     : openPictureFile(path, width, height, names, format, metadata, options);
+  state_->file =
+      options.film ? options.film->addFrame()
+      : format.extension == "png"
+          ? openPngFile(path, width, height, int(names.size()), metadata, format.bits, options.compression)
+          : openPictureFile(path, width, height, names, format, metadata, options);
 }
 
 ImageWriter::~ImageWriter() = default;
@@ -148,8 +160,10 @@ void ImageWriter::write(const Image& rows) {
   } else if (state.sources.empty()) {
     state.file->write(rows.pixels.data(), rows.height);
   } else if (state.format.is_float) {
-    const auto same = [&](const float* pixel, std::size_t c, int, int) { return pixel[state.sources[c]]; };
-    state.file->write(convertRows<float>(rows, state.sources, same).data(), rows.height);
+    const auto take = [&](const float* pixels, int, float* values) {
+      takeChannels(pixels, rows.channels.size(), state.sources, rows.width, values);
+    };
+    state.file->write(convertRows<float>(rows, state.sources.size(), take).get(), rows.height);
   } else if (state.format.bits == 16) {
     state.writeCodes<std::uint16_t>(rows);
   } else {

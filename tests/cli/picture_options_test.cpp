@@ -113,6 +113,15 @@ TEST_F(PictureFiles, LosslessCompressionKeepsPicturesAndGBuffers) {
   }
 }
 
+TEST_F(PictureFiles, CompressionOfAPngKeepsEveryCode) {
+  succeed("luciole render scene.json --quiet -o usual.png");
+  for (const std::string name : {"fast", "small"})
+    succeed("luciole render scene.json --quiet --compression " + name +
+            " -o a.png && luciole compare usual.png a.png --max-abs 0");
+  refuse("luciole gbuffer scene.json -o no.exr --compression small", 2,
+         "no.exr: .exr has no such compression (--compression small), expected .png");
+}
+
 TEST_F(PictureFiles, LossyCompressionIsForPicturesAlone) {
   succeed("luciole render scene.json --quiet -o usual.exr && luciole gbuffer scene.json --quiet -o g.exr");
   for (const std::string name : {"pxr24", "b44", "b44a", "dwaa", "dwab"}) {

@@ -250,6 +250,8 @@ TEST(WriteOptions, WhatAFormatHasNoPlaceForIsRefusedBeforeAnyWork) {
     refuses(name, {.half = true}, "16-bit floats (--half), expected .exr");
     refuses(name, {.compression = "zip"}, "(--compression zip), expected .exr");
   }
+  for (const char* name : {"a.exr", "a.tif", "a.jpg"})
+    refuses(name, {.compression = "small"}, "(--compression small), expected .png");
   for (const char* name : {"a.jpg", "a.bmp", "a.ppm", "a.hdr", "a.webp"})
     refuses(name, {.alpha = true}, "coverage (--alpha)");
   for (const char* name : {"a.exr", "a.hdr", "a.jpg", "a.tga", "a.bmp", "a.webp"})
