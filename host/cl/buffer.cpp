@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/array_memory.hpp"
+#include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 
 namespace luciole {
@@ -89,6 +90,7 @@ DeviceMemory borrow(Device& device, const void* array, std::size_t size) {
   if (size == 0) return make(device, 0);
   void* const values = const_cast<void*>(array);
   if (device.shares_host_memory) return inPlace(device, CL_MEM_READ_ONLY, values, size);
+  const TraceSpan span("upload", {{"bytes", std::int64_t(size)}});
   DeviceMemory memory{create(device, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, size, values), {}};
   count(device, &Traffic::bytes_made, size);
   count(device, &Traffic::bytes_up, size);
@@ -103,18 +105,24 @@ DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size) {
 void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range) {
   if (range.count == 0 || range.rows == 0) return;
   const char* const first = static_cast<const char*>(whole) + range.first;
+  const std::size_t size = range.count * range.rows;
   try {
-    if (range.rows == 1) {
-      device.queue.enqueueWriteBuffer(memory.handle, CL_TRUE, range.first, range.count, first);
-    } else {
+    queueCommand(device, "upload", {{"bytes", std::int64_t(size)}}, [&](cl::Event* event) {
+      if (range.rows == 1) {
+        device.queue.enqueueWriteBuffer(memory.handle, CL_TRUE, range.first, range.count, first, nullptr,
+                                        event);
+        return;
+      }
       const std::array<std::size_t, 3> place{range.first % range.pitch, range.first / range.pitch, 0};
       device.queue.enqueueWriteBufferRect(memory.handle, CL_TRUE, place, place, {range.count, range.rows, 1},
-                                          range.pitch, 0, range.pitch, 0, const_cast<void*>(whole));
-    }
+                                          range.pitch, 0, range.pitch, 0, const_cast<void*>(whole), nullptr,
+                                          event);
+    });
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
-  if (!device.shares_host_memory) count(device, &Traffic::bytes_up, range.count * range.rows);
+  recordCommands(device);
+  if (!device.shares_host_memory) count(device, &Traffic::bytes_up, size);
 }
 
 void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size) {
@@ -123,21 +131,30 @@ void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* 
   try {
     if (memory.loan && memory.handle.getInfo<CL_MEM_HOST_PTR>() == array && offset == 0) {
       // The buffer lies in this very array. OpenCL guarantees its content there only after mapping.
-      void* mapped = device.queue.enqueueMapBuffer(memory.handle, CL_TRUE, CL_MAP_READ, 0, size);
+      void* mapped = nullptr;
+      queueCommand(device, "map", {{"bytes", std::int64_t(size)}}, [&](cl::Event* event) {
+        mapped = device.queue.enqueueMapBuffer(memory.handle, CL_TRUE, CL_MAP_READ, 0, size, nullptr, event);
+      });
       device.queue.enqueueUnmapMemObject(memory.handle, mapped);
-      device.queue.finish();
+      finish(device);
       return;
     }
-    device.queue.enqueueReadBuffer(memory.handle, CL_TRUE, offset, size, array);
+    queueCommand(device, "download", {{"bytes", std::int64_t(size)}}, [&](cl::Event* event) {
+      device.queue.enqueueReadBuffer(memory.handle, CL_TRUE, offset, size, array, nullptr, event);
+    });
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
+  recordCommands(device);
   if (!device.shares_host_memory) count(device, &Traffic::bytes_down, size);
 }
 
 void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size) {
   try {
-    if (size > 0) device.queue.enqueueCopyBuffer(from.handle, to.handle, 0, 0, size);
+    if (size == 0) return;
+    queueCommand(device, "copy", {{"bytes", std::int64_t(size)}}, [&](cl::Event* event) {
+      device.queue.enqueueCopyBuffer(from.handle, to.handle, 0, 0, size, nullptr, event);
+    });
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }

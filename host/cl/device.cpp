@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <chrono>
 #include <optional>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
+#include "base/trace.hpp"
+#include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 
 namespace luciole {
@@ -115,7 +117,7 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
 }
 
 void openDevice(const std::string& selector, Device& device) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::int64_t begin = nanosecondsSinceStart();
   const std::vector<FoundDevice> found = findDevices();
   std::vector<DeviceDescription> descriptions;
   for (const FoundDevice& one : found) descriptions.push_back(one.description);
@@ -130,18 +132,25 @@ void openDevice(const std::string& selector, Device& device) {
   try {
     device.device = chosen.device;
     device.context = cl::Context(chosen.device);
-    device.queue = cl::CommandQueue(device.context, chosen.device);
+    const bool is_profiled = isTracing();
+    device.queue =
+        cl::CommandQueue(device.context, chosen.device, is_profiled ? CL_QUEUE_PROFILING_ENABLE : 0);
+    if (is_profiled)
+      device.trace = std::make_shared<CommandTrace>(CommandTrace{deviceTrack(device.description.name)});
     device.shares_host_memory = (chosen.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
-  device.milliseconds_to_open =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const std::int64_t end = nanosecondsSinceStart();
+  device.milliseconds_to_open = 1e-6 * double(end - begin);
+  traceEvent("open device", kTraceStage, begin, end);
 }
 
 void startDevice(const std::string& selector, Device& device) {
-  device.opening =
-      std::async(std::launch::async, [selector, &device] { openDevice(selector, device); }).share();
+  device.opening = std::async(std::launch::async, [selector, &device] {
+                     const TraceThread thread("device opener");
+                     openDevice(selector, device);
+                   }).share();
 }
 
 void awaitDevice(const Device& device) {
@@ -161,6 +170,7 @@ void finish(Device& device) {
     throw deviceError(
         error, fmt::format("{}: kernel '{}' or one before", device.description.name, device.running_kernel));
   }
+  recordCommands(device);
 }
 
 }  // namespace luciole

@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <future>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace luciole {
+
+struct CommandTrace;
 
 /// An OpenCL device as `luciole devices` lists it.
 struct DeviceDescription {
@@ -34,7 +37,7 @@ struct Device {
   DeviceDescription description;
   cl::Device device;
   cl::Context context;
-  cl::CommandQueue queue;           ///< in order
+  cl::CommandQueue queue;           ///< in order; profiled only if a trace is recorded
   bool shares_host_memory = false;  ///< true on a CPU; not to be changed once a buffer is made
 
   /// Programs built so far, by options and file or source; guarded by `programs_mutex`.
@@ -43,6 +46,9 @@ struct Device {
 
   Traffic traffic;             ///< since it was opened; guarded by `notes_mutex`
   std::string running_kernel;  ///< the kernel queued last, for messages; guarded by `notes_mutex`
+  /// Null unless a trace was recorded when the device was opened (see command_trace.hpp); what it points to
+  /// is guarded by `notes_mutex`.
+  std::shared_ptr<CommandTrace> trace;
   std::mutex notes_mutex;
 
   double milliseconds_to_open = 0;  ///< the first picture's statistics take it and set it to 0
@@ -61,9 +67,9 @@ std::vector<DeviceDescription> listDevices();
 /// is left to openDevice.
 std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::string& selector);
 
-/// Opens the device that `selector` means. A selector that ends in ",lanes=N" sets its lanes. Throws as
-/// selectDevice and listDevices do, InputError for other lanes than 1, 4, 8 and 16, and MachineError if the
-/// device fails.
+/// Opens the device that `selector` means, for profiling if a trace is recorded. A selector that ends in
+/// ",lanes=N" sets its lanes. Throws as selectDevice and listDevices do, InputError for other lanes than 1,
+/// 4, 8 and 16, and MachineError if the device fails.
 void openDevice(const std::string& selector, Device& device);
 
 /// openDevice() in a thread of its own. Nobody else may use `device` until awaitDevice() has returned.
@@ -76,8 +82,8 @@ void awaitDevice(const Device& device);
 /// The bytes that buffers have copied and allocated so far. Any thread may ask.
 Traffic trafficOf(Device& device);
 
-/// Waits until everything queued is done. Throws MachineError if a kernel failed. The message names the
-/// kernel queued last: OpenCL doesn't tell which one it was.
+/// Waits until everything queued is done, and records it if there is a trace. Throws MachineError if a kernel
+/// failed. The message names the kernel queued last: OpenCL doesn't tell which one it was.
 void finish(Device& device);
 
 }  // namespace luciole

@@ -5,24 +5,21 @@
 
 #include <ctime>
 
+#include "base/clock.hpp"
+
 namespace luciole {
 namespace {
 
 double secondsOf(const timespec& time) { return double(time.tv_sec) + 1e-9 * double(time.tv_nsec); }
 
-double now(clockid_t clock) {
+/// The time of day, as files have it.
+double now() {
   timespec time{};
-  clock_gettime(clock, &time);
+  clock_gettime(CLOCK_REALTIME, &time);
   return secondsOf(time);
 }
 
-/// When the library was loaded, in seconds. Not when the process began: a shell that becomes the program
-/// (exec) may have done minutes of other work in it.
-const double kLoaded = now(CLOCK_MONOTONIC);
-
 }  // namespace
-
-double millisecondsSinceStart() { return 1e3 * (now(CLOCK_MONOTONIC) - kLoaded); }
 
 std::optional<int> kernelsCompiled(const std::string& platform) {
   if (platform != "Portable Computing Language") return std::nullopt;
@@ -31,7 +28,7 @@ std::optional<int> kernelsCompiled(const std::string& platform) {
   struct Search {
     double start;
     int younger = 0;
-  } search{now(CLOCK_REALTIME) - millisecondsSinceStart() / 1e3};
+  } search{now() - millisecondsSinceStart() / 1e3};
   dl_iterate_phdr(
       [](dl_phdr_info* object, std::size_t, void* data) {
         Search& found = *static_cast<Search*>(data);

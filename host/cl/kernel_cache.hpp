@@ -5,9 +5,6 @@
 
 namespace luciole {
 
-/// Milliseconds since the program was loaded into this process. A shell may have lived in it before.
-double millisecondsSinceStart();
-
 /// How many kernels this process has compiled because the platform's cache on disk hadn't got them: 0 is a
 /// warm start. platform: its name. Empty for any platform but PoCL, since others don't tell.
 std::optional<int> kernelsCompiled(const std::string& platform);

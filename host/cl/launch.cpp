@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/machine_memory.hpp"
+#include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 #include "cl/kernel_source.hpp"
 
@@ -42,13 +43,14 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
                     device.description.lanes, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {
+      const TraceSpan span("build program", {{"kernel", name}, {"defines", defines}});
       requireMemory(kCompilerBytes, "compiling kernels");
       cl::Program program(device.context, source());
       program.build({device.device}, options.c_str());
       place = device.programs.emplace(options + key, std::move(program)).first;
     }
     const cl::Kernel kernel(place->second, name);
-    return {kernel, name, declaredArguments(kernel)};
+    return {kernel, name, declaredArguments(kernel), defines};
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [where, text] : error.getBuildLog()) log += text;
@@ -127,8 +129,14 @@ void launch(Device& device, Kernel& kernel, const std::vector<KernelArgument>& a
                  device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
     std::size_t group = work.group;
     while (group > std::max<std::size_t>(most, 1)) group /= 2;
-    device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange, cl::NDRange(work.items),
-                                      cl::NDRange(group));
+    queueCommand(device, kernel.name.c_str(),
+                 {{"work_items", std::int64_t(work.items)},
+                  {"group", std::int64_t(group)},
+                  {"defines", kernel.defines}},
+                 [&](cl::Event* event) {
+                   device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange, cl::NDRange(work.items),
+                                                     cl::NDRange(group), nullptr, event);
+                 });
   } catch (const cl::Error& error) {
     throw deviceError(error, what);
   }

@@ -97,11 +97,12 @@ struct DeclaredArgument {
   bool is_const;  ///< what it points to
 };
 
-/// A kernel with its name and its arguments in order.
+/// A kernel with its name, its arguments in order, and the -D options that it was compiled with.
 struct Kernel {
   cl::Kernel kernel;
   std::string name;
   std::vector<DeclaredArgument> arguments;
+  std::string defines;
 };
 
 /// The kernel `name` of kernels/`file`, compiled with the device's LANES and the -D options in `defines`. A

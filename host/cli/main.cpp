@@ -10,11 +10,12 @@
 #include <system_error>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
-#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/suggest.hpp"
+#include "cli/trace_option.hpp"
 
 namespace {
 
@@ -138,6 +139,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   try {
     if (argument_count > 1 && arguments[1][0] != '-') findCommand(app, arguments[1]);
     app.parse(argument_count, arguments);
+    writeTrace(context.command_line);
     return context.status;
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help and --version

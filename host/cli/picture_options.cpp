@@ -16,6 +16,7 @@
 #include "cli/event_log.hpp"
 #include "cli/frames.hpp"
 #include "cli/suggest.hpp"
+#include "cli/trace_option.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "load/load_scene.hpp"
@@ -237,8 +238,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (groups & kDeviceOption)
     command.add_option("--device", options.device,
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
-  if (is_one_picture)
+  if (is_one_picture) {
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
+    addTraceOption(command, options.trace);
+  }
   addThreadsOption(command);
   CLI::Option* quiet = command.add_flag("--quiet", options.quiet, "say nothing but errors");
   if (is_one_picture) addLogOption(command)->excludes(quiet);

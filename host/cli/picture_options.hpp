@@ -43,11 +43,13 @@ struct PictureOptions {
   std::string device;
   std::string missing_textures = "error";
   std::string stats;
+  std::string trace;
   std::string frames;
   bool quiet = false;
 };
 
-/// Groups of options that a command takes, in addition to -o, --format, --compression, --stats and --quiet.
+/// Groups of options that a command takes, in addition to -o, --format, --compression, --stats, --trace and
+/// --quiet.
 enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/write_file.hpp"
-#include "cl/kernel_cache.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
@@ -21,7 +21,7 @@ namespace {
 /// What rounding to a 16-bit float changes: at most this share of a value, or this much of one below 2⁻¹⁴.
 constexpr double kHalfRelative = 0x1p-11, kHalfAbsolute = 0x1p-25;
 
-void logPicture(const PictureOptions& options, const Stats& stats, int frame) {
+void logPicture(const PictureOptions& options, const Stats& stats, double ended, int frame) {
   for (const auto& [stage, milliseconds] : stats.stages)
     logEvent(
         "stage",
@@ -32,7 +32,7 @@ void logPicture(const PictureOptions& options, const Stats& stats, int frame) {
                           {"height", stats.height},
                           {"triangles", stats.triangles},
                           {"lights", stats.lights},
-                          {"milliseconds", eventMilliseconds(pictureMilliseconds(stats))}});
+                          {"milliseconds", eventMilliseconds(ended - stats.began)}});
 }
 
 }  // namespace
@@ -52,6 +52,14 @@ bool measuresExposure(const PictureOptions& options, const std::string& scene_pa
   return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
 }
 
+void checkTraceFile(const PictureOptions& options) {
+  if (options.trace.empty()) return;
+  if (options.trace == options.output)
+    throw InputError(fmt::format("--trace {}: is the picture's own file", options.trace));
+  if (options.trace == options.stats)
+    throw InputError(fmt::format("--trace {}: is the file of --stats", options.trace));
+}
+
 void checkOutput(const PictureOptions& options) {
   checkWritable(options.output, fileOptions(options));
   if (options.tone != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
@@ -62,6 +70,7 @@ void checkOutput(const PictureOptions& options) {
     throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+  checkTraceFile(options);
 }
 
 void checkDataOutput(const PictureOptions& options, const std::string& what) {
@@ -130,8 +139,9 @@ Stats laterStats(const std::string& command) {
 }
 
 void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
-  if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats));
-  if (logsEvents()) return logPicture(options, stats, frame);
+  const double ended = millisecondsSinceStart();
+  if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats, ended));
+  if (logsEvents()) return logPicture(options, stats, ended, frame);
   if (options.quiet) return;
   // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.
   const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };
@@ -142,7 +152,7 @@ void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   const std::string exposure =
       stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
   fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
-             stats.height, stats.triangles, stats.lights, exposure, whole(pictureMilliseconds(stats)), stages,
+             stats.height, stats.triangles, stats.lights, exposure, whole(ended - stats.began), stages,
              stages.empty() ? "" : ")", options.half ? ", colours rounded by up to 2^-11 of themselves" : "");
 }
 

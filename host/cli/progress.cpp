@@ -17,8 +17,8 @@ ProgressLine::ProgressLine(bool quiet) : is_shown(!quiet && !logsEvents() && isa
 void ProgressLine::show(const std::string& what, std::size_t done, std::size_t total) {
   if (!is_shown && !logsEvents()) return;
   const int percent_done = total > 0 ? int(100 * std::uint64_t(done) / total) : 0;
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-  const double left = done > 0 ? passed.count() / double(done) * double(total - done) : 0;
+  const double passed = 1e-3 * (millisecondsSinceStart() - start);
+  const double left = done > 0 ? passed / double(done) * double(total - done) : 0;
   if (logsEvents()) {
     if (std::exchange(percent, percent_done) == percent_done) return;
     EventFields fields;

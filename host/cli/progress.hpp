@@ -1,9 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <optional>
 #include <string>
+
+#include "base/clock.hpp"
 
 namespace luciole {
 
@@ -19,7 +20,7 @@ struct ProgressLine {
   void clear();
 
   bool is_shown;
-  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  double start = millisecondsSinceStart();
   std::string text;          ///< the line as it is shown
   std::optional<int> frame;  ///< that is being made, for the event
   int percent = -1;          ///< that the last event told

@@ -7,8 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
-#include "cl/kernel_cache.hpp"
+#include "base/trace.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frame_claims.hpp"
@@ -127,6 +128,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
       progress.show(fmt::format("frame {}, {} of {}", frames[i], i + 1, frames.size()),
                     i * passes + std::size_t(done), frames.size() * passes);
     };
+    const TraceSpan span("frame", {{"frame", frames[i]}});
     logEvent("frame_begun", {{"frame", frames[i]}});
     progress.frame = frames[i];
     showPass(0, 1);
@@ -195,6 +197,7 @@ void checkFilmOptions(const RenderOptions& options) {
   checkFilm(frameFile(options.output, 1), options.format);
   if (options.resume)
     throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
+  checkTraceFile(options);
   if (options.bits == 16 || options.half || options.alpha || !options.compression.empty())
     throw InputError(fmt::format(
         "{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
@@ -334,7 +337,8 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     Device device;
     const bool lit = options->shading == "gouraud";
     if (lit) {
-      timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
+      openDevice(options->device, device);
+      addStage(stats, Stage::kOpenDevice, device.milliseconds_to_open);
       logDevice(device.description);
     }
     logEvent("frame_begun", {{"frame", frame}});

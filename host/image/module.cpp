@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
+#include "base/trace.hpp"
 
 namespace luciole {
 namespace {
@@ -25,6 +26,7 @@ std::string modulePath() {
 constexpr double kModuleBytes = 32 << 20, kModuleAddresses = 500 << 20, kModuleData = 64 << 20;
 
 const ImageFunctions& load() {
+  const TraceSpan span("load OpenImageIO");
   constexpr const char* kWhat = "reading and writing pictures";
   requireMemory(kModuleBytes, kWhat);
   requireMappings(kModuleAddresses, kModuleData, threadCount(), kWhat);
@@ -58,9 +60,13 @@ LayerFile readLayers(const std::string& path) { return functions().read_layers(p
 
 std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
 
-Texture readTexture(const std::string& path) { return functions().read_texture(path); }
+Texture readTexture(const std::string& path) {
+  const TraceSpan span("read texture", {{"file", path}});
+  return functions().read_texture(path);
+}
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {
+  const TraceSpan span("read texture", {{"file", name}, {"bytes", std::int64_t(file.size())}});
   return functions().read_texture_in_memory(file, name);
 }
 

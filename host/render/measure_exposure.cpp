@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/trace.hpp"
 #include "image/exposure.hpp"
 
 namespace luciole {
@@ -17,6 +18,7 @@ double measureExposure(Device& device, const Scene& scene, const RenderSettings&
   small.aovs = {Aov::kDepth};
   Stats of_small;
   Image picture;
+  const TraceSpan span(stageName(Stage::kMeasureExposure));
   const double milliseconds = millisecondsOf([&] { picture = renderScene(device, scene, small, of_small); });
   // The start isn't measuring: the picture would have had to wait for it, too.
   const double waited =

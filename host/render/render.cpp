@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/machine_memory.hpp"
+#include "base/trace.hpp"
 #include "culling/fog_cull.hpp"
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
@@ -111,9 +112,10 @@ std::future<double> startCompiling(Device& device, const std::vector<FeatureSet>
                                    const ShadeSettings& settings) {
   return std::async(std::launch::async, [&device, passes, settings] {
     awaitDevice(device);
-    const auto start = std::chrono::steady_clock::now();
+    const TraceThread thread("kernel compiler");
+    const std::int64_t begin = nanosecondsSinceStart();
     for (const FeatureSet& features : passes) compileKernels(device, features, settings);
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return endStage(Stage::kCompileKernels, begin);
   });
 }
 
@@ -172,7 +174,10 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
                  View view, RasterCounts& triangles, Progress& progress, Stats& stats) {
   Image picture;
   Plane sum, covered;
+  const std::int64_t pixels = std::int64_t(view.crop_size.x) * view.crop_size.y;
+  const TraceSpan band("band", {{"first_row", view.crop_origin.y}, {"pixels", pixels}});
   for (int sample = 0; sample < settings.samples; ++sample) {
+    const TraceSpan span("sample", {{"sample", sample}, {"samples", settings.samples}});
     view.sample = samplePoint(sample, settings.samples);
     GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
       return rasterize(scene, prepared.objects, view, settings.shading, prepared.planes,
@@ -225,6 +230,11 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
                  Stats& stats) {
   const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
+  const TraceSpan span("picture", {{"width", view.crop_size.x},
+                                   {"height", view.crop_size.y},
+                                   {"samples", settings.samples},
+                                   {"objects", std::int64_t(scene.objects.size())},
+                                   {"lights", std::int64_t(scene.lights.size())}});
   const ShadeSettings shade = shadeSettings(settings);
   const auto [features, pixel_features, planes] = pictureFeatures(scene, settings);
   const bool gouraud = settings.shading == Shading::kGouraud;
@@ -312,6 +322,9 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats) {
   const TrafficMeter meter{device, stats};
+  const TraceSpan span(
+      "picture",
+      {{"width", gbuffer.width}, {"height", gbuffer.height}, {"lights", std::int64_t(scene.lights.size())}});
   const ShadeSettings shade = shadeSettings(settings);
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);

@@ -6,6 +6,7 @@
 
 #include "base/peak_memory.hpp"
 #include "base/threads.hpp"
+#include "base/trace.hpp"
 #include "cl/kernel_cache.hpp"
 
 namespace luciole {
@@ -72,9 +73,13 @@ std::uint64_t countOf(const Stats& stats, std::string_view name) {
   return 0;
 }
 
-double pictureMilliseconds(const Stats& stats) { return millisecondsSinceStart() - stats.began; }
+double endStage(Stage stage, std::int64_t begin) {
+  const std::int64_t end = nanosecondsSinceStart();
+  traceEvent(stageName(stage), kTraceStage, begin, end);
+  return 1e-6 * double(end - begin);
+}
 
-std::string statsJson(const Stats& stats) {
+std::string statsJson(const Stats& stats, double ended) {
   nlohmann::ordered_json json;
   json["version"] = LUCIOLE_VERSION;
   json["command"] = stats.command;
@@ -109,8 +114,8 @@ std::string statsJson(const Stats& stats) {
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;
   if (!compiled) json["reasons"]["kernels_compiled"] = "only PoCL tells";
-  json["picture_milliseconds"] = pictureMilliseconds(stats);
-  json["wall_milliseconds"] = millisecondsSinceStart();
+  json["picture_milliseconds"] = ended - stats.began;
+  json["wall_milliseconds"] = ended;
   return json.dump(2) + "\n";
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "cl/device.hpp"
 
 namespace luciole {
@@ -70,25 +70,26 @@ struct Stats {
 /// Adds `milliseconds` to the stage, which starts at 0.
 void addStage(Stats& stats, Stage stage, double milliseconds);
 
+/// Ends a stage that began at `begin` (nanosecondsSinceStart()): records it for a trace, and returns the
+/// milliseconds that it took.
+double endStage(Stage stage, std::int64_t begin);
+
 /// Wall-clock milliseconds that a function takes.
 template <class Function>
 double millisecondsOf(Function&& function) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::int64_t begin = nanosecondsSinceStart();
   function();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return 1e-6 * double(nanosecondsSinceStart() - begin);
 }
 
-/// Runs a stage, adds the time it took, also if it throws, and returns its result.
+/// Runs a stage, adds the time it took, also if it throws, and returns its result. A trace tells the same.
 template <class Function>
 auto timed(Stats& stats, Stage stage, Function&& function) {
   struct Timer {
     Stats& stats;
     Stage stage;
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-    ~Timer() {
-      addStage(stats, stage,
-               std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    }
+    std::int64_t begin = nanosecondsSinceStart();
+    ~Timer() { addStage(stats, stage, endStage(stage, begin)); }
   } timer{stats, stage};
   return function();
 }
@@ -103,16 +104,14 @@ double stageTime(const Stats& stats, Stage stage);
 /// A count of the statistics; 0 for one that isn't there.
 std::uint64_t countOf(const Stats& stats, std::string_view name);
 
-/// Milliseconds since the picture was begun (Stats::began).
-double pictureMilliseconds(const Stats& stats);
-
-/// The JSON text that --stats writes. About time it says:
+/// The JSON text that --stats writes. ended: when the picture was done, in milliseconds since the program's
+/// start. About time it says:
 /// - stages: how long each took, in milliseconds. Opening the device and compiling kernels run in threads of
 ///   their own beside other stages, so the sum may be more than the whole; "wait for …" is the time that the
 ///   picture had to wait for them. wall_milliseconds of a stage: its share of the whole (see ownShare).
-/// - picture_milliseconds: the whole, from the picture's beginning to this text. The first picture's is the
-///   program's start.
-/// - wall_milliseconds: from the program's start to this text (see millisecondsSinceStart).
+/// - picture_milliseconds: the whole, from the picture's beginning to its end. The first picture's beginning
+///   is the program's start.
+/// - wall_milliseconds: from the program's start to the picture's end (see millisecondsSinceStart).
 /// - cold_start_milliseconds: opening the device and compiling the kernels.
 /// - kernels_compiled: how many kernels weren't in the cache: 0 if the start was a warm one, null if the
 ///   platform doesn't tell (see kernelsCompiled).
@@ -120,6 +119,6 @@ double pictureMilliseconds(const Stats& stats);
 /// About memory it says:
 /// - peak_bytes: of the process, as the system counts it. device_bytes: see Stats.
 /// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.
-std::string statsJson(const Stats& stats);
+std::string statsJson(const Stats& stats, double ended);
 
 }  // namespace luciole

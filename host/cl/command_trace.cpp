@@ -1,0 +1,93 @@
+#include "cl/command_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cl/device_error.hpp"
+
+namespace luciole {
+namespace {
+
+/// Nanoseconds a nanosecond by which the device's clock and the host's may part (see CommandTrace).
+constexpr double kMostSlew = 500e-6;
+
+/// A command that is done, by the device's clock.
+struct DoneCommand {
+  QueuedCommand command;
+  std::int64_t queued, submitted, start, end;
+};
+
+/// Takes the commands that are done out of the list. Those that failed are dropped: finish() tells of them.
+std::vector<DoneCommand> takeDone(std::vector<QueuedCommand>& commands) {
+  std::vector<DoneCommand> done;
+  std::vector<QueuedCommand> left;
+  for (QueuedCommand& command : commands) {
+    const cl_int status = command.event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+    if (status > CL_COMPLETE) left.push_back(std::move(command));
+    if (status != CL_COMPLETE) continue;
+    const cl::Event event = command.event;
+    done.push_back({std::move(command), std::int64_t(event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>()),
+                    std::int64_t(event.getProfilingInfo<CL_PROFILING_COMMAND_SUBMIT>()),
+                    std::int64_t(event.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
+                    std::int64_t(event.getProfilingInfo<CL_PROFILING_COMMAND_END>())});
+  }
+  commands = std::move(left);
+  // Threads that queue at once may have noted in another order.
+  std::sort(done.begin(), done.end(),
+            [](const DoneCommand& a, const DoneCommand& b) { return a.start < b.start; });
+  return done;
+}
+
+double errorAt(const CommandTrace& trace, std::int64_t now) {
+  return trace.error + kMostSlew * std::abs(double(now - trace.tied));
+}
+
+/// Ties the clocks by the command if that is the better tie.
+void tie(const DoneCommand& done, CommandTrace& trace) {
+  const auto& [event, name, arguments, before, after] = done.command;
+  const double error = 0.5 * double(after - before);
+  if (error > errorAt(trace, before)) return;
+  trace.host_minus_device = before + (after - before) / 2 - done.queued;
+  trace.error = error;
+  trace.tied = before;
+}
+
+}  // namespace
+
+void noteCommand(Device& device, QueuedCommand&& command) {
+  const std::lock_guard lock(device.notes_mutex);
+  device.trace->commands.push_back(std::move(command));
+}
+
+void recordCommands(Device& device) {
+  if (!device.trace) return;
+  const std::lock_guard lock(device.notes_mutex);
+  CommandTrace& trace = *device.trace;
+  std::vector<DoneCommand> all;
+  try {
+    all = takeDone(trace.commands);
+  } catch (const cl::Error& error) {
+    throw deviceError(error, device.description.name);
+  }
+  const std::int64_t now = nanosecondsSinceStart();
+  for (const DoneCommand& done : all) tie(done, trace);
+  for (DoneCommand& done : all) {
+    // What is known however the clocks are tied: it was queued after `before`, was done by now, and ran after
+    // the command before it, the queue being in order.
+    const auto hostTime = [&](std::int64_t device_time, std::int64_t earliest) {
+      return std::clamp(device_time + trace.host_minus_device, earliest, now);
+    };
+    const std::int64_t queued = hostTime(done.queued, done.command.before);
+    const std::int64_t submitted = hostTime(done.submitted, queued);
+    const std::int64_t start = hostTime(done.start, std::max(submitted, trace.last_end));
+    trace.last_end = hostTime(done.end, start);
+    TraceArguments arguments = std::move(done.command.arguments);
+    arguments.emplace_back("queued_us", 1e-3 * double(queued));
+    arguments.emplace_back("submitted_us", 1e-3 * double(submitted));
+    arguments.emplace_back("clock_error_us", 1e-3 * errorAt(trace, start));
+    traceEvent({std::move(done.command.name), kTraceDevice, trace.track, start, trace.last_end,
+                std::move(arguments)});
+  }
+}
+
+}  // namespace luciole

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/trace.hpp"
+#include "cl/device.hpp"
+
+// What a device's queue did when, for a trace: kernels and copies, by OpenCL's profiling events.
+namespace luciole {
+
+/// A queued command that isn't recorded yet.
+struct QueuedCommand {
+  cl::Event event;
+  std::string name;
+  TraceArguments arguments;
+  std::int64_t before, after;  ///< when the host began to queue it and was done with that
+};
+
+/// What a trace knows of a device's queue.
+///
+/// The device's clock is tied to the host's by the commands themselves: the device says when one was queued,
+/// and the host that this was between `before` and `after`. The command that was queued the fastest gives the
+/// best tie, half of its time being the error. With age an error grows by 0.5 ms a second, the most by which
+/// Linux slews one clock against another (adjtimex(2)), until another command's is better.
+struct CommandTrace {
+  std::size_t track;
+  std::vector<QueuedCommand> commands{};
+  std::int64_t host_minus_device = 0;                      ///< nanoseconds to add to the device's times
+  double error = std::numeric_limits<double>::infinity();  ///< of that, in nanoseconds, when it was tied
+  std::int64_t tied = 0;                                   ///< when that was
+  std::int64_t last_end = 0;                               ///< of the commands recorded so far
+};
+
+/// Records the commands that are done. Without a trace it does nothing. Throws MachineError where the device
+/// doesn't tell.
+void recordCommands(Device& device);
+
+/// See queueCommand().
+void noteCommand(Device& device, QueuedCommand&& command);
+
+/// Calls enqueue(cl::Event*), which queues one command and has OpenCL fill in the event, and notes the
+/// command for recordCommands(). Without a trace the pointer is null, and nothing is noted.
+template <class Enqueue>
+void queueCommand(Device& device, const char* name, std::initializer_list<TraceArgument> arguments,
+                  Enqueue&& enqueue) {
+  if (!device.trace) {
+    enqueue(static_cast<cl::Event*>(nullptr));
+    return;
+  }
+  QueuedCommand command{{}, name, traceArguments(arguments), nanosecondsSinceStart(), 0};
+  enqueue(&command.event);
+  command.after = nanosecondsSinceStart();
+  noteCommand(device, std::move(command));
+}
+
+}  // namespace luciole
