@@ -13,15 +13,9 @@
 // normals twice (24 bytes a pixel), the rows of kTreeArity nodes on the way to the lights in reach, and a test of its squares for
 // each such light. fill_lists pays that again only for lists of more than kFoundPerTile entries.
 //
-// Lights are found through a tree. They are sorted in space (spatialOrder), so that kTreeArity in a row are near each other and make
-// a node, and as many nodes in a row make a node of the level above, up to a level of kTreeArity nodes or fewer:
-//
-//   level 2   ┌────────────── 0 ──────────────┬────── 1 ── …        `tree`, 7 planes: the box around a node's lights (x y z of
-//   level 1   ┌──── 0 ────┬──── 1 ────┬─ … ───┤                     its low corner, then of its high one) and their least
-//   lights    0 1 2 … 15  16 17 … 31  32 …                          1 / range². Each level is padded to a multiple of
-//                                                                   kTreeArity; level 0, the lights themselves, comes first.
-#include "falloff.clh"
+// Lights are found through their tree (light_tree.clh).
 #include "lanes.clh"
+#include "light_tree.clh"
 #include "math.clh"
 #include "shared.h"
 
@@ -34,17 +28,6 @@ typedef struct {
   floatL plane;                   // the least of normal · (point − middle of the box)
 } Bounds;
 #define BOUNDS (kSquaresPerTile / LANES)
-
-// Makes the boxes from low to high, one a lane, hold the points in the mask.
-INLINE void grow_boxes(vec3L *low, vec3L *high, vec3L p, intL mask) {
-  floatL inf = INFINITY;
-  low->x = min_lanes(low->x, mask ? p.x : inf);
-  low->y = min_lanes(low->y, mask ? p.y : inf);
-  low->z = min_lanes(low->z, mask ? p.z : inf);
-  high->x = max_lanes(high->x, mask ? p.x : -inf);
-  high->y = max_lanes(high->y, mask ? p.y : -inf);
-  high->z = max_lanes(high->z, mask ? p.z : -inf);
-}
 
 // Sets lane i, counted through all of `bounds`, to the bounds of 1 << group_log2 pixels. position, normal: of the first of them.
 INLINE void bound_pixels(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
@@ -82,69 +65,19 @@ INLINE void bound_pixels(__global const float *position, __global const float *n
   out[12 * LANES] = least_lane(plane);
 }
 
-INLINE uint lowest_bit(uint bits) { return 31 - clz(bits & (0 - bits)); }
-
-// Distance from an interval to an interval along an axis.
-INLINE floatL gap(floatL low, floatL high, floatL other_low, floatL other_high) {
-  return max_lanes(max_lanes(low - other_high, other_low - high), (floatL)(0.0f));
-}
-
-// Squared distance between boxes as a share of range². Computed with shading's own operations (falloff.clh), each of which
-// rounds monotonically, so it never exceeds what shading computes for a light in one box and a point in the other.
-INLINE floatL ratio_between(vec3L low, vec3L high, vec3L other_low, vec3L other_high, floatL inverse_range2) {
-  floatL dx = gap(low.x, high.x, other_low.x, other_high.x);
-  floatL dy = gap(low.y, high.y, other_low.y, other_high.y);
-  floatL dz = gap(low.z, high.z, other_low.z, other_high.z);
-  return SQUARED_LENGTH(dx, dy, dz) * inverse_range2;
-}
-
-// Which of kTreeArity nodes in a row reach a box: bit i for node i.
-INLINE uint nodes_in_reach(__global const float *tree, uint stride, float4 low, float4 high) {
-  vec3L l = {(floatL)(low.x), (floatL)(low.y), (floatL)(low.z)}, h = {(floatL)(high.x), (floatL)(high.y), (floatL)(high.z)};
-  uint bits = 0;
-  for (uint node = 0; node < kTreeArity; node += LANES) {
-    vec3L node_low = load_vec3(tree + node, stride), node_high = load_vec3(tree + node + 3 * stride, stride);
-    // Infinitely far × 0 for a light that reaches everywhere is NaN: such a node counts as reached.
-    intL reached = !(ratio_between(node_low, node_high, l, h, load_lanes(tree + node + 6 * stride)) >= 1.0f);
-    bits |= lane_bits(reached) << node;
-  }
-  return bits;
-}
-
 // A way through the tree to all lights that reach a box, in the order of light indices.
 typedef struct {
-  __global const float *tree;
-  uint stride;
-  float4 low, high;      // the box
-  uint level_starts[8];  // 16⁸ lights are more than an index can tell apart
-  uint level_nodes[8];
-  uint rows[8];          // which row of its level is looked at,
-  uint bits[8];          // and which of its nodes are still to do
-  uint level, top;
+  LightTree tree;
+  float4 low, high;  // the box
+  uint rows[8];      // which row of its level is looked at,
+  uint bits[8];      // and which of its nodes are still to do
+  uint level;
 } Walk;
 
 INLINE void enter_row(Walk *walk, uint level, uint row) {
   walk->level = level;
   walk->rows[level] = row;
-  uint bits = nodes_in_reach(walk->tree + walk->level_starts[level] + row * kTreeArity, walk->stride, walk->low, walk->high);
-  // Padding is dropped: a box of infinite size would reach it.
-  uint nodes = walk->level_nodes[level] - row * kTreeArity;
-  walk->bits[level] = nodes < kTreeArity ? bits & ((1u << nodes) - 1) : bits;
-}
-
-INLINE void start_walk(Walk *walk, uint light_count) {
-  uint start = 0, nodes = light_count;
-  for (walk->top = 0;; ++walk->top) {
-    uint rows = (nodes + kTreeArity - 1) / kTreeArity;
-    walk->level_starts[walk->top] = start;
-    walk->level_nodes[walk->top] = nodes;
-    if (rows <= 1) break;
-    start += rows * kTreeArity;
-    nodes = rows;
-  }
-  walk->level = walk->top;
-  walk->bits[walk->top] = 0;
-  if (light_count > 0 && walk->low.x <= walk->high.x) enter_row(walk, walk->top, 0);
+  walk->bits[level] = nodes_in_reach(&walk->tree, level, row, walk->low, walk->high);
 }
 
 // The next light, ascending by index, or kNoLight after the last.
@@ -154,7 +87,7 @@ INLINE uint next_light(Walk *walk) {
     uint level = walk->level;
     uint bits = walk->bits[level];
     if (bits == 0) {
-      if (level == walk->top) return kNoLight;
+      if (level == walk->tree.top) return kNoLight;
       walk->level = level + 1;
       continue;
     }
@@ -181,22 +114,6 @@ INLINE intL may_face(vec3L to_light, vec3L extent, vec3L normal_low, vec3L norma
   return !(most - plane <= -SLACK * sizes);
 }
 
-// Mask: whether a spot's cone may touch the ball around a box. With v from the light to the ball's middle, the distance from there
-// to the cone's side is √(v² − (v·axis)²) cos − (v·axis) sin (B. Wronski, "Cull that cone!", 2017).
-INLINE intL may_touch_cone(vec3L to_light, vec3L extent, __global const ShadeLight *light) {
-  float cosine = light->direction.w;
-  // A cutoff of 90° or more: the formula doesn't hold, and every box counts as touched.
-  if (cosine <= 0.0f) return (intL)(1) != (intL)(0);
-  float sine = sqrt(1.0f - cosine * cosine);
-  floatL v2 = dot3(to_light, to_light), extent2 = dot3(extent, extent);
-  floatL along = -dot3s(to_light, light->direction);
-  floatL across2 = max_lanes(v2 - along * along, (floatL)(0.0f));
-  floatL away = across2 * rsqrt_lanes(across2) * cosine - along * sine;
-  floatL radius = extent2 * rsqrt_lanes(extent2);
-  // A relative error of 2^-24 in v² becomes one of 2^-12 in |v| where the difference under the root is near 0.
-  return !(away > radius + 1e-3f * v2 * rsqrt_lanes(v2));
-}
-
 // Mask: which of LANES squares a light may light. tests: kByRange …
 INLINE intL squares_lit(const Bounds *bounds, __global const ShadeLight *light, uint tests) {
   vec3L low = bounds->low, high = bounds->high;
@@ -205,14 +122,11 @@ INLINE intL squares_lit(const Bounds *bounds, __global const ShadeLight *light, 
   vec3L extent = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
   if (light->kind != kDirectionalLight) {
     lit &= !(ratio_between(to_light, to_light, low, high, (floatL)(light->position.w)) >= 1.0f);
-    vec3L middle = {0.5f * low.x + 0.5f * high.x, 0.5f * low.y + 0.5f * high.y, 0.5f * low.z + 0.5f * high.z};
+    vec3L middle;
+    find_middle(low, high, &middle, &extent);
     to_light.x -= middle.x;
     to_light.y -= middle.y;
     to_light.z -= middle.z;
-    // The middle is rounded, in a tiny box up to one of its sides: the farther side counts.
-    extent.x = max_lanes(high.x - middle.x, middle.x - low.x);
-    extent.y = max_lanes(high.y - middle.y, middle.y - low.y);
-    extent.z = max_lanes(high.z - middle.z, middle.z - low.z);
   }
   if ((tests & kByCone) && light->kind == kSpotLight) lit &= may_touch_cone(to_light, extent, light);
   if (tests & kByFacing) {
@@ -233,11 +147,14 @@ INLINE void start_tile(Walk *walk, const Bounds *bounds, __global const float *t
     high.y = max_lanes(high.y, bounds[i].high.y);
     high.z = max_lanes(high.z, bounds[i].high.z);
   }
-  walk->tree = tree;
-  walk->stride = tree_stride;
+  walk->tree.nodes = tree;
+  walk->tree.stride = tree_stride;
+  find_levels(&walk->tree, light_count);
   walk->low = (float4)(least_lane(low.x), least_lane(low.y), least_lane(low.z), 0.0f);
   walk->high = (float4)(greatest_lane(high.x), greatest_lane(high.y), greatest_lane(high.z), 0.0f);
-  start_walk(walk, light_count);
+  walk->level = walk->tree.top;
+  walk->bits[walk->level] = 0;
+  if (light_count > 0 && walk->low.x <= walk->high.x) enter_row(walk, walk->level, 0);
 }
 
 // Squares in 1 << group_log2 pixels.

@@ -29,6 +29,9 @@ enum {
 // The square of its tile, 0 to kSquaresPerTile − 1, that a pixel belongs to. place: its index in a plane, or in its tile.
 #define SQUARE_OF_PIXEL(place) ((place) / (kTilePixels / kSquaresPerTile) % kSquaresPerTile)
 
+// Tiles that a work-item of shade_tiles.cl takes at most.
+enum { kBlockTiles = 16 };
+
 // An entry of a tile's light list.
 typedef struct {
   uint light;    // its index

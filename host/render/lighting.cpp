@@ -11,6 +11,7 @@
 #include "render/exact_shadows.hpp"
 #include "render/find_needed.hpp"
 #include "render/shade.hpp"
+#include "render/shade_tiles.hpp"
 #include "shadow/draw_shadow_maps.hpp"
 
 namespace luciole {
@@ -174,6 +175,14 @@ Plane lightsInRange(Device& device, Lighting& lighting, const GBufferBuffers& bu
   return result;
 }
 
+/// Whether culling and shading go together, without lists in memory: where nothing else reads them. A device
+/// of single lanes has far more threads than a picture has blocks of tiles.
+bool needsNoLists(const Device& device, const Lighting& lighting, const FeatureSet& features,
+                  const PixelCounts& counts) {
+  return features.has(Feature::kLightLists) && !features.shadows() && !counts.list_length &&
+         lighting.group_log2 == 4 && device.description.lanes > 1;
+}
+
 /// Fills in the counts that are asked for. lists: that pixels were shaded with; null if with all lights.
 void countLights(Device& device, Lighting& lighting, const LightLists* lists, const GBuffer& gbuffer,
                  const GBufferBuffers& buffers, const PixelCounts& counts, LitPlanes& lit) {
@@ -231,7 +240,8 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   const Plane& lift = level.empty() ? gbuffer.lift : level;
   const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
   LitPlanes lit;
-  const bool culled = features.has(Feature::kLightLists);
+  const bool together = needsNoLists(device, lighting, features, counts);
+  const bool culled = features.has(Feature::kLightLists) && !together;
   const LightLists none;
   const LightLists& lists = culled ? lighting.lists : none;
   if (culled) {
@@ -252,6 +262,22 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   lit.color.resize(pixels * (features.has(Feature::kOutputShadow) ? 4 : 3));
   const Buffer<float> image = borrowedForOutput(device, lit.color);
   timed(stats, Stage::kShade, [&] {
+    if (together) {
+      const TileBlock block = chooseBlock(gbuffer.tiles_x, gbuffer.tiles_y, device.description.compute_units);
+      const TileCounts tiles = shadeTiles(device, defines,
+                                          {.frame = frame,
+                                           .gbuffer = buffers,
+                                           .tiles_x = gbuffer.tiles_x,
+                                           .tiles_y = gbuffer.tiles_y,
+                                           .block = block,
+                                           .lights = lighting.lights,
+                                           .tree = lighting.tree,
+                                           .tree_stride = lighting.host_tree.stride,
+                                           .image = image});
+      lit.list_entries = tiles.entries;
+      lit.evaluated = tiles.pairs;
+      return;
+    }
     shade(device, defines,
           {.frame = frame,
            .gbuffer = buffers,
@@ -264,9 +290,11 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
            .image = image});
   });
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
-  if (counts.in_range || counts.evaluated || counts.list_length)
+  PixelCounts missing = counts;
+  if (together) missing.evaluated = false;
+  if (missing.in_range || missing.evaluated || missing.list_length)
     timed(stats, Stage::kCountLights,
-          [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, counts, lit); });
+          [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, missing, lit); });
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              geometric_normal.size() + lift.size() + lit.color.size();

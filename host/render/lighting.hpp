@@ -35,7 +35,7 @@ struct Lighting {
   Buffer<const ShadowFace> shadow_faces;
   Buffer<const ShadowTexel> shadow_texels;  ///< those drawn so far, without Feature::kExact
   Buffer<const BoundTexel> shadow_bounds;   ///< those drawn so far, with Feature::kExact
-  LightLists lists;                         ///< of the last G-buffer, with Feature::kLightLists
+  LightLists lists;                         ///< of the last G-buffer that was shaded by lists
   LightLists lists_in_range;                ///< lists by range alone, to count lights in range
   std::size_t bytes = 0;                    ///< of lights and tree on the device
 
@@ -57,7 +57,8 @@ struct LitPlanes {
   Plane light_count;  ///< lights in range of each pixel, if asked for
   Plane
       list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists
-  std::uint64_t list_entries = 0;
+  std::uint64_t list_entries =
+      0;                        ///< of Lighting::lists, or where none were made, of those that shading found
   PairBits pair_bits;           ///< with Feature::kExact: which pixels each entry of Lighting::lists lights
   std::uint64_t traced = 0;     ///< pixel-light pairs whose exact shadow took a ray
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
@@ -70,9 +71,10 @@ struct PixelCounts {
   bool list_length = false;  ///< LitPlanes::list_length
 };
 
-/// Culls and shades one G-buffer. Draws those parts of the scene's shadow maps that it looks up and that
-/// weren't drawn before. features: those that the lighting was prepared for, or fewer. Adds the times of its
-/// stages to `stats`, and raises stats.device_bytes to what it needs. Throws MachineError.
+/// Culls and shades one G-buffer: together where nothing but shading reads the light lists, that is without
+/// shadows and without counting how long lists are. Draws those parts of the scene's shadow maps that it
+/// looks up and that weren't drawn before. features: those that the lighting was prepared for, or fewer. Adds
+/// the times of its stages to `stats`, and raises stats.device_bytes to what it needs. Throws MachineError.
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
                        const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats);
 

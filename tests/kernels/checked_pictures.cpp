@@ -67,7 +67,9 @@ void lightPicture(unsigned number) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-  lightGBuffer(device, scene, lighting, features, gbuffer, {.in_range = true, .list_length = true}, stats);
+  // Without shadows, and if nobody asks for lists, culling and shading are one kernel.
+  lightGBuffer(device, scene, lighting, features, gbuffer,
+               {.in_range = true, .list_length = features.shadows()}, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   if (shadows.texels.empty()) return;
   std::vector<MapPair> pairs;

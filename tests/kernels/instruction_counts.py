@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts the x86 instructions that PoCL makes of shade.cl, for six sets of features.
+"""Counts the x86 instructions that PoCL makes of shade.cl or, without shadows, shade_tiles.cl, for six sets of features.
 
     instruction_counts.py PROGRAM [BEFORE]     PROGRAM, BEFORE: builds of luciole
 
@@ -22,6 +22,7 @@ FEATURE_SETS = [  # name, scene, options
     ("no lists", "cornell.json", ["--shadows", "off", "--culling", "none"]),
 ]
 LANES = 16
+KERNELS = ("shade.so", "shade_tiles.so")  # a set of features takes one of them
 
 
 def compile_shade(program, scene, options):
@@ -32,9 +33,10 @@ def compile_shade(program, scene, options):
     subprocess.run([program, "render", os.path.join(SCENES, scene), "-o", picture, "--size", "64x36", "--quiet",
                     "--device", f",lanes={LANES}", *options], env=environment, check=True)
     for place, _, files in os.walk(folder.name):
-        if "shade.so" in files:
-            return os.path.join(place, "shade.so"), folder
-    raise SystemExit("no shade.so in PoCL's cache: is the device PoCL's?")
+        for kernel in KERNELS:
+            if kernel in files:
+                return os.path.join(place, kernel), folder
+    raise SystemExit(f"neither of {', '.join(KERNELS)} in PoCL's cache: is the device PoCL's?")
 
 
 def disassemble(path):
