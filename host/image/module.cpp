@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
+#include "image/quick_texture.hpp"
 
 namespace luciole {
 namespace {
@@ -58,10 +61,14 @@ LayerFile readLayers(const std::string& path) { return functions().read_layers(p
 
 std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
 
-Texture readTexture(const std::string& path) { return functions().read_texture(path); }
+Texture readTexture(const std::string& path) {
+  std::optional<Texture> texture = readQuickly(path);
+  return texture ? std::move(*texture) : functions().read_texture(path);
+}
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {
-  return functions().read_texture_in_memory(file, name);
+  std::optional<Texture> texture = readQuickly(file, name);
+  return texture ? std::move(*texture) : functions().read_texture_in_memory(file, name);
 }
 
 Image errorMap(const ImageDifference& difference) { return functions().error_map(difference); }
