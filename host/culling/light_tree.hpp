@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "base/array_memory.hpp"
 #include "kernels/shared.h"
 #include "scene/scene.hpp"
 
@@ -12,12 +12,13 @@ namespace luciole {
 
 /// Indices of the lights in an order that keeps neighbours together: lights that reach everywhere first, then
 /// by the binary exponent of their range, then along a Z curve (G. Morton, 1966) through the box around
-/// them. It doesn't depend on the camera. O(n log n), on all cores.
+/// them. It doesn't depend on the camera. O(n), on all cores.
 std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights);
 
 /// The tree over the lights that kernels/cull.cl walks; a drawing of it is there.
 struct LightTree {
-  Plane planes;            ///< low x y z, high x y z, 1 / range²: 7 planes of `stride` floats each
+  /// Low x y z, high x y z, 1 / range²: 7 planes of `stride` floats each.
+  std::vector<float, RawArrayAllocator<float>> planes;
   std::size_t stride = 0;  ///< nodes of all levels, padding included
 };
 

@@ -17,6 +17,16 @@ constexpr double kFarthestLight = 1e18;
 /// inside the cone.
 constexpr double kNarrowestEdge = 1 - 12 * 0x1p-24;
 
+/// How many lights ahead of the one at work are asked for, enough to hide what memory takes.
+constexpr std::size_t kLightsAhead = 12;
+
+void prefetch(const Light& light) {
+  constexpr std::size_t kLine = 64;
+  const char* bytes = reinterpret_cast<const char*>(&light);
+  for (std::size_t i = 0; i < sizeof(Light); i += kLine) __builtin_prefetch(bytes + i);
+  __builtin_prefetch(bytes + sizeof(Light) - 1);
+}
+
 float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y), float(xyz.z), float(w)}; }
 
 }  // namespace
@@ -27,6 +37,8 @@ LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowM
   const std::vector<std::uint32_t> order = spatialOrder(scene.lights);
   LightArray result(order.size());
   tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
+    // Neighbours in space lie anywhere in memory.
+    if (i + kLightsAhead < order.size()) prefetch(scene.lights[order[i + kLightsAhead]]);
     const Light& light = scene.lights[order[i]];
     ShadeLight& out = result[i];
     const glm::dvec3 shines = rotation * light.direction;
@@ -43,7 +55,8 @@ LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowM
     } else {
       out.kind = light.kind == LightKind::kSpot ? kSpotLight : kPointLight;
       const glm::dvec3 place(world_to_view * glm::dvec4(light.position, 1));
-      nearer = std::max(glm::length(place) / kFarthestLight, 1.0);
+      if (std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) > kFarthestLight / 2)
+        nearer = std::max(glm::length(place) / kFarthestLight, 1.0);
       out.position = pack(place / nearer, inverse_range2 * nearer * nearer);
       if (light.falloff == SpotFalloff::kCone)
         cone_scale = 1.0 / std::max(std::cos(light.inner_cone) - edge, 1e-6);

@@ -9,7 +9,8 @@
 
 namespace luciole {
 
-using LightArray = std::vector<ShadeLight, ArrayAllocator<ShadeLight>>;
+/// New elements are not cleared.
+using LightArray = std::vector<ShadeLight, RawArrayAllocator<ShadeLight>>;
 
 /// The scene's lights as kernels see them: in the camera's view space, in the order of spatialOrder(). A
 /// light whose squared distance would overflow a float is moved nearer, with its falloff scaled to match.

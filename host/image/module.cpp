@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
 #include "base/trace.hpp"
+#include "image/quick_texture.hpp"
 
 namespace luciole {
 namespace {
@@ -62,12 +65,14 @@ std::vector<PicturePart> readParts(const std::string& path) { return functions()
 
 Texture readTexture(const std::string& path) {
   const TraceSpan span("read texture", {{"file", path}});
-  return functions().read_texture(path);
+  std::optional<Texture> texture = readQuickly(path);
+  return texture ? std::move(*texture) : functions().read_texture(path);
 }
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {
   const TraceSpan span("read texture", {{"file", name}, {"bytes", std::int64_t(file.size())}});
-  return functions().read_texture_in_memory(file, name);
+  std::optional<Texture> texture = readQuickly(file, name);
+  return texture ? std::move(*texture) : functions().read_texture_in_memory(file, name);
 }
 
 Image errorMap(const ImageDifference& difference) { return functions().error_map(difference); }

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/array_memory.hpp"
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "image/build_mips.hpp"
 #include "image/oiio.hpp"
+#include "image/spread_texels.hpp"
 #include "image/srgb.hpp"
 
 namespace luciole {
@@ -39,14 +41,13 @@ std::uint16_t toCode(float unit) { return std::uint16_t(unit * 65535.0f + 0.5f);
 float clampUnit(float value) { return value > 0.0f ? std::min(value, 1.0f) : 0.0f; }
 
 /// The texels of float pictures, and of integer ones that are marked as linear.
-std::vector<std::uint16_t> texelsOfLinear(OIIO::ImageInput& input, const std::string& name,
-                                          const std::array<int, 4>& places) {
+Texels texelsOfLinear(OIIO::ImageInput& input, const std::string& name, const std::array<int, 4>& places) {
   const OIIO::ImageSpec& spec = input.spec();
   const std::size_t pixels = std::size_t(spec.width) * spec.height;
   std::vector<float> values(pixels * spec.nchannels);
   readValues(input, name, OIIO::TypeDesc::FLOAT, values.data());
   const bool multiplied = places[3] != kNone && !spec.get_int_attribute("oiio:UnassociatedAlpha");
-  std::vector<std::uint16_t> texels(pixels * 4);
+  Texels texels(pixels * 4);
   for (std::size_t p = 0; p < pixels; ++p) {
     const float* value = &values[p * spec.nchannels];
     const float alpha = places[3] == kNone ? 1.0f : clampUnit(value[places[3]]);
@@ -57,19 +58,24 @@ std::vector<std::uint16_t> texelsOfLinear(OIIO::ImageInput& input, const std::st
   return texels;
 }
 
-std::vector<std::uint16_t> texelsOfCodes(OIIO::ImageInput& input, const std::string& name,
-                                         const std::array<int, 4>& places) {
+template <class Code>
+Texels texelsOf(OIIO::ImageInput& input, const std::string& name, const std::array<int, 4>& places) {
   const OIIO::ImageSpec& spec = input.spec();
   const std::size_t pixels = std::size_t(spec.width) * spec.height;
-  std::vector<std::uint16_t> values(pixels * spec.nchannels);
-  readValues(input, name, OIIO::TypeDesc::UINT16, values.data());
-  if (spec.nchannels == 4 && places == std::array<int, 4>{0, 1, 2, 3}) return values;
-  std::vector<std::uint16_t> texels(pixels * 4);
+  std::vector<Code, RawArrayAllocator<Code>> values(pixels * spec.nchannels);
+  readValues(input, name, OIIO::BaseTypeFromC<Code>::value, values.data());
+  Texels texels(pixels * 4);
   for (std::size_t p = 0; p < pixels; ++p) {
-    const std::uint16_t* value = &values[p * spec.nchannels];
-    for (int c = 0; c < 4; ++c) texels[p * 4 + c] = places[c] == kNone ? 65535 : value[places[c]];
+    const Code* value = &values[p * spec.nchannels];
+    for (int c = 0; c < 4; ++c) texels[p * 4 + c] = places[c] == kNone ? 65535 : wideCode(value[places[c]]);
   }
   return texels;
+}
+
+/// The texels of pictures of integers, which are sRGB.
+Texels texelsOfCodes(OIIO::ImageInput& input, const std::string& name, const std::array<int, 4>& places) {
+  const bool bytes = input.spec().format == OIIO::TypeDesc::UINT8;
+  return bytes ? texelsOf<std::uint8_t>(input, name, places) : texelsOf<std::uint16_t>(input, name, places);
 }
 
 Texture read(const std::string& path, const std::string& name) {

@@ -4,7 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "base/array_memory.hpp"
+
 namespace luciole {
+
+/// New elements are not cleared.
+using Texels = std::vector<std::uint16_t, RawArrayAllocator<std::uint16_t>>;
 
 /// One level of a mip chain: row-major, texel (0,0) top left.
 struct MipLevel {
@@ -13,7 +18,7 @@ struct MipLevel {
   /// 4 values a texel, RGBA, each 16-bit unsigned normalized. Alpha is linear. Colour is sRGB-encoded in the
   /// finest level (so that an 8-bit file's codes are kept exactly, as code × 257), and in the others the
   /// square root of the linear value, which decodes fast. 8 bytes a texel.
-  std::vector<std::uint16_t> texels;
+  Texels texels;
 };
 
 /// A filtered texture: levels[0] is the picture itself, each next level half the size, down to 1×1.

@@ -256,14 +256,19 @@ Framing frameScene(const Scene& scene) {
     return frameFromOutside(bounds, glm::normalize(glm::dvec3(0.5, 0.35, 1)));
 
   const RayScene rays = buildRayScene(scene, centerOf(bounds));
-  std::vector<glm::dvec3> places = placesToStand(scene, bounds);
-  const std::size_t tried = places.size();
-  std::erase_if(places, [&](const glm::dvec3& place) { return !isInRoom(rays, place); });
+  const std::vector<glm::dvec3> tried = placesToStand(scene, bounds);
+  std::vector<char> in_room(tried.size());
+  tbb::parallel_for(std::size_t{0}, tried.size(),
+                    [&](std::size_t i) { in_room[i] = isInRoom(rays, tried[i]); });
+  std::vector<glm::dvec3> places;
+  for (std::size_t i = 0; i < tried.size(); ++i)
+    if (in_room[i]) places.push_back(tried[i]);
   const glm::dvec3 usual = outsideDirection(rays, bounds);
   const Sides outside = sidesSeen(rays, bounds, usual);
   // A car has a cabin and is still seen from outside. A hall is mostly rooms, or shows mostly backs from
   // outside.
-  const bool is_hall = 2 * places.size() >= tried || (!places.empty() && outside.backs > outside.fronts);
+  const bool is_hall =
+      2 * places.size() >= tried.size() || (!places.empty() && outside.backs > outside.fronts);
   if (!is_hall) return frameFromOutside(bounds, usual);
   if (const auto open = openSide(rays, places)) return frameFromOutside(bounds, *open);
 

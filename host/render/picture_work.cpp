@@ -100,8 +100,8 @@ MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, 
   return mean;
 }
 
-template <class T>
-double bytesOf(const std::vector<T>& values) {
+template <class T, class Allocator>
+double bytesOf(const std::vector<T, Allocator>& values) {
   return double(values.size() * sizeof(T));
 }
 

@@ -19,10 +19,12 @@ int addTexture(Scene& scene, const std::string& path) {
 }
 
 void decodeTextures(Scene& scene) {
-  tbb::parallel_for(std::size_t{0}, scene.textures.size(), [&](std::size_t i) {
+  const auto decode = [&](std::size_t i) {
     Texture& texture = scene.textures[i];
     if (texture.levels.empty()) texture = readTexture(texture.name);
-  });
+  };
+  // One by one, because each takes long.
+  tbb::parallel_for(std::size_t{0}, scene.textures.size(), decode, tbb::simple_partitioner());
 }
 
 }  // namespace luciole

@@ -61,8 +61,8 @@ struct Digest {
     add(text.size());
     addBytes(text.data(), text.size());
   }
-  template <class T>
-  void addField(const std::vector<T>& values) {
+  template <class T, class Allocator>
+  void addField(const std::vector<T, Allocator>& values) {
     add(values.size());
     if constexpr (IsPacked<T>::value)
       addBytes(values.data(), values.size() * sizeof(T));

@@ -49,8 +49,8 @@ struct Walk {
   void visit(glm::mat<Columns, Rows, T>& matrix) {
     for (int i = 0; i < Columns; ++i) visit(matrix[i]);
   }
-  template <class T>
-  void visit(std::vector<T>& values) {
+  template <class T, class Allocator>
+  void visit(std::vector<T, Allocator>& values) {
     for (T& value : values) visit(value);
     if (isNext()) values.emplace_back();
   }
@@ -75,7 +75,7 @@ Scene fullScene() {
   Scene scene;
   scene.textures.resize(1);
   scene.textures[0].levels.resize(1);
-  scene.textures[0].levels[0].texels.resize(5);
+  scene.textures[0].levels[0].texels.assign(5, 0);
   scene.materials.resize(2);
   Mesh& mesh = scene.meshes.emplace_back();
   mesh.positions.resize(3);

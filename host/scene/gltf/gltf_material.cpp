@@ -91,7 +91,7 @@ TextureUse textureUse(const GltfModel& model, int texture, const std::string& pl
 
 /// Linear mean of a colour picture: its 1×1 level.
 glm::dvec3 meanColor(const Texture& texture) {
-  const std::vector<std::uint16_t>& texel = texture.levels.back().texels;
+  const Texels& texel = texture.levels.back().texels;
   const glm::dvec3 codes = glm::dvec3(texel[0], texel[1], texel[2]) / 65535.0;
   if (texture.levels.size() > 1) return codes * codes;
   return {decodeSrgb(codes.r), decodeSrgb(codes.g), decodeSrgb(codes.b)};
@@ -99,7 +99,7 @@ glm::dvec3 meanColor(const Texture& texture) {
 
 /// Mean of a picture whose codes are plain numbers in [0,1], not sRGB.
 glm::dvec3 meanCode(const Texture& texture) {
-  const std::vector<std::uint16_t>& texels = texture.levels[0].texels;
+  const Texels& texels = texture.levels[0].texels;
   glm::dvec3 sum(0);
   for (std::size_t i = 0; i + 3 < texels.size(); i += 4)
     sum += glm::dvec3(texels[i], texels[i + 1], texels[i + 2]);

@@ -66,11 +66,7 @@ tinyobj::material_t parse(const MtlEntry& entry) {
 }
 
 bool hasAlpha(const Texture& texture) {
-  const std::vector<std::uint16_t>& texels = texture.levels[0].texels;
-  for (std::size_t i = 3; i < texels.size(); i += 4) {
-    if (texels[i] != 0xffff) return true;
-  }
-  return false;
+  return texture.alpha_varies || texture.levels[0].texels[3] != 0xffff;
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "scene/obj/obj.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -77,13 +79,18 @@ std::vector<Triangle> cutFaces(const ObjFile& file, const std::vector<MtlEntry>&
     entry_of_material.push_back(found == entry_of_name.end() ? -1 : found->second);
   }
   std::vector<Triangle> triangles;
+  triangles.reserve(file.faces.size());
   std::vector<glm::dvec3> polygon;
   for (const ObjFace& face : file.faces) {
     if (face.corner_count < 3) continue;
     const ObjCorner* corners = &file.corners[face.first_corner];
+    const int entry = face.material < 0 ? -1 : entry_of_material[face.material];
+    if (face.corner_count == 3) {
+      triangles.push_back({{corners[0], corners[1], corners[2]}, entry, face.smoothing});
+      continue;
+    }
     polygon.clear();
     for (int i = 0; i < face.corner_count; ++i) polygon.emplace_back(file.positions[corners[i].position]);
-    const int entry = face.material < 0 ? -1 : entry_of_material[face.material];
     for (const auto& [a, b, c] : triangulate(polygon))
       triangles.push_back({{corners[a], corners[b], corners[c]}, entry, face.smoothing});
   }
@@ -92,15 +99,16 @@ std::vector<Triangle> cutFaces(const ObjFile& file, const std::vector<MtlEntry>&
 
 /// Normalizes the file's normals. Corners whose normal has no direction get none.
 void normalize(ObjFile& file, std::vector<Triangle>& triangles) {
-  std::vector<bool> usable;
+  bool all_usable = true;
   for (glm::vec3& normal : file.normals) {
     const double length = glm::length(glm::dvec3(normal));
-    usable.push_back(length > 0);
-    if (length > 0) normal = glm::vec3(glm::dvec3(normal) / length);
+    all_usable &= length > 0;
+    normal = length > 0 ? glm::vec3(glm::dvec3(normal) / length) : glm::vec3(0);
   }
+  if (all_usable) return;
   for (Triangle& triangle : triangles) {
     for (ObjCorner& corner : triangle.corners) {
-      if (corner.normal >= 0 && !usable[corner.normal]) corner.normal = -1;
+      if (corner.normal >= 0 && file.normals[corner.normal] == glm::vec3(0)) corner.normal = -1;
     }
   }
 }
@@ -189,23 +197,38 @@ class VertexMaker {
   std::vector<Made> made_;
 };
 
-/// Adds the materials that triangles use. Returns their indices in the scene by entry; key -1: the default
-/// material.
-std::map<int, std::uint32_t> addMaterials(const std::vector<MtlEntry>& entries,
-                                          const std::vector<Triangle>& triangles, Scene& scene) {
-  std::map<int, std::uint32_t> materials;
+/// Adds the materials that triangles use, their textures not decoded yet. Returns their indices in the scene
+/// by entry + 1; 0: the default material.
+std::vector<std::optional<std::uint32_t>> addMaterials(const std::vector<MtlEntry>& entries,
+                                                       const std::vector<Triangle>& triangles, Scene& scene) {
+  std::vector<std::optional<std::uint32_t>> materials(entries.size() + 1);
   for (const Triangle& triangle : triangles) {
-    if (materials.count(triangle.entry)) continue;
-    materials[triangle.entry] = static_cast<std::uint32_t>(scene.materials.size());
+    std::optional<std::uint32_t>& index = materials[triangle.entry + 1];
+    if (index) continue;
+    index = static_cast<std::uint32_t>(scene.materials.size());
     Material material;
     material.name = "default";
     material.double_sided = true;
     if (triangle.entry >= 0) material = readMaterial(entries[triangle.entry], scene);
     scene.materials.push_back(material);
   }
-  decodeTextures(scene);
-  for (const auto& [entry, material] : materials) cutHoles(scene.materials[material], scene);
   return materials;
+}
+
+/// Everything of the mesh but its materials.
+Mesh makeMesh(ObjFile& file, std::vector<Triangle>& triangles) {
+  normalize(file, triangles);
+  windByNormals(file, triangles);
+  addMissingNormals(file, triangles);
+  Mesh mesh;
+  mesh.triangles.reserve(triangles.size());
+  VertexMaker maker(file, mesh);
+  for (const Triangle& triangle : triangles) {
+    glm::uvec3 vertices;
+    for (int i = 0; i < 3; ++i) vertices[i] = maker.vertex(triangle.corners[i]);
+    mesh.triangles.push_back(vertices);
+  }
+  return mesh;
 }
 
 }  // namespace
@@ -215,20 +238,16 @@ std::uint32_t loadObj(const std::string& path, Scene& scene) {
   const std::vector<MtlEntry> entries = readEntries(path, file.material_files);
   std::vector<Triangle> triangles = cutFaces(file, entries);
   if (triangles.empty()) throw InputError(path + ": has no faces, expected an OBJ file with at least one");
-  normalize(file, triangles);
-  windByNormals(file, triangles);
-  addMissingNormals(file, triangles);
 
-  const std::map<int, std::uint32_t> materials = addMaterials(entries, triangles, scene);
+  const std::size_t first_material = scene.materials.size();
+  const auto materials = addMaterials(entries, triangles, scene);
   Mesh mesh;
+  tbb::parallel_invoke([&] { decodeTextures(scene); }, [&] { mesh = makeMesh(file, triangles); });
+  for (std::size_t i = first_material; i < scene.materials.size(); ++i) cutHoles(scene.materials[i], scene);
   mesh.name = path;
-  VertexMaker maker(file, mesh);
-  for (const Triangle& triangle : triangles) {
-    glm::uvec3 vertices;
-    for (int i = 0; i < 3; ++i) vertices[i] = maker.vertex(triangle.corners[i]);
-    mesh.triangles.push_back(vertices);
-    mesh.triangle_materials.push_back(materials.at(triangle.entry));
-  }
+  mesh.triangle_materials.reserve(triangles.size());
+  for (const Triangle& triangle : triangles)
+    mesh.triangle_materials.push_back(*materials[triangle.entry + 1]);
   const std::uint32_t index = static_cast<std::uint32_t>(scene.meshes.size());
   scene.meshes.push_back(std::move(mesh));
   scene.objects.push_back({index, glm::dmat4(1.0), -1});

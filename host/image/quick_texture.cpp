@@ -1,0 +1,144 @@
+#include "image/quick_texture.hpp"
+
+// clang-format off
+#include <cstdio>  // jpeglib.h needs its FILE
+#include <jpeglib.h>
+// clang-format on
+
+#include <algorithm>
+#include <array>
+#include <csetjmp>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/machine_memory.hpp"
+#include "base/picture_size.hpp"
+#include "image/build_mips.hpp"
+#include "image/quick_png.hpp"
+#include "image/spread_texels.hpp"
+
+namespace luciole {
+namespace {
+
+/// Gives the rows of a JPEG file in memory, from the top down. An error of the library jumps back into
+/// call(), over no object that has a destructor.
+class JpegRows {
+ public:
+  explicit JpegRows(std::span<const std::byte> file) : file_(file) {
+    jpeg_.err = jpeg_std_error(&errors_);
+    errors_.error_exit = onError;
+    errors_.output_message = [](j_common_ptr) {};
+    jpeg_.client_data = this;
+    is_made_ = call([&] { jpeg_create_decompress(&jpeg_); });
+  }
+  ~JpegRows() { jpeg_destroy_decompress(&jpeg_); }
+  JpegRows(const JpegRows&) = delete;
+  JpegRows& operator=(const JpegRows&) = delete;
+
+  /// Reads up to the first row; false where this isn't a file for here.
+  bool begin() {
+    bool is_plain = false;
+    const bool read =
+        is_made_ && call([&] {
+          // Some versions of libjpeg take no pointer to const; none writes there.
+          jpeg_mem_src(&jpeg_,
+                       const_cast<unsigned char*>(reinterpret_cast<const unsigned char*>(file_.data())),
+                       static_cast<unsigned long>(file_.size()));
+          jpeg_read_header(&jpeg_, TRUE);
+          is_plain = isPossible() && ((jpeg_.num_components == 1 && jpeg_.out_color_space == JCS_GRAYSCALE) ||
+                                      (jpeg_.num_components == 3 && jpeg_.out_color_space == JCS_RGB));
+          if (is_plain) jpeg_start_decompress(&jpeg_);
+        });
+    return read && is_plain;
+  }
+
+  std::size_t width() const { return jpeg_.output_width; }
+  std::size_t height() const { return jpeg_.output_height; }
+  int channels() const { return jpeg_.output_components; }
+
+  bool next(std::uint8_t* row) {
+    unsigned read = 0;
+    return call([&] { read = jpeg_read_scanlines(&jpeg_, &row, 1); }) && read == 1;
+  }
+
+  /// Whether all was read without a warning, which is what libjpeg has to say of truncated files.
+  bool end() {
+    return call([&] { jpeg_finish_decompress(&jpeg_); }) && errors_.num_warnings == 0;
+  }
+
+ private:
+  /// A header that claims more than this many times the file's bytes is damaged.
+  bool isPossible() const {
+    constexpr std::uint64_t kMostCompression = 65536;
+    return jpeg_.image_width <= kLargestSide && jpeg_.image_height <= kLargestSide &&
+           std::uint64_t(jpeg_.image_width) * jpeg_.image_height * jpeg_.num_components / kMostCompression <=
+               file_.size();
+  }
+
+  template <class Use>
+  bool call(const Use& use) {
+    if (setjmp(on_error_) != 0) return false;
+    use();
+    return true;
+  }
+
+  [[noreturn]] static void onError(j_common_ptr jpeg) {
+    std::longjmp(static_cast<JpegRows*>(jpeg->client_data)->on_error_, 1);
+  }
+
+  jpeg_decompress_struct jpeg_{};
+  jpeg_error_mgr errors_{};
+  std::jmp_buf on_error_;
+  std::span<const std::byte> file_;
+  bool is_made_ = false;
+};
+
+std::optional<MipLevel> readJpegQuickly(std::span<const std::byte> file, const std::string& name) {
+  constexpr std::array<std::byte, 3> kSignature{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}};
+  if (file.size() < kSignature.size() || !std::equal(kSignature.begin(), kSignature.end(), file.begin()))
+    return std::nullopt;
+  JpegRows rows(file);
+  if (!rows.begin()) return std::nullopt;
+  const std::size_t pixels = rows.width() * rows.height();
+  // The texels, and a third more for the mip chain.
+  requireMemory(double(pixels * 4 * sizeof(std::uint16_t)) * 4 / 3, name);
+  MipLevel level{int(rows.width()), int(rows.height()), Texels(pixels * 4)};
+  std::vector<std::uint8_t> row(rows.width() * rows.channels());
+  for (std::size_t y = 0; y < rows.height(); ++y) {
+    if (!rows.next(row.data())) return std::nullopt;
+    spreadTexels(row.data(), rows.width(), rows.channels(), &level.texels[y * rows.width() * 4]);
+  }
+  if (!rows.end()) return std::nullopt;
+  return level;
+}
+
+}  // namespace
+
+std::optional<Texture> readQuickly(std::span<const std::byte> file, const std::string& name) {
+  std::optional<MipLevel> level = readPngQuickly(file, name);
+  if (!level) level = readJpegQuickly(file, name);
+  if (!level) return std::nullopt;
+  Texture texture{name, {}};
+  texture.levels.push_back(std::move(*level));
+  buildMips(texture);
+  return texture;
+}
+
+std::optional<Texture> readQuickly(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;
+  const std::uintmax_t size = std::filesystem::file_size(path, failed);
+  const auto close = [](std::FILE* file) { std::fclose(file); };
+  const std::unique_ptr<std::FILE, decltype(close)> file(failed ? nullptr : std::fopen(path.c_str(), "rb"),
+                                                         close);
+  if (!file) return std::nullopt;
+  requireMemory(double(size), path);
+  const std::unique_ptr<std::byte[]> bytes(new std::byte[size]);
+  if (std::fread(bytes.get(), 1, size, file.get()) != size) return std::nullopt;
+  return readQuickly(std::span<const std::byte>(bytes.get(), size), path);
+}
+
+}  // namespace luciole
