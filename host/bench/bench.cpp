@@ -8,6 +8,7 @@
 #include "bench/culled_shading.hpp"
 #include "bench/many_lights.hpp"
 #include "bench/memory_use.hpp"
+#include "bench/picture_time.hpp"
 #include "bench/raster_speed.hpp"
 #include "bench/shading_rate.hpp"
 #include "bench/shadow_errors.hpp"
@@ -17,7 +18,7 @@ namespace luciole {
 namespace {
 
 struct SpeedMeasurement {
-  const char* name;
+  const char* name;  ///< by which it is chosen; one may choose several
   SpeedTable (*measure)(const SpeedInput&);
 };
 constexpr SpeedMeasurement kSpeed[] = {
@@ -28,13 +29,16 @@ constexpr SpeedMeasurement kSpeed[] = {
     {"rasterizer", measureRasterizer},
     {"start", measureStart},
     {"memory", measureMemory},
+    {"picture", measurePictures},
+    {"picture", measureFeatureCosts},
 };
 
 }  // namespace
 
 std::vector<std::string> benchNames() {
   std::vector<std::string> names{"shading", "models", "shadows", "samples"};
-  for (const SpeedMeasurement& one : kSpeed) names.push_back(one.name);
+  for (const SpeedMeasurement& one : kSpeed)
+    if (names.back() != one.name) names.push_back(one.name);
   return names;
 }
 
@@ -63,6 +67,8 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
                          .size = choice.size,
                          .shadow_size = choice.shadow_size,
                          .repeats = settings.repeats,
+                         .scene_path = choice.scene_path,
+                         .picture_options = choice.picture_options,
                          .program = choice.program,
                          .on_progress = settings.on_progress};
   for (const SpeedMeasurement& one : kSpeed)

@@ -24,11 +24,13 @@ struct BenchResult {
 
 /// What to measure.
 struct BenchChoice {
-  std::vector<std::string> only{};   ///< of benchNames(); empty: everything
-  bool named_scene = false;          ///< the scene is the user's rather than makeBenchScene()
-  std::optional<glm::ivec2> size{};  ///< of every picture, instead of each measurement's own
-  std::optional<int> shadow_size{};  ///< of all shadow maps, instead of those that are tried
-  std::string program{};             ///< the path of luciole itself
+  std::vector<std::string> only{};             ///< of benchNames(); empty: everything
+  bool named_scene = false;                    ///< the scene is the user's rather than makeBenchScene()
+  std::optional<glm::ivec2> size{};            ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size{};            ///< of all shadow maps, instead of those that are tried
+  std::string program{};                       ///< the path of luciole itself
+  std::string scene_path{};                    ///< of a named scene
+  std::vector<std::string> picture_options{};  ///< see SpeedInput
 };
 
 /// The names of all that can be measured, groups of variants first, in the order in which they are measured.

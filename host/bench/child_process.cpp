@@ -17,7 +17,7 @@ namespace luciole {
 namespace {
 
 /// The caller's environment with some variables set.
-std::vector<std::string> changedEnvironment(const std::vector<std::pair<std::string, std::string>>& changes) {
+std::vector<std::string> changedEnvironment(const Environment& changes) {
   std::vector<std::string> all;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
@@ -92,13 +92,17 @@ ScratchFolder::~ScratchFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
+Environment kernelCacheIn(const ScratchFolder& folder) {
+  return {{"POCL_CACHE_DIR", folder / "pocl"}, {"XDG_CACHE_HOME", folder / "other"}};
+}
+
 std::vector<std::string> sameThreads() {
   if (!threadLimit()) return {};
   return {"--threads", std::to_string(*threadLimit())};
 }
 
 double runChild(const std::string& program, const std::vector<std::string>& arguments,
-                const std::vector<std::pair<std::string, std::string>>& environment) {
+                const Environment& environment) {
   Ended ended;
   const double milliseconds =
       millisecondsOf([&] { ended = runToEnd(program, arguments, changedEnvironment(environment)); });

@@ -21,6 +21,12 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+/// Variables of an environment, and their values.
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+/// Variables by which platforms keep the kernels that they compile in this folder.
+Environment kernelCacheIn(const ScratchFolder& folder);
+
 /// Options that make another run of luciole take as many threads as this process may.
 std::vector<std::string> sameThreads();
 
@@ -28,6 +34,6 @@ std::vector<std::string> sameThreads();
 /// Returns the milliseconds from its start to its end. Throws MachineError if it can't be run, or with the
 /// first line that it wrote to standard error if its exit status isn't 0.
 double runChild(const std::string& program, const std::vector<std::string>& arguments,
-                const std::vector<std::pair<std::string, std::string>>& environment);
+                const Environment& environment);
 
 }  // namespace luciole

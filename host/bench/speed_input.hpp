@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cl/device.hpp"
 #include "figures/rounds.hpp"
@@ -18,6 +19,8 @@ struct SpeedInput {
   std::optional<glm::ivec2> size;  ///< of every picture, instead of each measurement's own
   std::optional<int> shadow_size;  ///< of shadow maps, instead of those that are tried
   int repeats = 9;
+  std::string scene_path{};  ///< of `scene`, as typed; empty: the built-in or shipped scenes
+  std::vector<std::string> picture_options{};  ///< of luciole render, for measurements of the whole process
   std::string program;  ///< the path of luciole itself, for measurements of the whole process
   OnProgress on_progress;
   std::uint64_t most_lights = 1'000'000;  ///< of any scene

@@ -35,10 +35,7 @@ SpeedTable measureStart(const SpeedInput& input) {
   for (int round = 0; round < rounds; ++round) {
     if (input.on_progress) input.on_progress("start", std::size_t(round), std::size_t(rounds));
     const ScratchFolder cache;
-    const auto run = [&] {
-      return runChild(input.program, arguments,
-                      {{"POCL_CACHE_DIR", cache / "pocl"}, {"XDG_CACHE_HOME", cache / "other"}});
-    };
+    const auto run = [&] { return runChild(input.program, arguments, kernelCacheIn(cache)); };
     cold.push_back(run());
     for (int i = 0; i < kWarmRuns; ++i) warm.push_back(run());
   }

@@ -57,6 +57,11 @@ void bench(const BenchOptions& options) {
   BenchChoice choice{.only = options.only,
                      .named_scene = !options.scene.empty(),
                      .program = std::filesystem::read_symlink("/proc/self/exe")};
+  choice.scene_path = options.scene;
+  choice.picture_options = {"--missing-textures", options.picture.missing_textures};
+  if (!options.picture.cast_shadows.empty())
+    for (const std::string& word : {std::string("--cast-shadows"), options.picture.cast_shadows})
+      choice.picture_options.push_back(word);
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
   const BenchResult result = runBench(scene, settings, choice);
@@ -73,7 +78,8 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
       "bench", "what everything costs: speed against error, and each stage's speed, in tables");
   auto options = std::make_shared<BenchOptions>();
   command->add_option("SCENE", options->scene,
-                      "what speed against error and the rasterizer draw (default: built-in scenes)");
+                      "what speed against error, the rasterizer and picture draw (default: built-in scenes, "
+                      "and for picture the six that come with the program)");
   command->add_option("--only", options->only, "measure this alone (repeatable): " + joinedNames())
       ->check(oneOf(benchNames()));
   command->add_option("--json", options->json,

@@ -229,6 +229,25 @@ TEST_F(BenchCommand, MeasuresOneThingAlone) {
   }
 }
 
+TEST_F(BenchCommand, PictureRunsTheProgramOnTheFileAndNotOnStandardInput) {
+  writeText(folder / "scene.json", kScene);
+  const std::string options = " --only picture --size 64x36 --repeats 1 --quiet --json out.json";
+  for (const std::string& line :
+       {"luciole bench scene.json" + options, "luciole bench - <scene.json" + options}) {
+    const Outcome outcome = runLine(folder, line);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto speed = nlohmann::json::parse(readText(folder / "out.json"))["speed"];
+    ASSERT_EQ(speed.size(), 2u);
+    EXPECT_EQ(speed[0]["name"], "picture");
+    EXPECT_EQ(speed[1]["name"], "cost of a feature");
+    for (const auto& table : speed)
+      for (const auto& row : table["rows"]) expectReasons(row);
+    const bool is_file = line.find('<') == std::string::npos;
+    EXPECT_EQ(speed[0]["rows"][0]["warm_milliseconds"].is_null(), !is_file);
+    EXPECT_EQ(speed[1]["rows"].size(), is_file ? 7u : 1u);
+  }
+}
+
 TEST_F(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench none.json", 2, "none.json");
   refuse("luciole bench --json none/out.json", 2, "none/out.json: no such folder");

@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "base/embedded_files.hpp"
+#include "base/error.hpp"
 #include "bench/culled_shading.hpp"
 #include "bench/many_lights.hpp"
 #include "bench/memory_use.hpp"
+#include "bench/picture_time.hpp"
 #include "bench/raster_speed.hpp"
 #include "bench/shading_rate.hpp"
 #include "bench/start_time.hpp"
 #include "kernels/probe.hpp"
+#include "load/load_scene.hpp"
+#include "shared_files.hpp"
 
 namespace luciole::test {
 namespace {
@@ -137,6 +141,103 @@ TEST(StartTime, RunsTheProgramColdOnceAndWarmThrice) {
   EXPECT_EQ(count(table, 0, "runs"), 1);
   EXPECT_EQ(count(table, 1, "runs"), 3);
   EXPECT_GT(median(table, 1, "milliseconds"), 0);
+}
+
+std::size_t rowOf(const SpeedTable& table, const std::string& name) {
+  for (std::size_t row = 0; row < table.rows.size(); ++row)
+    if (table.rows[row].name == name) return row;
+  throw std::logic_error("no row " + name);
+}
+
+/// A folder with a textured mesh, and tables of scenes in it.
+class PictureTime : public testing::Test {
+ protected:
+  PictureTime() {
+    input.repeats = 1;
+    writeText(folder / "map.pgm", "P5\n2 1\n255\n\x40\xc0");
+    writeText(folder / "mesh.mtl", "newmtl m\nKd 1 1 1\n  map_Kd map.pgm\n");
+    writeText(
+        folder / "mesh.obj",
+        "mtllib mesh.mtl\nusemtl m\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  }
+  /// Makes this the named scene.
+  void name(const std::string& file) {
+    input.scene_path = folder / file;
+    scene = loadScene(input.scene_path);
+    input.scene = &scene;
+  }
+  void nameJson(const std::string& members, const std::string& light, const std::string& material) {
+    writeText(folder / "scene.json", R"({"camera": {"eye": [3, 2, 5], "target": [0, 0, 0]}, )" + members +
+                                         R"("materials": {"m": {"diffuse": 1)" + material +
+                                         R"(}}, "objects": [{"primitive": "plane", "material": "m"}],
+                   "lights": [{"type": "spot", "position": [0, 4, 0], "direction": [0, -1, 0], "cutoff": 40)" +
+                                         light + "}]}");
+    name("scene.json");
+  }
+  const TemporaryFolder folder;
+  Scene scene;
+  SpeedInput input = tinyInput();
+};
+
+TEST_F(PictureTime, TheShippedScenesAreFoundAboveTheProgram) {
+  const std::vector<std::string> scenes = shippedScenes(input.program);
+  ASSERT_EQ(scenes.size(), 6u);
+  for (const std::string& path : scenes) EXPECT_TRUE(std::filesystem::is_regular_file(path)) << path;
+  EXPECT_THROW(shippedScenes(folder / "luciole"), MachineError);
+}
+
+TEST_F(PictureTime, IsToldColdAndWarmByStagesAndWithItsMemory) {
+  nameJson("", "", "");
+  const SpeedTable table = measurePictures(input);
+  expectWhole(table);
+  ASSERT_THAT(rowNames(table), ElementsAre("scene"));
+  // A compiler's work on any kernel is many times that of looking it up.
+  EXPECT_GT(median(table, 0, "cold_milliseconds"), median(table, 0, "warm_milliseconds"));
+  for (const char* stage : {"load_milliseconds", "rasterize_milliseconds", "lights_milliseconds",
+                            "shade_milliseconds", "write_milliseconds", "rest_milliseconds"})
+    EXPECT_GT(median(table, 0, stage), 0) << stage;
+  EXPECT_EQ(median(table, 0, "shadow_milliseconds"), 0) << "there are none";
+  EXPECT_GT(median(table, 0, "peak_mebibytes"), 1);
+}
+
+TEST_F(PictureTime, FeaturesThatASceneHasAreHeldAgainstItWithoutThem) {
+  nameJson(R"("fog": {"mode": "exp", "density": 0.1}, )", R"(, "shadow": true)",
+           R"(, "diffuse_map": "map.pgm")");
+  const SpeedTable table = measureFeatureCosts(input);
+  expectWhole(table);
+  EXPECT_THAT(rowNames(table), ElementsAre("shadows", "pcf for hard shadows", "fog", "textures", "4 samples",
+                                           "16 samples", "EXR for PNG", "a layer, depth"));
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    // A round each: its medians are its figures.
+    const double with = median(table, row, "with_milliseconds"),
+                 without = median(table, row, "without_milliseconds");
+    EXPECT_GT(with, 0);
+    EXPECT_EQ(median(table, row, "cost_milliseconds"), with - without);
+    EXPECT_EQ(median(table, row, "times_without"), with / without);
+  }
+}
+
+TEST_F(PictureTime, FeaturesThatASceneLacksHaveNoRow) {
+  nameJson("", "", "");
+  EXPECT_THAT(rowNames(measureFeatureCosts(input)),
+              ElementsAre("4 samples", "16 samples", "EXR for PNG", "a layer, depth"));
+}
+
+TEST_F(PictureTime, TexturesOfAnObjAreLeftOutOfACopyOfItsMaterials) {
+  name("mesh.obj");
+  ASSERT_FALSE(scene.textures.empty());
+  const SpeedTable table = measureFeatureCosts(input);
+  expectWhole(table);
+  EXPECT_GT(median(table, rowOf(table, "textures"), "without_milliseconds"), 0);
+}
+
+TEST_F(PictureTime, TexturesThatAMeshFileNamesInAnotherSceneHaveNoPrice) {
+  writeText(folder / "scene.json", R"({"objects": [{"mesh": "mesh.obj"}], "lights": []})");
+  name("scene.json");
+  ASSERT_FALSE(scene.textures.empty());
+  const SpeedTable table = measureFeatureCosts(input);
+  for (const SpeedColumn& column : table.columns)
+    EXPECT_TRUE(std::holds_alternative<NoValue>(cellOf(table, rowOf(table, "textures"), column.key)));
 }
 
 TEST(MemoryUse, GrowsWithPixelsAndLights) {

@@ -32,6 +32,7 @@ constexpr NotRun kNotRun[] = {
     {"./luciole test", "would run this test"},
     {"./luciole bench --only \"shadow errors\"", "takes minutes, whatever the size"},
     {"./luciole bench --only \"many lights\"", "lights a million, whatever the size"},
+    {"./luciole bench --only picture", "takes minutes, whatever the size"},
     {"./luciole bench`", "takes minutes"},
     {"scenes/make_pictures.sh", "takes minutes, and writes into the sources"},
     {"build/tests/", "is not there unless all is built, and takes minutes"},
