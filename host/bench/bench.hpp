@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/measure.hpp"
+#include "bench/speed_input.hpp"
 #include "bench/speed_table.hpp"
 #include "figures/machine.hpp"
 
@@ -24,11 +25,12 @@ struct BenchResult {
 
 /// What to measure.
 struct BenchChoice {
-  std::vector<std::string> only{};   ///< of benchNames(); empty: everything
-  bool named_scene = false;          ///< the scene is the user's rather than makeBenchScene()
-  std::optional<glm::ivec2> size{};  ///< of every picture, instead of each measurement's own
-  std::optional<int> shadow_size{};  ///< of all shadow maps, instead of those that are tried
-  std::string program{};             ///< the path of luciole itself
+  std::vector<std::string> only{};      ///< of benchNames(); empty: everything
+  bool named_scene = false;             ///< the scene is the user's rather than makeBenchScene()
+  std::optional<glm::ivec2> size{};     ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size{};     ///< of all shadow maps, instead of those that are tried
+  std::optional<GivenGBuffer> given{};  ///< for "cull and shade", which is measured only with it
+  std::string program{};                ///< the path of luciole itself
 };
 
 /// The names of all that can be measured, groups of variants first, in the order in which they are measured.
