@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "bench/culled_shading.hpp"
+#include "bench/given_gbuffer.hpp"
 #include "bench/many_lights.hpp"
 #include "bench/memory_use.hpp"
 #include "bench/picture_time.hpp"
@@ -17,6 +18,8 @@
 namespace luciole {
 namespace {
 
+constexpr const char* kCullAndShade = "cull and shade";
+
 struct SpeedMeasurement {
   const char* name;  ///< by which it is chosen; one may choose several
   SpeedTable (*measure)(const SpeedInput&);
@@ -24,6 +27,7 @@ struct SpeedMeasurement {
 constexpr SpeedMeasurement kSpeed[] = {
     {"shading rate", measureShadingRate},
     {"culling and shading", measureCulledShading},
+    {kCullAndShade, measureGivenGBuffer},
     {"many lights", measureManyLights},
     {"shadow errors", measureShadowErrors},
     {"rasterizer", measureRasterizer},
@@ -47,6 +51,8 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
     return choice.only.empty() ||
            std::find(choice.only.begin(), choice.only.end(), name) != choice.only.end();
   };
+  if (!choice.given && std::find(choice.only.begin(), choice.only.end(), kCullAndShade) != choice.only.end())
+    throw InputError(fmt::format("--only \"{}\": needs --gbuffer and --scene", kCullAndShade));
   Device device;
   openDevice(settings.device, device);
   Stats stats;
@@ -64,6 +70,7 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
   const SpeedInput input{.device = device,
                          .device_selector = settings.device,
                          .scene = choice.named_scene ? &scene : nullptr,
+                         .given = choice.given ? &*choice.given : nullptr,
                          .size = choice.size,
                          .shadow_size = choice.shadow_size,
                          .repeats = settings.repeats,
@@ -72,7 +79,8 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
                          .program = choice.program,
                          .on_progress = settings.on_progress};
   for (const SpeedMeasurement& one : kSpeed)
-    if (chosen(one.name)) result.speed.push_back(one.measure(input));
+    if (chosen(one.name) && (choice.given || one.name != std::string_view(kCullAndShade)))
+      result.speed.push_back(one.measure(input));
   if (result.groups.empty() && result.speed.empty())
     throw InputError(fmt::format("--only {}: {} has no shadows", choice.only.front(), scene.name));
   return result;

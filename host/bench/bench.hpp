@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/measure.hpp"
+#include "bench/speed_input.hpp"
 #include "bench/speed_table.hpp"
 #include "figures/machine.hpp"
 
@@ -28,6 +29,7 @@ struct BenchChoice {
   bool named_scene = false;                    ///< the scene is the user's rather than makeBenchScene()
   std::optional<glm::ivec2> size{};            ///< of every picture, instead of each measurement's own
   std::optional<int> shadow_size{};            ///< of all shadow maps, instead of those that are tried
+  std::optional<GivenGBuffer> given{};         ///< for "cull and shade", which is measured only with it
   std::string program{};                       ///< the path of luciole itself
   std::string scene_path{};                    ///< of a named scene
   std::vector<std::string> picture_options{};  ///< see SpeedInput

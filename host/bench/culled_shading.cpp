@@ -14,7 +14,7 @@ struct CullingRow {
   Culling culling;
   int tile_size;
 };
-constexpr CullingRow kRows[] = {{"lists of 4 x 4 pixels", Culling::kTiles, 4},
+constexpr CullingRow kRows[] = {{"in one, no lists", Culling::kTiles, 4},
                                 {"lists of 8 x 8 pixels", Culling::kTiles, 8},
                                 {"lists of 16 x 16 pixels", Culling::kTiles, 16},
                                 {"no culling", Culling::kNone, 16}};

@@ -73,7 +73,7 @@ SpeedTable measureManyLights(const SpeedInput& input) {
           {},
           {},
           entries,
-          listBytes(*row.gbuffer, entries),
+          stageTime(stats, Stage::kCull) > 0 ? listBytes(*row.gbuffer, entries) : 0.0,
           1e-6 * double(countOf(stats, "pixel_lights_evaluated")),
           1e-6 * in_range,
           quotient(in_range, double(countOf(stats, "pixels_lit")), "no pixel shows a surface")}});

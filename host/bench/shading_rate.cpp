@@ -201,6 +201,11 @@ Image shadePlainly(Device& device, const AllPairs& pairs) {
   return image;
 }
 
+double roofMilliseconds(Device& device, const AllPairs& pairs) {
+  Roof roof(device, pairs);
+  return roof.run();
+}
+
 SpeedTable measureShadingRate(const SpeedInput& input) {
   const AllPairs pairs = makeAllPairs(input.size.value_or(kAllPairsSize), kLights);
   const double million_pairs = 1e-6 * double(pairs.gbuffer.pixels()) * double(pairs.scene.lights.size());

@@ -7,17 +7,25 @@
 
 #include "cl/device.hpp"
 #include "figures/rounds.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
 
+/// A G-buffer from a file, and the scene whose lights light it.
+struct GivenGBuffer {
+  GBuffer gbuffer;
+  Scene scene;
+};
+
 /// The input of the measurements of speed.
 struct SpeedInput {
   Device& device;
-  std::string device_selector;     ///< that opened it
-  const Scene* scene = nullptr;    ///< null: the built-in scenes only
-  std::optional<glm::ivec2> size;  ///< of every picture, instead of each measurement's own
-  std::optional<int> shadow_size;  ///< of shadow maps, instead of those that are tried
+  std::string device_selector;          ///< that opened it
+  const Scene* scene = nullptr;         ///< null: the built-in scenes only
+  const GivenGBuffer* given = nullptr;  ///< for measureGivenGBuffer, which needs it
+  std::optional<glm::ivec2> size;       ///< of every picture, instead of each measurement's own
+  std::optional<int> shadow_size;       ///< of shadow maps, instead of those that are tried
   int repeats = 9;
   std::string scene_path{};  ///< of `scene`, as typed; empty: the built-in or shipped scenes
   std::vector<std::string> picture_options{};  ///< of luciole render, for measurements of the whole process

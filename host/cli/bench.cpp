@@ -14,6 +14,7 @@
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/suggest.hpp"
+#include "gbuffer/gbuffer_file.hpp"
 #include "shadow/shadow_sizes.hpp"
 
 namespace luciole {
@@ -21,7 +22,7 @@ namespace {
 
 struct BenchOptions {
   PictureOptions picture;  ///< of which --size, --device and --quiet are options here
-  std::string scene, json, plot;
+  std::string scene, gbuffer, lights, json, plot;
   std::vector<std::string> only;
   std::optional<int> shadow_size;
   int repeats = 9;
@@ -64,6 +65,10 @@ void bench(const BenchOptions& options) {
       choice.picture_options.push_back(word);
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
+  if (!options.gbuffer.empty()) {
+    choice.given = {readGBuffer(options.gbuffer), openScene(options.lights, 1, options.picture)};
+    if (choice.only.empty()) choice.only = {"cull and shade"};
+  }
   const BenchResult result = runBench(scene, settings, choice);
   if (progress) progress->clear();
   if (!options.json.empty()) writeTextFile(options.json, benchJson(result));
@@ -80,6 +85,13 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
   command->add_option("SCENE", options->scene,
                       "what speed against error, the rasterizer and picture draw (default: built-in scenes, "
                       "and for picture the six that come with the program)");
+  CLI::Option* gbuffer = command->add_option(
+      "--gbuffer", options->gbuffer,
+      "an EXR file of a G-buffer: times culling and shading alone on it (--only \"cull and shade\")");
+  CLI::Option* lights =
+      command->add_option("--scene", options->lights, "the scene whose lights light the G-buffer");
+  gbuffer->needs(lights);
+  lights->needs(gbuffer);
   command->add_option("--only", options->only, "measure this alone (repeatable): " + joinedNames())
       ->check(oneOf(benchNames()));
   command->add_option("--json", options->json,

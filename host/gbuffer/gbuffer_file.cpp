@@ -221,8 +221,7 @@ GBuffer emptyGBuffer(const LayerFile& file) {
   gbuffer.picture_size = file.picture_size;
   gbuffer.crop_origin = file.crop_origin;
   const std::size_t stride = gbuffer.pixels();
-  for (Plane* group :
-       {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.ambient, &gbuffer.emission}) {
+  for (Plane* group : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.ambient}) {
     group->assign(3 * stride, 0.0f);
   }
   gbuffer.specular.assign(4 * stride, 0.0f);
@@ -298,6 +297,8 @@ GBuffer readGBuffer(const std::string& path) {
   const int shininess = channels.find("shininess"), lift = channels.find("lift");
   const std::size_t stride = gbuffer.pixels();
   if (surface.hasGeometricNormals()) gbuffer.geometric_normal.resize(stride);
+  const bool glows = emission[0] >= 0;
+  if (glows) gbuffer.emission.assign(3 * stride, 0.0f);
   if (lift >= 0) gbuffer.lift.resize(stride);
   for (std::size_t p = 0; p < channels.count(); ++p) {
     glm::vec3 position, normal;
@@ -310,7 +311,7 @@ GBuffer readGBuffer(const std::string& path) {
     store(gbuffer.specular, at, stride, channels.color(p, specular, glm::vec3(0.0f)));
     if (shininess >= 0) gbuffer.specular[at + 3 * stride] = channels.coefficient(p, shininess);
     store(gbuffer.ambient, at, stride, channels.color(p, ambient, reflectance));
-    store(gbuffer.emission, at, stride, channels.color(p, emission, glm::vec3(0.0f)));
+    if (glows) store(gbuffer.emission, at, stride, channels.color(p, emission, glm::vec3(0.0f)));
     if (surface.hasGeometricNormals()) gbuffer.geometric_normal[at] = surface.geometricNormalAt(p, normal);
     if (lift >= 0) gbuffer.lift[at] = channels.coefficient(p, lift);
   }

@@ -32,7 +32,7 @@ void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadat
 /// distance along the view axis). Pcam and Ncam are used only with this program's own camera attributes. N is
 /// normalized. A pixel is background where Z is not finite, or P is not finite, or N is zero or not finite.
 /// Coefficients below 0 become 0. Missing channels read as: diffuse 0.8, specular 0, shininess 0, ambient =
-/// diffuse, emission 0. Without Ng or lift these groups stay empty; without lift shadow tests start at P.
+/// diffuse. Without emission, Ng or lift these groups stay empty; without lift shadow tests start at P.
 /// Where Ng is zero or not finite, N takes its place.
 ///
 /// Without a camera in the header view space is world space: the eye is at the origin. A left-handed world

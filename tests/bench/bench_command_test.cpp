@@ -248,7 +248,33 @@ TEST_F(BenchCommand, PictureRunsTheProgramOnTheFileAndNotOnStandardInput) {
   }
 }
 
+TEST_F(BenchCommand, CullAndShadeTimesAGBufferFromAFileBesideItsRoofs) {
+  writeText(folder / "scene.json", kScene);
+  ASSERT_EQ(runLine(folder, "luciole gbuffer scene.json --size 80x45 -o g.exr --quiet").status, 0);
+  const Outcome outcome = runLine(folder,
+                                  "luciole bench --gbuffer g.exr --scene scene.json --only 'cull and shade' "
+                                  "--repeats 3 --quiet --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(readText(folder / "out.json"));
+  ASSERT_EQ(json["speed"].size(), 1u);
+  const auto& rows = json["speed"][0]["rows"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["name"], "cull and shade");
+  for (const auto& row : rows) {
+    EXPECT_GT(row["best_ms"], 0) << row;
+    EXPECT_LE(row["best_ms"], row["median_ms"]) << row;
+  }
+  EXPECT_GT(rows[0]["pairs_evaluated"], 0);
+  EXPECT_GT(rows[0]["pairs_in_range"], 0);
+  // 5 x 3 tiles; at least position, normal and diffuse colour are read, and at most specular, ambient and
+  // emission with them, and three floats written.
+  EXPECT_GE(rows[0]["bytes"], 15 * 256 * 12 * 4);
+  EXPECT_LE(rows[0]["bytes"], 15 * 256 * 22 * 4);
+}
+
 TEST_F(BenchCommand, RefusesWrongInputBeforeItMeasures) {
+  refuse("luciole bench --gbuffer g.exr", 2, "--scene");
+  refuse("luciole bench --only 'cull and shade'", 2, "needs --gbuffer and --scene");
   refuse("luciole bench none.json", 2, "none.json");
   refuse("luciole bench --json none/out.json", 2, "none/out.json: no such folder");
   refuse("luciole bench --plot none/out.svg", 2, "none/out.svg: no such folder");
