@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "bench/anti_aliasing.hpp"
 #include "bench/culled_shading.hpp"
 #include "bench/many_lights.hpp"
 #include "bench/memory_use.hpp"
@@ -24,6 +25,7 @@ constexpr SpeedMeasurement kSpeed[] = {
     {"shading rate", measureShadingRate},
     {"culling and shading", measureCulledShading},
     {"many lights", measureManyLights},
+    {"anti-aliasing", measureAntiAliasing},
     {"shadow errors", measureShadowErrors},
     {"rasterizer", measureRasterizer},
     {"start", measureStart},
