@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "bench/anti_aliasing.hpp"
 #include "bench/culled_shading.hpp"
 #include "bench/given_gbuffer.hpp"
 #include "bench/many_lights.hpp"
@@ -29,6 +30,7 @@ constexpr SpeedMeasurement kSpeed[] = {
     {"culling and shading", measureCulledShading},
     {kCullAndShade, measureGivenGBuffer},
     {"many lights", measureManyLights},
+    {"anti-aliasing", measureAntiAliasing},
     {"shadow errors", measureShadowErrors},
     {"rasterizer", measureRasterizer},
     {"start", measureStart},

@@ -50,6 +50,7 @@ Image runVariant(const Bench& bench, const VariantGroup& group, const Variant& v
   RenderSettings picture = bench.settings.picture;
   picture.shade = variant.shade;
   picture.samples = variant.samples;
+  picture.sample_shading = SampleShading::kAll;
   Device& device = bench.devices.at(variant.lanes);
   return group.samples ? renderScene(device, bench.scene, picture, stats)
                        : shadeGBuffer(device, bench.scene, bench.gbuffer, picture, stats);

@@ -31,7 +31,7 @@ namespace {
 const std::map<std::string, Aov> kAovs{
     {"position", Aov::kPosition},      {"normal", Aov::kNormal},     {"depth", Aov::kDepth},
     {"diffuse", Aov::kDiffuse},        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
-    {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow}};
+    {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow},     {"shading_count", Aov::kShadingCount}};
 
 std::vector<std::string> compressionNames() {
   std::vector<std::string> names(kPngCompressions.begin(), kPngCompressions.end());
@@ -149,6 +149,13 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option("--samples", options.samples, "samples per pixel, against jagged edges")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+  if ((groups & kSampleOption) && (groups & kShadeOptions))
+    command
+        .add_option(
+            "--samples-shading", options.samples_shading,
+            "what of a pixel's samples is shaded: a point for those that see the same surface, or all")
+        ->check(oneOf({"shared", "all"}))
+        ->capture_default_str();
   if (groups & kModelOptions) {
     command
         .add_option(
@@ -227,7 +234,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     if (is_one_picture)
       command.add_option(
           "--aov", options.aovs,
-          "extra layers of an EXR: position,normal,depth,diffuse,material,light_count,list_length,shadow");
+          "extra layers of an EXR: "
+          "position,normal,depth,diffuse,material,light_count,list_length,shadow,shading_count");
   }
   if (groups & kCastOption) addCastShadowsOption(command, options);
   addMissingTexturesOption(command, options.missing_textures);
@@ -321,7 +329,7 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
       for (const auto& [known, aov] : kAovs) names.push_back(known);
       throw InputError(
           fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
-                      "list_length, shadow{}",
+                      "list_length, shadow, shading_count{}",
                       name, didYouMean(name, names)));
     }
     if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
@@ -348,6 +356,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   }
   settings.alpha = options.alpha;
   settings.samples = options.samples;
+  settings.sample_shading = options.samples_shading == "all" ? SampleShading::kAll : SampleShading::kShared;
   settings.shading = options.shading == "flat"      ? Shading::kFlat
                      : options.shading == "gouraud" ? Shading::kGouraud
                                                     : Shading::kPhong;

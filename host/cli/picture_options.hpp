@@ -21,6 +21,7 @@ struct PictureOptions {
   std::string camera;
   int camera_index = -1;  ///< replaces `camera`, see optionsOfCameras(); -1: doesn't
   int samples = 1;
+  std::string samples_shading = "shared";
   std::string crop;
   std::string shading = "phong";
   std::string model = "phong";
@@ -54,7 +55,8 @@ enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
   kModelOptions = 4,   ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
-  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov
+  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov;
+                       ///< with kSampleOption also --samples-shading
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows

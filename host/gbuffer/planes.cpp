@@ -24,4 +24,11 @@ void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
       [&] { gbuffer.lift.resize(planes.lift ? pixels : 0); });
 }
 
+void freePlanes(GBuffer& gbuffer) {
+  for (Plane* group : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular,
+                       &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift})
+    *group = {};
+  gbuffer.geometric_normal = {};
+}
+
 }  // namespace luciole

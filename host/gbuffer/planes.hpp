@@ -8,6 +8,9 @@ namespace luciole {
 /// (see GBuffer). tiles_x and tiles_y must be set. Throws as allocateArray does.
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer);
 
+/// Frees all groups, so that the G-buffer tells sizes and places only.
+void freePlanes(GBuffer& gbuffer);
+
 /// Writes the three components of a pixel. `place` is GBuffer::index, `stride` GBuffer::pixels.
 inline void storePixel(const glm::vec3& value, std::size_t place, std::size_t stride, Plane& group) {
   group[place] = value.x;

@@ -5,8 +5,8 @@ namespace {
 
 /// Calls `visit` with every bin that the triangle's box touches.
 template <class Visit>
-void forEachBin(const RasterTriangle& triangle, const BinGrid& bins, Visit visit) {
-  const PixelBox box = pixelBox(triangle);
+void forEachBin(const RasterTriangle& triangle, const glm::ivec2& reach, const BinGrid& bins, Visit visit) {
+  const PixelBox box = pixelBox(triangle, reach);
   // A shift rounds down for negative pixels, left of the picture, too; division doesn't.
   static_assert(kBinSize == 1 << 6);
   const glm::ivec2 first = glm::max((box.first >> 6) - bins.first, glm::ivec2(0));
@@ -27,7 +27,7 @@ Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view,
   const BinGrid grid = binGrid(view);
   return {grid, listItems(triangles.size(), 2 * std::size_t(grid.size()), [&](std::size_t i, auto visit) {
             const int kind = triangles[i].masked;
-            forEachBin(triangles[i], grid, [&](int bin) {
+            forEachBin(triangles[i], view.reach, grid, [&](int bin) {
               if (farthest.empty() || triangles[i].depth_high >= farthest[bin])
                 visit(2 * std::size_t(bin) + kind);
             });

@@ -209,7 +209,7 @@ void draw(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, 
     // Far enough ahead to hide the latency of memory.
     if (i + 8 < list.size()) __builtin_prefetch(&triangles[list[i + 8]]);
     const RasterTriangle& triangle = triangles[list[i]];
-    const PixelBox whole = pixelBox(triangle);
+    const PixelBox whole = pixelBox(triangle, glm::ivec2(0));
     const PixelBox box{glm::max(whole.first - origin, glm::ivec2(0)),
                        glm::min(whole.last - origin, glm::ivec2(kBinSize - 1))};
     const Target target{triangle, edgeFunctions(triangle, origin), origin};

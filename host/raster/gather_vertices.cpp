@@ -5,6 +5,7 @@
 
 #include "gbuffer/packed_normal.hpp"
 #include "gbuffer/planes.hpp"
+#include "raster/empty_gbuffer.hpp"
 #include "raster/geometry.hpp"
 #include "raster/rasterize.hpp"
 
@@ -57,14 +58,7 @@ GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> object
   const std::vector<PlacedObject> placed = placeObjects(scene, objects, view.world_to_view, true);
   const std::size_t vertices =
       placed.empty() ? 0 : placed.back().first_vertex + placed.back().mesh->positions.size();
-  GBuffer gbuffer;
-  gbuffer.tiles_x = int((vertices + kTilePixels - 1) / kTilePixels);
-  gbuffer.tiles_y = 1;
-  gbuffer.width = gbuffer.tiles_x * kTileSize;
-  gbuffer.height = kTileSize;
-  gbuffer.camera = viewCamera(view);
-  gbuffer.picture_size = {gbuffer.width, gbuffer.height};
-  allocatePlanes(planes, gbuffer);
+  GBuffer gbuffer = emptyPoints(view, vertices, planes);
   tbb::parallel_for(std::size_t(0), placed.size(), [&](std::size_t i) {
     const PlacedObject& object = placed[i];
     const std::vector<const Material*> materials = vertexMaterials(scene, object);

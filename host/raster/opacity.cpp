@@ -24,7 +24,7 @@ float opacityAt(const Scene& scene, const Surface& surface, const Weights& weigh
   return opacity;
 }
 
-bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, int x, int y) {
+bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y) {
   const Material& material = *surface.material;
   const Weights weights = weightsInside(surface, plane.at(x, y));
   const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;

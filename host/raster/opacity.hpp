@@ -9,8 +9,8 @@ namespace luciole {
 float opacityAt(const Scene& scene, const Surface& surface, const Weights& weights,
                 const TexturePlace& place);
 
-/// Whether the surface has a hole at pixel (x, y) of the whole picture: its opacity is below its material's
+/// Whether the surface has a hole at (x, y), as in ViewPlane::at: its opacity is below its material's
 /// alpha_cutoff, which must be > 0.
-bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, int x, int y);
+bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y);
 
 }  // namespace luciole

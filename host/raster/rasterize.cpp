@@ -1,49 +1,17 @@
 #include "raster/rasterize.hpp"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
-#include <tuple>
 
-#include "base/error.hpp"
-#include "base/picture_size.hpp"
-#include "gbuffer/planes.hpp"
 #include "raster/bins.hpp"
 #include "raster/coverage.hpp"
+#include "raster/empty_gbuffer.hpp"
 #include "raster/placed_meshlets.hpp"
 #include "raster/resolve.hpp"
 #include "raster/setup.hpp"
 
 namespace luciole {
-namespace {
-
-void checkView(const View& view) {
-  const auto& [size, origin, crop] = std::tie(view.size, view.crop_origin, view.crop_size);
-  if (size.x < 1 || size.y < 1 || size.x > kLargestSide || size.y > kLargestSide)
-    throw InputError(fmt::format("size: a picture of {}x{} pixels, expected 1 to {} a side", size.x, size.y,
-                                 kLargestSide));
-  if (origin.x < 0 || origin.y < 0 || crop.x < 1 || crop.y < 1 || crop.x > size.x - origin.x ||
-      crop.y > size.y - origin.y)
-    throw InputError(fmt::format("crop: {}x{} pixels at {},{}, expected a part of the picture of {}x{}",
-                                 crop.x, crop.y, origin.x, origin.y, size.x, size.y));
-}
-
-GBuffer emptyGBuffer(const View& view, PlaneSet planes) {
-  GBuffer gbuffer;
-  gbuffer.width = view.crop_size.x;
-  gbuffer.height = view.crop_size.y;
-  gbuffer.tiles_x = (gbuffer.width + kTileSize - 1) / kTileSize;
-  gbuffer.tiles_y = (gbuffer.height + kTileSize - 1) / kTileSize;
-  gbuffer.camera = viewCamera(view);
-  gbuffer.picture_size = view.size;
-  gbuffer.crop_origin = view.crop_origin;
-  allocatePlanes(planes, gbuffer);
-  return gbuffer;
-}
-
-}  // namespace
 
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors,
@@ -69,10 +37,7 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
     resolveBin(input, pixels, bins.origin(bin), gbuffer);
   });
 
-  counts->submitted = geometry.triangle_count;
-  counts->back_facing = setup.back_facing;
-  counts->outside = counts->submitted - counts->back_facing -
-                    std::uint64_t(std::count(counts->covering.begin(), counts->covering.end(), 1));
+  setCounts(geometry.triangle_count, setup, *counts);
   return gbuffer;
 }
 

@@ -10,6 +10,7 @@
 
 #include "raster/clip.hpp"
 #include "raster/concatenate.hpp"
+#include "raster/rasterize.hpp"
 
 namespace luciole {
 namespace {
@@ -96,7 +97,7 @@ void emitTriangle(const std::array<ScreenVertex, 3>& corners, const Frame& frame
     triangle.x[i] = snap(x, frame.snap_low.x, frame.snap_high.x);
     triangle.y[i] = snap(y, frame.snap_low.y, frame.snap_high.y);
   }
-  const PixelBox box = pixelBox(triangle);
+  const PixelBox box = pixelBox(triangle, frame.view.reach);
   const glm::ivec2 crop_last = frame.view.crop_origin + frame.view.crop_size - 1;
   const glm::ivec2 first = glm::max(box.first, frame.view.crop_origin);
   const glm::ivec2 last = glm::min(box.last, crop_last);
@@ -342,6 +343,13 @@ RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, cons
       setupMeshlet(scene, placed.meshlets, chosen[i], placed.object(i), frame, outputs[task]);
   });
   return join(std::move(outputs));
+}
+
+void setCounts(std::uint32_t triangle_count, const RasterSetup& setup, RasterCounts& counts) {
+  counts.submitted = triangle_count;
+  counts.back_facing = setup.back_facing;
+  counts.outside = counts.submitted - counts.back_facing -
+                   std::uint64_t(std::count(counts.covering.begin(), counts.covering.end(), 1));
 }
 
 }  // namespace luciole

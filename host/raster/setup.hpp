@@ -42,18 +42,23 @@ RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const V
 /// The same for the meshlets chosen, which it transforms itself. No face is culled.
 RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view);
 
+struct RasterCounts;
+/// Sets the counts of a picture of so many triangles; RasterCounts::covering must be there.
+void setCounts(std::uint32_t triangle_count, const RasterSetup& setup, RasterCounts& counts);
+
 /// The pixels whose samples a triangle may cover: those in its bounding box, `last` included; empty where
-/// first > last. A sample exactly on the right or bottom edge belongs to the neighbouring triangle.
+/// first > last. A sample exactly on the right or bottom edge belongs to the neighbouring triangle. `reach`:
+/// as in View.
 struct PixelBox {
   glm::ivec2 first;
   glm::ivec2 last;
 };
-inline PixelBox pixelBox(const RasterTriangle& triangle) {
+inline PixelBox pixelBox(const RasterTriangle& triangle, const glm::ivec2& reach) {
   const std::int32_t* x = triangle.x;
   const std::int32_t* y = triangle.y;
-  constexpr int kUp = kSubpixels - 1;
-  return {{(std::min(std::min(x[0], x[1]), x[2]) + kUp) >> kSubpixelBits,
-           (std::min(std::min(y[0], y[1]), y[2]) + kUp) >> kSubpixelBits},
+  const glm::ivec2 up = kSubpixels - 1 - reach;
+  return {{(std::min(std::min(x[0], x[1]), x[2]) + up.x) >> kSubpixelBits,
+           (std::min(std::min(y[0], y[1]), y[2]) + up.y) >> kSubpixelBits},
           {(std::max(std::max(x[0], x[1]), x[2]) - 1) >> kSubpixelBits,
            (std::max(std::max(y[0], y[1]), y[2]) - 1) >> kSubpixelBits}};
 }

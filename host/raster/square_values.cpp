@@ -216,6 +216,38 @@ bool anyMap(const Lanes<const TextureUse*>& maps) {
   return std::any_of(maps.begin(), maps.end(), [](const TextureUse* map) { return map != nullptr; });
 }
 
+/// A footprint's place, moved by a number of pixels right and down.
+void moveAlong(const Lanes<float>& right, const Lanes<float>& down, const SquareFootprints& from,
+               SquareFootprints& to) {
+  for (int i = 0; i < kSquarePixels; ++i) {
+    to.u[i] = from.u[i] + right[i] * from.du_dx[i] + down[i] * from.du_dy[i];
+    to.v[i] = from.v[i] + right[i] * from.dv_dx[i] + down[i] * from.dv_dy[i];
+  }
+}
+
+Lanes3<float> mapColors(const Scene& scene, const Lanes<const TextureUse*>& maps, const SquarePlace& place,
+                        const SquareFootprints& footprints) {
+  const auto is_zero = [](float spread) { return spread == 0.0f; };
+  if (std::all_of(place.spread_x.begin(), place.spread_x.end(), is_zero) &&
+      std::all_of(place.spread_y.begin(), place.spread_y.end(), is_zero))
+    return sampleTextures(scene.textures, maps, footprints);
+  Lanes3<float> mean{};
+  SquareFootprints moved = footprints;
+  for (const float side_x : {-1.0f, 1.0f})
+    for (const float side_y : {-1.0f, 1.0f}) {
+      Lanes<float> right, down;
+      for (int i = 0; i < kSquarePixels; ++i) {
+        right[i] = side_x * place.spread_x[i];
+        down[i] = side_y * place.spread_y[i];
+      }
+      moveAlong(right, down, footprints, moved);
+      const Lanes3<float> colors = sampleTextures(scene.textures, maps, moved);
+      for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < kSquarePixels; ++i) mean[c][i] += 0.25f * colors[c][i];
+    }
+  return mean;
+}
+
 }  // namespace
 
 SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel) {
@@ -264,15 +296,14 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.emission_footprints, sees_it, out.emission_footprints);
 }
 
-void applyMaps(const Scene& scene, SquareValues& values) {
+void applyMaps(const Scene& scene, const SquarePlace& place, SquareValues& values) {
   if (anyMap(values.reflection_map)) {
-    const Lanes3<float> colors = sampleTextures(scene.textures, values.reflection_map, values.footprints);
+    const Lanes3<float> colors = mapColors(scene, values.reflection_map, place, values.footprints);
     multiply(colors, values.diffuse);
     multiply(colors, values.ambient);
   }
   if (anyMap(values.emission_map))
-    multiply(sampleTextures(scene.textures, values.emission_map, values.emission_footprints),
-             values.emission);
+    multiply(mapColors(scene, values.emission_map, place, values.emission_footprints), values.emission);
 }
 
 }  // namespace luciole

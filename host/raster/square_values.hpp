@@ -25,10 +25,13 @@ struct SquareValues {
   SquareFootprints emission_footprints;
 };
 
-/// ViewPlane::at of a square's pixels.
+/// ViewPlane::at of a square's pixels. spread: the standard deviation, in pixels, of the samples' places for
+/// which a pixel is shaded; 0 for a single sample.
 struct SquarePlace {
   Lanes<double> x;
   Lanes<double> y;
+  Lanes<float> spread_x{};
+  Lanes<float> spread_y{};
 };
 /// `first_pixel`: the square's top left one, in the whole picture.
 SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel);
@@ -41,7 +44,9 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
 /// Copies to `out` the values of the pixels for which `sees_it` is 1.
 void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out);
 
-/// Multiplies the reflection map into diffuse and ambient, and the emission map into emission.
-void applyMaps(const Scene& scene, SquareValues& values);
+/// Multiplies the reflection map into diffuse and ambient, and the emission map into emission. A pixel that
+/// is shaded for several samples takes the mean of four lookups, whose places have the samples' mean and
+/// variance.
+void applyMaps(const Scene& scene, const SquarePlace& place, SquareValues& values);
 
 }  // namespace luciole

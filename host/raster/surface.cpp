@@ -103,7 +103,7 @@ glm::dvec2 interpolateUv(const Surface& surface, const Weights& weights) {
          weights[2] * glm::dvec2(uvs[surface.corners[2]]);
 }
 
-TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,
+TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, double x, double y,
                           const Weights& weights) {
   const glm::dvec2 here = interpolateUv(surface, weightsInPlane(surface, plane.at(x, y)));
   const glm::dvec2 right = interpolateUv(surface, weightsInPlane(surface, plane.at(x + 1, y)));

@@ -15,8 +15,8 @@ struct ViewPlane {
   glm::dvec2 scale;
   glm::dvec2 offset;
 
-  /// (x, y, 1) for a pixel of the whole picture.
-  glm::dvec3 at(int x, int y) const { return {offset + scale * glm::dvec2(x, y), 1.0}; }
+  /// (x, y, 1) for a pixel of the whole picture, or a place between two pixels' samples.
+  glm::dvec3 at(double x, double y) const { return {offset + scale * glm::dvec2(x, y), 1.0}; }
 };
 /// The rays of a view's samples.
 ViewPlane viewPlane(const View& view);
@@ -70,8 +70,8 @@ struct TexturePlace {
   glm::vec2 duv_dx;
   glm::vec2 duv_dy;
 };
-/// `x` and `y`: a pixel of the whole picture; `weights`: of the point that it shows. The mesh must have uvs.
-TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, int x, int y,
+/// `x` and `y`: as in ViewPlane::at; `weights`: of the point that is seen there. The mesh must have uvs.
+TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, double x, double y,
                           const Weights& weights);
 
 /// A channel of a map at `place`, as by sampleTexture(); `map` must have a texture.

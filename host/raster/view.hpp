@@ -17,6 +17,9 @@ struct View {
   glm::ivec2 crop_origin{0};  ///< top left pixel of the part to draw
   glm::ivec2 crop_size{0};
   glm::dvec2 sample{0.5};  ///< where in a pixel the sample lies, from its top left corner, in [0,1)²
+  /// Where several samples of a pixel are drawn together, they lie at `sample` and up to so many 1/256 pixel
+  /// to the right of it and below it (see SamplePattern).
+  glm::ivec2 reach{0};
 };
 
 /// Reversed-depth projections (see View::projection). `fov_y` in radians, `aspect` width / height, lengths in
@@ -31,6 +34,16 @@ glm::dmat4 worldToView(const Camera& camera);
 /// Part of a picture, in pixels from its top left corner.
 struct Crop {
   int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// A rectangle of the whole picture's pixels.
+struct PixelRectangle {
+  glm::ivec2 first;
+  glm::ivec2 end;
+
+  bool contains(const glm::ivec2& at) const {
+    return at.x >= first.x && at.y >= first.y && at.x < end.x && at.y < end.y;
+  }
 };
 
 /// The view of a camera on a picture of `size` pixels, or on a part of it, sampled at pixel centres. Throws

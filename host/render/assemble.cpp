@@ -9,10 +9,12 @@
 namespace luciole {
 namespace {
 
+constexpr const char* kShadingCount = "shading_count";
+
 /// A channel of the finished picture, and where its values are.
 struct Layer {
   std::string name;
-  const float* plane;  ///< in the G-buffer's layout
+  const float* plane;  ///< in the G-buffer's layout; null: zeros
 };
 
 std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group,
@@ -69,6 +71,10 @@ bool wants(const RenderSettings& settings, Aov aov) {
   return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
 }
 
+bool countsCovered(const RenderSettings& settings) {
+  return settings.alpha || wants(settings, Aov::kShadingCount);
+}
+
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes) {
   std::size_t count = settings.alpha ? 4 : 3;
   for (const Aov aov : settings.aovs) {
@@ -85,6 +91,7 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
       case Aov::kLightCount:
       case Aov::kListLength:
       case Aov::kShadow:
+      case Aov::kShadingCount:
         count += 1;
         break;
     }
@@ -129,6 +136,9 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
       case Aov::kShadow:
         append({{"shadow", first.color.size() == 4 * n ? first.color.data() + 3 * n : all_visible.data()}});
         break;
+      case Aov::kShadingCount:
+        append({{kShadingCount, nullptr}});
+        break;
     }
   }
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
@@ -138,7 +148,8 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
   image.pixels.resize(std::size_t(image.width) * image.height * image.channels.size());
   if (layers.empty()) return image;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
-    for (std::size_t c = 0; c < layers.size(); ++c) pixel[first_layer + c] = layers[c].plane[place];
+    for (std::size_t c = 0; c < layers.size(); ++c)
+      pixel[first_layer + c] = layers[c].plane ? layers[c].plane[place] : 0.0f;
   });
   return image;
 }
@@ -151,13 +162,16 @@ void countCovered(const GBuffer& gbuffer, Plane& covered) {
   });
 }
 
-void setColors(const GBuffer& gbuffer, const Plane& color_sum, const Plane& covered,
-               const RenderSettings& settings, Image& image) {
+void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image) {
   const std::size_t n = gbuffer.pixels();
+  const Plane& shadings = sums.shadings.empty() ? sums.covered : sums.shadings;
+  const std::size_t counted =
+      std::find(image.channels.begin(), image.channels.end(), kShadingCount) - image.channels.begin();
   const float scale = std::exp2(settings.exposure) / float(settings.samples);
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
-    for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(color_sum[place + c * n] * scale);
-    if (settings.alpha) pixel[3] = covered[place] / float(settings.samples);
+    for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(sums.color[place + c * n] * scale);
+    if (settings.alpha) pixel[3] = sums.covered[place] / float(settings.samples);
+    if (counted < image.channels.size()) pixel[counted] = shadings[place];
   });
 }
 

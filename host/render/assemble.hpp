@@ -3,6 +3,7 @@
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
 #include "render/lighting.hpp"
+#include "render/pixel_sums.hpp"
 #include "render/render.hpp"
 
 namespace luciole {
@@ -14,17 +15,19 @@ bool wants(const RenderSettings& settings, Aov aov);
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes);
 
 /// A picture of the G-buffer's size with channels R G B and, if asked for, A, all still 0, and the layers
-/// that the settings ask for, from the first sample's G-buffer and lit planes. Its positions and normals are
-/// in world space.
+/// that the settings ask for, from the first sample's G-buffer and lit planes; the number of shadings is
+/// still 0, too. Its positions and normals are in world space.
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings);
 
 /// Adds 1 to each pixel of `covered` that shows a surface in this sample's G-buffer. An empty plane is made.
 void countCovered(const GBuffer& gbuffer, Plane& covered);
 
-/// Fills in R G B: the mean of the samples times 2^exposure, clamped to finite floats; and A, if asked for.
-/// color_sum: planes r, g, b in the G-buffer's layout, the sum of `settings.samples` samples. covered: how
-/// many of them show a surface; used for A only.
-void setColors(const GBuffer& gbuffer, const Plane& color_sum, const Plane& covered,
-               const RenderSettings& settings, Image& image);
+/// Whether the settings need to know how many samples of each pixel show a surface.
+bool countsCovered(const RenderSettings& settings);
+
+/// Fills in R G B: the mean of the samples times 2^exposure, clamped to finite floats; A and the number of
+/// shadings, if asked for. sums: over `settings.samples` samples, in the G-buffer's layout; `covered` as
+/// countsCovered() says, and empty `shadings` where each of those samples was shaded.
+void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image);
 
 }  // namespace luciole

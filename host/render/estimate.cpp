@@ -15,28 +15,30 @@ double estimatedMilliseconds(const PictureWork& work) {
   const double load = 8e-4 * work.mesh_triangles + 33e-6 * work.texels + 35e-5 * work.lights;
   const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.triangles;
   const double cull = 3e-5 * work.list_entries +
-                      work.samples * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
+                      work.shadings * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
   const double of_shadow_pair = work.shadows == ShadowMethod::kSoft  ? 50e-6
                                 : work.shadows == ShadowMethod::kPcf ? 10e-6
                                 : exact                              ? 15e-6
                                                                      : 7e-6;
   const double shade =
-      work.samples * 3e-6 * work.pixels + 6e-7 * work.pairs + of_shadow_pair * work.shadow_pairs;
+      work.shadings * 3e-6 * work.pixels + 6e-7 * work.pairs + of_shadow_pair * work.shadow_pairs;
   const double of_texel = exact ? 80e-6 : 3e-6, of_caster = exact ? 4e-4 : 1e-4;
   const double shadow_maps = of_texel * work.shadow_texels + 0.1 * work.shadow_faces +
                              (work.shadow_texels > 0 ? of_caster * work.triangles : 0);
-  const double write = (9e-6 + 2e-6 * (work.samples - 1) + 18e-5) * work.pixels;
-  return start + image_module + rays + load + work.samples * raster + cull + shade + shadow_maps + write;
+  const double write = (9e-6 + 2e-6 * (work.passes - 1) + 18e-5) * work.pixels;
+  // A pass over several samples draws them all, but sets up and resolves once.
+  const double drawings = work.passes + 0.1 * (work.samples - work.passes);
+  return start + image_module + rays + load + drawings * raster + cull + shade + shadow_maps + write;
 }
 
 double estimatedBytes(const PictureWork& work) {
   const double image_module = work.texels > 0 ? 120e6 : 0;
   const double loaded = 95e6 + image_module + work.scene_bytes + double(kBytesPerLight) * work.lights;
   const double ray_tree = work.shadows == ShadowMethod::kExact ? 300 * work.triangles : 0;
-  // What is freed between samples is not all used again.
-  const double raster = (100 + 120 * std::log2(work.samples)) * work.triangles;
+  // What is freed between passes is not all used again.
+  const double raster = (100 + 120 * std::log2(work.passes)) * work.triangles;
   const double picture = raster + work.pixel_bytes +
-                         double(sizeof(ListEntry)) * work.list_entries / work.samples +
+                         double(sizeof(ListEntry)) * work.list_entries / work.shadings +
                          work.shadow_map_bytes + ray_tree;
   return loaded + std::max(picture, 30 * work.decoded_texels);
 }

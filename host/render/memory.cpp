@@ -26,7 +26,8 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
       wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
   // Colours and counts are counted twice: on the device and on the host. From the second sample on the sum
   // and the picture with its layers are there, too.
-  const std::size_t covered = settings.alpha ? 1 : 0;
+  const std::size_t covered = countsCovered(settings) ? 1 : 0;
+  const bool shared = sharesSamples(settings);
   const std::size_t lighting =
       gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels + covered : 0);
   const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
@@ -39,8 +40,19 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
                                 : 0;
   // Counting lights in range needs lists of its own.
-  return sizeof(float) * std::max(lighting, assembling) + lists * (1 + counted);
+  const std::size_t all_lists = lists * (1 + counted);
+  if (!shared) return sizeof(float) * std::max(lighting, assembling) + all_lists;
+  // Two sums beside colours, and a pass of points with as many planes as pixels have.
+  const std::size_t first = std::max(gbuffer + 2 * lit + 2 * counted, assembling + 2);
+  const std::size_t further = 3 + 2 + channels + (gbuffer + 2 * lit + 2 * counted) / kPixelsAPoint + 1;
+  return sizeof(float) * std::max(first, further) + kPointBytesPerPixel + all_lists;
 }
+
+bool sharesSamples(const RenderSettings& settings) {
+  return settings.samples > 1 && settings.sample_shading == SampleShading::kShared;
+}
+
+std::size_t pointsAPass(std::size_t pixels) { return std::max<std::size_t>(pixels / kPixelsAPoint, 1 << 16); }
 
 int bandHeight(glm::ivec2 size, std::size_t bytes_per_pixel) {
   const double budget = std::min(double(kBandBytes), memoryRoom().bytes / 4);

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "kernels/shared.h"
+#include "raster/shading_points.hpp"
 #include "render/render.hpp"
 #include "scene/scene.hpp"
 
@@ -27,11 +28,26 @@ inline constexpr std::size_t kBytesPerLight =
 /// counting found.
 inline constexpr std::size_t kListBytesPerPixel = 1 + kFoundPerTile * sizeof(ListEntry) / kTilePixels;
 
+/// Of the points beside each pixel's first that are shaded for its samples (SharedSamples), so many are lit
+/// in a pass: one for every four pixels.
+inline constexpr std::size_t kPixelsAPoint = 4;
+
+/// A pixel's share of those points' list, while it is made, where there is one point more a pixel; and its
+/// own: its first point's object and number of samples, and whether it is uneven.
+inline constexpr std::size_t kPointBytesPerPixel = 2 * sizeof(ShadingPoint) + 4 + 2 + 1;
+
 /// Upper bound of the bytes that a pixel of a band takes, on the host and on a device that shares its memory:
 /// the G-buffer's groups, colours, what --stats and the layers need, and its share of the list entries of
-/// lights that reach everywhere. Not in it: each tile's entries, of 8 bytes, for other lights that reach it.
+/// lights that reach everywhere. Not in it: each tile's entries, of 8 bytes, for other lights that reach it,
+/// and of points that are shaded for a pixel's samples those beyond the second.
 std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
                           const Scene& scene);
+
+/// Whether samples that see the same surface are shaded once.
+bool sharesSamples(const RenderSettings& settings);
+
+/// How many points are lit in a pass, at most, of a band of so many pixels.
+std::size_t pointsAPass(std::size_t pixels);
 
 /// The height of the bands of a picture of `size` pixels, in rows: a multiple of kBinSize. There are as few
 /// bands as fit into kBandBytes and into a quarter of the memory that this process may still take, all about

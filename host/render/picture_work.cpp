@@ -150,9 +150,17 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   const MeanLights mean = meanLights(scene, points, needs.all);
   const double pixels = double(settings.size.x) * settings.size.y, covered = double(points.size()) / grid;
   const bool gouraud = settings.shading == Shading::kGouraud;
-  const double shaded = gouraud ? litVertices(scene) : pixels * covered * settings.samples;
+  const bool shared = sharesSamples(settings);
+  const int passes = shared ? 1 : settings.samples;
+  // Of samples that share points about every second triangle has one of its own in a pixel.
+  const double shadings = shared
+                              ? std::min(double(settings.samples), 1 + 0.5 * double(info.triangles) / pixels)
+                              : settings.samples;
+  const double shaded = gouraud ? litVertices(scene) : pixels * covered * shadings;
   PictureWork work{.pixels = pixels,
                    .samples = settings.samples,
+                   .passes = passes,
+                   .shadings = shadings,
                    .triangles = double(info.triangles),
                    .mesh_triangles = double(info.mesh_triangles),
                    .texels = double(info.texels),

@@ -11,11 +11,15 @@
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
 #include "culling/fog_cull.hpp"
+#include "gbuffer/planes.hpp"
 #include "raster/lift.hpp"
+#include "raster/shading_points.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
 #include "render/lighting.hpp"
 #include "render/memory.hpp"
+#include "render/pixel_sums.hpp"
+#include "render/uneven_pixels.hpp"
 
 namespace luciole {
 namespace {
@@ -169,18 +173,17 @@ struct Progress {
   }
 };
 
-/// All samples of the pixels that `view` shows.
-Image renderBand(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
-                 View view, RasterCounts& triangles, Progress& progress, Stats& stats) {
+/// The pixels that `view` shows, with each sample rasterized and shaded by itself.
+Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
+                       const View& view, RasterCounts& triangles, Progress& progress, Stats& stats) {
   Image picture;
-  Plane sum, covered;
-  const std::int64_t pixels = std::int64_t(view.crop_size.x) * view.crop_size.y;
-  const TraceSpan band("band", {{"first_row", view.crop_origin.y}, {"pixels", pixels}});
+  View of_sample = view;
+  PixelSums sums;
   for (int sample = 0; sample < settings.samples; ++sample) {
     const TraceSpan span("sample", {{"sample", sample}, {"samples", settings.samples}});
-    view.sample = samplePoint(sample, settings.samples);
+    of_sample.sample = samplePoint(sample, settings.samples);
     GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
-      return rasterize(scene, prepared.objects, view, settings.shading, prepared.planes,
+      return rasterize(scene, prepared.objects, of_sample, settings.shading, prepared.planes,
                        prepared.vertex_colors, &triangles);
     });
     gbuffer.camera = settings.camera;
@@ -190,17 +193,135 @@ Image renderBand(Device& device, const Scene& scene, const RenderSettings& setti
     timed(stats, Stage::kResolve, [&] {
       if (sample == 0) {
         picture = startPicture(gbuffer, lit, settings);
-        sum = std::move(lit.color);
+        sums.color = std::move(lit.color);
       } else {
         tbb::parallel_for(std::size_t(0), 3 * gbuffer.pixels(),
-                          [&](std::size_t i) { sum[i] += lit.color[i]; });
+                          [&](std::size_t i) { sums.color[i] += lit.color[i]; });
       }
-      if (settings.alpha) countCovered(gbuffer, covered);
-      if (sample + 1 == settings.samples) setColors(gbuffer, sum, covered, settings, picture);
+      if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
+      if (sample + 1 == settings.samples) setColors(gbuffer, sums, settings, picture);
     });
     progress.step();
   }
   return picture;
+}
+
+/// The lists from `first` on that are lit together: as many as have at most so many points, or one.
+std::size_t endOfPass(const PointLists& points, std::size_t first, std::size_t most_points) {
+  const std::size_t lists = points.starts.size() - 1;
+  std::size_t end = first + 1;
+  while (end < lists && points.starts[end + 1] - points.starts[first] <= most_points) ++end;
+  return end;
+}
+
+/// Takes from these pixels all their points.
+void leaveOut(const std::vector<std::uint8_t>& pixels, SharedSamples& shared) {
+  tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t i) {
+    if (pixels[i]) shared.samples[i] = 0;
+  });
+  PointLists& further = shared.further;
+  std::size_t kept = 0;
+  for (std::size_t list = 0; list + 1 < further.starts.size(); ++list) {
+    const std::size_t first = std::exchange(further.starts[list], kept), end = further.starts[list + 1];
+    for (std::size_t k = first; k < end; ++k)
+      if (!pixels[further.items[k].pixel]) further.items[kept++] = further.items[k];
+  }
+  further.starts.back() = kept;
+  further.items.resize(kept);
+}
+
+/// The part of a picture from `first` on.
+Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
+  if (size == glm::ivec2(picture.width, picture.height)) return picture;
+  Image part{size.x, size.y, picture.channels, {}};
+  const std::size_t step = picture.channels.size();
+  part.pixels.reserve(std::size_t(size.x) * size.y * step);
+  for (int y = first.y; y < first.y + size.y; ++y) {
+    const auto row =
+        picture.pixels.begin() + std::ptrdiff_t((std::size_t(y) * picture.width + first.x) * step);
+    part.pixels.insert(part.pixels.end(), row, row + std::ptrdiff_t(std::size_t(size.x) * step));
+  }
+  return part;
+}
+
+/// Lights points, and adds them to the pixels' sums.
+void addLit(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
+            const SampledView& sampled, const GBuffer& layout, const PointLists& points, PixelSums& sums,
+            Stats& stats) {
+  const std::size_t most_points = pointsAPass(layout.pixels()), lists = points.starts.size() - 1;
+  for (std::size_t first = 0, end; first < lists; first = end) {
+    end = endOfPass(points, first, most_points);
+    const std::span<const ShadingPoint> own =
+        std::span(points.items).subspan(points.starts[first], points.starts[end] - points.starts[first]);
+    if (own.empty()) continue;
+    GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] { return gatherPoints(sampled, own); });
+    gbuffer.camera = settings.camera;
+    const LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
+                                       wantedCounts(settings, 1), stats);
+    countPass(gbuffer, lit, settings.count_lights, stats);
+    timed(stats, Stage::kResolve,
+          [&] { addPoints(layout, points, first, end, lit.color, gbuffer.pixels(), sums); });
+  }
+}
+
+/// Lights every sample of the chosen pixels, some bins after the other, and adds them to the pixels' sums.
+void addEverySample(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
+                    const SampledView& sampled, const GBuffer& layout,
+                    const std::vector<std::uint8_t>& chosen, PixelSums& sums, Stats& stats) {
+  const std::vector<std::size_t> in_bins = chosenInBins(sampled, chosen);
+  const std::size_t most_points = pointsAPass(layout.pixels());
+  std::uint64_t pixels = 0, points = 0;
+  for (std::size_t first = 0, end; first < in_bins.size(); first = end) {
+    std::size_t in_pass = in_bins[first];
+    for (end = first + 1; end < in_bins.size(); ++end) {
+      if ((in_pass + in_bins[end]) * std::size_t(settings.samples) > most_points) break;
+      in_pass += in_bins[end];
+    }
+    pixels += in_pass;
+    if (in_pass == 0) continue;
+    const PointLists lists =
+        timed(stats, Stage::kRasterize, [&] { return everySample(sampled, chosen, int(first), int(end)); });
+    points += lists.items.size();
+    addLit(device, scene, settings, prepared, sampled, layout, lists, sums, stats);
+  }
+  addCount(stats, "refined_pixels", pixels);
+  addCount(stats, "refined_points", points);
+}
+
+/// The pixels that `view` shows, with one shading for the samples that see the same surface.
+Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettings& settings,
+                          Prepared& prepared, const View& view, RasterCounts& triangles, Progress& progress,
+                          Stats& stats) {
+  const SampledView sampled = timed(stats, Stage::kRasterize, [&] {
+    return setupSamples(scene, prepared.objects, view, settings.samples, settings.shading, prepared.planes,
+                        prepared.vertex_colors);
+  });
+  SharedSamples shared = timed(stats, Stage::kRasterize, [&] { return shareSamples(sampled, triangles); });
+  shared.gbuffer.camera = settings.camera;
+  LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, shared.gbuffer,
+                               wantedCounts(settings, 0), stats);
+  countPass(shared.gbuffer, lit, settings.count_lights, stats);
+  PixelSums sums;
+  std::vector<std::uint8_t> uneven;
+  Image picture = timed(stats, Stage::kResolve, [&] {
+    Image started = startPicture(shared.gbuffer, lit, settings);
+    uneven = unevenPixels(sampled, shared, lit.color);
+    leaveOut(uneven, shared);
+    sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color));
+    return started;
+  });
+  freePlanes(shared.gbuffer);
+  addLit(device, scene, settings, prepared, sampled, shared.gbuffer, shared.further, sums, stats);
+  addEverySample(device, scene, settings, prepared, sampled, shared.gbuffer, uneven, sums, stats);
+  Image cut = timed(stats, Stage::kResolve, [&] {
+    const float4 background = prepared.lighting.frame.background;
+    addBackground({background.x, background.y, background.z}, settings.samples, sums);
+    setColors(shared.gbuffer, sums, settings, picture);
+    return cutOut(std::move(picture), sampled.inner.first - sampled.view.crop_origin,
+                  sampled.inner.end - sampled.inner.first);
+  });
+  progress.step();
+  return cut;
 }
 
 }  // namespace
@@ -262,13 +383,18 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   const int tallest = std::min(height, view.crop_size.y);
   requireMemory(double(pixel_bytes) * view.crop_size.x * tallest,
                 fmt::format("a band of {}x{} pixels", view.crop_size.x, tallest));
-  Progress progress{settings.on_pass, (view.crop_size.y + height - 1) / height * settings.samples};
+  const bool shared = sharesSamples(settings);
+  Progress progress{settings.on_pass,
+                    (view.crop_size.y + height - 1) / height * (shared ? 1 : settings.samples)};
   RasterCounts triangles;
   View band = view;
   for (int y = 0; y < view.crop_size.y; y += height) {
     band.crop_origin.y = view.crop_origin.y + y;
     band.crop_size.y = std::min(height, view.crop_size.y - y);
-    take(renderBand(device, scene, settings, prepared, band, triangles, progress, stats));
+    const TraceSpan of_band("band", {{"first_row", band.crop_origin.y},
+                                     {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
+    const auto render = shared ? renderSharedSamples : renderAllSamples;
+    take(render(device, scene, settings, prepared, band, triangles, progress, stats));
   }
   countShadows(prepared.lighting.host_shadows, stats);
   countTriangles(triangles, stats);
@@ -337,17 +463,16 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;
-  const LitPlanes lit =
-      lightGBuffer(device, scene, lighting, features, gbuffer, wantedCounts(settings, 0), stats);
+  LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, wantedCounts(settings, 0), stats);
   countPass(gbuffer, lit, settings.count_lights, stats);
   countShadows(lighting.host_shadows, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
   return timed(stats, Stage::kResolve, [&] {
     Image picture = startPicture(gbuffer, lit, one_sample);
-    Plane covered;
-    if (settings.alpha) countCovered(gbuffer, covered);
-    setColors(gbuffer, lit.color, covered, one_sample, picture);
+    PixelSums sums{std::move(lit.color), {}, {}};
+    if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
+    setColors(gbuffer, sums, one_sample, picture);
     return picture;
   });
 }

@@ -25,7 +25,14 @@ enum class Aov : std::uint8_t {
   kLightCount,  ///< lights in range of the pixel
   kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
                 ///< counted from the band's first pixel, so it depends on the band and the crop
-  kShadow
+  kShadow,
+  kShadingCount,  ///< points that were shaded for all samples of the pixel
+};
+
+/// What of a pixel's samples is shaded.
+enum class SampleShading : std::uint8_t {
+  kShared,  ///< a point for those that see the same surface (SharedSamples)
+  kAll,     ///< each of them, at its own place
 };
 
 struct RenderSettings {
@@ -33,10 +40,12 @@ struct RenderSettings {
   Camera camera;
   std::optional<Crop> crop;
   int samples = 1;  ///< per pixel, at the points of a Hammersley set
+  SampleShading sample_shading = SampleShading::kShared;
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  std::vector<Aov> aovs;  ///< layers; they show the first sample
-  float exposure = 0;     ///< stops: colours are multiplied by 2^exposure
+  /// Layers. They show the first sample, or the point that is shaded for it.
+  std::vector<Aov> aovs;
+  float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
   /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that
   /// the fog hides are drawn too: they look like the scene's background, but hide any other.
@@ -45,7 +54,7 @@ struct RenderSettings {
   bool count_lights = false;
   /// Rows that are rendered at a time; 0: as bandHeight() says. The picture's colours don't depend on it.
   int band_height = 0;
-  std::function<void(int done, int passes)> on_pass;  ///< called after each sample of each band, if set
+  std::function<void(int done, int passes)> on_pass;  ///< called after each pass over a band, if set
 };
 
 /// What a picture of a scene needs.

@@ -86,6 +86,22 @@ TEST_F(BenchCommand, MeasuresEveryVariantOfEveryGroup) {
   EXPECT_LT(json["groups"][2]["truth_error_steps"], samples[4]["error"]["steps"]["mean"]);
 }
 
+TEST_F(BenchCommand, AntiAliasingHoldsSharedSamplesAgainstWholeOnes) {
+  writeText(folder / "scene.json", kScene);
+  const Outcome outcome = runLine(folder,
+                                  "luciole bench scene.json --only anti-aliasing --size 64x36 --repeats 1 "
+                                  "--quiet --json out.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto rows = nlohmann::json::parse(readText(folder / "out.json"))["speed"][0]["rows"];
+  ASSERT_EQ(rows.size(), 7u);
+  for (std::size_t i = 1; i < rows.size(); i += 2) {
+    const auto &all = rows[i], &shared = rows[i + 1];
+    EXPECT_LT(shared["shadings_per_pixel"], all["shadings_per_pixel"]) << shared;
+    EXPECT_GT(shared["rmse_steps"], 0) << shared;
+    EXPECT_EQ(all["rmse_times_all"], 1) << all;
+  }
+}
+
 /// The mean error of a row, in 8-bit steps.
 double meanOf(const nlohmann::json& group, const std::string& name) {
   for (const auto& row : group["rows"])

@@ -147,12 +147,13 @@ TEST_F(CommandLine, ExposureIsInStops) {
 
 TEST_F(CommandLine, AovsBecomeLayers) {
   succeed(
-      "luciole render scene.json --aov position,normal,depth,diffuse,material,light_count,list_length,shadow "
+      "luciole render scene.json --aov position,normal,depth,diffuse,material,light_count,list_length,shadow,"
+      "shading_count "
       "-o out.exr");
   const Image image = readImage(folder / "out.exr");
   for (const char* name :
        {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Z", "diffuse.R", "specular.G", "shininess",
-        "ambient.B", "emission.R", "light_count", "list_length", "shadow"})
+        "ambient.B", "emission.R", "light_count", "list_length", "shadow", "shading_count"})
     EXPECT_NE(std::find(image.channels.begin(), image.channels.end(), name), image.channels.end()) << name;
 }
 

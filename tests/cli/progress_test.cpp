@@ -53,13 +53,15 @@ class Progress : public testing::Test {
 };
 
 TEST_F(Progress, OfAPictureShowsTheTimeLeft) {
-  const std::string text = runOnTerminal(folder, "render scene.json --samples 8 -o out.png");
+  const std::string text =
+      runOnTerminal(folder, "render scene.json --samples 8 --samples-shading all -o out.png");
   EXPECT_THAT(text, ContainsRegex("out.png: 50 %, 0:[0-9][0-9] left"));
   expectTakenAway(text);
 }
 
 TEST_F(Progress, OfFramesCountsThemAndWhatIsDoneOfEach) {
-  const std::string text = runOnTerminal(folder, "render scene.json --frames 3,5 --samples 4 -o out.#.png");
+  const std::string text =
+      runOnTerminal(folder, "render scene.json --frames 3,5 --samples 4 --samples-shading all -o out.#.png");
   EXPECT_THAT(text, ContainsRegex("frame 5, 2 of 2: 75 %, 0:[0-9][0-9] left"));
   expectTakenAway(text);
 }
@@ -85,7 +87,8 @@ TEST_F(Progress, IsNotInAPipeNorWhereQuietIsAsked) {
 }
 
 TEST_F(Progress, IsAnEventForEachPercentInALog) {
-  const std::string text = runOnTerminal(folder, "render scene.json --samples 4 --log json -o out.png");
+  const std::string text =
+      runOnTerminal(folder, "render scene.json --samples 4 --samples-shading all --log json -o out.png");
   EXPECT_THAT(text, Not(HasSubstr("\x1b")));
   for (const char* percent : {"25", "50", "75", "100"})
     EXPECT_THAT(text, HasSubstr(std::string("\"what\":\"out.png\",\"percent\":") + percent + ","));

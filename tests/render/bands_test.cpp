@@ -23,8 +23,8 @@ constexpr const char* kBandsScene =
              {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "cutoff": 40, "exponent": 4, "shadow": true}],
   "light_fields": [{"count": 200, "seed": 3, "min": [-4, 0, -4], "max": [4, 2, 4], "range": 0.8, "intensity": 0.5}]})";
 
-const std::vector<Aov> kAllLayers{Aov::kPosition, Aov::kNormal,     Aov::kDepth, Aov::kDiffuse,
-                                  Aov::kMaterial, Aov::kLightCount, Aov::kShadow};
+const std::vector<Aov> kAllLayers{Aov::kPosition, Aov::kNormal,     Aov::kDepth,  Aov::kDiffuse,
+                                  Aov::kMaterial, Aov::kLightCount, Aov::kShadow, Aov::kShadingCount};
 
 /// Renders in one piece and in bands of several heights.
 void expectSameInBands(const Scene& scene, RenderSettings settings) {
@@ -63,6 +63,8 @@ TEST(Bands, TheirHeightChangesNoSumOfSamplesWithLayers) {
   settings.exposure = 0.5f;
   settings.aovs = kAllLayers;
   expectSameInBands(scene, settings);
+  settings.sample_shading = SampleShading::kAll;
+  expectSameInBands(scene, settings);
 }
 
 TEST(Bands, TheirHeightChangesNoCrop) {
@@ -87,6 +89,7 @@ TEST(Bands, CountsAreThoseOfOnePiece) {
   settings.crop = Crop{21, 37, 90, 223};
   settings.samples = 2;
   settings.count_lights = true;
+  settings.sample_shading = SampleShading::kAll;
   Stats whole, bands;
   settings.band_height = 1 << 20;
   renderScene(testDevice(), scene, settings, whole);
@@ -113,6 +116,11 @@ TEST(Bands, ComeFromTheTopDownAndEachPassIsReported) {
   renderBands(
       testDevice(), scene, settings, [&](const Image& rows) { heights.push_back(rows.height); }, stats);
   EXPECT_EQ(heights, (std::vector<int>{64, 64, 22}));
+  EXPECT_EQ(passes, (std::vector<std::pair<int, int>>{{1, 3}, {2, 3}, {3, 3}}));
+  passes.clear();
+  settings.sample_shading = SampleShading::kAll;
+  renderBands(
+      testDevice(), scene, settings, [](const Image&) {}, stats);
   EXPECT_EQ(passes, (std::vector<std::pair<int, int>>{{1, 6}, {2, 6}, {3, 6}, {4, 6}, {5, 6}, {6, 6}}));
 }
 

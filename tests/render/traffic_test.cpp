@@ -76,6 +76,7 @@ TEST(Traffic, OnlyShadowTexelsThatWereDrawnGoUp) {
   constexpr int kSamples = 8;
   RenderSettings settings = sampledSettings(scene, ShadowMethod::kPcf, kSamples);
   settings.shade.shadow_limits.size = 512;
+  settings.sample_shading = SampleShading::kAll;
   Stats with;
   renderScene(deviceApart(), scene, settings, with);
   const auto shadow_bytes = std::find_if(with.counts.begin(), with.counts.end(),

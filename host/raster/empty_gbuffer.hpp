@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+
+#include "gbuffer/gbuffer.hpp"
+#include "raster/view.hpp"
+
+namespace luciole {
+
+/// Throws InputError for a view whose size or crop is out of range.
+void checkView(const View& view);
+
+/// A G-buffer of a view's crop that shows nothing. Throws as allocateArray does.
+GBuffer emptyGBuffer(const View& view, PlaneSet planes);
+
+/// A G-buffer of single points in whole tiles, point i at index i of every plane, that shows nothing. Throws
+/// as allocateArray does.
+GBuffer emptyPoints(const View& view, std::size_t count, PlaneSet planes);
+
+}  // namespace luciole

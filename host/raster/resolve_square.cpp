@@ -1,0 +1,93 @@
+#include "raster/resolve_square.hpp"
+
+#include <cstring>
+#include <span>
+
+namespace luciole {
+namespace {
+
+/// The first of a square's pixels, from one on, that still sees a triangle; kSquarePixels where none does.
+int nextSeen(const Lanes<std::uint32_t>& triangles, int from) {
+  while (from < kSquarePixels && triangles[from] == kNoTriangle) ++from;
+  return from;
+}
+
+/// Which pixels see the triangle that pixel `lane` sees; they are taken out of `triangles`.
+LaneMask takeTriangle(Lanes<std::uint32_t>& triangles, int lane) {
+  const std::uint32_t triangle = triangles[lane];
+  LaneMask sees_it;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    sees_it[i] = triangles[i] == triangle;
+    triangles[i] = sees_it[i] ? kNoTriangle : triangles[i];
+  }
+  return sees_it;
+}
+
+/// The values of a square of which at least one pixel sees something. Those of pixels that see nothing are
+/// arbitrary.
+SquareValues valuesSeen(const ResolveInput& input, const SquarePlace& place, Lanes<std::uint32_t> triangles,
+                        SurfaceCache& surfaces) {
+  const auto show = [&](int lane, LaneMask& sees_it) {
+    const SeenSurface& seen = surfaces[triangles[lane]];
+    sees_it = takeTriangle(triangles, lane);
+    return valuesOf(input, seen, place, sees_it);
+  };
+  LaneMask sees_it;
+  int lane = nextSeen(triangles, 0);
+  SquareValues values = show(lane, sees_it);
+  while ((lane = nextSeen(triangles, lane + 1)) < kSquarePixels) {
+    const SquareValues others = show(lane, sees_it);
+    put(others, sees_it, values);
+  }
+  applyMaps(input.scene, place, values);
+  return values;
+}
+
+/// Stores the values of the pixels that see something into a plane, from `out` on. `whole`: all of them do.
+template <class T>
+void store(const Lanes<T>& values, const LaneMask& mask, bool whole, T* out) {
+  if (whole) {
+    std::memcpy(out, values.data(), sizeof values);
+  } else {
+    for (int i = 0; i < kSquarePixels; ++i)
+      if (mask[i]) out[i] = values[i];
+  }
+}
+
+/// The same into a group of planes, if the G-buffer has it.
+void store(std::span<const Lanes<float>> values, std::size_t place, const LaneMask& mask, bool whole,
+           Plane& group) {
+  if (group.empty()) return;
+  const std::size_t stride = group.size() / values.size();
+  for (std::size_t c = 0; c < values.size(); ++c)
+    store(values[c], mask, whole, group.data() + c * stride + place);
+}
+
+void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, std::size_t place,
+           GBuffer& gbuffer) {
+  LaneMask drawn;
+  bool whole = true;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    drawn[i] = triangles[i] != kNoTriangle;
+    whole &= drawn[i] != 0;
+  }
+  store(values.position, place, drawn, whole, gbuffer.position);
+  store(values.normal, place, drawn, whole, gbuffer.normal);
+  store(values.diffuse, place, drawn, whole, gbuffer.diffuse);
+  store(values.specular, place, drawn, whole, gbuffer.specular);
+  store(values.ambient, place, drawn, whole, gbuffer.ambient);
+  store(values.emission, place, drawn, whole, gbuffer.emission);
+  if (!gbuffer.geometric_normal.empty())
+    store(values.geometric_normal, drawn, whole, gbuffer.geometric_normal.data() + place);
+  if (!gbuffer.lift.empty()) store(values.lift, drawn, whole, gbuffer.lift.data() + place);
+}
+
+}  // namespace
+
+void resolveSquare(const ResolveInput& input, const SquarePlace& place, const Lanes<std::uint32_t>& triangles,
+                   SurfaceCache& surfaces, std::size_t at, GBuffer& gbuffer) {
+  if (nextSeen(triangles, 0) == kSquarePixels) return;
+  store(valuesSeen(input, place, triangles, surfaces), triangles, at, gbuffer);
+}
+
+}  // namespace luciole

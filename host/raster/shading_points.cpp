@@ -1,0 +1,438 @@
+#include "raster/shading_points.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "raster/concatenate.hpp"
+#include "raster/empty_gbuffer.hpp"
+#include "raster/resolve_square.hpp"
+#include "raster/sample_coverage.hpp"
+
+namespace luciole {
+namespace {
+
+/// What a triangle's plane shows at a place of the picture, inside the triangle or not.
+struct Glimpse {
+  glm::dvec3 position;
+  glm::dvec3 normal;  ///< unit
+  glm::dvec2 uv;
+  glm::dvec2 emission_uv;
+  glm::dvec3 color;
+};
+
+Glimpse glimpseAt(const SeenSurface& seen, const glm::dvec3& p) {
+  const Weights weights = weightsInPlane(seen.surface, p);
+  const auto at = [&](const auto& values) {
+    return values.first + weights[1] * values.to_second + weights[2] * values.to_third;
+  };
+  const Surface& surface = seen.surface;
+  return {surface.corner + weights[1] * surface.edge1 + weights[2] * surface.edge2,
+          glm::normalize(at(seen.normal)), at(seen.uv), at(seen.emission_uv), at(seen.color)};
+}
+
+/// Facets that are bent more against each other are not looked at further, to save time.
+constexpr double kMostBentCosine = 0.97;
+
+/// Whether two triangles of one object and material show the same at the place p (see ViewPlane::at): normals
+/// and colours within kSameShade, positions and texture coordinates within half a pixel along x and along y.
+bool agreeAt(const SeenSurface& a, const SeenSurface& b, const glm::dvec3& p, const ViewPlane& plane) {
+  // What isn't finite agrees with nothing.
+  const Glimpse of_a = glimpseAt(a, p), of_b = glimpseAt(b, p);
+  if (!(glm::distance(of_a.normal, of_b.normal) <= kSameShade)) return false;
+  if (!(glm::distance(of_a.color, of_b.color) <= kSameShade)) return false;
+  const Glimpse right = glimpseAt(a, p + glm::dvec3(0.5 * plane.scale.x, 0, 0));
+  const Glimpse below = glimpseAt(a, p + glm::dvec3(0, 0.5 * plane.scale.y, 0));
+  const auto near = [&](const auto& value) {
+    return glm::distance(value(of_a), value(of_b)) <=
+           glm::distance(value(of_a), value(right)) + glm::distance(value(of_a), value(below));
+  };
+  return near([](const Glimpse& at) { return at.position; }) &&
+         near([](const Glimpse& at) { return at.uv; }) &&
+         near([](const Glimpse& at) { return at.emission_uv; });
+}
+
+int cornersInCommon(const glm::uvec3& a, const glm::uvec3& b) {
+  int common = 0;
+  for (int i = 0; i < 3; ++i) common += a[i] == b[0] || a[i] == b[1] || a[i] == b[2];
+  return common;
+}
+
+/// Samples of a pixel that share a point.
+struct SampleGroup {
+  std::uint32_t triangle;
+  std::int32_t samples;
+  glm::ivec2 sum;      ///< of the samples' places, as in SamplePattern
+  glm::ivec2 squares;  ///< the sum of their squares
+  std::int32_t first;  ///< its first sample
+  bool merged;         ///< into another group
+};
+
+/// What tells at once that two groups see different surfaces, or the same.
+struct GroupTraits {
+  const PlacedObject* object;
+  const Material* material;
+  glm::uvec3 corners;
+  bool front_facing;
+  glm::dvec3 facing_normal;
+};
+
+/// What grouping the samples of a bin's pixels needs, one a thread.
+struct Grouping {
+  const SampledView& sampled;
+  SurfaceCache& surfaces;
+  std::vector<std::uint32_t> labels{};
+  std::vector<SampleGroup> groups{};
+  std::vector<GroupTraits> traits{};  ///< of the groups
+};
+
+/// Whether two of a pixel's groups, by their index, see the same surface.
+bool sameSurface(Grouping& grouping, std::size_t first, std::size_t second, const glm::ivec2& pixel) {
+  const GroupTraits &of_first = grouping.traits[first], &of_second = grouping.traits[second];
+  if (of_first.object != of_second.object || of_first.material != of_second.material ||
+      of_first.front_facing != of_second.front_facing)
+    return false;
+  // All that is interpolated comes from the vertices.
+  if (grouping.sampled.shading != Shading::kFlat && cornersInCommon(of_first.corners, of_second.corners) >= 2)
+    return true;
+  if (glm::dot(of_first.facing_normal, of_second.facing_normal) < kMostBentCosine) return false;
+  const SampleGroup &a = grouping.groups[first], &b = grouping.groups[second];
+  const glm::dvec2 mean = glm::dvec2(a.sum + b.sum) / double((a.samples + b.samples) * kSubpixels);
+  const ViewPlane& plane = grouping.sampled.plane;
+  const SeenSurface of_a = grouping.surfaces[a.triangle];  // a copy: the cache may give its place to b
+  return agreeAt(of_a, grouping.surfaces[b.triangle], plane.at(pixel.x + mean.x, pixel.y + mean.y), plane);
+}
+
+/// Fills grouping.groups from the labels of a pixel's samples: a group for each triangle, in the order of
+/// their first samples.
+void groupByTriangle(const std::uint32_t* labels, Grouping& grouping) {
+  const SamplePattern& pattern = grouping.sampled.pattern;
+  std::vector<std::uint32_t>& left = grouping.labels;
+  left.assign(labels, labels + pattern.count);
+  grouping.groups.clear();
+  for (int first = 0; first < pattern.count; ++first) {
+    const std::uint32_t triangle = left[first];
+    if (triangle == kNoTriangle) continue;
+    std::int32_t samples = 0, x = 0, y = 0, x2 = 0, y2 = 0;
+    for (int i = first; i < pattern.count; ++i) {
+      const std::int32_t same = left[i] == triangle;
+      samples += same;
+      x += same * pattern.x[i];
+      y += same * pattern.y[i];
+      x2 += same * pattern.x[i] * pattern.x[i];
+      y2 += same * pattern.y[i] * pattern.y[i];
+      left[i] = same ? kNoTriangle : left[i];
+    }
+    grouping.groups.push_back({triangle, samples, {x, y}, {x2, y2}, first, false});
+  }
+}
+
+/// Merges groups that see the same surface, each into the one with the most samples. A group keeps its
+/// triangle, gets the samples of those merged into it, and the first of all their first samples.
+void mergeGroups(const glm::ivec2& pixel, Grouping& grouping) {
+  std::vector<SampleGroup>& groups = grouping.groups;
+  std::sort(groups.begin(), groups.end(), [](const SampleGroup& a, const SampleGroup& b) {
+    return a.samples != b.samples ? a.samples > b.samples : a.first < b.first;
+  });
+  grouping.traits.clear();
+  for (const SampleGroup& group : groups) {
+    const SeenSurface& seen = grouping.surfaces[group.triangle];
+    const Surface& surface = seen.surface;
+    grouping.traits.push_back(
+        {surface.object, surface.material, surface.corners, surface.front_facing, seen.facing_normal});
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i].merged) continue;
+    SampleGroup joined = groups[i];
+    for (std::size_t j = i + 1; j < groups.size(); ++j) {
+      if (groups[j].merged || !sameSurface(grouping, i, j, pixel)) continue;
+      groups[j].merged = true;
+      joined.samples += groups[j].samples;
+      joined.sum += groups[j].sum;
+      joined.squares += groups[j].squares;
+      joined.first = std::min(joined.first, groups[j].first);
+    }
+    groups[i] = joined;
+  }
+}
+
+/// Where a group's point lies, from the pixel's place, and the samples' standard deviation, both in pixels.
+struct GroupPlace {
+  glm::vec2 mean;
+  glm::vec2 spread;
+};
+
+GroupPlace placeOf(const SampleGroup& group, const std::uint32_t* labels, Grouping& grouping) {
+  const SamplePattern& pattern = grouping.sampled.pattern;
+  const double count = group.samples, fine = kSubpixels;
+  const glm::dvec2 mean = glm::dvec2(group.sum) / count;
+  const Material& material = *grouping.surfaces[group.triangle].surface.material;
+  if (!(material.alpha_cutoff > 0.0f)) {
+    const glm::dvec2 variance = glm::max(glm::dvec2(group.squares) / count - mean * mean, glm::dvec2(0.0));
+    return {glm::vec2(mean / fine), glm::vec2(glm::sqrt(variance) / fine)};
+  }
+  // The mean may lie in a hole: the nearest sample on the triangle stands for it.
+  glm::dvec2 nearest(0.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < pattern.count; ++i) {
+    if (labels[i] != group.triangle) continue;
+    const glm::dvec2 sample(pattern.x[i], pattern.y[i]), way = sample - mean;
+    if (glm::dot(way, way) < least) {
+      least = glm::dot(way, way);
+      nearest = sample;
+    }
+  }
+  return {glm::vec2(nearest / fine), glm::vec2(0.0f)};
+}
+
+bool allAlike(const std::uint32_t* labels, int count) {
+  std::uint32_t differ = 0;
+  for (int i = 1; i < count; ++i) differ |= labels[i] ^ labels[0];
+  return differ == 0;
+}
+
+/// ViewPlane::at of pixels, or places between them, that come in `place`.
+void toPlane(const ViewPlane& plane, SquarePlace& place) {
+  for (int i = 0; i < kSquarePixels; ++i) {
+    place.x[i] = plane.offset.x + plane.scale.x * place.x[i];
+    place.y[i] = plane.offset.y + plane.scale.y * place.y[i];
+  }
+}
+
+ResolveInput resolveInput(const SampledView& sampled) {
+  return {sampled.scene,   sampled.objects,       sampled.plane,
+          sampled.shading, sampled.vertex_colors, sampled.planes.lift};
+}
+
+/// Groups the samples of a part of a strip, resolves the pixels' first points, and appends the others to
+/// `further`.
+void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const StripSamples& samples,
+                const ResolveInput& input, Grouping& grouping, SharedSamples& out,
+                std::vector<ShadingPoint>& further) {
+  const SamplePattern& pattern = grouping.sampled.pattern;
+  const glm::ivec2 crop = out.gbuffer.crop_origin;
+  SampleGroup whole{kNoTriangle, pattern.count, glm::ivec2(0), glm::ivec2(0), 0, false};
+  for (int i = 0; i < pattern.count; ++i) {
+    const glm::ivec2 sample(pattern.x[i], pattern.y[i]);
+    whole.sum += sample;
+    whole.squares += sample * sample;
+  }
+  forEachSquare(part, crop, [&](const glm::ivec2& square) {
+    Lanes<std::uint32_t> triangles;
+    SquarePlace at;
+    bool any = false;
+    for (int lane = 0; lane < kSquarePixels; ++lane) {
+      const glm::ivec2 pixel = square + glm::ivec2(kSquareLayout.x[lane], kSquareLayout.y[lane]);
+      triangles[lane] = kNoTriangle;
+      at.x[lane] = pixel.x;
+      at.y[lane] = pixel.y;
+      if (!part.contains(pixel)) continue;
+      const std::uint32_t* labels = samples.labels(pixel - bin_origin, pattern);
+      const std::uint32_t number = std::uint32_t(pixel.y - crop.y) * std::uint32_t(out.gbuffer.width) +
+                                   std::uint32_t(pixel.x - crop.x);
+      const auto takeFirst = [&](const SampleGroup& group) {
+        const GroupPlace place = placeOf(group, labels, grouping);
+        triangles[lane] = group.triangle;
+        at.x[lane] += place.mean.x;
+        at.y[lane] += place.mean.y;
+        at.spread_x[lane] = place.spread.x;
+        at.spread_y[lane] = place.spread.y;
+        out.samples[number] = std::uint16_t(group.samples);
+        const PlacedObject* object = grouping.surfaces[group.triangle].surface.object;
+        out.objects[number] = std::uint32_t(object - grouping.sampled.objects.data());
+        any = true;
+      };
+      if (allAlike(labels, pattern.count)) {
+        whole.triangle = labels[0];
+        if (whole.triangle != kNoTriangle) takeFirst(whole);
+        continue;
+      }
+      groupByTriangle(labels, grouping);
+      if (grouping.groups.size() > 1) mergeGroups(pixel, grouping);
+      for (const SampleGroup& group : grouping.groups) {
+        if (group.merged) continue;
+        if (group.first == 0) {
+          takeFirst(group);
+          continue;
+        }
+        if (!grouping.sampled.inner.contains(pixel)) continue;
+        const GroupPlace place = placeOf(group, labels, grouping);
+        further.push_back({number, group.triangle, place.mean.x, place.mean.y, place.spread.x, place.spread.y,
+                           std::uint32_t(group.samples)});
+      }
+    }
+    if (!any) return;
+    toPlane(input.plane, at);
+    resolveSquare(input, at, triangles, grouping.surfaces,
+                  out.gbuffer.index(square.x - crop.x, square.y - crop.y), out.gbuffer);
+  });
+}
+
+PointLists joinLists(std::vector<std::vector<ShadingPoint>> lists) {
+  PointLists joined;
+  joined.starts.reserve(lists.size() + 1);
+  joined.starts.push_back(0);
+  for (const std::vector<ShadingPoint>& list : lists)
+    joined.starts.push_back(joined.starts.back() + list.size());
+  joined.items = concatenate(std::move(lists));
+  return joined;
+}
+
+/// Calls visit(part, row) for each strip of a bin that touches the crop: the part of it that does, and its
+/// first row in the bin.
+template <class Visit>
+void forEachStrip(const SampledView& sampled, int bin, Visit visit) {
+  const View& view = sampled.view;
+  const int rows = stripRows(sampled.pattern);
+  const glm::ivec2 origin = sampled.bins.origin(bin);
+  for (int row = 0; row < kBinSize; row += rows) {
+    const glm::ivec2 first = origin + glm::ivec2(0, row);
+    const PixelRectangle part{glm::max(first, view.crop_origin), glm::min(first + glm::ivec2(kBinSize, rows),
+                                                                          view.crop_origin + view.crop_size)};
+    if (part.first.y < part.end.y) visit(part, row);
+  }
+}
+
+void drawRows(const SampledView& sampled, int bin, int row, std::span<std::uint8_t> covering,
+              StripSamples& samples) {
+  const HoleTest holes{sampled.scene, sampled.objects, sampled.plane};
+  drawStrip(sampled.setup.triangles, sampled.bins, bin, row, holes, sampled.pattern, covering, samples);
+}
+
+}  // namespace
+
+SampledView setupSamples(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                         int samples, Shading shading, PlaneSet planes,
+                         std::span<const glm::vec3> vertex_colors) {
+  checkView(view);
+  const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
+  planes.emission |= lit_vertices;
+  const SamplePattern pattern = samplePattern(samples);
+  View sampled = view;
+  const glm::ivec2 end = view.crop_origin + view.crop_size;
+  sampled.crop_origin = glm::max(view.crop_origin - 1, glm::ivec2(0));
+  sampled.crop_size = glm::min(end + 1, view.size) - sampled.crop_origin;
+  sampled.sample = pattern.origin;
+  sampled.reach = pattern.reach;
+  Geometry geometry = transformObjects(scene, objects, sampled, lit_vertices);
+  RasterSetup setup = setupTriangles(scene, geometry, sampled, FaceCulling::kBackFaces);
+  Bins bins = binTriangles(setup.triangles, sampled);
+  return {scene,
+          shading,
+          planes,
+          vertex_colors,
+          pattern,
+          sampled,
+          {view.crop_origin, end},
+          viewPlane(sampled),
+          std::move(geometry.objects),
+          geometry.triangle_count,
+          std::move(setup),
+          std::move(bins)};
+}
+
+SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts) {
+  const View& view = sampled.view;
+  const ResolveInput input = resolveInput(sampled);
+  SharedSamples shared;
+  shared.gbuffer = emptyGBuffer(view, sampled.planes);
+  shared.samples.resize(std::size_t(view.crop_size.x) * view.crop_size.y);
+  shared.objects.assign(shared.samples.size(), kNoObject);
+  counts.covering.resize(sampled.triangle_count);
+  const int rows = stripRows(sampled.pattern), strips = kBinSize / rows;
+  std::vector<std::vector<ShadingPoint>> further(std::size_t(sampled.bins.size()) * strips);
+  tbb::enumerable_thread_specific<StripSamples> tables;
+  tbb::parallel_for(0, sampled.bins.size(), [&](int bin) {
+    if (sampled.bins.list(bin).empty()) return;
+    StripSamples& samples = tables.local();
+    SurfaceCache surfaces(input);
+    Grouping grouping{sampled, surfaces};
+    forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
+      drawRows(sampled, bin, row, counts.covering, samples);
+      std::vector<ShadingPoint>& list = further[std::size_t(bin) * strips + row / rows];
+      shareStrip(part, sampled.bins.origin(bin), samples, input, grouping, shared, list);
+      // Points of one triangle beside each other are cheap to resolve, and see the same lights.
+      std::sort(list.begin(), list.end(), [](const ShadingPoint& a, const ShadingPoint& b) {
+        return a.triangle != b.triangle ? a.triangle < b.triangle : a.pixel < b.pixel;
+      });
+    });
+  });
+  shared.further = joinLists(std::move(further));
+  setCounts(sampled.triangle_count, sampled.setup, counts);
+  return shared;
+}
+
+std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<const std::uint8_t> chosen) {
+  std::vector<std::size_t> counts(sampled.bins.size());
+  tbb::parallel_for(0, sampled.bins.size(), [&](int bin) {
+    forEachRow(sampled.view, sampled.bins.origin(bin), [&](int, std::size_t in_crop, int count) {
+      for (int i = 0; i < count; ++i) counts[bin] += chosen[in_crop + i];
+    });
+  });
+  return counts;
+}
+
+PointLists everySample(const SampledView& sampled, std::span<const std::uint8_t> chosen, int first_bin,
+                       int end_bin) {
+  const View& view = sampled.view;
+  const SamplePattern& pattern = sampled.pattern;
+  const int rows = stripRows(pattern), strips = kBinSize / rows;
+  std::vector<std::vector<ShadingPoint>> points(std::size_t(end_bin - first_bin) * strips);
+  std::vector<std::uint8_t> covering(sampled.triangle_count);
+  tbb::enumerable_thread_specific<StripSamples> tables;
+  tbb::parallel_for(first_bin, end_bin, [&](int bin) {
+    if (sampled.bins.list(bin).empty()) return;
+    const glm::ivec2 origin = sampled.bins.origin(bin);
+    StripSamples& samples = tables.local();
+    forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
+      std::vector<ShadingPoint>& list = points[std::size_t(bin - first_bin) * strips + row / rows];
+      bool drawn = false;
+      for (int y = part.first.y; y < part.end.y; ++y)
+        for (int x = part.first.x; x < part.end.x; ++x) {
+          const glm::uvec2 in_crop(x - view.crop_origin.x, y - view.crop_origin.y);
+          const std::uint32_t number = in_crop.y * std::uint32_t(view.crop_size.x) + in_crop.x;
+          if (!chosen[number]) continue;
+          if (!drawn) drawRows(sampled, bin, row, covering, samples);
+          drawn = true;
+          const std::uint32_t* labels = samples.labels(glm::ivec2(x, y) - origin, pattern);
+          for (int i = 0; i < pattern.count; ++i)
+            if (labels[i] != kNoTriangle)
+              list.push_back({number, labels[i], float(pattern.x[i]) / kSubpixels,
+                              float(pattern.y[i]) / kSubpixels, 0, 0, 1});
+        }
+    });
+  });
+  return joinLists(std::move(points));
+}
+
+GBuffer gatherPoints(const SampledView& sampled, std::span<const ShadingPoint> points) {
+  GBuffer gbuffer = emptyPoints(sampled.view, points.size(), sampled.planes);
+  const ResolveInput input = resolveInput(sampled);
+  const View& view = sampled.view;
+  tbb::parallel_for(0, gbuffer.tiles_x, [&](int tile) {
+    SurfaceCache surfaces(input);
+    const std::size_t end = std::min(points.size(), std::size_t(tile + 1) * kTilePixels);
+    for (std::size_t first = std::size_t(tile) * kTilePixels; first < end; first += kSquarePixels) {
+      Lanes<std::uint32_t> triangles;
+      SquarePlace at;
+      for (int lane = 0; lane < kSquarePixels; ++lane) {
+        const ShadingPoint& point = points[std::min(first + lane, end - 1)];
+        triangles[lane] = first + lane < end ? point.triangle : kNoTriangle;
+        const std::uint32_t width = std::uint32_t(view.crop_size.x);
+        at.x[lane] = view.crop_origin.x + int(point.pixel % width) + double(point.x);
+        at.y[lane] = view.crop_origin.y + int(point.pixel / width) + double(point.y);
+        at.spread_x[lane] = point.spread_x;
+        at.spread_y[lane] = point.spread_y;
+      }
+      toPlane(input.plane, at);
+      resolveSquare(input, at, triangles, surfaces, first, gbuffer);
+    }
+  });
+  return gbuffer;
+}
+
+}  // namespace luciole

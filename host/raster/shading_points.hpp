@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gbuffer/gbuffer.hpp"
+#include "raster/bins.hpp"
+#include "raster/rasterize.hpp"
+#include "raster/sample_pattern.hpp"
+#include "raster/setup.hpp"
+#include "raster/surface.hpp"
+
+// Anti-aliasing that shades a surface once a pixel. All samples of a pixel are drawn in one pass. Those that
+// see the same surface share a point, which is shaded for all of them.
+namespace luciole {
+
+/// A place on a triangle that is shaded for one sample of a pixel or several.
+struct ShadingPoint {
+  std::uint32_t pixel;       ///< row by row in the crop of SampledView::view
+  std::uint32_t triangle;    ///< its number among all
+  float x, y;                ///< from the pixel's place in the view (View::sample), in pixels
+  float spread_x, spread_y;  ///< as in SquarePlace
+  std::uint32_t samples;     ///< that it stands for
+};
+
+/// Lists of points, one for each of the parts in which a bin is drawn, stored one after another. A pixel's
+/// points are all in one list, of 65,536 points at most.
+struct PointLists {
+  std::vector<std::size_t> starts;  ///< where each list starts in `items`, and the end of the last
+  std::vector<ShadingPoint> items;
+};
+
+/// A scene's triangles, ready to be drawn with several samples a pixel. Refers to the scene and to the
+/// vertices' colours.
+struct SampledView {
+  const Scene& scene;
+  Shading shading;
+  PlaneSet planes;
+  std::span<const glm::vec3> vertex_colors;
+  SamplePattern pattern;
+  /// With the pattern's origin and reach. Its crop has a margin of a pixel around `inner`, as far as the
+  /// picture goes, so that pixels have their neighbours.
+  View view;
+  PixelRectangle inner;  ///< the pixels that are wanted
+  ViewPlane plane;
+  std::vector<PlacedObject> objects;
+  std::uint32_t triangle_count;
+  RasterSetup setup;
+  Bins bins;
+};
+
+/// Sets up the given objects for `samples` samples a pixel. The arguments are those of rasterize(), which
+/// see; `view.sample` isn't used. Throws as rasterize does.
+SampledView setupSamples(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
+                         int samples, Shading shading, PlaneSet planes,
+                         std::span<const glm::vec3> vertex_colors);
+
+/// What the samples of a view's pixels see.
+///
+/// Samples that see the same triangle share a point. So do those of triangles of one object and material that
+/// continue each other: they have an edge's vertices in common and interpolate between them, or where the
+/// samples' mean place lies, their planes, normals, colours and texture coordinates agree (kSameShade). The
+/// point lies on the triangle that most of the samples see, at the samples' mean place, or the place of the
+/// triangle nearest to that. On a triangle with holes it lies at one of the samples.
+struct SharedSamples {
+  GBuffer gbuffer;                     ///< of each pixel the point of its first sample
+  std::vector<std::uint16_t> samples;  ///< how many share that point, row by row; 0 where it sees nothing
+  std::vector<std::uint32_t> objects;  ///< that the point lies on, an index into those drawn; or kNoObject
+  PointLists further;                  ///< the other points of the pixels wanted
+};
+
+constexpr std::uint32_t kNoObject = 0xffffffffu;
+
+/// How much normals (unit) and vertex colours of two triangles may differ that share a point. The one that
+/// loses its own has at most half of the samples. So what half of this changes is what the picture does: by a
+/// step of 8 bits under a light of 1.
+constexpr double kSameShade = 2.0 / 255;
+
+/// Draws the samples and lets them share points. The result doesn't depend on the number of threads, and a
+/// pixel's points not on the crop. `counts`: as in rasterize(). Throws as allocateArray does.
+SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts);
+
+/// How many of the chosen pixels each bin holds. `chosen`: 1 or 0 for each pixel, row by row.
+std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<const std::uint8_t> chosen);
+
+/// A point for every sample of the chosen pixels in the bins from first_bin up to end_bin that sees a
+/// surface, at the sample. Draws those bins once more that hold any of the pixels.
+PointLists everySample(const SampledView& sampled, std::span<const std::uint8_t> chosen, int first_bin,
+                       int end_bin);
+
+/// A G-buffer of points: point i lies at index i of every plane.
+GBuffer gatherPoints(const SampledView& sampled, std::span<const ShadingPoint> points);
+
+}  // namespace luciole

@@ -1,0 +1,50 @@
+#include "render/pixel_sums.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <utility>
+
+namespace luciole {
+
+PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit) {
+  const std::size_t n = layout.pixels();
+  PixelSums sums{std::move(lit), Plane(n), Plane(n)};
+  sums.color.resize(3 * n);
+  tbb::parallel_for(0, layout.height, [&](int y) {
+    const std::uint16_t* row = samples.data() + std::size_t(y) * layout.width;
+    for (int x = 0; x < layout.width; ++x) {
+      const std::size_t i = layout.index(x, y);
+      for (int c = 0; c < 3; ++c) sums.color[i + c * n] *= float(row[x]);
+      sums.covered[i] = float(row[x]);
+      sums.shadings[i] = row[x] > 0 ? 1.0f : 0.0f;
+    }
+  });
+  return sums;
+}
+
+void addPoints(const GBuffer& layout, const PointLists& points, std::size_t first_list, std::size_t end_list,
+               const Plane& lit, std::size_t stride, PixelSums& sums) {
+  const std::size_t n = layout.pixels(), first_point = points.starts[first_list];
+  // All points of a pixel are in one list.
+  tbb::parallel_for(first_list, end_list, [&](std::size_t list) {
+    for (std::size_t k = points.starts[list]; k < points.starts[list + 1]; ++k) {
+      const ShadingPoint& point = points.items[k];
+      const std::uint32_t width = std::uint32_t(layout.width);
+      const std::size_t i = layout.index(int(point.pixel % width), int(point.pixel / width));
+      const float samples = float(point.samples);
+      for (int c = 0; c < 3; ++c) sums.color[i + c * n] += samples * lit[k - first_point + c * stride];
+      sums.covered[i] += samples;
+      sums.shadings[i] += 1.0f;
+    }
+  });
+}
+
+void addBackground(const glm::vec3& background, int samples, PixelSums& sums) {
+  const std::size_t n = sums.covered.size();
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const float bare = float(samples) - sums.covered[i];
+    for (int c = 0; c < 3; ++c) sums.color[i + c * n] += bare * background[c];
+  });
+}
+
+}  // namespace luciole
