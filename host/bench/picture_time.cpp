@@ -220,14 +220,16 @@ SpeedTable measurePictures(const SpeedInput& input) {
   const bool is_named = !input.scene_path.empty();
   const std::vector<std::string> scenes =
       is_named ? std::vector{input.scene_path} : shippedScenes(input.program);
+  const int rounds = (input.repeats + kRunsAfterCold - 1) / kRunsAfterCold;
   SpeedTable table{
       .name = "picture",
       .measured = fmt::format(
           "luciole render SCENE -o picture.png from its start to its end{}; cold: with an empty cache of "
           "kernels; warm: the median of {} runs with a full one; then the parts of another, with --stats: "
           "stages, without the time they ran beside others and without counting lights, and the rest, "
-          "starting and ending the process among it; and its peak memory",
-          input.size ? fmt::format(", {} x {} pixels", input.size->x, input.size->y) : "", kRunsAfterCold),
+          "starting and ending the process among it; and its peak memory; rounds: {}",
+          input.size ? fmt::format(", {} x {} pixels", input.size->x, input.size->y) : "", kRunsAfterCold,
+          rounds),
       .columns = {{"cold_milliseconds", "cold, ms", 0}, {"warm_milliseconds", "warm, ms", 0}}};
   for (const StageGroup& group : kGroups) table.columns.push_back({group.key, group.head, 0});
   table.columns.push_back({"rest_milliseconds", "rest", 0});
@@ -236,7 +238,6 @@ SpeedTable measurePictures(const SpeedInput& input) {
     table.rows.push_back(emptyRow("standard input", table, kStandardInput));
     return table;
   }
-  const int rounds = (input.repeats + kRunsAfterCold - 1) / kRunsAfterCold;
   const auto figures = runInRounds(scenes.size(), rounds, table.name, input.on_progress,
                                    [&](std::size_t row) { return pictureFigures(input, scenes[row]); });
   for (std::size_t row = 0; row < scenes.size(); ++row) {
@@ -256,10 +257,11 @@ SpeedTable measureFeatureCosts(const SpeedInput& input) {
                                {"times_without", "times without", 2}}};
   const bool is_named = !input.scene_path.empty();
   const std::string path = is_named ? input.scene_path : shippedScenes(input.program).front();
+  const int rounds = (input.repeats + 1) / 2;  // of two runs each
   table.measured = fmt::format(
       "luciole render {} from its start to its end, with a full cache of kernels, with and without a "
-      "feature, one after the other; PNG, one sample, hard shadows unless said",
-      is_named ? input.scene->name : fs::path(path).stem().string());
+      "feature, one after the other; PNG, one sample, hard shadows unless said; pairs: {}",
+      is_named ? input.scene->name : fs::path(path).stem().string(), rounds);
   if (path == "-") {
     table.rows.push_back(emptyRow("standard input", table, kStandardInput));
     return table;
@@ -272,7 +274,6 @@ SpeedTable measureFeatureCosts(const SpeedInput& input) {
     for (const Arguments& arguments : {pair.with, pair.without})
       if (!arguments.empty()) runChild(input.program, arguments, cache);  // compiles
   std::vector<int> runs(pairs.size());
-  const int rounds = (input.repeats + 1) / 2;  // of two runs each
   const auto figures = runInRounds(pairs.size(), rounds, table.name, input.on_progress, [&](std::size_t row) {
     const auto& [name, with, without] = pairs[row];
     if (without.empty()) return std::vector<double>(3);

@@ -23,8 +23,10 @@ std::vector<DoneCommand> takeDone(std::vector<QueuedCommand>& commands) {
   std::vector<QueuedCommand> left;
   for (QueuedCommand& command : commands) {
     const cl_int status = command.event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
-    if (status > CL_COMPLETE) left.push_back(std::move(command));
-    if (status != CL_COMPLETE) continue;
+    if (status != CL_COMPLETE) {
+      if (status > CL_COMPLETE) left.push_back(std::move(command));
+      continue;
+    }
     const cl::Event event = command.event;
     done.push_back({std::move(command), std::int64_t(event.getProfilingInfo<CL_PROFILING_COMMAND_QUEUED>()),
                     std::int64_t(event.getProfilingInfo<CL_PROFILING_COMMAND_SUBMIT>()),
