@@ -9,8 +9,8 @@ namespace luciole {
 namespace {
 
 /// Blocks of tiles for each thread of the device, at least: with fewer, some threads would end long before
-/// the others.
-constexpr std::size_t kBlocksPerThread = 16;
+/// the others. PoCL gives a thread 32 at a time.
+constexpr std::size_t kBlocksPerThread = 8 * 32;
 
 std::size_t blockCount(const TileBlock& block, int tiles_x, int tiles_y) {
   const auto blocks = [](int tiles, int side) { return std::size_t((tiles + side - 1) / side); };

@@ -67,9 +67,11 @@ void lightPicture(unsigned number) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-  // Without shadows, and if nobody asks for lists, culling and shading are one kernel.
-  lightGBuffer(device, scene, lighting, features, gbuffer,
-               {.in_range = true, .list_length = features.shadows()}, stats);
+  // Without shadows, and if nobody asks for lists, culling and shading are one kernel but for single lanes.
+  // Its buffer of counts is freed, so nothing may be culled after it.
+  const bool by_lists = features.shadows() || device.description.lanes == 1;
+  lightGBuffer(device, scene, lighting, features, gbuffer, {.in_range = by_lists, .list_length = by_lists},
+               stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   if (shadows.texels.empty()) return;
   std::vector<MapPair> pairs;

@@ -161,7 +161,7 @@ TEST(ShadeTiles, BlocksAreAsLargeAsThereAreEnoughOf) {
       const auto blocks = [&](int width, int height) {
         return std::size_t((x + width - 1) / width) * std::size_t((y + height - 1) / height);
       };
-      EXPECT_TRUE(block.width * block.height == 1 || blocks(block.width, block.height) >= 16 * threads);
+      EXPECT_TRUE(block.width * block.height == 1 || blocks(block.width, block.height) >= 256 * threads);
     }
   }
   EXPECT_EQ(chooseBlock(1250, 1250, 64).width, 4);
