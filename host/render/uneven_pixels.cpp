@@ -58,9 +58,7 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
     if (!before && !after) return false;
     const glm::ivec2 first = before ? pixel - step : pixel + step, last = after ? pixel + step : first;
     const PointsInRow row{gbuffer.index(first.x, first.y), here, gbuffer.index(last.x, last.y)};
-    // What the point weighs in its pixel; and of a way to one side alone only half counts.
-    const float samples = shared.samples[std::size_t(pixel.y) * width + pixel.x];
-    const float share = samples / float(sampled.pattern.count) * (before && after ? 1.0f : 0.5f);
+    const float share = before && after ? 1.0f : 0.5f;
     float most = 0, brightest = 0;
     for (int c = 0; c < 3; ++c) {
       const float* of_color = color.data() + c * stride;

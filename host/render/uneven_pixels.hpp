@@ -8,10 +8,9 @@
 
 namespace luciole {
 
-/// How far a pixel's first point, times its share of the samples, may be from the mean of its neighbours on
-/// the same surface, as a share of the brightest of them. Where the edge of a shadow or of a highlight goes
-/// through one of these pixels, that is half of the step, the most that the point may err by. One of 16
-/// samples weighs as much.
+/// How far a pixel's first point may be from the mean of its neighbours on the same surface, as a share of
+/// the brightest of them. Where the edge of a shadow or of a highlight goes through one of these pixels, that
+/// is half of the step, the most that the point may err by. One of 16 samples weighs as much.
 constexpr float kMostUneven = 1.0f / 16;
 
 /// The pixels wanted whose first points are farther than kMostUneven from their neighbours to the left and

@@ -297,7 +297,7 @@ TEST_F(Completion, ZshCompletesLinesThatAreTyped) {
                                          {"render fir\\t", "render first.json"},
                                          {"compare first.p\\t", "compare first.png"},
                                          {"render --shading fl\\t", "render --shading flat"},
-                                         {"render --samp\\t4", "render --samples=4"},
+                                         {"render --exp\\t4", "render --exposure=4"},
                                          {"bench --only man\\t", "bench --only many lights"},
                                          {"scale mer\\t-", "scale merge -"},
                                          {"scale first.j\\t--che\\t9", "scale first.json --check-pixels=9"},
