@@ -114,7 +114,7 @@ bool readChunks(Bytes file, Png& png) {
 }
 
 /// The filtered rows, each after its filter's number; empty where the stream is damaged or of another length.
-std::unique_ptr<std::uint8_t[]> inflate(const Png& png) {
+std::unique_ptr<std::uint8_t[]> inflatedRows(const Png& png) {
   const std::size_t bytes = (png.rowBytes() + 1) * png.height;
   if (bytes > UINT32_MAX || png.stream.size() > UINT32_MAX) return nullptr;
   std::unique_ptr<std::uint8_t[]> rows(new std::uint8_t[bytes]);
@@ -215,7 +215,7 @@ std::optional<MipLevel> readPngQuickly(std::span<const std::byte> file, const st
   // The rows, the texels, and a third more for the mip chain.
   requireMemory(double(png.rowBytes() * png.height) + double(png.width * png.height * texel_bytes) * 4 / 3,
                 name);
-  const std::unique_ptr<std::uint8_t[]> rows = inflate(png);
+  const std::unique_ptr<std::uint8_t[]> rows = inflatedRows(png);
   if (!rows) return std::nullopt;
   MipLevel level{int(png.width), int(png.height), Texels(png.width * png.height * 4)};
   const std::vector<std::uint8_t> nothing(png.rowBytes());

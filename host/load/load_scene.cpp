@@ -64,7 +64,7 @@ void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
     scene.cameras.push_back(frameScene(scene).camera);
     scene.adds_camera = true;
   }
-  for (const LightField& field : fields) expandLightField(field, scene);
+  expandLightFields(fields, scene);
 }
 
 }  // namespace

@@ -18,6 +18,11 @@ int addTexture(Scene& scene, const std::string& path) {
   return index;
 }
 
+bool allDecoded(const Scene& scene) {
+  return std::none_of(scene.textures.begin(), scene.textures.end(),
+                      [](const Texture& texture) { return texture.levels.empty(); });
+}
+
 void decodeTextures(Scene& scene) {
   const auto decode = [&](std::size_t i) {
     Texture& texture = scene.textures[i];

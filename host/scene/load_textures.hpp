@@ -10,6 +10,9 @@ namespace luciole {
 /// that several materials name is one texture. O(textures).
 int addTexture(Scene& scene, const std::string& path);
 
+/// Whether no texture is left without levels.
+bool allDecoded(const Scene& scene);
+
 /// Decodes, in parallel, every texture that addTexture() left without levels. Throws as readTexture does.
 void decodeTextures(Scene& scene);
 

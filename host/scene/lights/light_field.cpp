@@ -97,4 +97,15 @@ void expandLightField(const LightField& field, Scene& scene) {
   }
 }
 
+void expandLightFields(std::span<const LightField> fields, Scene& scene) {
+  std::uint64_t count = scene.lights.size();
+  for (const LightField& field : fields) count += std::min(field.count, kMostLights);
+  try {
+    if (count <= kMostLights) scene.lights.reserve(count);
+  } catch (const std::bad_alloc&) {
+    // The field that doesn't fit will say so.
+  }
+  for (const LightField& field : fields) expandLightField(field, scene);
+}
+
 }  // namespace luciole

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -71,5 +72,8 @@ LightField fieldInBox(FieldShape shape, const Bounds& box);
 /// Throws InputError where there would be more than kMostLights or there is no surface to put them on,
 /// MachineError where they don't fit into memory. O(count), and O(triangles) for kSurface.
 void expandLightField(const LightField& field, Scene& scene);
+
+/// The same for one field after the other, without copying the lights of those before.
+void expandLightFields(std::span<const LightField> fields, Scene& scene);
 
 }  // namespace luciole

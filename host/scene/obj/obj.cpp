@@ -242,7 +242,11 @@ std::uint32_t loadObj(const std::string& path, Scene& scene) {
   const std::size_t first_material = scene.materials.size();
   const auto materials = addMaterials(entries, triangles, scene);
   Mesh mesh;
-  tbb::parallel_invoke([&] { decodeTextures(scene); }, [&] { mesh = makeMesh(file, triangles); });
+  const auto make = [&] { mesh = makeMesh(file, triangles); };
+  if (allDecoded(scene))
+    make();  // in this thread, whose memory is warm
+  else
+    tbb::parallel_invoke([&] { decodeTextures(scene); }, make);
   for (std::size_t i = first_material; i < scene.materials.size(); ++i) cutHoles(scene.materials[i], scene);
   mesh.name = path;
   mesh.triangle_materials.reserve(triangles.size());
