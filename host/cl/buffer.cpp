@@ -75,7 +75,7 @@ DeviceMemory make(Device& device, std::size_t size) {
       auto array = std::make_unique<OwnArray>(size);
       memory.handle = create(device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size, array->memory);
       memory.handle.setDestructorCallback(freeOwnArray, array.get());
-      array.release();
+      static_cast<void>(array.release());  // freeOwnArray() has it now
     } catch (const std::bad_alloc&) {
       throw MachineError(fmt::format("{}: out of memory", device.description.name));
     } catch (const cl::Error& error) {
