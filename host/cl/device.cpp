@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
+#include "cl/build_program.hpp"
 #include "cl/device_error.hpp"
 
 namespace luciole {
@@ -121,6 +122,7 @@ void openDevice(const std::string& selector, Device& device) {
   for (const FoundDevice& one : found) descriptions.push_back(one.description);
   const FoundDevice& chosen = found[selectDevice(descriptions, selector)];
   device.description = chosen.description;
+  device.program_cache = programCacheOf(chosen.description.platform);
   if (const std::size_t suffix = selector.find(kLanesSuffix); suffix != std::string::npos) {
     const auto lanes = parseNumber(std::string_view(selector).substr(suffix + kLanesSuffix.size()));
     if (lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)

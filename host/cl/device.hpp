@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "cl/program.hpp"
+
 namespace luciole {
 
 /// An OpenCL device as `luciole devices` lists it.
@@ -38,8 +40,10 @@ struct Device {
   bool shares_host_memory = false;  ///< true on a CPU; not to be changed once a buffer is made
 
   /// Programs built so far, by options and file or source; guarded by `programs_mutex`.
-  std::map<std::string, cl::Program> programs;
+  std::map<std::string, Program> programs;
   std::mutex programs_mutex;
+  /// The folder with their binaries (see program_cache.hpp). Empty where the platform keeps them itself.
+  std::string program_cache;
 
   Traffic traffic;             ///< since it was opened; guarded by `notes_mutex`
   std::string running_kernel;  ///< the kernel queued last, for messages; guarded by `notes_mutex`

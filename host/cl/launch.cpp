@@ -5,30 +5,12 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/machine_memory.hpp"
+#include "cl/build_program.hpp"
 #include "cl/device_error.hpp"
 #include "cl/kernel_source.hpp"
 
 namespace luciole {
 namespace {
-
-/// Bytes of memory that must be free when a program is compiled: the compiler's part of kPlatformBytes
-/// (device.cpp), measured in the same way.
-constexpr double kCompilerBytes = 64 << 20;
-
-std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
-  std::vector<DeclaredArgument> arguments;
-  const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
-  for (cl_uint i = 0; i < count; ++i) {
-    // Some platforms leave the terminator in the text.
-    arguments.push_back(
-        {kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i).c_str(),
-         kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i).c_str(),
-         kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i),
-         (kernel.getArgInfo<CL_KERNEL_ARG_TYPE_QUALIFIER>(i) & CL_KERNEL_ARG_TYPE_CONST) != 0});
-  }
-  return arguments;
-}
 
 /// The kernel `name` of the program with this key and these defines. A program that isn't there yet is built
 /// from what source() returns.
@@ -41,14 +23,12 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
         fmt::format("-cl-std=CL1.2 -cl-denorms-are-zero -cl-kernel-arg-info -DLANES={} {}",
                     device.description.lanes, defines);
     auto place = device.programs.find(options + key);
-    if (place == device.programs.end()) {
-      requireMemory(kCompilerBytes, "compiling kernels");
-      cl::Program program(device.context, source());
-      program.build({device.device}, options.c_str());
-      place = device.programs.emplace(options + key, std::move(program)).first;
-    }
-    const cl::Kernel kernel(place->second, name);
-    return {kernel, name, declaredArguments(kernel)};
+    if (place == device.programs.end())
+      place = device.programs.emplace(options + key, buildProgram(device, source(), options)).first;
+    const Program& program = place->second;
+    const cl::Kernel kernel(program.program, name);
+    const auto known = program.arguments.find(name);
+    return {kernel, name, known == program.arguments.end() ? declaredArguments(kernel) : known->second};
   } catch (const cl::BuildError& error) {
     std::string log;
     for (const auto& [where, text] : error.getBuildLog()) log += text;

@@ -90,13 +90,6 @@ struct KernelArgument {
   std::vector<std::byte> value;  ///< its bytes; of a buffer, those of its cl_mem
 };
 
-/// An argument as the kernel's source declares it.
-struct DeclaredArgument {
-  std::string name, type;
-  cl_kernel_arg_address_qualifier space;
-  bool is_const;  ///< what it points to
-};
-
 /// A kernel with its name and its arguments in order.
 struct Kernel {
   cl::Kernel kernel;

@@ -5,16 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "cl/device.hpp"
+
 namespace luciole {
 
 /// The exit status of the process: 0 done, 1 the comparison failed, 2 wrong input or arguments, 3 the machine
 /// failed (MachineError).
 enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3 };
 
-/// The command line as typed, for metadata and statistics, and where a command leaves its exit status.
+/// What the program and a command know of each other.
 struct CommandContext {
-  std::string command_line;
-  int status = kDone;
+  std::string command_line;  ///< as typed, for metadata and statistics
+  int status = kDone;        ///< where the command leaves the exit status
+  Device device{};           ///< for the command to open; the end of the process closes it
 };
 
 /// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see

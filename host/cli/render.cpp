@@ -269,7 +269,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     }
     Stats stats;
     stats.command = context.command_line;
-    Device device;
+    Device& device = context.device;
     startDevice(options->device, device);
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
@@ -331,7 +331,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
         timed(stats, Stage::kLoadScene, [&] { return openLitScene(*scene_path, frame, *options); });
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
-    Device device;
+    Device& device = context.device;
     const bool lit = options->shading == "gouraud";
     if (lit) {
       timed(stats, Stage::kOpenDevice, [&] { openDevice(options->device, device); });
@@ -369,7 +369,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     checkOutput(*options);
     Stats stats;
     stats.command = context.command_line;
-    Device device;
+    Device& device = context.device;
     startDevice(options->device, device);
     const Scene scene =
         timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });

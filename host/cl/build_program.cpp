@@ -1,0 +1,141 @@
+#include "cl/build_program.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "base/machine_memory.hpp"
+#include "cl/kernel_source.hpp"
+#include "cl/program_cache.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr std::string_view kPocl = "Portable Computing Language";
+
+/// Platforms that need no cache of ours: two that keep what they compiled, and one that interprets kernels to
+/// find their mistakes, for which it wants their source.
+constexpr std::string_view kWithoutOurCache[] = {kPocl, "NVIDIA CUDA", "Oclgrind"};
+
+/// Settings that change what Intel's compilers make of a program: the beginnings of their names.
+constexpr std::string_view kCompilerSettings[] = {"CL_CONFIG_", "IGC_"};
+
+/// Bytes of memory that must be free when a program is compiled: the compiler's part of kPlatformBytes
+/// (device.cpp), measured in the same way.
+constexpr double kCompilerBytes = 64 << 20;
+
+cl::Program built(const Device& device, const std::string& source, const std::string& options) {
+  cl::Program program(device.context, source);
+  program.build({device.device}, options.c_str());
+  return program;
+}
+
+cl::Program compile(const Device& device, const std::string& source, const std::string& options) {
+  requireMemory(kCompilerBytes, "compiling kernels");
+  if (device.description.platform == kPocl) {
+    try {
+      return built(device, kernelSource("builtins.clh") + source, options + " -D_OPENCL_H_");
+    } catch (const cl::BuildError&) {
+      // Wrong, or in need of more than builtins.clh declares. PoCL's own header decides.
+    }
+  }
+  return built(device, source, options);
+}
+
+/// All that the bits of a built program may depend on, as text.
+std::string describe(const Device& device, const std::string& source, const std::string& options) {
+  const cl::Platform platform(device.device.getInfo<CL_DEVICE_PLATFORM>());
+  std::ostringstream text;
+  text << "Luciole " LUCIOLE_VERSION "\n"
+       << platform.getInfo<CL_PLATFORM_NAME>() << '\n'
+       << platform.getInfo<CL_PLATFORM_VERSION>() << '\n'
+       << device.device.getInfo<CL_DEVICE_VENDOR>() << '\n'
+       << device.device.getInfo<CL_DEVICE_NAME>() << '\n'
+       << device.device.getInfo<CL_DEVICE_VERSION>() << '\n'
+       << device.device.getInfo<CL_DRIVER_VERSION>() << '\n'
+       << device.device.getInfo<CL_DEVICE_EXTENSIONS>()
+       << '\n'
+       // Devices of one name may differ in their instructions, as a virtual machine may be denied some.
+       << device.device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_CHAR>() << ' '
+       << device.device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() << ' '
+       << device.device.getInfo<CL_DEVICE_ADDRESS_BITS>() << '\n';
+  std::vector<std::string> settings;
+  for (char** setting = environ; *setting; ++setting)
+    for (const std::string_view beginning : kCompilerSettings)
+      if (std::string_view(*setting).starts_with(beginning)) settings.push_back(*setting);
+  std::sort(settings.begin(), settings.end());
+  for (const std::string& setting : settings) text << setting << '\n';
+  text << options << '\n' << source;
+  return text.str();
+}
+
+/// The program of a kept binary. Empty if the driver doesn't take it, or makes other kernels of it than those
+/// that were kept with it.
+std::optional<Program> restored(const Device& device, KeptProgram kept, const std::string& options) {
+  try {
+    cl::Program program(device.context, {device.device}, cl::Program::Binaries{std::move(kept.binary)});
+    program.build({device.device}, options.c_str());
+    for (const auto& [name, arguments] : kept.arguments)
+      if (cl::Kernel(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
+        return std::nullopt;
+    return Program{std::move(program), std::move(kept.arguments)};
+  } catch (const cl::Error&) {
+    return std::nullopt;
+  }
+}
+
+/// What is to be kept of a program for one device. Empty if OpenCL doesn't tell it all.
+std::optional<KeptProgram> toKeep(const cl::Program& program) {
+  try {
+    KeptProgram kept;
+    kept.binary = program.getInfo<CL_PROGRAM_BINARIES>().front();
+    std::istringstream names(program.getInfo<CL_PROGRAM_KERNEL_NAMES>());
+    for (std::string name; std::getline(names, name, ';');) {
+      name = name.c_str();  // some platforms leave the terminator in the text
+      kept.arguments[name] = declaredArguments(cl::Kernel(program, name.c_str()));
+    }
+    if (kept.binary.empty() || kept.arguments.empty()) return std::nullopt;
+    return kept;
+  } catch (const cl::Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
+  std::vector<DeclaredArgument> arguments;
+  const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+  for (cl_uint i = 0; i < count; ++i) {
+    // Some platforms leave the terminator in the text.
+    arguments.push_back(
+        {kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i).c_str(),
+         kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i).c_str(),
+         kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i),
+         (kernel.getArgInfo<CL_KERNEL_ARG_TYPE_QUALIFIER>(i) & CL_KERNEL_ARG_TYPE_CONST) != 0});
+  }
+  return arguments;
+}
+
+Program buildProgram(const Device& device, const std::string& source, const std::string& options) {
+  if (device.program_cache.empty()) return {compile(device, source, options), {}};
+  const std::string description = describe(device, source, options);
+  if (std::optional<KeptProgram> kept = findProgram(device.program_cache, description))
+    if (std::optional<Program> program = restored(device, std::move(*kept), options)) return *program;
+  Program program{compile(device, source, options), {}};
+  if (const std::optional<KeptProgram> kept = toKeep(program.program))
+    keepProgram(device.program_cache, description, *kept);
+  return program;
+}
+
+std::string programCacheOf(const std::string& platform) {
+  const bool needs_none = std::find(std::begin(kWithoutOurCache), std::end(kWithoutOurCache), platform) !=
+                          std::end(kWithoutOurCache);
+  return needs_none ? "" : userProgramCache();
+}
+
+}  // namespace luciole

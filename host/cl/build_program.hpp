@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "cl/device.hpp"
+
+namespace luciole {
+
+/// The program of this source, built with these options for the device: from its binary in the device's
+/// program cache where that holds it, otherwise by the platform's compiler, and then kept there. Throws
+/// cl::Error as OpenCL does (cl::BuildError with the compiler's log) and MachineError if memory is short.
+Program buildProgram(const Device& device, const std::string& source, const std::string& options);
+
+/// What OpenCL tells of a kernel's arguments. Throws cl::Error if it doesn't tell.
+std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel);
+
+/// The folder where binaries of this platform's programs are kept from one run to the next (see
+/// program_cache.hpp). Empty if the platform keeps them itself, or if there is no place for them.
+std::string programCacheOf(const std::string& platform);
+
+}  // namespace luciole

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CL/opencl.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace luciole {
+
+/// An argument as the kernel's source declares it.
+struct DeclaredArgument {
+  std::string name, type;
+  cl_kernel_arg_address_qualifier space;
+  bool is_const;  ///< what it points to
+};
+
+/// The arguments of kernels, in order, by the kernels' names.
+using KernelArguments = std::map<std::string, std::vector<DeclaredArgument>>;
+
+/// A program that is built for a device.
+struct Program {
+  cl::Program program;
+  /// Of all its kernels, if it was built from a binary: OpenCL tells them only of one built from source.
+  KernelArguments arguments;
+};
+
+}  // namespace luciole
