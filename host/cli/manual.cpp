@@ -39,11 +39,13 @@ const Terms kManualVariables{
     {"XDG_DATA_HOME, HOME, XDG_DATA_DIRS",
      "in the folders fonts of these places DejaVuSans.ttf is looked for, which labels are drawn with"},
     {"PATH", "where the program ffmpeg is looked for, which makes films"},
-    {"POCL_CACHE_DIR, XDG_CACHE_HOME", "read by PoCL: where it keeps the kernels that it compiled"},
+    {"POCL_CACHE_DIR", "read by PoCL: where it keeps the kernels that it compiled"},
+    {"XDG_CACHE_HOME, HOME", "the folder of caches is the first, or .cache in the second"},
     {"OCL_ICD_VENDORS", "read by the OpenCL loader: where it looks for devices' drivers"}};
 
 const Terms kManualFiles{
     {"~/.cache/pocl/kcache", "kernels that PoCL compiled; without them the next start takes a second longer"},
+    {"~/.cache/luciole/programs", "kernels of platforms that don't keep them themselves, at most 64 MiB"},
     {".NAME.lock",
      "beside frames that several runs share: which frames are being made; the last run to end removes it"}};
 
