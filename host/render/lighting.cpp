@@ -175,12 +175,13 @@ Plane lightsInRange(Device& device, Lighting& lighting, const GBufferBuffers& bu
   return result;
 }
 
-/// Whether culling and shading go together, without lists in memory: where nothing else reads them. A device
-/// of single lanes has far more threads than a picture has blocks of tiles.
+/// Whether culling and shading go together, without lists in memory: where nothing else reads them and there
+/// are many lights. A few are faster by lists, whose rows of pixels are lit four side by side. A device of
+/// single lanes has far more threads than a picture has blocks of tiles.
 bool needsNoLists(const Device& device, const Lighting& lighting, const FeatureSet& features,
                   const PixelCounts& counts) {
-  return features.has(Feature::kLightLists) && !features.shadows() && !counts.list_length &&
-         lighting.group_log2 == 4 && device.description.lanes > 1;
+  return features.has(Feature::kLightLists) && features.has(Feature::kLongSums) && !features.shadows() &&
+         !counts.list_length && lighting.group_log2 == 4 && device.description.lanes > 1;
 }
 
 /// Fills in the counts that are asked for. lists: that pixels were shaded with; null if with all lights.

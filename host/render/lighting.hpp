@@ -71,10 +71,11 @@ struct PixelCounts {
   bool list_length = false;  ///< LitPlanes::list_length
 };
 
-/// Culls and shades one G-buffer: together where nothing but shading reads the light lists, that is without
-/// shadows and without counting how long lists are. Draws those parts of the scene's shadow maps that it
-/// looks up and that weren't drawn before. features: those that the lighting was prepared for, or fewer. Adds
-/// the times of its stages to `stats`, and raises stats.device_bytes to what it needs. Throws MachineError.
+/// Culls and shades one G-buffer: together where there are many lights and nothing but shading reads their
+/// lists, that is without shadows and without counting how long lists are. Draws those parts of the scene's
+/// shadow maps that it looks up and that weren't drawn before. features: those that the lighting was prepared
+/// for, or fewer. Adds the times of its stages to `stats`, and raises stats.device_bytes to what it needs.
+/// Throws MachineError.
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
                        const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats);
 

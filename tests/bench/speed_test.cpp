@@ -111,7 +111,7 @@ TEST(ManyLights, ASeriesOfPowersOfTenAfterTheSphere) {
   double lights = 1;
   for (std::size_t row = 1; row < table.rows.size(); ++row, lights *= 10) {
     EXPECT_EQ(count(table, row, "lights"), lights);
-    EXPECT_EQ(count(table, row, "list_bytes"), 0) << "at 16 lanes no lists are made in memory";
+    EXPECT_EQ(count(table, row, "list_bytes") > 0, lights < 1000) << "many lights need no lists in memory";
     EXPECT_GT(count(table, row, "list_entries"), 0);
     for (const char* stage : {"prepare_lights_milliseconds", "shade_milliseconds"}) {
       EXPECT_GT(median(table, row, stage), 0) << stage;

@@ -48,12 +48,13 @@ void lightPicture(unsigned number) {
   Random random(number);
   Camera camera = randomCamera(random);
   camera.orthographic = number % 4 == 3;
-  Scene scene = randomScene(camera, 12, random);
+  const auto method = static_cast<ShadowMethod>((number + number / 3) % 5);
+  Scene scene = randomScene(camera, method == ShadowMethod::kOff ? kSumBlock + 2 : 12, random);
   for (std::size_t i = 0; i < scene.lights.size(); i += 2) scene.lights[i].shadow = true;
   scene.fog = randomFog(static_cast<FogMode>(number / 3 % 4), random);
   addObjects(camera, scene);
   ShadeSettings settings;
-  settings.shadows = static_cast<ShadowMethod>((number + number / 3) % 5);
+  settings.shadows = method;
   settings.shadow_layer = true;
   settings.shadow_limits.size = 64;
   settings.model = kAllModels[(number + number / 4) % std::size(kAllModels)];
@@ -67,8 +68,8 @@ void lightPicture(unsigned number) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-  // Without shadows, and if nobody asks for lists, culling and shading are one kernel but for single lanes.
-  // Its buffer of counts is freed, so nothing may be culled after it.
+  // Without shadows, and if nobody asks for lists, many lights are culled and shaded by one kernel but for
+  // single lanes. Its buffer of counts is freed, so nothing may be culled after it.
   const bool by_lists = features.shadows() || device.description.lanes == 1;
   lightGBuffer(device, scene, lighting, features, gbuffer, {.in_range = by_lists, .list_length = by_lists},
                stats);
