@@ -21,8 +21,7 @@ namespace {
 constexpr char kPose[] = "luciole:cameraToWorld";
 constexpr char kProjection[] = "luciole:projection";
 constexpr char kName[] = "luciole:cameraName";
-// As OpenImageIO spells them, which writes the standard's spelling.
-constexpr char kWorldToCamera[] = "worldtocamera", kWorldToNdc[] = "worldToNDC";
+constexpr char kWorldToCamera[] = "worldToCamera", kWorldToNdc[] = "worldToNDC";
 
 /// Turns −z ahead into +z ahead, and back.
 glm::dmat4 mirrorZ() {

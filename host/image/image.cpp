@@ -29,9 +29,6 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
                        : format.bits == 16 ? OIIO::TypeDesc::UINT16
                                            : OIIO::TypeDesc::UINT8);
   spec.channelnames = channels;
-  if (options.half)
-    for (const std::string& name : channels)
-      spec.channelformats.push_back(isColorChannel(name) ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
   const auto alpha = std::find(channels.begin(), channels.end(), "A");
   spec.alpha_channel = alpha == channels.end() ? -1 : int(alpha - channels.begin());
   // Otherwise OpenImageIO divides the colours of integer formats by A itself, in sRGB codes.
@@ -44,17 +41,6 @@ OIIO::ImageSpec makeSpec(int width, int height, const std::vector<std::string>& 
   // For a TIFF this would make an Exif directory, for which OpenImageIO reads the file that it writes. Its
   // integers are taken as sRGB without.
   if (!format.is_float && !is_tiff) spec.attribute("oiio:ColorSpace", "sRGB");
-  if (format.extension == "exr") {
-    spec.attribute("compression", options.compression.empty() ? kExrCompression : options.compression);
-    const glm::ivec2 whole = options.picture_size.x > 0 ? options.picture_size : glm::ivec2(width, height);
-    spec.x = options.crop_origin.x;
-    spec.y = options.crop_origin.y;
-    spec.full_width = whole.x;
-    spec.full_height = whole.y;
-    for (const auto& [name, text] : options.exr.texts) spec.attribute(name, text);
-    for (const auto& [name, matrix] : options.exr.matrices)
-      spec.attribute(name, kMatrix, glm::value_ptr(matrix));
-  }
   // OpenImageIO's default quality of 98 doubles the size without a visible gain.
   if (format.extension == "jpg" || format.extension == "jpeg") spec.attribute("compression", "jpeg:88");
   return spec;

@@ -12,7 +12,8 @@
 #include "image/side_by_side.hpp"
 
 // OpenImageIO brings some 260 libraries along, which take the dynamic loader 0.2 s. So what includes it is a
-// module of its own, which the library loads when it first reads or writes a picture:
+// module of its own, which the library loads when it first reads a picture, or writes one that is neither PNG
+// nor EXR:
 //
 //   library:  readImage() of module.cpp ──► ImageFunctions::read_image ──► module:  readImage() of image.cpp
 namespace luciole {

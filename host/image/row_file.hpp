@@ -30,7 +30,13 @@ std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int hei
                                      const Metadata& metadata, int bits = 8,
                                      const std::string& compression = "");
 
-/// A file that OpenImageIO writes, of 32-bit float values, which it may store as halves, or of sRGB codes of
+/// An EXR of 32-bit float values, some of which it stores as halves where the options say so. The OpenEXR
+/// library writes it. Throws as writeImage does.
+std::unique_ptr<RowFile> openExrFile(const std::string& path, int width, int height,
+                                     const std::vector<std::string>& channels, const Metadata& metadata,
+                                     const WriteOptions& options);
+
+/// A file of another format, which OpenImageIO writes, of 32-bit float values or of sRGB codes of
 /// format.bits. Throws as writeImage does.
 std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
                                          const std::vector<std::string>& channels, const FileFormat& format,

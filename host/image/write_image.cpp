@@ -141,11 +141,15 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
     names = {"R", "G", "B", "A"};
     names.resize(state_->sources.size());
   }
-  state_->file =
-      options.film ? options.film->addFrame()
-      : format.extension == "png"
-          ? openPngFile(path, width, height, int(names.size()), metadata, format.bits, options.compression)
-          : openPictureFile(path, width, height, names, format, metadata, options);
+  if (options.film)
+    state_->file = options.film->addFrame();
+  else if (format.extension == "png")
+    state_->file =
+        openPngFile(path, width, height, int(names.size()), metadata, format.bits, options.compression);
+  else if (format.extension == "exr")
+    state_->file = openExrFile(path, width, height, names, metadata, options);
+  else
+    state_->file = openPictureFile(path, width, height, names, format, metadata, options);
 }
 
 ImageWriter::~ImageWriter() = default;

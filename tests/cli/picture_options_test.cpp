@@ -113,6 +113,15 @@ TEST_F(PictureFiles, LosslessCompressionKeepsPicturesAndGBuffers) {
   }
 }
 
+TEST_F(PictureFiles, PngsAndExrsAreWrittenWithoutLoadingOpenImageIO) {
+  // ld.so(8) then tells each file that it loads.
+  for (const std::string name : {"a.png", "a.exr"}) {
+    const std::string loaded = told("LD_DEBUG=files luciole render scene.json --quiet -o " + name);
+    EXPECT_THAT(loaded, HasSubstr("libOpenEXR"));
+    EXPECT_THAT(loaded, testing::Not(HasSubstr("OpenImageIO"))) << name;
+  }
+}
+
 TEST_F(PictureFiles, CompressionOfAPngKeepsEveryCode) {
   succeed("luciole render scene.json --quiet -o usual.png");
   for (const std::string name : {"fast", "small"})
