@@ -37,7 +37,7 @@ inline std::uint32_t packNormal(const glm::dvec3& normal) {
   return std::uint32_t(column & 0xffff) | std::uint32_t(row) << 16;
 }
 
-/// The unit direction that packNormal() packed, computed as in kernels/shading.clh.
+/// The unit direction that packNormal() packed, computed as in kernels/math.clh.
 inline glm::dvec3 unpackNormal(std::uint32_t packed) {
   double x = std::int16_t(packed & 0xffff), y = std::int16_t(packed >> 16);
   const double z = kPackedNormalSteps - std::abs(x) - std::abs(y);
