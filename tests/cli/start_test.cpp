@@ -118,7 +118,7 @@ TEST(Start, WithoutItsModuleTheProgramSaysWhatIsMissingAndLooksNowhereElse) {
       runLine(folder, "library=\"$(dirname '" LUCIOLE_BINARY
                       "')/lib\" && mkdir below && cd below && "
                       "cp \"$library\"/libluciole.so.* . && ln -s \"$library/luciole\" .. && "
-                      "LD_LIBRARY_PATH=\"$PWD\" '" LUCIOLE_BINARY "' render ../scene.json -o a.exr");
+                      "LD_LIBRARY_PATH=\"$PWD\" '" LUCIOLE_BINARY "' render ../scene.json -o a.tif");
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("libluciole_image.so"));

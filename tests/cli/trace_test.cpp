@@ -177,7 +177,8 @@ const Span& firstOf(const std::vector<Span>& spans, const std::string& name) {
 
 TEST_F(TraceOption, OfAPictureHasItsStagesSamplesThreadsAndKernels) {
   const auto spans =
-      traceOf("render scene.json --samples 3 --quiet -o a.exr --stats s.json", {"s.json"}, kAllKernels);
+      traceOf("render scene.json --samples 3 --samples-shading all --quiet -o a.tif --stats s.json",
+              {"s.json"}, kAllKernels);
   EXPECT_EQ(countOf(spans, "sample", "luciole/main"), 3u);
   EXPECT_EQ(countOf(spans, "band", "luciole/main"), 1u);
   EXPECT_EQ(firstOf(spans, "band").arguments["pixels"], 96 * 54);
@@ -186,7 +187,7 @@ TEST_F(TraceOption, OfAPictureHasItsStagesSamplesThreadsAndKernels) {
   EXPECT_EQ(picture["samples"], 3);
   EXPECT_EQ(countOf(spans, "open device", "luciole/device opener"), 1u);
   EXPECT_EQ(countOf(spans, "compile kernels", "luciole/kernel compiler"), 1u);
-  EXPECT_EQ(countOf(spans, "load OpenImageIO", "luciole/main"), 1u) << "for the EXR";
+  EXPECT_EQ(countOf(spans, "load OpenImageIO", "luciole/main"), 1u) << "for the TIFF";
 }
 
 TEST_F(TraceOption, OfFramesHasEachOnTheSameTracks) {
