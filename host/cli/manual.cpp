@@ -200,8 +200,8 @@ std::string roffExamples() {
 /// The page in the man macros (man 7 man). It has no date, so that one version always makes the same page.
 std::string manualPage(const std::vector<CommandEntry>& table) {
   std::string page = ".TH LUCIOLE 1 \"\" \"luciole " + roff(LUCIOLE_VERSION) + "\" \"User Commands\"\n";
-  // No hyphens, and no even margin: a long word among a line's few leaves no even gaps. groff 1.23's macros set the adjustment anew at
-  // each paragraph, to what the string AD says.
+  // No hyphens, and no even margin: a long word among a line's few leaves no even gaps. groff 1.23's macros
+  // set the adjustment anew at each paragraph, to what the string AD says.
   page += ".nh\n.ds AD l\n.ad l\n";
   page += ".SH NAME\nluciole \\- light scenes of very many lights on any OpenCL device\n.SH SYNOPSIS\n";
   for (const CommandEntry& command : table)
