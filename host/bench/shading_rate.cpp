@@ -60,8 +60,8 @@ std::vector<float4> packed(const Plane& planes, std::size_t pixels) {
 
 /// tests/kernels/plain.cl and its arguments.
 struct Plain {
-  Plain(Device& device_, const AllPairs& pairs)
-      : device(device_),
+  Plain(Device& on_device, const AllPairs& pairs)
+      : device(on_device),
         pixels(pairs.gbuffer.pixels()),
         position(packed(pairs.gbuffer.position, pixels)),
         normal(packed(pairs.gbuffer.normal, pixels)),
@@ -108,8 +108,8 @@ struct Plain {
 
 /// tests/kernels/roof.cl and its arguments, for the same number of pairs.
 struct Roof {
-  Roof(Device& device_, const AllPairs& pairs)
-      : device(device_),
+  Roof(Device& on_device, const AllPairs& pairs)
+      : device(on_device),
         rows(pairs.gbuffer.pixels() / std::size_t(device.description.lanes)),
         lights(shadeLights(pairs.scene)),
         light_buffer(borrowed(device, lights)),
