@@ -36,7 +36,7 @@ glm::dvec2 halfExtent(const Camera& camera, glm::ivec2 size) {
 }
 
 /// Camera space with +z ahead to OpenEXR's NDC; z runs from 0 at the near plane to 1 at the far plane.
-glm::dmat4 cameraToNdc(const Camera& camera, glm::dvec2 half_extent) {
+glm::dmat4 cameraToNdc(const Camera& camera, const glm::dvec2& half_extent) {
   const double depth = camera.far - camera.near;
   glm::dmat4 m{0.0};
   m[0][0] = 0.5 / half_extent.x;
