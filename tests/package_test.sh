@@ -56,7 +56,8 @@ TEXT
 InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
   install
   local place
-  for place in "$checkout" "$build" "$folder/before"; do
+  # A checkout at /luciole, as in a bare root, is itself a part of other paths; what lies in it isn't.
+  for place in "$checkout"/{host,kernels,scenes,tests} "$build" "$folder/before"; do
     ! grep -rlF "$place/" "$folder/prefix"/{bin,include,lib} || { echo "these know of $place" && return 1; }
   done
   # (Pictures of scenes tell the command that made them.) Nor is it there while the program runs, where this may be hidden from it.
