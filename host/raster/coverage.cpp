@@ -5,6 +5,8 @@
 #include <bit>
 #include <optional>
 
+#include "raster/edge.hpp"
+
 namespace luciole {
 namespace {
 
@@ -37,15 +39,8 @@ struct EdgeFunctions {
 EdgeFunctions edgeFunctions(const RasterTriangle& triangle, glm::ivec2 bin_origin) {
   EdgeFunctions edges;
   for (int i = 0; i < 3; ++i) {
-    const int j = i == 2 ? 0 : i + 1;
-    const std::int32_t dx = triangle.x[j] - triangle.x[i];
-    const std::int32_t dy = triangle.y[j] - triangle.y[i];
-    const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
-    const std::int64_t value = std::int64_t(dx) * (bin_origin.y * kSubpixels - triangle.y[i]) -
-                               std::int64_t(dy) * (bin_origin.x * kSubpixels - triangle.x[i]) -
-                               (left_or_top ? 0 : 1);
-    constexpr std::int64_t kFar = std::int64_t(1) << 30;
-    edges.origin[i] = std::int32_t(std::clamp(value >> kSubpixelBits, -kFar, kFar));
+    const auto [dx, dy, value] = edgeOf(triangle, i, bin_origin);
+    edges.origin[i] = std::int32_t(std::clamp(value >> kSubpixelBits, -kFarEdge, kFarEdge));
     edges.step_x[i] = -dy;
     edges.step_y[i] = dx;
   }

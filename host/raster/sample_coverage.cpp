@@ -4,7 +4,10 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <limits>
 #include <optional>
+
+#include "raster/edge.hpp"
 
 namespace luciole {
 namespace {
@@ -50,15 +53,8 @@ struct TriangleTables {
 void setTables(const RasterTriangle& triangle, const glm::ivec2& bin_origin, const Block& block,
                TriangleTables& tables) {
   for (int i = 0; i < 3; ++i) {
-    const int j = i == 2 ? 0 : i + 1;
-    const std::int32_t dx = triangle.x[j] - triangle.x[i];
-    const std::int32_t dy = triangle.y[j] - triangle.y[i];
-    const bool left_or_top = dy < 0 || (dy == 0 && dx > 0);
-    const std::int64_t value = std::int64_t(dx) * (bin_origin.y * kSubpixels - triangle.y[i]) -
-                               std::int64_t(dy) * (bin_origin.x * kSubpixels - triangle.x[i]) -
-                               (left_or_top ? 0 : 1);
-    constexpr std::int64_t kFar = std::int64_t(1) << 30;
-    const std::int32_t whole = std::int32_t(std::clamp(value >> kSubpixelBits, -kFar, kFar));
+    const auto [dx, dy, value] = edgeOf(triangle, i, bin_origin);
+    const std::int32_t whole = std::int32_t(std::clamp(value >> kSubpixelBits, -kFarEdge, kFarEdge));
     const std::int32_t rest = std::int32_t(value & (kSubpixels - 1));
     // To the sample it is dx · y − dy · x more, too much for 32 bits: 256 times a part of it is split off.
     const std::int32_t dx_high = dx >> kSubpixelBits, dx_low = dx & (kSubpixels - 1);
