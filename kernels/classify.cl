@@ -83,16 +83,12 @@ INLINE Verdict classify_points(__global const ShadowMap *map, __global const Sha
   return verdict;
 }
 
-// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
-// texels: texel_count ≥ 1. bits: kPairWords words for each entry, a bit for each pixel of the tile. The first half holds the pixels
-// that are lit, the second half those that are unsure. Words of lights without a shadow are 0.
-__kernel void classify(uint plane_stride, __global const float *position, __global const float *normal,
-                       __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
-                       __global const ListEntry *list, __global const ShadowMap *shadow_maps,
-                       __global const ShadowFace *shadow_faces, __global const BoundTexel *texels, uint texel_count,
-                       __global uint *bits) {
-  if (!SHADOWS) return;
-  uint tile = get_global_id(0);
+// Decides the pairs of a tile. All but `tile`: see classify().
+WORK void classify_tile(uint tile, uint plane_stride, __global const float *position, __global const float *normal,
+                        __global const float *lift, __global const ShadeLight *lights, uint light_count,
+                        __global const uint *list_starts, __global const ListEntry *list, __global const ShadowMap *shadow_maps,
+                        __global const ShadowFace *shadow_faces, __global const BoundTexel *texels, uint texel_count,
+                        __global uint *bits) {
   uint entry = LIGHT_LISTS ? list_starts[tile] : tile * light_count;
   uint end = LIGHT_LISTS ? list_starts[tile + 1] : entry + light_count;
   for (; entry < end; ++entry) {
@@ -116,4 +112,17 @@ __kernel void classify(uint plane_stride, __global const float *position, __glob
       unsure[row / 32] |= lane_bits(receives & !(verdict.lit | verdict.dark)) << row % 32;
     }
   }
+}
+
+// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
+// texels: texel_count ≥ 1. bits: kPairWords words for each entry, a bit for each pixel of the tile. The first half holds the pixels
+// that are lit, the second half those that are unsure. Words of lights without a shadow are 0.
+__kernel void classify(uint plane_stride, __global const float *position, __global const float *normal,
+                       __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
+                       __global const ListEntry *list, __global const ShadowMap *shadow_maps,
+                       __global const ShadowFace *shadow_faces, __global const BoundTexel *texels, uint texel_count,
+                       __global uint *bits) {
+  if (!SHADOWS) return;
+  classify_tile(get_global_id(0), plane_stride, position, normal, lift, lights, light_count, list_starts, list, shadow_maps,
+                shadow_faces, texels, texel_count, bits);
 }

@@ -10,7 +10,7 @@
 // Out: 3 planes of linear colour, a float for each pixel, and one more with OUTPUT_SHADOW.
 // A work-item shades ROWS rows of LANES pixels. The pixels of a row share their lights: those that the list has for their 4×4
 // square. Pairs of a row and a light are taken ABREAST at a time, whatever row they belong to.
-// Cost: some 130 instructions for a pair of LANES pixels and a light without a shadow. A lookup in a shadow map costs about as much
+// Cost: some 100 instructions for a pair of LANES pixels and a light without a shadow. A lookup in a shadow map costs about as much
 // again for each texel that it reads.
 // A light that culling may leave out adds exactly zero: the picture does not depend on whether a list holds it.
 #include "lanes.clh"
@@ -23,19 +23,10 @@
 // Capacity of the queue of pairs. With a single lane each pair is shaded as it comes.
 #define QUEUE (LANES == 1 ? 1 : 128)
 
-// Planes have frame.plane_stride elements each. specular: r, g, b and the shininess; geometric_normal: as packNormal() packs it;
-// lift: metres. list_starts, list: see cull.cl; without LIGHT_LISTS every pixel meets all frame.light_count lights.
-// image: planes r, g, b, and with OUTPUT_SHADOW a fourth: the mean visibility, in [0, 1], of the lights with shadows that reach the
-// pixel's front.
-__kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
-                    __global const float *diffuse, __global const float *specular, __global const float *ambient,
-                    __global const float *emission, __global const uint *geometric_normal, __global const float *lift,
-                    __global const ShadeLight *lights, __global const uint *list_starts, __global const ListEntry *list,
-                    __global const ShadowMap *shadow_maps, __global const ShadowFace *shadow_faces,
-                    __global const ShadowTexel *shadow_texels, __global const uint *pair_bits, __global float *image) {
-  Planes planes = {position, normal, diffuse, specular, ambient, emission, geometric_normal, lift};
-  Shadows shadows = {shadow_maps, shadow_faces, shadow_texels, frame.texel_count, pair_bits};
-  uint first = get_global_id(0) * (ROWS * LANES), tile = first / kTilePixels;
+// Lights ROWS rows. first: their first pixel. All else: see shade().
+WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight *lights, __global const uint *list_starts,
+                     __global const ListEntry *list, Shadows shadows, uint first, __global float *image) {
+  uint tile = first / kTilePixels;
   uint stride = frame.plane_stride;
   uint entry = LIGHT_LISTS ? list_starts[tile] : 0;
   uint end = LIGHT_LISTS ? list_starts[tile + 1] : frame.light_count;
@@ -79,4 +70,19 @@ __kernel void shade(ShadeFrame frame, __global const float *position, __global c
 
   EACH_ROW(row)
     finish_row(rows + row, &frame, first + row * LANES, &planes, long_sums, square[row] != 0, image);
+}
+
+// Planes have frame.plane_stride elements each. specular: r, g, b and the shininess; geometric_normal: as packNormal() packs it;
+// lift: metres. list_starts, list: see cull.cl; without LIGHT_LISTS every pixel meets all frame.light_count lights.
+// image: planes r, g, b, and with OUTPUT_SHADOW a fourth: the mean visibility, in [0, 1], of the lights with shadows that reach the
+// pixel's front.
+__kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
+                    __global const float *diffuse, __global const float *specular, __global const float *ambient,
+                    __global const float *emission, __global const uint *geometric_normal, __global const float *lift,
+                    __global const ShadeLight *lights, __global const uint *list_starts, __global const ListEntry *list,
+                    __global const ShadowMap *shadow_maps, __global const ShadowFace *shadow_faces,
+                    __global const ShadowTexel *shadow_texels, __global const uint *pair_bits, __global float *image) {
+  Planes planes = {position, normal, diffuse, specular, ambient, emission, geometric_normal, lift};
+  Shadows shadows = {shadow_maps, shadow_faces, shadow_texels, frame.texel_count, pair_bits};
+  shade_rows(frame, planes, lights, list_starts, list, shadows, get_global_id(0) * (ROWS * LANES), image);
 }

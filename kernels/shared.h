@@ -32,6 +32,9 @@ enum {
 // Tiles that a work-item of shade_tiles.cl takes at most.
 enum { kBlockTiles = 16 };
 
+// Of such blocks as follow each other side by side in the order of work-items.
+enum { kBlockRun = 8 };
+
 // An entry of a tile's light list.
 typedef struct {
   uint light;    // its index
@@ -40,7 +43,7 @@ typedef struct {
 SHARED_SIZE(ListEntry, 8);
 
 // How many entries of a tile counting keeps: a list that isn't longer need not be found again when lists are written.
-enum { kFoundPerTile = 64 };
+enum { kFoundPerTile = 128 };
 
 // The tests by which culling leaves a light out of a list, as bits. Range is always tested: kByRange asks for no other.
 // - kByCone: no point lies in a spot's cone.

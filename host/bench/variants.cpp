@@ -9,7 +9,7 @@ namespace luciole {
 namespace {
 
 /// The degrees of kernels/math.clh other than the defaults.
-constexpr int kLog2Degrees[] = {3, 4, 5, 6, 7, 9};
+constexpr int kLog2Degrees[] = {3, 4, 5, 6, 8, 9};
 constexpr int kExp2Degrees[] = {2, 3, 4, 5, 7};
 
 constexpr std::pair<ShadowMethod, const char*> kSharpMethods[] = {

@@ -8,18 +8,24 @@ namespace {
 
 constexpr const char* kFile = "cull.cl";
 
-/// The arguments that counting and filling share, and `own`, those of one of them.
-std::vector<KernelArgument> withCommon(const CullArguments& arguments, std::vector<KernelArgument> own) {
-  own.insert(own.end(), {{"position", arguments.position},
-                         {"normal", arguments.normal},
-                         {"plane_stride", uint(arguments.plane_stride)},
-                         {"group_log2", uint(arguments.group_log2)},
-                         {"tree", arguments.tree},
-                         {"tree_stride", uint(arguments.tree_stride)},
-                         {"lights", arguments.lights},
-                         {"light_count", uint(arguments.light_count)},
-                         {"tests", uint(arguments.tests)}});
-  return own;
+/// The lists' lengths, or then the lists themselves: see kernels/cull.cl.
+void findLights(Device& device, const CullArguments& arguments, bool fill, const LightLists& lists) {
+  Kernel find_lights = makeKernel(device, kFile, "find_lights", "");
+  launch(device, find_lights,
+         {{"position", arguments.position},
+          {"normal", arguments.normal},
+          {"plane_stride", uint(arguments.plane_stride)},
+          {"group_log2", uint(arguments.group_log2)},
+          {"tree", arguments.tree},
+          {"tree_stride", uint(arguments.tree_stride)},
+          {"lights", arguments.lights},
+          {"light_count", uint(arguments.light_count)},
+          {"tests", uint(arguments.tests)},
+          {"fill", uint(fill)},
+          {"found", lists.found},
+          {"starts", lists.starts},
+          {"all_lists", lists.list}},
+         {.items = lists.tiles});
 }
 
 }  // namespace
@@ -29,10 +35,7 @@ void cull(Device& device, const CullArguments& arguments, LightLists& lists) {
   reserve(device, lists.tiles * kFoundPerTile, lists.found);
   reserve(device, lists.tiles + 1, lists.starts);
 
-  Kernel count_lights = makeKernel(device, kFile, "count_lights", "");
-  launch(device, count_lights, withCommon(arguments, {{"found", lists.found}, {"counts", lists.starts}}),
-         {.items = lists.tiles});
-
+  findLights(device, arguments, false, lists);
   Kernel scan_lists = makeKernel(device, kFile, "scan_lists", "");
   launch(device, scan_lists, {{"tiles", uint(lists.tiles)}, {"starts", lists.starts}}, {.items = 1});
 
@@ -46,11 +49,7 @@ void cull(Device& device, const CullArguments& arguments, LightLists& lists) {
   lists.bytes = lists.tiles * kFoundPerTile * sizeof(ListEntry) + (lists.tiles + 1) * sizeof(uint) +
                 lists.entries * sizeof(ListEntry);
 
-  Kernel fill_lists = makeKernel(device, kFile, "fill_lists", "");
-  launch(device, fill_lists,
-         withCommon(arguments,
-                    {{"found", lists.found}, {"list_starts", lists.starts}, {"all_lists", lists.list}}),
-         {.items = lists.tiles});
+  findLights(device, arguments, true, lists);
   finish(device);
 }
 

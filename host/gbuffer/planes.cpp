@@ -6,22 +6,33 @@
 #include <limits>
 
 namespace luciole {
+namespace {
+
+/// Makes a group of `count` zeros, in the memory that it has where that is enough.
+template <class Group>
+void clear(std::size_t count, Group& group) {
+  if (group.capacity() < count) group = {};  // freed first, so that memory need not hold both
+  group.clear();
+  group.resize(count);
+}
+
+}  // namespace
 
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
   const std::size_t pixels = gbuffer.pixels();
   // In parallel, since most of the time goes into the system's clearing of fresh memory.
   tbb::parallel_invoke(
       [&] {
-        gbuffer.position.resize(3 * pixels);
+        clear(3 * pixels, gbuffer.position);
         std::fill(gbuffer.position.begin() + std::ptrdiff_t(2 * pixels), gbuffer.position.end(),
                   -std::numeric_limits<float>::infinity());
       },
-      [&] { gbuffer.normal.resize(3 * pixels); }, [&] { gbuffer.diffuse.resize(3 * pixels); },
-      [&] { gbuffer.specular.resize(planes.specular ? 4 * pixels : 0); },
-      [&] { gbuffer.ambient.resize(planes.ambient ? 3 * pixels : 0); },
-      [&] { gbuffer.emission.resize(planes.emission ? 3 * pixels : 0); },
-      [&] { gbuffer.geometric_normal.resize(planes.geometric_normal ? pixels : 0); },
-      [&] { gbuffer.lift.resize(planes.lift ? pixels : 0); });
+      [&] { clear(3 * pixels, gbuffer.normal); }, [&] { clear(3 * pixels, gbuffer.diffuse); },
+      [&] { clear(planes.specular ? 4 * pixels : 0, gbuffer.specular); },
+      [&] { clear(planes.ambient ? 3 * pixels : 0, gbuffer.ambient); },
+      [&] { clear(planes.emission ? 3 * pixels : 0, gbuffer.emission); },
+      [&] { clear(planes.geometric_normal ? pixels : 0, gbuffer.geometric_normal); },
+      [&] { clear(planes.lift ? pixels : 0, gbuffer.lift); });
 }
 
 void freePlanes(GBuffer& gbuffer) {

@@ -4,11 +4,13 @@
 #include <cstdio>  // jpeglib.h needs its FILE
 #include <jpeglib.h>
 // clang-format on
+#include <png.h>
 
 #include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -17,11 +19,97 @@
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "image/build_mips.hpp"
-#include "image/quick_png.hpp"
 #include "image/spread_texels.hpp"
 
 namespace luciole {
 namespace {
+
+/// Whether a file of `file_bytes` bytes, compressed to 1 / most_compression at best, can hold a picture of
+/// this size. A header that claims more is damaged.
+bool canHold(std::size_t file_bytes, std::uint64_t width, std::uint64_t height, std::uint64_t row_bytes,
+             std::uint64_t most_compression) {
+  return width <= kLargestSide && height <= kLargestSide &&
+         row_bytes * height / most_compression <= file_bytes;
+}
+
+/// Gives the rows of a PNG file in memory, from the top down. An error of the library jumps back into call(),
+/// over no object that has a destructor. Its warnings are left to the reader that tells what is wrong.
+class PngRows {
+ public:
+  explicit PngRows(std::span<const std::byte> file)
+      : file_(file),
+        rest_(file),
+        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, onError,
+                                    [](png_structp, png_const_charp) {})),
+        info_(png_ ? png_create_info_struct(png_) : nullptr) {}
+  ~PngRows() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngRows(const PngRows&) = delete;
+  PngRows& operator=(const PngRows&) = delete;
+
+  static bool isOne(std::span<const std::byte> file) {
+    constexpr std::size_t kSignatureBytes = 8;
+    return file.size() >= kSignatureBytes &&
+           png_sig_cmp(reinterpret_cast<png_const_bytep>(file.data()), 0, kSignatureBytes) == 0;
+  }
+
+  /// Reads up to the first row; false where this isn't a file for here.
+  bool begin() {
+    bool is_plain = false;
+    const bool read = info_ && call([&] {
+                        png_set_read_fn(png_, this, readBytes);
+                        png_read_info(png_, info_);
+                        is_plain = isPlain();
+                        if (!is_plain) return;
+                        png_set_expand(png_);  // palettes, bits and transparent colours to bytes and alpha
+                        png_read_update_info(png_, info_);
+                      });
+    return read && is_plain;
+  }
+
+  std::size_t width() const { return png_get_image_width(png_, info_); }
+  std::size_t height() const { return png_get_image_height(png_, info_); }
+  int channels() const { return png_get_channels(png_, info_); }
+
+  bool next(std::uint8_t* row) {
+    return call([&] { png_read_row(png_, row, nullptr); });
+  }
+
+  /// Whether the file goes on to its end.
+  bool end() {
+    return call([&] { png_read_end(png_, nullptr); });
+  }
+
+ private:
+  /// Of at most 8 bits, not interlaced, and not said to be linear.
+  bool isPlain() const {
+    constexpr std::uint64_t kMostCompression = 1040;  // deflate reaches 1 : 1032
+    double gamma = 0;
+    const bool may_be_linear = png_get_gAMA(png_, info_, &gamma) && gamma > 0.98 && gamma < 1.02;
+    return png_get_bit_depth(png_, info_) <= 8 && png_get_interlace_type(png_, info_) == PNG_INTERLACE_NONE &&
+           !may_be_linear &&
+           canHold(file_.size(), width(), height(), png_get_rowbytes(png_, info_), kMostCompression);
+  }
+
+  template <class Use>
+  bool call(const Use& use) {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    use();
+    return true;
+  }
+
+  [[noreturn]] static void onError(png_structp png, png_const_charp) { png_longjmp(png, 1); }
+
+  static void readBytes(png_structp png, png_bytep bytes, std::size_t count) {
+    PngRows* self = static_cast<PngRows*>(png_get_io_ptr(png));
+    if (count > self->rest_.size()) png_error(png, "the file ends early");
+    std::memcpy(bytes, self->rest_.data(), count);
+    self->rest_ = self->rest_.subspan(count);
+  }
+
+  std::span<const std::byte> file_, rest_;
+  png_structp png_;
+  png_infop info_;
+};
 
 /// Gives the rows of a JPEG file in memory, from the top down. An error of the library jumps back into
 /// call(), over no object that has a destructor.
@@ -38,6 +126,11 @@ class JpegRows {
   JpegRows(const JpegRows&) = delete;
   JpegRows& operator=(const JpegRows&) = delete;
 
+  static bool isOne(std::span<const std::byte> file) {
+    constexpr std::array<std::byte, 3> kSignature{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}};
+    return file.size() >= kSignature.size() && std::equal(kSignature.begin(), kSignature.end(), file.begin());
+  }
+
   /// Reads up to the first row; false where this isn't a file for here.
   bool begin() {
     bool is_plain = false;
@@ -48,8 +141,7 @@ class JpegRows {
                        const_cast<unsigned char*>(reinterpret_cast<const unsigned char*>(file_.data())),
                        static_cast<unsigned long>(file_.size()));
           jpeg_read_header(&jpeg_, TRUE);
-          is_plain = isPossible() && ((jpeg_.num_components == 1 && jpeg_.out_color_space == JCS_GRAYSCALE) ||
-                                      (jpeg_.num_components == 3 && jpeg_.out_color_space == JCS_RGB));
+          is_plain = isPlain();
           if (is_plain) jpeg_start_decompress(&jpeg_);
         });
     return read && is_plain;
@@ -70,12 +162,13 @@ class JpegRows {
   }
 
  private:
-  /// A header that claims more than this many times the file's bytes is damaged.
-  bool isPossible() const {
+  /// Grey or of three colours.
+  bool isPlain() const {
     constexpr std::uint64_t kMostCompression = 65536;
-    return jpeg_.image_width <= kLargestSide && jpeg_.image_height <= kLargestSide &&
-           std::uint64_t(jpeg_.image_width) * jpeg_.image_height * jpeg_.num_components / kMostCompression <=
-               file_.size();
+    return ((jpeg_.num_components == 1 && jpeg_.out_color_space == JCS_GRAYSCALE) ||
+            (jpeg_.num_components == 3 && jpeg_.out_color_space == JCS_RGB)) &&
+           canHold(file_.size(), jpeg_.image_width, jpeg_.image_height,
+                   std::uint64_t(jpeg_.image_width) * std::uint64_t(jpeg_.num_components), kMostCompression);
   }
 
   template <class Use>
@@ -96,11 +189,9 @@ class JpegRows {
   bool is_made_ = false;
 };
 
-std::optional<MipLevel> readJpegQuickly(std::span<const std::byte> file, const std::string& name) {
-  constexpr std::array<std::byte, 3> kSignature{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}};
-  if (file.size() < kSignature.size() || !std::equal(kSignature.begin(), kSignature.end(), file.begin()))
-    return std::nullopt;
-  JpegRows rows(file);
+template <class Rows>
+std::optional<MipLevel> readLevel(std::span<const std::byte> file, const std::string& name) {
+  Rows rows(file);
   if (!rows.begin()) return std::nullopt;
   const std::size_t pixels = rows.width() * rows.height();
   // The texels, and a third more for the mip chain.
@@ -118,8 +209,9 @@ std::optional<MipLevel> readJpegQuickly(std::span<const std::byte> file, const s
 }  // namespace
 
 std::optional<Texture> readQuickly(std::span<const std::byte> file, const std::string& name) {
-  std::optional<MipLevel> level = readPngQuickly(file, name);
-  if (!level) level = readJpegQuickly(file, name);
+  std::optional<MipLevel> level;
+  if (PngRows::isOne(file)) level = readLevel<PngRows>(file, name);
+  if (JpegRows::isOne(file)) level = readLevel<JpegRows>(file, name);
   if (!level) return std::nullopt;
   Texture texture{name, {}};
   texture.levels.push_back(std::move(*level));

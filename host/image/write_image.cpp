@@ -2,11 +2,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/error.hpp"
@@ -53,34 +56,44 @@ Code alphaCode(float value) {
 /// A colour that was multiplied by alpha; black where nothing is left of it.
 float divided(float color, float alpha) { return alpha > 0.0f ? color / alpha : 0.0f; }
 
-/// The values of a picture's rows that its file takes. `convert(pixels, y, values)` makes those of a row from
-/// its pixels with all channels.
+/// A picture is converted and written in pieces of rows: their values take no memory as large as the picture,
+/// and are still in a cache when they are compressed.
+constexpr std::size_t kPieceBytes = std::size_t(4) << 20;
+
+/// Writes a picture's rows, as values of which a pixel has `channels`. `convert(pixels, y, values)` makes
+/// those of a row from its pixels with all channels.
 template <class T, class Convert>
-std::unique_ptr<T[]> convertRows(const Image& rows, std::size_t channels, Convert convert) {
-  const std::size_t row_values = rows.width * channels;
-  auto values = std::make_unique_for_overwrite<T[]>(row_values * rows.height);
-  tbb::parallel_for(0, rows.height, [&](int y) {
-    convert(rows.pixels.data() + std::size_t(y) * rows.width * rows.channels.size(), y,
-            values.get() + y * row_values);
-  });
-  return values;
+void writeRows(const Image& rows, std::size_t channels, Convert convert, RowFile& file) {
+  const std::size_t row_values = rows.width * channels, row_pixels = rows.width * rows.channels.size();
+  const std::size_t row_bytes = std::max<std::size_t>(row_values * sizeof(T), 1);
+  const int most = int(std::max<std::size_t>(kPieceBytes / row_bytes, 1));
+  const auto values = std::make_unique_for_overwrite<T[]>(row_values * std::min(most, rows.height));
+  for (int first = 0; first < rows.height; first += most) {
+    const int count = std::min(most, rows.height - first);
+    tbb::parallel_for(0, count, [&](int i) {
+      convert(rows.pixels.data() + std::size_t(first + i) * row_pixels, first + i,
+              values.get() + i * row_values);
+    });
+    file.write(values.get(), count);
+  }
 }
 
-/// The channels `sources` of a row of pixels of `channels`.
-void takeChannels(const float* pixels, std::size_t channels, const std::vector<int>& sources, int width,
+/// Of pixels of `channels` the channels `sources`.
+void takeChannels(const float* pixels, std::size_t channels, const std::vector<int>& sources, int count,
                   float* values) {
-  for (int x = 0; x < width; ++x, pixels += channels)
+  if (channels == 3 && sources == std::vector{0, 1, 2}) {
+    std::copy_n(pixels, 3 * count, values);
+    return;
+  }
+  for (int i = 0; i < count; ++i, pixels += channels)
     for (const int source : sources) *values++ = pixels[source];
 }
 
-/// Limits the magnitude of colours; NaN stays. Returns how many pixels had a larger one.
-std::uint64_t limitColors(const std::vector<std::string>& channels, float largest,
-                          std::vector<float>& pixels) {
-  std::vector<std::size_t> colors;
-  for (std::size_t c = 0; c < channels.size(); ++c)
-    if (isColorChannel(channels[c])) colors.push_back(c);
+/// Limits the magnitude of the channels `colors`; NaN stays. Returns how many pixels had a larger one.
+std::uint64_t limitColors(const std::vector<std::size_t>& colors, float largest, std::size_t channels,
+                          std::span<float> pixels) {
   std::uint64_t limited = 0;
-  for (std::size_t pixel = 0; pixel < pixels.size(); pixel += channels.size()) {
+  for (std::size_t pixel = 0; pixel < pixels.size(); pixel += channels) {
     bool is_beyond = false;
     for (const std::size_t c : colors) {
       float& value = pixels[pixel + c];
@@ -99,33 +112,59 @@ struct ImageWriter::State {
   FileFormat format;
   std::vector<int> sources;  ///< which channels the file takes; all where it takes any
   WriteOptions options;
-  glm::ivec2 place;           ///< of the next row's first pixel in the whole picture
-  std::uint64_t limited = 0;  ///< pixels with a colour beyond largestColor()
+  glm::ivec2 place;                        ///< of the next row's first pixel in the whole picture
+  std::atomic<std::uint64_t> limited = 0;  ///< pixels with a colour beyond largestColor()
   std::unique_ptr<RowFile> file = nullptr;
+
+  /// Writes all channels, the colours limited.
+  void writeLimited(const Image& rows, float largest) {
+    const std::size_t channels = rows.channels.size();
+    std::vector<std::size_t> colors;
+    for (std::size_t c = 0; c < channels; ++c)
+      if (isColorChannel(rows.channels[c])) colors.push_back(c);
+    const auto limit = [&](const float* pixels, int, float* values) {
+      const std::size_t count = rows.width * channels;
+      std::copy_n(pixels, count, values);
+      limited += limitColors(colors, largest, channels, {values, count});
+    };
+    writeRows<float>(rows, channels, limit, *file);
+  }
 
   /// Writes R, G, B and perhaps A as integers.
   template <class Code>
   void writeCodes(const Image& rows) {
-    const std::size_t channels = sources.size(), row_values = rows.width * channels;
-    const bool dither = options.dither && format.bits == 8;
-    const bool divide = options.alpha && channels == 4;
-    const auto codes = convertRows<Code>(rows, channels, [&](const float* pixels, int y, Code* row) {
-      std::vector<float> values(row_values), thresholds(row_values, kHalfUp);
-      takeChannels(pixels, rows.channels.size(), sources, rows.width, values.data());
-      if (divide)
-        for (std::size_t i = 0; i < row_values; ++i)
-          if (i % 4 < 3) values[i] = divided(values[i], values[i - i % 4 + 3]);
-      if (options.tone == ToneCurve::kFilmic)
-        for (float& value : values) value = filmicTone(value);
-      if (dither)
-        for (int x = 0; x < rows.width; ++x)
-          std::fill_n(thresholds.begin() + x * channels, 3, ditherThreshold(place.x + x, place.y + y));
-      srgbCodes(values.data(), thresholds.data(), row_values, row);
-      if (channels == 4)
-        for (int x = 0; x < rows.width; ++x)
-          row[4 * x + 3] = alphaCode<Code>(pixels[x * rows.channels.size() + sources[3]]);
-    });
-    file->write(codes.get(), rows.height);
+    const std::size_t from_channels = rows.channels.size(), to_channels = sources.size();
+    const auto convert = [&](const float* pixels, int y, Code* codes) {
+      for (int x = 0; x < rows.width; x += kRun)
+        encode(pixels + x * from_channels, from_channels, place + glm::ivec2(x, y),
+               std::min(kRun, rows.width - x), codes + x * to_channels);
+    };
+    writeRows<Code>(rows, to_channels, convert, *file);
+  }
+
+ private:
+  static constexpr int kRun = 256;  ///< pixels of a row whose values are in the fastest cache together
+
+  /// The codes of up to kRun pixels of a row; `at`: the first one's place in the whole picture.
+  template <class Code>
+  void encode(const float* pixels, std::size_t from_channels, const glm::ivec2& at, int count,
+              Code* codes) const {
+    const int channels = int(sources.size());
+    std::array<float, 4 * kRun> values, thresholds;
+    takeChannels(pixels, from_channels, sources, count, values.data());
+    if (options.alpha && channels == 4)
+      for (int i = 0; i < 4 * count; ++i)
+        if (i % 4 < 3) values[i] = divided(values[i], values[i | 3]);
+    if (options.tone == ToneCurve::kFilmic)
+      for (int i = 0; i < channels * count; ++i) values[i] = filmicTone(values[i]);
+    thresholds.fill(kHalfUp);
+    if (options.dither && format.bits == 8)
+      for (int i = 0; i < count; ++i)
+        std::fill_n(&thresholds[i * channels], 3, ditherThreshold(at.x + i, at.y));
+    srgbCodes(values.data(), thresholds.data(), std::size_t(channels) * std::size_t(count), codes);
+    if (channels == 4)
+      for (int i = 0; i < count; ++i)
+        codes[4 * i + 3] = alphaCode<Code>(pixels[i * from_channels + sources[3]]);
   }
 };
 
@@ -158,16 +197,14 @@ void ImageWriter::write(const Image& rows) {
   State& state = *state_;
   const float largest = largestColor(state.options);
   if (state.sources.empty() && std::isfinite(largest)) {
-    std::vector<float> pixels = rows.pixels;
-    state.limited += limitColors(rows.channels, largest, pixels);
-    state.file->write(pixels.data(), rows.height);
+    state.writeLimited(rows, largest);
   } else if (state.sources.empty()) {
     state.file->write(rows.pixels.data(), rows.height);
   } else if (state.format.is_float) {
     const auto take = [&](const float* pixels, int, float* values) {
       takeChannels(pixels, rows.channels.size(), state.sources, rows.width, values);
     };
-    state.file->write(convertRows<float>(rows, state.sources.size(), take).get(), rows.height);
+    writeRows<float>(rows, state.sources.size(), take, *state.file);
   } else if (state.format.bits == 16) {
     state.writeCodes<std::uint16_t>(rows);
   } else {

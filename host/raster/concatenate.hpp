@@ -10,8 +10,8 @@
 namespace luciole {
 
 /// The vectors one after another, copied in parallel.
-template <class Item>
-std::vector<Item> concatenate(std::vector<std::vector<Item>> parts) {
+template <class Vector>
+Vector concatenate(std::vector<Vector> parts) {
   if (parts.size() == 1) return std::move(parts[0]);
   std::vector<std::size_t> starts(parts.size());
   std::size_t total = 0;
@@ -19,7 +19,7 @@ std::vector<Item> concatenate(std::vector<std::vector<Item>> parts) {
     starts[i] = total;
     total += parts[i].size();
   }
-  std::vector<Item> all(total);
+  Vector all(total);
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
     std::copy(parts[i].begin(), parts[i].end(), all.begin() + std::ptrdiff_t(starts[i]));
   });

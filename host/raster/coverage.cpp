@@ -118,7 +118,17 @@ void forEachGroup(const Target& target, const PixelBox& box, BinPixels& pixels, 
   }
 }
 
-/// Draws an opaque triangle to a box of the bin's pixels. Returns whether it covers a sample, visible or not.
+/// Whether a triangle covers any sample of a group.
+bool coversAny(const Group& group, const std::int32_t* step_x) {
+  const auto [e0, e1, e2] = group.edges;
+  std::int32_t any = 0;
+  for (int lane = 0; lane < kLanes; ++lane)
+    any |= ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
+  return any != 0;
+}
+
+/// Draws an opaque triangle to a box of the bin's pixels. Returns whether it covers a sample, visible or not;
+/// false for Label::kSlopes, whose callers don't ask.
 template <Label kLabel>
 bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
@@ -126,7 +136,7 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const float high = target.triangle.depth_high;
   const std::uint32_t own_label = labelOf<kLabel>(target.triangle);
   const std::int32_t* step_x = target.edges.step_x;
-  std::int32_t covered = 0;
+  bool covered = false;
   forEachGroup(target, box, pixels, [&](const Group& group) {
     const auto [e0, e1, e2] = group.edges;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -134,26 +144,38 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
           ((e0 + step_x[0] * lane) | (e1 + step_x[1] * lane) | (e2 + step_x[2] * lane)) >= 0;
       const float z = std::min(std::max(group.start + step * float(lane), low), high);
       const bool seen = inside & std::int32_t(z > group.depth[lane]);
-      covered |= inside;
       group.depth[lane] = seen ? z : group.depth[lane];
       group.label[lane] = seen ? own_label : group.label[lane];
     }
+    if (kLabel == Label::kTriangle && !covered) covered = coversAny(group, step_x);
   });
-  return covered != 0;
+  return covered;
 }
 
-/// Where a triangle has holes among the `wanted` samples of the group at pixel (x, y) of the picture: a bit a
-/// lane.
-std::uint32_t holesIn(const HoleTest& holes, const Surface& surface, std::uint32_t wanted, int x, int y) {
-  std::uint32_t found = 0;
-  for (; wanted != 0; wanted &= wanted - 1) {
-    const int lane = std::countr_zero(wanted);
-    found |= std::uint32_t(isHole(holes.scene, surface, holes.plane, x + lane, y)) << lane;
+/// Samples of a triangle that it is the nearest at unless it has holes there.
+struct NearestSamples {
+  int count = 0;
+  Lanes<double> x{}, y{};  ///< pixels of the whole picture
+  Lanes<int> place;        ///< in BinPixels
+  Lanes<float> z;
+};
+
+/// Draws to those of the samples where the triangle has no hole, and forgets them all.
+void drawWhereSolid(const HoleTest& holes, const Surface& surface, std::uint32_t label,
+                    NearestSamples& samples, BinPixels& pixels) {
+  LaneMask wanted;
+  for (int i = 0; i < kSquarePixels; ++i) wanted[i] = i < samples.count;
+  const LaneMask open = holesIn(holes.scene, surface, holes.plane, samples.x, samples.y, wanted);
+  for (int i = 0; i < samples.count; ++i) {
+    if (open[i]) continue;
+    pixels.depth[samples.place[i]] = samples.z[i];
+    pixels.label[samples.place[i]] = label;
   }
-  return found;
+  samples.count = 0;
 }
 
-/// The same for a triangle with holes. Its opacity is looked up only at samples where it is the nearest.
+/// The same as drawOpaque() for a triangle with holes. Its opacity is looked up only at samples where it is
+/// the nearest, of several groups together.
 template <Label kLabel>
 bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
@@ -163,6 +185,12 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
   const std::uint32_t own_label = labelOf<kLabel>(target.triangle);
   const std::int32_t* step_x = target.edges.step_x;
   std::optional<Surface> surface;
+  NearestSamples samples;
+  const auto drawSamples = [&] {
+    if (samples.count == 0) return;
+    if (!surface) surface = makeSurface(holes.scene, holes.objects, number, holes.plane);
+    drawWhereSolid(holes, *surface, own_label, samples, pixels);
+  };
   std::int32_t covered = 0;
   forEachGroup(target, box, pixels, [&](const Group& group) {
     const auto [e0, e1, e2] = group.edges;
@@ -180,16 +208,16 @@ bool drawMasked(const Target& target, const PixelBox& box, const HoleTest& holes
         nearer |= (z[lane] == group.depth[lane]) & (number < group.label[lane]) & (z[lane] > 0.0f);
       nearest |= std::uint32_t(inside & nearer) << lane;
     }
-    if (nearest == 0) return;
-    if (!surface) surface = makeSurface(holes.scene, holes.objects, number, holes.plane);
-    nearest &=
-        ~holesIn(holes, *surface, nearest, target.bin_origin.x + group.x, target.bin_origin.y + group.y);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const bool seen = nearest >> lane & 1;
-      group.depth[lane] = seen ? z[lane] : group.depth[lane];
-      group.label[lane] = seen ? own_label : group.label[lane];
+    for (; nearest != 0; nearest &= nearest - 1) {
+      const int lane = std::countr_zero(nearest), i = samples.count++;
+      samples.x[i] = target.bin_origin.x + group.x + lane;
+      samples.y[i] = target.bin_origin.y + group.y;
+      samples.place[i] = group.y * kBinSize + group.x + lane;
+      samples.z[i] = z[lane];
+      if (samples.count == kSquarePixels) drawSamples();
     }
   });
+  drawSamples();
   return covered != 0;
 }
 

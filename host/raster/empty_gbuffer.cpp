@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <tuple>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/picture_size.hpp"
@@ -21,8 +22,8 @@ void checkView(const View& view) {
                                  crop.x, crop.y, origin.x, origin.y, size.x, size.y));
 }
 
-GBuffer emptyGBuffer(const View& view, PlaneSet planes) {
-  GBuffer gbuffer;
+GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer used) {
+  GBuffer gbuffer = std::move(used);
   gbuffer.width = view.crop_size.x;
   gbuffer.height = view.crop_size.y;
   gbuffer.tiles_x = (gbuffer.width + kTileSize - 1) / kTileSize;

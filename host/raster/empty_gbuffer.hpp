@@ -10,8 +10,9 @@ namespace luciole {
 /// Throws InputError for a view whose size or crop is out of range.
 void checkView(const View& view);
 
-/// A G-buffer of a view's crop that shows nothing. Throws as allocateArray does.
-GBuffer emptyGBuffer(const View& view, PlaneSet planes);
+/// A G-buffer of a view's crop that shows nothing. `used`: one that is done with, whose memory it takes.
+/// Throws as allocateArray does.
+GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer used = {});
 
 /// A G-buffer of single points in whole tiles, point i at index i of every plane, that shows nothing. Throws
 /// as allocateArray does.

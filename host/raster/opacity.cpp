@@ -1,8 +1,126 @@
 #include "raster/opacity.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "image/srgb.hpp"
+#include "raster/sample_texture.hpp"
 
 namespace luciole {
+namespace {
+
+/// The barycentric weights of several places.
+using LaneWeights = Lanes3<double>;
+
+/// weightsInPlane() at places moved by a number of pixels.
+LaneWeights inPlane(const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
+                    const Lanes<double>& y, const glm::dvec2& move) {
+  const glm::dvec3 weight1 = surface.weight1, weight2 = surface.weight2, determinant = surface.determinant;
+  const glm::dvec2 origin = plane.offset, step = plane.scale;
+  LaneWeights weights;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const double px = origin.x + step.x * (x[i] + move.x), py = origin.y + step.y * (y[i] + move.y);
+    const double scale = 1.0 / (determinant.x * px + determinant.y * py + determinant.z);
+    const double b1 = (weight1.x * px + weight1.y * py + weight1.z) * scale;
+    const double b2 = (weight2.x * px + weight2.y * py + weight2.z) * scale;
+    weights[0][i] = 1.0 - b1 - b2;
+    weights[1][i] = b1;
+    weights[2][i] = b2;
+  }
+  return weights;
+}
+
+/// Moves the weights of wanted places into the triangle, as weightsInside().
+void holdInside(const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
+                const Lanes<double>& y, const LaneMask& wanted, LaneWeights& weights) {
+  LaneMask outside;
+  std::int32_t any = 0;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const bool inside = (weights[0][i] >= 0.0) & (weights[1][i] >= 0.0) & (weights[2][i] >= 0.0);
+    outside[i] = wanted[i] & !inside;
+    any |= outside[i];
+  }
+  if (!any) return;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    if (!outside[i]) continue;
+    const Weights held = weightsInside(surface, plane.at(x[i], y[i]));
+    for (int c = 0; c < 3; ++c) weights[c][i] = held[c];
+  }
+}
+
+/// A component of texture coordinates, as interpolateUv().
+Lanes<double> interpolate(const Surface& surface, const LaneWeights& weights, int component) {
+  const std::vector<glm::vec2>& uvs = surface.object->mesh->uvs;
+  const double a = uvs[surface.corners[0]][component], b = uvs[surface.corners[1]][component],
+               c = uvs[surface.corners[2]][component];
+  Lanes<double> result;
+  for (int i = 0; i < kSquarePixels; ++i)
+    result[i] = weights[0][i] * a + weights[1][i] * b + weights[2][i] * c;
+  return result;
+}
+
+/// The differences of two places' texture coordinates; zero where not finite.
+void setSteps(const Surface& surface, const LaneWeights& from, const LaneWeights& to, Lanes<float>& du,
+              Lanes<float>& dv) {
+  const Lanes<double> u0 = interpolate(surface, from, 0), v0 = interpolate(surface, from, 1),
+                      u1 = interpolate(surface, to, 0), v1 = interpolate(surface, to, 1);
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  for (int i = 0; i < kSquarePixels; ++i) {
+    const float u = float(u1[i] - u0[i]), v = float(v1[i] - v0[i]);
+    const bool finite = (std::abs(u) <= kLargest) & (std::abs(v) <= kLargest);
+    du[i] = finite ? u : 0.0f;
+    dv[i] = finite ? v : 0.0f;
+  }
+}
+
+/// texturePlace() of several places. `weights`: of the points seen there.
+SquareFootprints texturePlaces(const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
+                               const Lanes<double>& y, const LaneWeights& here, const LaneWeights& weights) {
+  const Lanes<double> u = interpolate(surface, weights, 0), v = interpolate(surface, weights, 1);
+  SquareFootprints places;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    places.u[i] = float(u[i]);
+    places.v[i] = float(v[i]);
+  }
+  setSteps(surface, here, inPlane(surface, plane, x, y, {1, 0}), places.du_dx, places.dv_dx);
+  setSteps(surface, here, inPlane(surface, plane, x, y, {0, 1}), places.du_dy, places.dv_dy);
+  return places;
+}
+
+void multiply(const Lanes<float>& factors, Lanes<float>& out) {
+  for (int i = 0; i < kSquarePixels; ++i) out[i] *= factors[i];
+}
+
+/// opacityAt() the wanted places; elsewhere arbitrary.
+Lanes<float> opacities(const Scene& scene, const Surface& surface, const LaneWeights& weights,
+                       const SquareFootprints& places, const LaneMask& wanted) {
+  const Material& material = *surface.material;
+  const Mesh& mesh = *surface.object->mesh;
+  Lanes<float> opacity;
+  for (int i = 0; i < kSquarePixels; ++i)
+    opacity[i] = material.alpha * vertexColor(surface, {weights[0][i], weights[1][i], weights[2][i]}).a;
+  if (mesh.uvs.empty()) return opacity;
+  if (material.diffuse_map.texture >= 0) {
+    const Texture& diffuse = scene.textures[std::size_t(material.diffuse_map.texture)];
+    Lanes<float> factors;
+    factors.fill(float(diffuse.levels[0].texels[3]) / 65535.0f);
+    if (diffuse.alpha_varies) factors = sampleChannel(diffuse, material.diffuse_map, places, wanted, 3);
+    multiply(factors, opacity);
+  }
+  if (material.alpha_map.texture < 0) return opacity;
+  // Where the opacity is 0 already, the second map is not looked up.
+  LaneMask left;
+  for (int i = 0; i < kSquarePixels; ++i) left[i] = wanted[i] & (opacity[i] > 0.0f);
+  const Texture& alpha = scene.textures[std::size_t(material.alpha_map.texture)];
+  Lanes<float> factors = sampleChannel(alpha, material.alpha_map, places, left, alpha.alpha_varies ? 3 : 0);
+  if (!alpha.alpha_varies)
+    for (int i = 0; i < kSquarePixels; ++i)
+      if (left[i]) factors[i] = encodeSrgb(factors[i]);
+  for (int i = 0; i < kSquarePixels; ++i) opacity[i] = left[i] ? opacity[i] * factors[i] : opacity[i];
+  return opacity;
+}
+
+}  // namespace
 
 float opacityAt(const Scene& scene, const Surface& surface, const Weights& weights,
                 const TexturePlace& place) {
@@ -32,6 +150,22 @@ bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, 
                                  ? texturePlace(surface, plane, x, y, weights)
                                  : TexturePlace{};
   return opacityAt(scene, surface, weights, place) < material.alpha_cutoff;
+}
+
+LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
+                 const Lanes<double>& y, const LaneMask& wanted) {
+  const Material& material = *surface.material;
+  const LaneWeights here = inPlane(surface, plane, x, y, {0, 0});
+  LaneWeights weights = here;
+  holdInside(surface, plane, x, y, wanted, weights);
+  const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;
+  SquareFootprints places{};
+  if (textured && !surface.object->mesh->uvs.empty())
+    places = texturePlaces(surface, plane, x, y, here, weights);
+  const Lanes<float> opacity = opacities(scene, surface, weights, places, wanted);
+  LaneMask holes;
+  for (int i = 0; i < kSquarePixels; ++i) holes[i] = wanted[i] & (opacity[i] < material.alpha_cutoff);
+  return holes;
 }
 
 }  // namespace luciole

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "raster/square.hpp"
 #include "raster/surface.hpp"
 
 namespace luciole {
@@ -12,5 +13,10 @@ float opacityAt(const Scene& scene, const Surface& surface, const Weights& weigh
 /// Whether the surface has a hole at (x, y), as in ViewPlane::at: its opacity is below its material's
 /// alpha_cutoff, which must be > 0.
 bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y);
+
+/// The same, bit for bit, for the wanted ones of several places at once: 1 where there is a hole, 0
+/// elsewhere.
+LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
+                 const Lanes<double>& y, const LaneMask& wanted);
 
 }  // namespace luciole

@@ -1,21 +1,24 @@
 #include "raster/rasterize.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <utility>
 
 #include "raster/bins.hpp"
 #include "raster/coverage.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/placed_meshlets.hpp"
 #include "raster/resolve.hpp"
+#include "raster/seen_surface.hpp"
 #include "raster/setup.hpp"
 
 namespace luciole {
 
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors,
-                  RasterCounts* counts) {
+                  RasterCounts* counts, GBuffer used) {
   checkView(view);
   const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
   const Geometry geometry = transformObjects(scene, objects, view, lit_vertices);
@@ -23,18 +26,20 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   const Bins bins = binTriangles(setup.triangles, view);
 
   planes.emission |= lit_vertices;
-  GBuffer gbuffer = emptyGBuffer(view, planes);
+  GBuffer gbuffer = emptyGBuffer(view, planes, std::move(used));
   const ViewPlane plane = viewPlane(view);
   const HoleTest holes{scene, geometry.objects, plane};
   const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors, planes.lift};
   RasterCounts own_counts;
   if (!counts) counts = &own_counts;
   counts->covering.resize(geometry.triangle_count);
+  // Neighbouring bins see triangles in common.
+  tbb::enumerable_thread_specific<SurfaceCache> surfaces([&] { return SurfaceCache(input); });
   tbb::parallel_for(0, bins.size(), [&](int bin) {
     if (bins.list(bin).empty()) return;
     BinPixels pixels;
     drawBin(setup.triangles, bins, bin, holes, counts->covering, pixels);
-    resolveBin(input, pixels, bins.origin(bin), gbuffer);
+    resolveBin(input, pixels, bins.origin(bin), surfaces.local(), gbuffer);
   });
 
   setCounts(geometry.triangle_count, setup, *counts);

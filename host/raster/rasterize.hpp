@@ -39,9 +39,11 @@ struct RasterCounts {
 /// `vertex_colors`: empty, or for Shading::kGouraud the lit colours of all vertices of all the given objects,
 /// in order (see gatherVertices). Then meshes are drawn in their divided form, the interpolated colour × the
 /// diffuse map goes into `emission`, and diffuse, specular and ambient are zero.
+///
+/// `used`: a G-buffer that is done with, whose memory is taken.
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
-                  RasterCounts* counts = nullptr);
+                  RasterCounts* counts = nullptr, GBuffer used = {});
 
 /// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop, row by
 /// row, into `texels` (8 bytes each). Alpha-masked holes stay open, and no face is culled. A texel's content

@@ -29,12 +29,12 @@ bool seesNothing(const Lanes<std::uint32_t>& triangles) {
 
 }  // namespace
 
-void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 bin_origin, GBuffer& gbuffer) {
+void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 bin_origin,
+                SurfaceCache& surfaces, GBuffer& gbuffer) {
   const glm::ivec2 crop = gbuffer.crop_origin;
   const PixelRectangle part{
       glm::max(bin_origin, crop),
       glm::min(bin_origin + kBinSize, crop + glm::ivec2(gbuffer.width, gbuffer.height))};
-  SurfaceCache surfaces(input);
   forEachSquare(part, crop, [&](const glm::ivec2& square) {
     const Lanes<std::uint32_t> triangles = trianglesSeen(pixels, bin_origin, part, square);
     if (seesNothing(triangles)) return;

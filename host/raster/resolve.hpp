@@ -21,8 +21,12 @@ struct ResolveInput {
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };
 
+class SurfaceCache;
+
 /// Writes the attributes of the triangle that each pixel of a bin sees to the G-buffer, as far as the bin
 /// lies in the crop. Pixels that see nothing keep their content. `bin_origin`: pixels of the whole picture.
-void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 bin_origin, GBuffer& gbuffer);
+/// `surfaces` must be of this input.
+void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 bin_origin,
+                SurfaceCache& surfaces, GBuffer& gbuffer);
 
 }  // namespace luciole

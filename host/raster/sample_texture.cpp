@@ -1,6 +1,7 @@
 #include "raster/sample_texture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -47,15 +48,20 @@ inline Neighbours neighbours(double wrapped, std::int32_t size, Wrap wrap) {
 /// Gives exactly a where both are equal.
 inline float mix(float a, float b, float share) { return a + (b - a) * share; }
 
+/// A channel of a texel as a number.
+inline float decode(const std::uint16_t* texel, int channel, bool finest) {
+  const std::uint16_t code = texel[channel];
+  if (channel == 3) return code * (1.0f / 65535.0f);
+  return finest ? linearOfSrgb16()[code] : linearOfRoot16(code);
+}
+
 float sampleLevel(const Texture& texture, int level, Wrap wrap_u, Wrap wrap_v, double u, double v,
                   int channel) {
   const MipLevel& mip = texture.levels[std::size_t(level)];
   const Neighbours column = neighbours(u, mip.width, wrap_u);
   const Neighbours row = neighbours(v, mip.height, wrap_v);
   const auto value = [&](int x, int y) {
-    const std::uint16_t code = mip.texels[(std::size_t(y) * mip.width + x) * 4 + channel];
-    if (channel == 3) return code * (1.0f / 65535.0f);
-    return level == 0 ? linearOfSrgb16()[code] : linearOfRoot16(code);
+    return decode(&mip.texels[(std::size_t(y) * mip.width + x) * 4], channel, level == 0);
   };
   return mix(mix(value(column.first, row.first), value(column.second, row.first), column.share),
              mix(value(column.first, row.second), value(column.second, row.second), column.share), row.share);
@@ -87,119 +93,160 @@ inline float levelOf(float size, float coarsest) {
   return size > 1.0f ? std::min(0.5f * log2OfPositive(size), coarsest) : 0.0f;
 }
 
-/// The maps of a square's pixels.
-struct SquareMaps {
-  Lanes<const MipLevel*> levels;  ///< the finest
-  Lanes<float> coarsest;
-  Lanes<Wrap> wrap_u, wrap_v;
-};
-
-/// A white texture, for pixels without a map.
-const Texture& white() {
-  static const Texture texture{"", {{1, 1, {65535, 65535, 65535, 65535}}}, false};
-  return texture;
-}
-
-SquareMaps squareMaps(std::span<const Texture> textures, const Lanes<const TextureUse*>& uses) {
-  SquareMaps maps;
-  for (int i = 0; i < kSquarePixels; ++i) {
-    const TextureUse use = uses[i] ? *uses[i] : TextureUse{};
-    const Texture& texture = use.texture >= 0 ? textures[std::size_t(use.texture)] : white();
-    maps.levels[i] = texture.levels.data();
-    maps.coarsest[i] = float(texture.levels.size() - 1);
-    maps.wrap_u[i] = use.wrap_u;
-    maps.wrap_v[i] = use.wrap_v;
-  }
-  return maps;
-}
-
-/// The four texels around each of a square's points in one level, and the shares of the right and lower ones.
+/// Where a square's points lie between the texels of a level: the four around each, counted in texels from
+/// the level's first, and the shares of the right and lower ones.
 struct SquareTexels {
-  Lanes<const std::uint16_t*> top;  ///< first texel of the row
-  Lanes<const std::uint16_t*> bottom;
-  Lanes<std::int32_t> left, right;  ///< offsets from there, in values
+  Lanes<const std::uint16_t*> first;
+  Lanes<std::uint32_t> top_left, top_right, bottom_left, bottom_right;
   Lanes<float> across, down;
-  LaneMask finest;  ///< whether it is level 0
 };
 
-SquareTexels findTexels(const SquareMaps& maps, const Lanes<std::int32_t>& levels, const Lanes<double>& u,
+/// What a square's pixels look up: each in two levels, of which the coarser has a share.
+struct SquareLookup {
+  SquareTexels finer, coarser;
+  LaneMask is_finest;  ///< whether `finer` is level 0, whose codes are others
+  Lanes<float> share;
+};
+
+void put(const SquareTexels& texels, const LaneMask& mask, SquareTexels& out) {
+  blend(texels.first, mask, out.first);
+  blend(texels.top_left, mask, out.top_left);
+  blend(texels.top_right, mask, out.top_right);
+  blend(texels.bottom_left, mask, out.bottom_left);
+  blend(texels.bottom_right, mask, out.bottom_right);
+  blend(texels.across, mask, out.across);
+  blend(texels.down, mask, out.down);
+}
+
+bool any(const LaneMask& mask) {
+  std::int32_t found = 0;
+  for (int i = 0; i < kSquarePixels; ++i) found |= mask[i];
+  return found != 0;
+}
+
+SquareTexels findTexels(const MipLevel& level, const TextureUse& use, const Lanes<double>& u,
                         const Lanes<double>& v) {
-  Lanes<std::int32_t> width, height;
-  Lanes<const std::uint16_t*> texels;
-  for (int i = 0; i < kSquarePixels; ++i) {
-    const MipLevel& level = maps.levels[i][levels[i]];
-    width[i] = level.width;
-    height[i] = level.height;
-    texels[i] = level.texels.data();
-  }
+  const std::int32_t width = level.width, height = level.height;
+  Lanes<std::int32_t> left, right;
   SquareTexels result;
-  Lanes<std::int32_t> top, bottom;
+  result.first.fill(level.texels.data());
   for (int i = 0; i < kSquarePixels; ++i) {
-    const Neighbours column = neighbours(u[i], width[i], maps.wrap_u[i]);
-    result.left[i] = column.first * 4;
-    result.right[i] = column.second * 4;
+    const Neighbours column = neighbours(u[i], width, use.wrap_u);
+    left[i] = column.first;
+    right[i] = column.second;
     result.across[i] = column.share;
   }
   for (int i = 0; i < kSquarePixels; ++i) {
-    const Neighbours row = neighbours(v[i], height[i], maps.wrap_v[i]);
-    top[i] = row.first;
-    bottom[i] = row.second;
+    const Neighbours row = neighbours(v[i], height, use.wrap_v);
+    const std::int32_t top = row.first * width, bottom = row.second * width;
+    result.top_left[i] = std::uint32_t(top + left[i]);
+    result.top_right[i] = std::uint32_t(top + right[i]);
+    result.bottom_left[i] = std::uint32_t(bottom + left[i]);
+    result.bottom_right[i] = std::uint32_t(bottom + right[i]);
     result.down[i] = row.share;
   }
-  for (int i = 0; i < kSquarePixels; ++i) {
-    result.top[i] = texels[i] + std::int64_t(top[i]) * width[i] * 4;
-    result.bottom[i] = texels[i] + std::int64_t(bottom[i]) * width[i] * 4;
-    result.finest[i] = levels[i] == 0;
-  }
-  for (int i = 0; i < kSquarePixels; ++i) {
-    __builtin_prefetch(result.top[i] + result.left[i]);
-    __builtin_prefetch(result.bottom[i] + result.left[i]);
-  }
   return result;
 }
 
-/// One texel for each pixel, its four 16-bit codes in one word.
-using Texels = Lanes<std::uint64_t>;
-
-inline std::uint64_t load(const std::uint16_t* texel) {
-  std::uint64_t codes;
-  std::memcpy(&codes, texel, sizeof codes);
-  return codes;
-}
-
-Lanes<float> decode(const Texels& texels, int channel, const LaneMask& finest, bool any_finest) {
-  const int place = 16 * (std::endian::native == std::endian::little ? channel : 3 - channel);
-  Lanes<std::int32_t> codes;
-  for (int i = 0; i < kSquarePixels; ++i) codes[i] = std::int32_t(texels[i] >> place & 0xffff);
-  Lanes<float> result;
-  for (int i = 0; i < kSquarePixels; ++i) result[i] = linearOfRoot16(codes[i]);
-  if (!any_finest) return result;
-  const float* linear_of_code = linearOfSrgb16().data();
-  for (int i = 0; i < kSquarePixels; ++i)
-    if (finest[i]) result[i] = linear_of_code[codes[i]];
-  return result;
-}
-
-Lanes3<float> readTexels(const SquareTexels& at) {
-  Texels top_left, top_right, bottom_left, bottom_right;
+/// Finds the texels of a map for the wanted pixels of a square.
+void findMap(const Texture& texture, const TextureUse& use, const SquareFootprints& footprints,
+             const LaneMask& wanted, SquareLookup& lookup) {
+  const double width = texture.levels[0].width, height = texture.levels[0].height;
+  const float coarsest = float(texture.levels.size() - 1);
+  Lanes<double> u, v;
+  for (int i = 0; i < kSquarePixels; ++i) u[i] = wrapCoordinate(footprints.u[i], use.wrap_u);
+  for (int i = 0; i < kSquarePixels; ++i) v[i] = wrapCoordinate(footprints.v[i], use.wrap_v);
+  Lanes<std::int32_t> finer, coarser;
+  LaneMask is_finest;
+  Lanes<float> share;
   for (int i = 0; i < kSquarePixels; ++i) {
-    top_left[i] = load(at.top[i] + at.left[i]);
-    top_right[i] = load(at.top[i] + at.right[i]);
-    bottom_left[i] = load(at.bottom[i] + at.left[i]);
-    bottom_right[i] = load(at.bottom[i] + at.right[i]);
+    const float size = footprintSize(width, height, {footprints.du_dx[i], footprints.dv_dx[i]},
+                                     {footprints.du_dy[i], footprints.dv_dy[i]});
+    const float level = levelOf(size, coarsest);
+    finer[i] = std::int32_t(level);
+    share[i] = level - float(finer[i]);
+    coarser[i] = finer[i] + (share[i] != 0.0f);
+    is_finest[i] = finer[i] == 0;
   }
-  const bool any_finest = std::any_of(at.finest.begin(), at.finest.end(), [](int finest) { return finest; });
-  Lanes3<float> result;
-  for (int c = 0; c < 3; ++c) {
-    const Lanes<float> top_left_value = decode(top_left, c, at.finest, any_finest);
-    const Lanes<float> top_right_value = decode(top_right, c, at.finest, any_finest);
-    const Lanes<float> bottom_left_value = decode(bottom_left, c, at.finest, any_finest);
-    const Lanes<float> bottom_right_value = decode(bottom_right, c, at.finest, any_finest);
-    for (int i = 0; i < kSquarePixels; ++i)
-      result[c][i] = mix(mix(top_left_value[i], top_right_value[i], at.across[i]),
-                         mix(bottom_left_value[i], bottom_right_value[i], at.across[i]), at.down[i]);
+  std::int32_t least = std::numeric_limits<std::int32_t>::max(), most = 0;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    least = std::min(least, wanted[i] ? finer[i] : least);
+    most = std::max(most, wanted[i] ? coarser[i] : most);
   }
-  return result;
+  blend(share, wanted, lookup.share);
+  blend(is_finest, wanted, lookup.is_finest);
+  for (std::int32_t level = least; level <= most; ++level) {
+    LaneMask as_finer, as_coarser;
+    for (int i = 0; i < kSquarePixels; ++i) {
+      as_finer[i] = wanted[i] & (finer[i] == level);
+      as_coarser[i] = wanted[i] & (coarser[i] == level);
+    }
+    const bool any_finer = any(as_finer), any_coarser = any(as_coarser);
+    if (!any_finer && !any_coarser) continue;
+    const SquareTexels texels = findTexels(texture.levels[std::size_t(level)], use, u, v);
+    if (any_finer) put(texels, as_finer, lookup.finer);
+    if (any_coarser) put(texels, as_coarser, lookup.coarser);
+  }
+}
+
+/// Asks for the cache lines of the left texels. (Inlined first, or else GCC takes it for a function without
+/// effect.)
+[[gnu::always_inline]] inline void prefetch(const SquareTexels& texels) {
+  for (int i = 0; i < kSquarePixels; ++i) {
+    __builtin_prefetch(texels.first[i] + std::size_t(texels.top_left[i]) * 4);
+    __builtin_prefetch(texels.first[i] + std::size_t(texels.bottom_left[i]) * 4);
+  }
+}
+
+/// Red, green, blue and a number without meaning. GCC and Clang make vector instructions of these types on
+/// any machine.
+using Color = float __attribute__((vector_size(4 * sizeof(float))));
+/// Two colours, one behind the other.
+using Colors = float __attribute__((vector_size(8 * sizeof(float))));
+
+/// The linear colours of two texels.
+template <bool kFinest>
+inline void decode(const std::uint16_t* first, const std::uint16_t* second, Colors& out) {
+  if constexpr (kFinest) {
+    const float* linear = linearOfSrgb16().data();
+    out = Colors{linear[first[0]],  linear[first[1]],  linear[first[2]],  0.0f,
+                 linear[second[0]], linear[second[1]], linear[second[2]], 0.0f};
+  } else {
+    using Codes = std::uint16_t __attribute__((vector_size(8 * sizeof(std::uint16_t))));
+    using WideCodes = std::int32_t __attribute__((vector_size(8 * sizeof(std::int32_t))));
+    std::uint64_t both[2];
+    std::memcpy(both, first, sizeof both[0]);
+    std::memcpy(both + 1, second, sizeof both[1]);
+    Codes codes;
+    std::memcpy(&codes, both, sizeof codes);
+    // As in linearOfRoot16().
+    out = __builtin_convertvector(__builtin_convertvector(codes, WideCodes), Colors) * (1.0f / 65535.0f);
+    out *= out;
+  }
+}
+
+/// A channel at a lane of a square.
+inline float readChannel(const SquareTexels& at, int lane, int channel, bool finest) {
+  const auto value = [&](const Lanes<std::uint32_t>& places) {
+    return decode(at.first[lane] + std::size_t(places[lane]) * 4, channel, finest);
+  };
+  return mix(mix(value(at.top_left), value(at.top_right), at.across[lane]),
+             mix(value(at.bottom_left), value(at.bottom_right), at.across[lane]), at.down[lane]);
+}
+
+/// The colour at a lane of a square.
+template <bool kFinest>
+inline void readTexels(const SquareTexels& at, int lane, Color& color) {
+  const auto texel = [&](const Lanes<std::uint32_t>& places) {
+    return at.first[lane] + std::size_t(places[lane]) * 4;
+  };
+  Colors left, right;
+  decode<kFinest>(texel(at.top_left), texel(at.bottom_left), left);
+  decode<kFinest>(texel(at.top_right), texel(at.bottom_right), right);
+  const Colors both = left + (right - left) * at.across[lane];
+  std::array<Color, 2> rows;
+  std::memcpy(rows.data(), &both, sizeof rows);
+  color = rows[0] + (rows[1] - rows[0]) * at.down[lane];
 }
 
 }  // namespace
@@ -220,34 +267,52 @@ float sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 
 
 Lanes3<float> sampleTextures(std::span<const Texture> textures, const Lanes<const TextureUse*>& uses,
                              const SquareFootprints& footprints) {
-  const SquareMaps maps = squareMaps(textures, uses);
-  Lanes<double> u, v, width, height;
-  for (int i = 0; i < kSquarePixels; ++i) {
-    width[i] = maps.levels[i]->width;
-    height[i] = maps.levels[i]->height;
+  SquareLookup lookup{};
+  Lanes<const TextureUse*> left = uses;
+  for (int lane = 0; lane < kSquarePixels; ++lane) {
+    const TextureUse* use = left[lane];
+    if (!use) continue;
+    LaneMask wanted;
+    for (int i = 0; i < kSquarePixels; ++i) {
+      wanted[i] = left[i] == use;
+      left[i] = wanted[i] ? nullptr : left[i];
+    }
+    findMap(textures[std::size_t(use->texture)], *use, footprints, wanted, lookup);
   }
-  for (int i = 0; i < kSquarePixels; ++i) u[i] = wrapCoordinate(footprints.u[i], maps.wrap_u[i]);
-  for (int i = 0; i < kSquarePixels; ++i) v[i] = wrapCoordinate(footprints.v[i], maps.wrap_v[i]);
-  Lanes<std::int32_t> levels;
-  Lanes<float> share;
-  std::int32_t between = 0;
+  // Of all pixels before the first is read, which hides most of the memory's latency.
+  prefetch(lookup.finer);
+  prefetch(lookup.coarser);
+  Lanes3<float> colors;
   for (int i = 0; i < kSquarePixels; ++i) {
-    const float size = footprintSize(width[i], height[i], {footprints.du_dx[i], footprints.dv_dx[i]},
-                                     {footprints.du_dy[i], footprints.dv_dy[i]});
-    const float level = levelOf(size, maps.coarsest[i]);
-    levels[i] = std::int32_t(level);
-    share[i] = level - float(levels[i]);
-    between |= share[i] != 0.0f;
+    Color color{1.0f, 1.0f, 1.0f};
+    if (uses[i]) {
+      if (lookup.is_finest[i])
+        readTexels<true>(lookup.finer, i, color);
+      else
+        readTexels<false>(lookup.finer, i, color);
+      if (lookup.share[i] != 0.0f) {
+        Color coarse;
+        readTexels<false>(lookup.coarser, i, coarse);
+        color += (coarse - color) * lookup.share[i];
+      }
+    }
+    for (int c = 0; c < 3; ++c) colors[c][i] = color[c];
   }
-  const SquareTexels finer = findTexels(maps, levels, u, v);
-  Lanes3<float> result = readTexels(finer);
-  if (!between) return result;
-  for (int i = 0; i < kSquarePixels; ++i) levels[i] += share[i] != 0.0f;
-  const SquareTexels coarser = findTexels(maps, levels, u, v);
-  const Lanes3<float> coarse = readTexels(coarser);
-  for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < kSquarePixels; ++i) result[c][i] = mix(result[c][i], coarse[c][i], share[i]);
-  return result;
+  return colors;
+}
+
+Lanes<float> sampleChannel(const Texture& texture, const TextureUse& use, const SquareFootprints& footprints,
+                           const LaneMask& wanted, int channel) {
+  SquareLookup lookup{};
+  findMap(texture, use, footprints, wanted, lookup);
+  Lanes<float> values{};
+  for (int i = 0; i < kSquarePixels; ++i) {
+    if (!wanted[i]) continue;
+    values[i] = readChannel(lookup.finer, i, channel, lookup.is_finest[i]);
+    if (lookup.share[i] != 0.0f)
+      values[i] = mix(values[i], readChannel(lookup.coarser, i, channel, false), lookup.share[i]);
+  }
+  return values;
 }
 
 }  // namespace luciole

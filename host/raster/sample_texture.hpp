@@ -26,4 +26,8 @@ struct SquareFootprints {
 Lanes3<float> sampleTextures(std::span<const Texture> textures, const Lanes<const TextureUse*>& maps,
                              const SquareFootprints& footprints);
 
+/// The same lookup, bit for bit, of one channel of a map for the wanted pixels; 0 for others.
+Lanes<float> sampleChannel(const Texture& texture, const TextureUse& map, const SquareFootprints& footprints,
+                           const LaneMask& wanted, int channel);
+
 }  // namespace luciole

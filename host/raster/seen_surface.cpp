@@ -37,11 +37,12 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   seen.geometric_normal = packNormal(seen.facing_normal);
   seen.normal = normals(surface, seen.facing_normal, input.shading);
   if (input.lifts && input.shading != Shading::kFlat) seen.lift = liftOf(surface, seen.normal);
-  const bool mapped =
+  const bool any_map =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
-  if (mapped && !mesh.uvs.empty()) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
+  seen.mapped = any_map && !mesh.uvs.empty();
+  if (seen.mapped) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
   // Lit vertex colours are multiplied by the diffuse map, so they need no other coordinates.
-  seen.glows_apart = mapped && !mesh.emission_uvs.empty() && !input.litVertices();
+  seen.glows_apart = seen.mapped && !mesh.emission_uvs.empty() && !input.litVertices();
   if (seen.glows_apart) seen.emission_uv = between<glm::dvec2>(mesh.emission_uvs.data(), surface.corners);
   if (input.litVertices()) {
     seen.colored = true;

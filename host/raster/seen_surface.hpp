@@ -25,7 +25,8 @@ struct SeenSurface {
   std::uint32_t geometric_normal = 0;  ///< facing_normal, by packNormal()
   Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
   Lift lift;                           ///< for ResolveInput::lifts
-  Interpolant<glm::dvec2> uv;          ///< zero where no map needs them
+  bool mapped = false;                 ///< its material has maps that colour it, and its mesh coordinates:
+  Interpolant<glm::dvec2> uv;          ///< zero where not
   bool glows_apart = false;            ///< the emission map has texture coordinates of its own:
   Interpolant<glm::dvec2> emission_uv;
   bool colored = false;

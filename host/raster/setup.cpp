@@ -21,7 +21,7 @@ enum class Winding : std::uint8_t { kAny, kClockwise, kCounterClockwise };
 
 /// What a task of the setup produces.
 struct Output {
-  std::vector<RasterTriangle> triangles;
+  RasterTriangles triangles;
   std::uint64_t back_facing = 0;
 };
 
@@ -60,23 +60,24 @@ void setDepthPlane(const ScreenVertex& a, const ScreenVertex& b, const ScreenVer
   out.depth = a.depth - out.depth_dx * a.x - out.depth_dy * a.y;
 }
 
-/// Adds a triangle whose x and y are set, and whose box reaches a sample of the crop.
-void emitSnapped(RasterTriangle& triangle, const std::array<ScreenVertex, 3>& corners, Winding winding,
+/// Adds a triangle whose box reaches a sample of the crop. `snapped`: x and y are set.
+void emitSnapped(const RasterTriangle& snapped, const std::array<ScreenVertex, 3>& corners, Winding winding,
                  std::uint32_t number, bool masked, Output& output) {
-  const std::int64_t area = std::int64_t(triangle.x[1] - triangle.x[0]) * (triangle.y[2] - triangle.y[0]) -
-                            std::int64_t(triangle.y[1] - triangle.y[0]) * (triangle.x[2] - triangle.x[0]);
+  const std::int32_t *x = snapped.x, *y = snapped.y;
+  const std::int64_t area =
+      std::int64_t(x[1] - x[0]) * (y[2] - y[0]) - std::int64_t(y[1] - y[0]) * (x[2] - x[0]);
   // A triangle that snapping turned over is dropped: its neighbours cover its place.
   if (area == 0 || (area < 0 && winding == Winding::kClockwise) ||
       (area > 0 && winding == Winding::kCounterClockwise))
     return;
-  if (area < 0) {
-    std::swap(triangle.x[1], triangle.x[2]);
-    std::swap(triangle.y[1], triangle.y[2]);
-  }
+  // Filled in where it stays: a copy would wait for all these stores.
+  RasterTriangle& triangle = output.triangles.emplace_back();
+  const int second = area < 0 ? 2 : 1, third = 3 - second;
+  triangle.x[0] = x[0], triangle.x[1] = x[second], triangle.x[2] = x[third];
+  triangle.y[0] = y[0], triangle.y[1] = y[second], triangle.y[2] = y[third];
   setDepthPlane(corners[0], corners[1], corners[2], triangle);
   triangle.triangle = number;
   triangle.masked = masked;
-  output.triangles.push_back(triangle);
 }
 
 /// Rounds a place on the picture to 1/256 pixel, ties to even, and clamps it to the guard band. `fine`: in
@@ -153,7 +154,7 @@ void setupTriangle(const Scene& scene, const PlacedObject& object, std::uint32_t
 /// The outputs one after another.
 RasterSetup join(std::vector<Output> outputs) {
   RasterSetup setup;
-  std::vector<std::vector<RasterTriangle>> triangles;
+  std::vector<RasterTriangles> triangles;
   for (Output& output : outputs) {
     setup.back_facing += output.back_facing;
     triangles.push_back(std::move(output.triangles));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/array_memory.hpp"
 #include "raster/geometry.hpp"
 #include "raster/placed_meshlets.hpp"
 
@@ -29,8 +30,10 @@ constexpr int kSubpixels = 1 << kSubpixelBits;
 
 enum class FaceCulling : std::uint8_t { kNone, kBackFaces };
 
+using RasterTriangles = std::vector<RasterTriangle, RawArrayAllocator<RasterTriangle>>;
+
 struct RasterSetup {
-  std::vector<RasterTriangle> triangles;  ///< in object and triangle order
+  RasterTriangles triangles;  ///< in object and triangle order
   std::uint64_t back_facing = 0;
 };
 

@@ -209,10 +209,10 @@ ResolveInput resolveInput(const SampledView& sampled) {
 }
 
 /// Groups the samples of a part of a strip, resolves the pixels' first points, and appends the others to
-/// `further`.
+/// `further`, and all labels of the pixels wanted to `kept`.
 void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const StripSamples& samples,
                 const ResolveInput& input, Grouping& grouping, SharedSamples& out,
-                std::vector<ShadingPoint>& further) {
+                std::vector<ShadingPoint>& further, std::vector<std::uint32_t>& kept) {
   const SamplePattern& pattern = grouping.sampled.pattern;
   const glm::ivec2 crop = out.gbuffer.crop_origin;
   SampleGroup whole{kNoTriangle, pattern.count, glm::ivec2(0), glm::ivec2(0), 0, false};
@@ -246,7 +246,12 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
         out.objects[number] = std::uint32_t(object - grouping.sampled.objects.data());
         any = true;
       };
-      if (allAlike(labels, pattern.count)) {
+      const bool alike = allAlike(labels, pattern.count), wanted = grouping.sampled.inner.contains(pixel);
+      if (wanted) {
+        out.labels.places[number] = std::uint32_t(2 * kept.size()) | (alike ? 1u : 0u);
+        kept.insert(kept.end(), labels, labels + (alike ? 1 : pattern.count));
+      }
+      if (alike) {
         whole.triangle = labels[0];
         if (whole.triangle != kNoTriangle) takeFirst(whole);
         continue;
@@ -259,7 +264,7 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
           takeFirst(group);
           continue;
         }
-        if (!grouping.sampled.inner.contains(pixel)) continue;
+        if (!wanted) continue;
         const GroupPlace place = placeOf(group, labels, grouping);
         further.push_back({number, group.triangle, place.mean.x, place.mean.y, place.spread.x, place.spread.y,
                            std::uint32_t(group.samples)});
@@ -342,9 +347,11 @@ SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts) {
   shared.gbuffer = emptyGBuffer(view, sampled.planes);
   shared.samples.resize(std::size_t(view.crop_size.x) * view.crop_size.y);
   shared.objects.assign(shared.samples.size(), kNoObject);
+  shared.labels.places.resize(shared.samples.size());
   counts.covering.resize(sampled.triangle_count);
   const int rows = stripRows(sampled.pattern), strips = kBinSize / rows;
   std::vector<std::vector<ShadingPoint>> further(std::size_t(sampled.bins.size()) * strips);
+  shared.labels.strips.resize(further.size());
   tbb::enumerable_thread_specific<StripSamples> tables;
   tbb::parallel_for(0, sampled.bins.size(), [&](int bin) {
     if (sampled.bins.list(bin).empty()) return;
@@ -353,8 +360,10 @@ SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts) {
     Grouping grouping{sampled, surfaces};
     forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
       drawRows(sampled, bin, row, counts.covering, samples);
-      std::vector<ShadingPoint>& list = further[std::size_t(bin) * strips + row / rows];
-      shareStrip(part, sampled.bins.origin(bin), samples, input, grouping, shared, list);
+      const std::size_t strip = std::size_t(bin) * strips + row / rows;
+      std::vector<ShadingPoint>& list = further[strip];
+      shareStrip(part, sampled.bins.origin(bin), samples, input, grouping, shared, list,
+                 shared.labels.strips[strip]);
       // Points of one triangle beside each other are cheap to resolve, and see the same lights.
       std::sort(list.begin(), list.end(), [](const ShadingPoint& a, const ShadingPoint& b) {
         return a.triangle != b.triangle ? a.triangle < b.triangle : a.pixel < b.pixel;
@@ -376,32 +385,27 @@ std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<cons
   return counts;
 }
 
-PointLists everySample(const SampledView& sampled, std::span<const std::uint8_t> chosen, int first_bin,
-                       int end_bin) {
+PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
+                       std::span<const std::uint8_t> chosen, int first_bin, int end_bin) {
   const View& view = sampled.view;
   const SamplePattern& pattern = sampled.pattern;
   const int rows = stripRows(pattern), strips = kBinSize / rows;
   std::vector<std::vector<ShadingPoint>> points(std::size_t(end_bin - first_bin) * strips);
-  std::vector<std::uint8_t> covering(sampled.triangle_count);
-  tbb::enumerable_thread_specific<StripSamples> tables;
   tbb::parallel_for(first_bin, end_bin, [&](int bin) {
     if (sampled.bins.list(bin).empty()) return;
-    const glm::ivec2 origin = sampled.bins.origin(bin);
-    StripSamples& samples = tables.local();
     forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
       std::vector<ShadingPoint>& list = points[std::size_t(bin - first_bin) * strips + row / rows];
-      bool drawn = false;
+      const std::vector<std::uint32_t>& kept = labels.strips[std::size_t(bin) * strips + row / rows];
       for (int y = part.first.y; y < part.end.y; ++y)
         for (int x = part.first.x; x < part.end.x; ++x) {
           const glm::uvec2 in_crop(x - view.crop_origin.x, y - view.crop_origin.y);
           const std::uint32_t number = in_crop.y * std::uint32_t(view.crop_size.x) + in_crop.x;
           if (!chosen[number]) continue;
-          if (!drawn) drawRows(sampled, bin, row, covering, samples);
-          drawn = true;
-          const std::uint32_t* labels = samples.labels(glm::ivec2(x, y) - origin, pattern);
+          const std::uint32_t* first = kept.data() + labels.places[number] / 2;
+          const int step = labels.places[number] & 1 ? 0 : 1;
           for (int i = 0; i < pattern.count; ++i)
-            if (labels[i] != kNoTriangle)
-              list.push_back({number, labels[i], float(pattern.x[i]) / kSubpixels,
+            if (first[i * step] != kNoTriangle)
+              list.push_back({number, first[i * step], float(pattern.x[i]) / kSubpixels,
                               float(pattern.y[i]) / kSubpixels, 0, 0, 1});
         }
     });

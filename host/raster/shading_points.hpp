@@ -56,6 +56,15 @@ SampledView setupSamples(const Scene& scene, std::span<const std::uint32_t> obje
                          int samples, Shading shading, PlaneSet planes,
                          std::span<const glm::vec3> vertex_colors);
 
+/// The triangles that the samples of the pixels wanted see.
+struct SampleLabels {
+  /// One for each pixel, row by row: where its labels begin in its strip's list, times 2, plus 1 where there
+  /// is one label for all samples. Means nothing outside SampledView::inner.
+  std::vector<std::uint32_t> places;
+  /// One for each part in which a bin is drawn: triangles' numbers, or kNoTriangle.
+  std::vector<std::vector<std::uint32_t>> strips;
+};
+
 /// What the samples of a view's pixels see.
 ///
 /// Samples that see the same triangle share a point. So do those of triangles of one object and material that
@@ -68,6 +77,7 @@ struct SharedSamples {
   std::vector<std::uint16_t> samples;  ///< how many share that point, row by row; 0 where it sees nothing
   std::vector<std::uint32_t> objects;  ///< that the point lies on, an index into those drawn; or kNoObject
   PointLists further;                  ///< the other points of the pixels wanted
+  SampleLabels labels;
 };
 
 constexpr std::uint32_t kNoObject = 0xffffffffu;
@@ -85,9 +95,9 @@ SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts);
 std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<const std::uint8_t> chosen);
 
 /// A point for every sample of the chosen pixels in the bins from first_bin up to end_bin that sees a
-/// surface, at the sample. Draws those bins once more that hold any of the pixels.
-PointLists everySample(const SampledView& sampled, std::span<const std::uint8_t> chosen, int first_bin,
-                       int end_bin);
+/// surface, at the sample.
+PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
+                       std::span<const std::uint8_t> chosen, int first_bin, int end_bin);
 
 /// A G-buffer of points: point i lies at index i of every plane.
 GBuffer gatherPoints(const SampledView& sampled, std::span<const ShadingPoint> points);

@@ -167,10 +167,6 @@ void multiply(const Lanes3<float>& factors, Lanes3<float>& out) {
 void setMaterial(const ResolveInput& input, const SeenSurface& seen, const SquareWeights& weights,
                  SquareValues& out) {
   const Material& material = *seen.surface.material;
-  const bool mapped = !seen.surface.object->mesh->uvs.empty();
-  const auto use = [&](const TextureUse& map) { return mapped && map.texture >= 0 ? &map : nullptr; };
-  out.reflection_map.fill(use(material.diffuse_map));
-  out.emission_map.fill(use(material.emission_map));
   Lanes3<float> color;
   if (seen.colored)
     for (int c = 0; c < 3; ++c) color[c] = rounded(interpolate(seen.color, c, weights));
@@ -178,8 +174,6 @@ void setMaterial(const ResolveInput& input, const SeenSurface& seen, const Squar
     for (Lanes3<float>* nothing : {&out.diffuse, &out.ambient}) fill(glm::vec3(0.0f), *nothing);
     for (Lanes<float>& nothing : out.specular) nothing.fill(0.0f);
     out.emission = color;
-    out.emission_map = out.reflection_map;
-    out.reflection_map.fill(nullptr);
     return;
   }
   fill(material.diffuse, out.diffuse);
@@ -193,23 +187,41 @@ void setMaterial(const ResolveInput& input, const SeenSurface& seen, const Squar
   if (material.colored_emission) multiply(color, out.emission);
 }
 
-template <class T>
-void put(const Lanes<T>& values, const LaneMask& mask, Lanes<T>& out) {
-  for (int i = 0; i < kSquarePixels; ++i) out[i] = mask[i] ? values[i] : out[i];
+/// Sets the maps of the pixels that see the surface, and their footprints. Its material must be mapped.
+void setMaps(const ResolveInput& input, const SeenSurface& seen, const PlaneCrossing& crossing,
+             const SquareWeights& weights, const LaneMask& sees_it, SquareValues& out) {
+  const Material& material = *seen.surface.material;
+  const auto setMap = [&](const TextureUse& map, Lanes<const TextureUse*>& uses) {
+    for (int i = 0; i < kSquarePixels; ++i) uses[i] = sees_it[i] && map.texture >= 0 ? &map : nullptr;
+  };
+  // The diffuse map colours what vertices reflect.
+  if (input.litVertices()) {
+    setMap(material.diffuse_map, out.emission_map);
+  } else {
+    setMap(material.diffuse_map, out.reflection_map);
+    setMap(material.emission_map, out.emission_map);
+  }
+  const Surface& surface = seen.surface;
+  setFootprints(surface, seen.uv, input.plane, crossing, weights, out.footprints);
+  out.emission_footprints = out.footprints;
+  if (seen.glows_apart)
+    setFootprints(surface, seen.emission_uv, input.plane, crossing, weights, out.emission_footprints);
+  out.mapped = true;
 }
+
 template <std::size_t kCount>
 void put(const std::array<Lanes<float>, kCount>& values, const LaneMask& mask,
          std::array<Lanes<float>, kCount>& out) {
-  for (std::size_t c = 0; c < kCount; ++c) put(values[c], mask, out[c]);
+  for (std::size_t c = 0; c < kCount; ++c) blend(values[c], mask, out[c]);
 }
 
 void put(const SquareFootprints& values, const LaneMask& mask, SquareFootprints& out) {
-  put(values.u, mask, out.u);
-  put(values.v, mask, out.v);
-  put(values.du_dx, mask, out.du_dx);
-  put(values.dv_dx, mask, out.dv_dx);
-  put(values.du_dy, mask, out.du_dy);
-  put(values.dv_dy, mask, out.dv_dy);
+  blend(values.u, mask, out.u);
+  blend(values.v, mask, out.v);
+  blend(values.du_dx, mask, out.du_dx);
+  blend(values.dv_dx, mask, out.dv_dx);
+  blend(values.du_dy, mask, out.du_dy);
+  blend(values.dv_dy, mask, out.dv_dy);
 }
 
 bool anyMap(const Lanes<const TextureUse*>& maps) {
@@ -274,10 +286,7 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   setLift(seen, weights, normal, values.lift);
   values.geometric_normal.fill(seen.geometric_normal);
   setMaterial(input, seen, weights, values);
-  setFootprints(surface, seen.uv, input.plane, crossing, weights, values.footprints);
-  values.emission_footprints = values.footprints;
-  if (seen.glows_apart)
-    setFootprints(surface, seen.emission_uv, input.plane, crossing, weights, values.emission_footprints);
+  if (seen.mapped) setMaps(input, seen, crossing, weights, sees_it, values);
   return values;
 }
 
@@ -288,15 +297,18 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.specular, sees_it, out.specular);
   put(values.ambient, sees_it, out.ambient);
   put(values.emission, sees_it, out.emission);
-  put(values.geometric_normal, sees_it, out.geometric_normal);
-  put(values.lift, sees_it, out.lift);
-  put(values.reflection_map, sees_it, out.reflection_map);
-  put(values.emission_map, sees_it, out.emission_map);
+  blend(values.geometric_normal, sees_it, out.geometric_normal);
+  blend(values.lift, sees_it, out.lift);
+  if (!values.mapped && !out.mapped) return;
+  out.mapped = true;
+  blend(values.reflection_map, sees_it, out.reflection_map);
+  blend(values.emission_map, sees_it, out.emission_map);
   put(values.footprints, sees_it, out.footprints);
   put(values.emission_footprints, sees_it, out.emission_footprints);
 }
 
 void applyMaps(const Scene& scene, const SquarePlace& place, SquareValues& values) {
+  if (!values.mapped) return;
   if (anyMap(values.reflection_map)) {
     const Lanes3<float> colors = mapColors(scene, values.reflection_map, place, values.footprints);
     multiply(colors, values.diffuse);

@@ -19,10 +19,11 @@ struct SquareValues {
   Lanes<std::uint32_t> geometric_normal;
   Lanes<float> lift;
   /// The maps that applyMaps() multiplies in.
-  Lanes<const TextureUse*> reflection_map;  ///< into diffuse and ambient; null: none
-  Lanes<const TextureUse*> emission_map;
-  SquareFootprints footprints;
-  SquareFootprints emission_footprints;
+  bool mapped = false;                        ///< any pixel has one, or else all below means nothing
+  Lanes<const TextureUse*> reflection_map{};  ///< into diffuse and ambient; null: none
+  Lanes<const TextureUse*> emission_map{};
+  SquareFootprints footprints{};
+  SquareFootprints emission_footprints{};
 };
 
 /// ViewPlane::at of a square's pixels. spread: the standard deviation, in pixels, of the samples' places for

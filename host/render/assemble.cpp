@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "raster/square.hpp"
+
 namespace luciole {
 namespace {
 
@@ -50,12 +52,21 @@ WorldPlanes worldPlanes(const GBuffer& gbuffer) {
   return world;
 }
 
-/// Calls `visit(place in the G-buffer, pixel of the picture)` for each pixel.
+/// Calls `visit(place in the G-buffer, pixel of the picture)` for each pixel, tile by tile, as they lie in
+/// the planes.
 template <class Visit>
 void forEachPixel(const GBuffer& gbuffer, Image& image, Visit visit) {
-  tbb::parallel_for(0, image.height, [&](int y) {
-    float* pixel = image.pixels.data() + std::size_t(y) * image.width * image.channels.size();
-    for (int x = 0; x < image.width; ++x, pixel += image.channels.size()) visit(gbuffer.index(x, y), pixel);
+  const int tiles_x = gbuffer.tiles_x;
+  tbb::parallel_for(0, tiles_x * gbuffer.tiles_y, [&](int tile) {
+    const glm::ivec2 first = glm::ivec2(tile % tiles_x, tile / tiles_x) * int(kTileSize);
+    for (int i = 0; i < kTilePixels; ++i) {
+      const int square = i / kSquarePixels, in_square = i % kSquarePixels;
+      const int x = first.x + kSquareSize * kSquareLayout.x[square] + kSquareLayout.x[in_square];
+      const int y = first.y + kSquareSize * kSquareLayout.y[square] + kSquareLayout.y[in_square];
+      if (x < image.width && y < image.height)
+        visit(std::size_t(tile) * kTilePixels + i,
+              image.pixels.data() + (std::size_t(y) * image.width + x) * image.channels.size());
+    }
   });
 }
 
@@ -99,7 +110,8 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
   return count;
 }
 
-Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings) {
+Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
+                   Image used) {
   const std::size_t n = gbuffer.pixels();
   std::vector<Layer> layers;
   const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
@@ -141,7 +153,7 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
         break;
     }
   }
-  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
+  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, std::move(used.pixels)};
   if (settings.alpha) image.channels.push_back("A");
   const std::size_t first_layer = image.channels.size();
   for (const Layer& layer : layers) image.channels.push_back(layer.name);

@@ -14,10 +14,12 @@ bool wants(const RenderSettings& settings, Aov aov);
 /// Number of channels of a picture whose G-buffer has these groups: R G B, A and the layers asked for.
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes);
 
-/// A picture of the G-buffer's size with channels R G B and, if asked for, A, all still 0, and the layers
-/// that the settings ask for, from the first sample's G-buffer and lit planes; the number of shadings is
-/// still 0, too. Its positions and normals are in world space.
-Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings);
+/// A picture of the G-buffer's size with channels R G B and, if asked for, A, which setColors() fills in as
+/// it does the number of shadings, and the layers that the settings ask for, from the first sample's G-buffer
+/// and lit planes. Its positions and normals are in world space. `used`: a picture that is done with, whose
+/// memory it takes.
+Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
+                   Image used = {});
 
 /// Adds 1 to each pixel of `covered` that shows a surface in this sample's G-buffer. An empty plane is made.
 void countCovered(const GBuffer& gbuffer, Plane& covered);

@@ -10,10 +10,9 @@ namespace luciole {
 // Of each sum the parts are in the order of their stages. Costs are milliseconds a pixel, triangle, light …
 double estimatedMilliseconds(const PictureWork& work) {
   const bool exact = work.shadows == ShadowMethod::kExact;
-  const double start = 115, image_module = work.texels > 0 ? 190 : 0,
-               rays = work.frames_scene || exact ? 25 : 0;
-  const double load = 8e-4 * work.mesh_triangles + 33e-6 * work.texels + 35e-5 * work.lights;
-  const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.triangles;
+  const double start = 80, rays = work.frames_scene || exact ? 25 : 0;
+  const double load = 4e-4 * work.mesh_triangles + 9e-6 * work.texels + 17e-5 * work.lights;
+  const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.bands * work.triangles;
   const double cull = 3e-5 * work.list_entries +
                       work.shadings * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
   const double of_shadow_pair = work.shadows == ShadowMethod::kSoft  ? 50e-6
@@ -24,16 +23,17 @@ double estimatedMilliseconds(const PictureWork& work) {
       work.shadings * 3e-6 * work.pixels + 6e-7 * work.pairs + of_shadow_pair * work.shadow_pairs;
   const double of_texel = exact ? 80e-6 : 3e-6, of_caster = exact ? 4e-4 : 1e-4;
   const double shadow_maps = of_texel * work.shadow_texels + 0.1 * work.shadow_faces +
-                             (work.shadow_texels > 0 ? of_caster * work.triangles : 0);
-  const double write = (9e-6 + 2e-6 * (work.passes - 1) + 18e-5) * work.pixels;
-  // A pass over several samples draws them all, but sets up and resolves once.
-  const double drawings = work.passes + 0.1 * (work.samples - work.passes);
-  return start + image_module + rays + load + drawings * raster + cull + shade + shadow_maps + write;
+                             (work.shadow_texels > 0 ? of_caster * work.bands * work.triangles : 0);
+  const double write = (17e-6 + 2e-6 * (work.passes - 1)) * work.pixels;
+  // A pass over several samples draws them all, but sets up and resolves once, and looks for those that
+  // share.
+  const int together = work.samples - work.passes;
+  const double drawings = work.passes + (together > 0 ? 1.5 + 0.08 * together : 0);
+  return start + rays + load + drawings * raster + cull + shade + shadow_maps + write;
 }
 
 double estimatedBytes(const PictureWork& work) {
-  const double image_module = work.texels > 0 ? 120e6 : 0;
-  const double loaded = 95e6 + image_module + work.scene_bytes + double(kBytesPerLight) * work.lights;
+  const double loaded = 95e6 + work.scene_bytes + double(kBytesPerLight) * work.lights;
   const double ray_tree = work.shadows == ShadowMethod::kExact ? 300 * work.triangles : 0;
   // What is freed between passes is not all used again.
   const double raster = (100 + 120 * std::log2(work.passes)) * work.triangles;

@@ -100,7 +100,7 @@ struct ShadeSettings {
   bool shadow_layer = false;  ///< also write how visible, on average, lights with shadows are
   int pcf_width = 2;          ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
   ShadowLimits shadow_limits{};
-  int log2_degree = 8;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
+  int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
   int exp2_degree = 6;
 };
 

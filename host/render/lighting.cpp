@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "culling/cull.hpp"
 #include "gbuffer/packed_normal.hpp"
@@ -229,7 +230,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
 }
 
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
-                       const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats) {
+                       const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats, Plane used) {
   const std::size_t pixels = gbuffer.pixels();
   const std::string defines = featureDefines(features) + lighting.math_defines;
   const std::string lookup_defines = featureDefines(lookupFeatures(features));
@@ -241,6 +242,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   const Plane& lift = level.empty() ? gbuffer.lift : level;
   const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
   LitPlanes lit;
+  lit.color = std::move(used);
   const bool together = needsNoLists(device, lighting, features, counts);
   const bool culled = features.has(Feature::kLightLists) && !together;
   const LightLists none;

@@ -75,9 +75,9 @@ struct PixelCounts {
 /// lists, that is without shadows and without counting how long lists are. Draws those parts of the scene's
 /// shadow maps that it looks up and that weren't drawn before. features: those that the lighting was prepared
 /// for, or fewer. Adds the times of its stages to `stats`, and raises stats.device_bytes to what it needs.
-/// Throws MachineError.
+/// `used`: a plane that is done with, whose memory the colours take. Throws MachineError.
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
-                       const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats);
+                       const GBuffer& gbuffer, const PixelCounts& counts, Stats& stats, Plane used = {});
 
 /// Compiles the kernels for these features down to machine code, by lighting one tile of background: OpenCL
 /// compiles a kernel at its first launch. Throws MachineError.

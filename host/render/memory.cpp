@@ -24,12 +24,12 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t channels = channelCount(settings, planes);
   const bool world =
       wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
-  // Colours and counts are counted twice: on the device and on the host. From the second sample on the sum
-  // and the picture with its layers are there, too.
+  // Colours and counts are counted twice: on the device and on the host. The picture of the band before is
+  // there, too, and from the second sample on the sum.
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
   const bool shared = sharesSamples(settings);
   const std::size_t lighting =
-      gbuffer + 2 * lit + 2 * counted + (settings.samples > 1 ? lit + channels + covered : 0);
+      gbuffer + 2 * lit + 2 * counted + channels + (settings.samples > 1 ? lit + covered : 0);
   const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
                                  (wants(settings, Aov::kShadow) ? 1 : 0);
@@ -43,9 +43,10 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t all_lists = lists * (1 + counted);
   if (!shared) return sizeof(float) * std::max(lighting, assembling) + all_lists;
   // Two sums beside colours, and a pass of points with as many planes as pixels have.
-  const std::size_t first = std::max(gbuffer + 2 * lit + 2 * counted, assembling + 2);
+  const std::size_t first = std::max(gbuffer + 2 * lit + 2 * counted + channels, assembling + 2);
   const std::size_t further = 3 + 2 + channels + (gbuffer + 2 * lit + 2 * counted) / kPixelsAPoint + 1;
-  return sizeof(float) * std::max(first, further) + kPointBytesPerPixel + all_lists;
+  const std::size_t labels = sizeof(std::uint32_t) * std::size_t(settings.samples);
+  return sizeof(float) * std::max(first, further) + kPointBytesPerPixel + labels + all_lists;
 }
 
 bool sharesSamples(const RenderSettings& settings) {

@@ -33,8 +33,8 @@ inline constexpr std::size_t kListBytesPerPixel = 1 + kFoundPerTile * sizeof(Lis
 inline constexpr std::size_t kPixelsAPoint = 4;
 
 /// A pixel's share of those points' list, while it is made, where there is one point more a pixel; and its
-/// own: its first point's object and number of samples, and whether it is uneven.
-inline constexpr std::size_t kPointBytesPerPixel = 2 * sizeof(ShadingPoint) + 4 + 2 + 1;
+/// own: its first point's object and number of samples, whether it is uneven, and where its labels are.
+inline constexpr std::size_t kPointBytesPerPixel = 2 * sizeof(ShadingPoint) + 4 + 2 + 1 + 4;
 
 /// Upper bound of the bytes that a pixel of a band takes, on the host and on a device that shares its memory:
 /// the G-buffer's groups, colours, what --stats and the layers need, and its share of the list entries of

@@ -152,9 +152,10 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   const bool gouraud = settings.shading == Shading::kGouraud;
   const bool shared = sharesSamples(settings);
   const int passes = shared ? 1 : settings.samples;
-  // Of samples that share points about every second triangle has one of its own in a pixel.
+  // Of samples that share points there are more a pixel the more triangles it sees, and uneven pixels take
+  // all.
   const double shadings = shared
-                              ? std::min(double(settings.samples), 1 + 0.5 * double(info.triangles) / pixels)
+                              ? std::min(double(settings.samples), 1.3 + 4 * double(info.triangles) / pixels)
                               : settings.samples;
   const double shaded = gouraud ? litVertices(scene) : pixels * covered * shadings;
   PictureWork work{.pixels = pixels,
@@ -176,6 +177,7 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   }
   const double pixel_bytes = double(bytesPerPixel(settings, needs.planes, needs.pixels, scene));
   const int rows = std::min(bandHeight(settings.size, std::size_t(pixel_bytes)), settings.size.y);
+  work.bands = (settings.size.y + rows - 1) / rows;
   work.pixel_bytes =
       pixel_bytes * settings.size.x * rows + (gouraud ? shaded * double(kGBufferBytesPerPixel) : 0);
   if (!needs.all.shadows()) return work;

@@ -10,6 +10,7 @@ struct PictureWork {
   double pixels = 0;
   int samples = 1;
   int passes = 1;             ///< in which they are rasterized: one for all where they share points
+  int bands = 1;              ///< in which they are rasterized, see bandHeight
   double shadings = 1;        ///< points that are shaded for a pixel, if it is covered
   double triangles = 0;       ///< drawn
   double mesh_triangles = 0;  ///< loaded

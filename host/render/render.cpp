@@ -1,10 +1,13 @@
 #include "render/render.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <utility>
 
@@ -67,8 +70,13 @@ std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
 
 std::uint64_t coveredPixels(const GBuffer& gbuffer) {
   const float* depth = gbuffer.position.data() + 2 * gbuffer.pixels();
-  return std::count_if(depth, depth + gbuffer.pixels(),
-                       [](float z) { return z > -std::numeric_limits<float>::infinity(); });
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, gbuffer.pixels()), std::uint64_t(0),
+      [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t sum) {
+        return sum + std::count_if(depth + range.begin(), depth + range.end(),
+                                   [](float z) { return z > -std::numeric_limits<float>::infinity(); });
+      },
+      std::plus<>());
 }
 
 void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
@@ -152,6 +160,14 @@ PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
           .list_length = sample == 0 && wants(settings, Aov::kListLength)};
 }
 
+/// Memory of a band that is done with, for the next one: the system takes as long to clear fresh memory as
+/// its pixels take to be shaded.
+struct UsedMemory {
+  GBuffer gbuffer;
+  Plane color;
+  Image picture;
+};
+
 /// What the bands of a picture share.
 struct Prepared {
   FeatureSet features;  ///< of the pass that shades pixels
@@ -159,6 +175,7 @@ struct Prepared {
   Lighting lighting;
   std::vector<glm::vec3> vertex_colors;
   PlaneSet planes;
+  UsedMemory used;
 };
 
 /// Counts passes, and reports each.
@@ -176,6 +193,7 @@ struct Progress {
 /// The pixels that `view` shows, with each sample rasterized and shaded by itself.
 Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
                        const View& view, RasterCounts& triangles, Progress& progress, Stats& stats) {
+  UsedMemory& used = prepared.used;
   Image picture;
   View of_sample = view;
   PixelSums sums;
@@ -184,25 +202,28 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
     of_sample.sample = samplePoint(sample, settings.samples);
     GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
       return rasterize(scene, prepared.objects, of_sample, settings.shading, prepared.planes,
-                       prepared.vertex_colors, &triangles);
+                       prepared.vertex_colors, &triangles, std::move(used.gbuffer));
     });
     gbuffer.camera = settings.camera;
     LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
-                                 wantedCounts(settings, sample), stats);
+                                 wantedCounts(settings, sample), stats, std::move(used.color));
     countPass(gbuffer, lit, settings.count_lights, stats);
     timed(stats, Stage::kResolve, [&] {
       if (sample == 0) {
-        picture = startPicture(gbuffer, lit, settings);
+        picture = startPicture(gbuffer, lit, settings, std::move(used.picture));
         sums.color = std::move(lit.color);
       } else {
         tbb::parallel_for(std::size_t(0), 3 * gbuffer.pixels(),
                           [&](std::size_t i) { sums.color[i] += lit.color[i]; });
+        used.color = std::move(lit.color);
       }
       if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
       if (sample + 1 == settings.samples) setColors(gbuffer, sums, settings, picture);
     });
+    used.gbuffer = std::move(gbuffer);
     progress.step();
   }
+  used.color = std::move(sums.color);
   return picture;
 }
 
@@ -266,8 +287,9 @@ void addLit(Device& device, const Scene& scene, const RenderSettings& settings, 
 
 /// Lights every sample of the chosen pixels, some bins after the other, and adds them to the pixels' sums.
 void addEverySample(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
-                    const SampledView& sampled, const GBuffer& layout,
+                    const SampledView& sampled, const SharedSamples& shared,
                     const std::vector<std::uint8_t>& chosen, PixelSums& sums, Stats& stats) {
+  const GBuffer& layout = shared.gbuffer;
   const std::vector<std::size_t> in_bins = chosenInBins(sampled, chosen);
   const std::size_t most_points = pointsAPass(layout.pixels());
   std::uint64_t pixels = 0, points = 0;
@@ -279,8 +301,9 @@ void addEverySample(Device& device, const Scene& scene, const RenderSettings& se
     }
     pixels += in_pass;
     if (in_pass == 0) continue;
-    const PointLists lists =
-        timed(stats, Stage::kRasterize, [&] { return everySample(sampled, chosen, int(first), int(end)); });
+    const PointLists lists = timed(stats, Stage::kRasterize, [&] {
+      return everySample(sampled, shared.labels, chosen, int(first), int(end));
+    });
     points += lists.items.size();
     addLit(device, scene, settings, prepared, sampled, layout, lists, sums, stats);
   }
@@ -292,11 +315,12 @@ void addEverySample(Device& device, const Scene& scene, const RenderSettings& se
 Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettings& settings,
                           Prepared& prepared, const View& view, RasterCounts& triangles, Progress& progress,
                           Stats& stats) {
-  const SampledView sampled = timed(stats, Stage::kRasterize, [&] {
+  SampledView sampled = timed(stats, Stage::kRasterize, [&] {
     return setupSamples(scene, prepared.objects, view, settings.samples, settings.shading, prepared.planes,
                         prepared.vertex_colors);
   });
   SharedSamples shared = timed(stats, Stage::kRasterize, [&] { return shareSamples(sampled, triangles); });
+  sampled.setup = {};
   shared.gbuffer.camera = settings.camera;
   LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, shared.gbuffer,
                                wantedCounts(settings, 0), stats);
@@ -304,7 +328,7 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
   PixelSums sums;
   std::vector<std::uint8_t> uneven;
   Image picture = timed(stats, Stage::kResolve, [&] {
-    Image started = startPicture(shared.gbuffer, lit, settings);
+    Image started = startPicture(shared.gbuffer, lit, settings, std::move(prepared.used.picture));
     uneven = unevenPixels(sampled, shared, lit.color);
     leaveOut(uneven, shared);
     sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color));
@@ -312,7 +336,7 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
   });
   freePlanes(shared.gbuffer);
   addLit(device, scene, settings, prepared, sampled, shared.gbuffer, shared.further, sums, stats);
-  addEverySample(device, scene, settings, prepared, sampled, shared.gbuffer, uneven, sums, stats);
+  addEverySample(device, scene, settings, prepared, sampled, shared, uneven, sums, stats);
   Image cut = timed(stats, Stage::kResolve, [&] {
     const float4 background = prepared.lighting.frame.background;
     addBackground({background.x, background.y, background.z}, settings.samples, sums);
@@ -368,6 +392,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   prepared.objects = settings.alpha ? allObjects(scene)
                                     : objectsInSight(scene, view, settings.exposure, settings.shade.model);
   prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats);
+  prepared.lighting.host_shadows.expects_more = settings.samples > 1;
   if (settings.alpha) prepared.lighting.frame.background = {};
   awaitKernels(compiling, device, stats);
   if (gouraud)
@@ -394,7 +419,8 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     const TraceSpan of_band("band", {{"first_row", band.crop_origin.y},
                                      {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
     const auto render = shared ? renderSharedSamples : renderAllSamples;
-    take(render(device, scene, settings, prepared, band, triangles, progress, stats));
+    prepared.used.picture = render(device, scene, settings, prepared, band, triangles, progress, stats);
+    take(prepared.used.picture);
   }
   countShadows(prepared.lighting.host_shadows, stats);
   countTriangles(triangles, stats);

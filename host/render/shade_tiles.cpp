@@ -9,8 +9,8 @@ namespace luciole {
 namespace {
 
 /// Blocks of tiles for each thread of the device, at least: with fewer, some threads would end long before
-/// the others. PoCL gives a thread 32 at a time.
-constexpr std::size_t kBlocksPerThread = 8 * 32;
+/// the others. PoCL gives a thread 32 at a time, and fewer towards the end.
+constexpr std::size_t kBlocksPerThread = 2 * 32;
 
 std::size_t blockCount(const TileBlock& block, int tiles_x, int tiles_y) {
   const auto blocks = [](int tiles, int side) { return std::size_t((tiles + side - 1) / side); };
@@ -40,6 +40,7 @@ TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTil
   Kernel kernel = makeKernel(device, "shade_tiles.cl", "shade_tiles", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const std::size_t blocks = blockCount(arguments.block, arguments.tiles_x, arguments.tiles_y);
+  const std::size_t runs = (blocks + kBlockRun - 1) / kBlockRun;
   std::vector<uint> counts(2 * (arguments.frame.plane_stride / kTilePixels));
   const Buffer<uint> counts_buffer = borrowedForOutput(device, counts);
   launch(device, kernel,
@@ -57,10 +58,10 @@ TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTil
           {"tiles_y", uint(arguments.tiles_y)},
           {"width", uint(arguments.block.width)},
           {"height", uint(arguments.block.height)},
-          {"stride", uint(spreadingStride(blocks))},
+          {"stride", uint(spreadingStride(runs))},
           {"image", arguments.image},
           {"counts", counts_buffer}},
-         {.items = blocks});
+         {.items = runs * kBlockRun});
   download(device, counts_buffer, counts);
   TileCounts sums;
   for (std::size_t tile = 0; tile < counts.size() / 2; ++tile) {

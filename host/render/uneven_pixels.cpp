@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace luciole {
@@ -38,6 +39,56 @@ bool goesOn(const GBuffer& gbuffer, std::size_t a, std::size_t b) {
          std::abs(glm::dot(of_b, way)) <= most;
 }
 
+/// Rows of a picture's pixels from left to right.
+struct PixelRow {
+  std::array<std::vector<float>, 3> color, reflectance, light;  ///< light = color / reflectance
+};
+
+void readRow(const GBuffer& gbuffer, const Plane& color, int y, PixelRow& row) {
+  const std::size_t stride = gbuffer.pixels(), tiles = std::size_t(gbuffer.tiles_x);
+  std::array<std::size_t, kTileSize> places;
+  for (int x = 0; x < kTileSize; ++x) places[x] = gbuffer.index(x, y);
+  for (int c = 0; c < 3; ++c) {
+    for (auto* values : {&row.color, &row.reflectance, &row.light}) (*values)[c].resize(tiles * kTileSize);
+    const float* colors = color.data() + c * stride;
+    const float* reflectances = gbuffer.diffuse.data() + c * stride;
+    float *to_color = row.color[c].data(), *to_reflectance = row.reflectance[c].data();
+    for (std::size_t tile = 0; tile < tiles; ++tile)
+      for (int x = 0; x < kTileSize; ++x) {
+        const std::size_t place = tile * kTilePixels + places[x];
+        to_color[tile * kTileSize + x] = colors[place];
+        to_reflectance[tile * kTileSize + x] = reflectances[place];
+      }
+    float* to_light = row.light[c].data();
+    for (std::size_t x = 0; x < tiles * kTileSize; ++x) to_light[x] = to_color[x] / to_reflectance[x];
+  }
+}
+
+/// Sets `suspect` to 0 for the pixels of a row, from x = first up to end, that are even whatever the surfaces
+/// of their neighbours: those whose neighbours on either side are at most as far as allowed from them, both
+/// together, with 1 % to spare for rounding. Where a reflectance is 0 the light is not a number, and the
+/// pixel is suspect.
+void findSuspects(const PixelRow& above, const PixelRow& row, const PixelRow& below, int first, int end,
+                  std::uint8_t* suspect) {
+  std::fill(suspect + first, suspect + end, std::uint8_t(0));
+  const float *red = row.color[0].data(), *green = row.color[1].data(), *blue = row.color[2].data();
+  const int last = end - 1;
+  for (int c = 0; c < 3; ++c) {
+    const float *reflectance = row.reflectance[c].data(), *light = row.light[c].data();
+    const float *up = above.light[c].data(), *down = below.light[c].data();
+    const auto test = [&](int x, int left, int right) {
+      const float allowed = 0.99f * kMostUneven * std::max(std::max(red[x], green[x]), blue[x]);
+      const float scale = 0.5f * reflectance[x];
+      const float across = scale * (std::abs(light[left] - light[x]) + std::abs(light[right] - light[x]));
+      const float along = scale * (std::abs(up[x] - light[x]) + std::abs(down[x] - light[x]));
+      suspect[x] |= std::uint8_t(!(across <= allowed) | !(along <= allowed));
+    };
+    test(first, std::max(first - 1, 0), std::min(first + 1, int(row.light[c].size()) - 1));
+    for (int x = first + 1; x < last; ++x) test(x, x - 1, x + 1);
+    test(last, std::max(last - 1, 0), std::min(last + 1, int(row.light[c].size()) - 1));
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedSamples& shared,
@@ -70,11 +121,23 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
   std::vector<std::uint8_t> uneven(shared.objects.size());
   const glm::ivec2 crop = sampled.view.crop_origin;
   const glm::ivec2 first = sampled.inner.first - crop, end = sampled.inner.end - crop;
-  tbb::parallel_for(first.y, end.y, [&](int y) {
-    for (int x = first.x; x < end.x; ++x) {
-      const glm::ivec2 pixel(x, y);
-      uneven[std::size_t(y) * width + x] =
-          objectAt(pixel) != kNoObject && (is_uneven(pixel, {1, 0}) || is_uneven(pixel, {0, 1}));
+  constexpr int kRows = 2 * kTileSize;  // a task
+  tbb::parallel_for(0, (end.y - first.y + kRows - 1) / kRows, [&](int task) {
+    const int from = first.y + task * kRows, to = std::min(from + kRows, end.y);
+    std::array<PixelRow, 3> rows;  // of y at y % 3
+    const auto read = [&](int y) { readRow(gbuffer, color, y, rows[std::size_t(y % 3)]); };
+    for (int y = std::max(from - 1, 0); y <= from; ++y) read(y);
+    for (int y = from; y < to; ++y) {
+      const int above = std::max(y - 1, 0), below = std::min(y + 1, gbuffer.height - 1);
+      if (below > y) read(below);
+      std::uint8_t* row = uneven.data() + std::size_t(y) * width;
+      findSuspects(rows[std::size_t(above % 3)], rows[std::size_t(y % 3)], rows[std::size_t(below % 3)],
+                   first.x, end.x, row);
+      for (int x = first.x; x < end.x; ++x) {
+        const glm::ivec2 pixel(x, y);
+        row[x] =
+            row[x] && objectAt(pixel) != kNoObject && (is_uneven(pixel, {1, 0}) || is_uneven(pixel, {0, 1}));
+      }
     }
   });
   return uneven;

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <optional>
@@ -20,23 +21,26 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 /// A face that must be drawn to.
 struct Task {
   std::size_t face;
-  bool moves;               ///< its rectangle grows: it gets a new place, where all its bins are drawn
+  bool moves;               ///< its rectangle grows: it gets a new place
   std::vector<bool> fresh;  ///< bins to draw
+  glm::ivec2 kept_first;    ///< where it moves: of the old rectangle, whose texels are copied
+  glm::ivec2 kept_count;
 };
 
-/// What must be drawn of a face, if anything. Updates its depths and its rectangle.
+/// What must be drawn of a face, if anything. Updates its depths and its rectangle. expects_more: see
+/// ShadowMaps.
 std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::span<const std::uint32_t> needed,
-                           PlannedFace& face) {
+                           bool expects_more, PlannedFace& face) {
   const int side = int(lookup.bins);
   if (face.farthest.empty()) face.farthest.assign(std::size_t(side) * side, kNever);
-  Task task{index, false, std::vector<bool>(face.farthest.size())};
+  Task task{index, false, std::vector<bool>(face.farthest.size()), face.first, face.count};
   bool any = false;
   glm::ivec2 first(side), last(-1);
   for (int bin = 0; bin < side * side; ++bin) {
     const std::uint32_t bits = needed[lookup.first_bin + bin];
     const float depth = bits == kNotNeeded ? kNever : std::bit_cast<float>(bits);
     if (depth < face.farthest[bin]) {
-      face.farthest[bin] = depth;
+      face.farthest[bin] = expects_more ? 0.5f * depth : depth;
       task.fresh[bin] = any = true;
     }
     if (face.farthest[bin] == kNever) continue;
@@ -44,16 +48,41 @@ std::optional<Task> taskOf(std::size_t index, const ShadowFace& lookup, std::spa
     last = glm::max(last, glm::ivec2(bin % side, bin / side));
   }
   if (!any) return std::nullopt;
-  const glm::ivec2 from = first * kBinSize, to = glm::min((last + 1) * kBinSize, face.view.size);
-  task.moves = from != face.first || to - from != face.count;
+  const auto isHeld = [&](const glm::ivec2& bin) {
+    return glm::all(glm::greaterThanEqual(bin * kBinSize, face.first)) &&
+           glm::all(glm::lessThan(bin * kBinSize, face.first + face.count));
+  };
+  if (isHeld(first) && isHeld(last)) return task;
+  task.moves = true;
+  const int margin = expects_more ? 1 : 0;
+  const glm::ivec2 from = glm::max(first - margin, 0) * kBinSize,
+                   to = glm::min((last + 1 + margin) * kBinSize, face.view.size);
   face.first = from;
   face.count = to - from;
   return task;
 }
 
+/// Draws all of a face again that was drawn so far, at a new place.
+Task taskOfAll(std::size_t index, const PlannedFace& face) {
+  Task task{index, true, std::vector<bool>(face.farthest.size()), {}, glm::ivec2(0)};
+  for (std::size_t bin = 0; bin < face.farthest.size(); ++bin) task.fresh[bin] = face.farthest[bin] != kNever;
+  return task;
+}
+
 std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; }
 
-/// Appends the texels that a face's task draws. `place`: as in drawFace.
+/// Copies the old rectangle of a face that moves. old_place, place: the indices of the first texels of the
+/// old rectangle and of the new one.
+template <class Texels>
+void copyKept(const Task& task, const PlannedFace& face, std::size_t old_place, std::size_t place,
+              Texels& texels) {
+  const glm::ivec2 from = task.kept_first - face.first;
+  for (int y = 0; y < task.kept_count.y; ++y)
+    std::copy_n(texels.data() + old_place + std::size_t(y) * task.kept_count.x, task.kept_count.x,
+                texels.data() + place + std::size_t(from.y + y) * face.count.x + from.x);
+}
+
+/// Appends the texels that a face's task draws or moves. `place`: as in drawFace.
 void addDrawn(const Task& task, const PlannedFace& face, std::size_t place, std::vector<IndexRange>& drawn) {
   if (task.moves) {
     drawn.push_back({place, area(face.count)});
@@ -81,7 +110,7 @@ void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std
   for (int y = 0; y < bins.count.y; ++y) {
     for (int x = 0; x < bins.count.x; ++x) {
       const int bin = (bins.first.y + y) * side + bins.first.x + x;
-      bins.farthest.push_back(task.moves || task.fresh[bin] ? face.farthest[bin] : kNever);
+      bins.farthest.push_back(task.fresh[bin] ? face.farthest[bin] : kNever);
     }
   }
   const std::vector<std::uint32_t> seen = meshletsSeen(maps.meshlets, view, bins, scene.lights[face.light]);
@@ -101,7 +130,7 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
   const bool exact = maps.method == ShadowMethod::kExact;
   std::size_t held = exact ? maps.bounds.size() : maps.texels.size(), total = held;
   for (std::size_t i = 0; i < maps.planned.size(); ++i) {
-    if (auto task = taskOf(i, maps.faces[i], needed, maps.planned[i])) {
+    if (auto task = taskOf(i, maps.faces[i], needed, maps.expects_more, maps.planned[i])) {
       if (task->moves) total += area(maps.planned[i].count);
       tasks.push_back(std::move(*task));
     }
@@ -112,10 +141,15 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
     held = 0;
     tasks.clear();
     for (std::size_t i = 0; i < maps.planned.size(); ++i)
-      if (maps.planned[i].count.x > 0) tasks.push_back({i, true, {}});
+      if (maps.planned[i].count.x > 0) tasks.push_back(taskOfAll(i, maps.planned[i]));
   }
   total = held;
+  const auto placeOf = [&](const ShadowFace& lookup, const glm::ivec2& first) {
+    return std::size_t(uint(lookup.first + uint(first.y) * lookup.width + uint(first.x)));
+  };
+  std::vector<std::size_t> old_places;  // one a task; unused where nothing is kept
   for (const Task& task : tasks) {
+    old_places.push_back(placeOf(maps.faces[task.face], task.kept_first));
     if (!task.moves) continue;
     const PlannedFace& face = maps.planned[task.face];
     ShadowFace& lookup = maps.faces[task.face];
@@ -127,15 +161,19 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
     maps.bounds.resize(total);
   else
     maps.texels.resize(total);
-  const auto placeOf = [&](const Task& task) {
-    const glm::ivec2 first = maps.planned[task.face].first;
-    const ShadowFace& lookup = maps.faces[task.face];
-    return std::size_t(uint(lookup.first + uint(first.y) * lookup.width + uint(first.x)));
-  };
+  std::vector<std::size_t> places;
   std::vector<IndexRange> drawn;
-  for (const Task& task : tasks) addDrawn(task, maps.planned[task.face], placeOf(task), drawn);
+  for (const Task& task : tasks) {
+    const PlannedFace& face = maps.planned[task.face];
+    places.push_back(placeOf(maps.faces[task.face], face.first));
+    addDrawn(task, face, places.back(), drawn);
+  }
   tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
-    drawFace(scene, tasks[i], maps.planned[tasks[i].face], placeOf(tasks[i]), maps);
+    const Task& task = tasks[i];
+    const PlannedFace& face = maps.planned[task.face];
+    if (task.moves && exact) copyKept(task, face, old_places[i], places[i], maps.bounds);
+    if (task.moves && !exact) copyKept(task, face, old_places[i], places[i], maps.texels);
+    drawFace(scene, task, face, places[i], maps);
   });
   return drawn;
 }

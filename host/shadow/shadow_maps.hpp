@@ -37,6 +37,9 @@ struct ShadowMaps {
   std::vector<ShadowTexel, RawArrayAllocator<ShadowTexel>> texels;
   /// Instead of `texels` for ShadowMethod::kExact.
   std::vector<BoundTexel, RawArrayAllocator<BoundTexel>> bounds;
+  /// Lookups follow that reach a little farther than those before. So bins are drawn down to half of the
+  /// reversed depth that is needed, and rectangles have a bin to spare on each side.
+  bool expects_more = false;
   ShadowMethod method = ShadowMethod::kOff;
   Meshlets meshlets;
   std::size_t bin_count = 0;         ///< of all faces

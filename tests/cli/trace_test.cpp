@@ -76,10 +76,11 @@ void expectNested(std::vector<Span> spans) {
 }
 
 /// Stages in which a kernel runs.
-const std::map<std::string, std::set<std::string>> kStagesOfKernels{
-    {"count_lights", {"cull", "count lights"}}, {"scan_lists", {"cull", "count lights"}},
-    {"fill_lists", {"cull", "count lights"}},   {"count_in_range", {"count lights"}},
-    {"find_needed", {"find shadow texels"}},    {"shade", {"shade"}}};
+const std::map<std::string, std::set<std::string>> kStagesOfKernels{{"find_lights", {"cull", "count lights"}},
+                                                                    {"scan_lists", {"cull", "count lights"}},
+                                                                    {"count_in_range", {"count lights"}},
+                                                                    {"find_needed", {"find shadow texels"}},
+                                                                    {"shade", {"shade"}}};
 
 /// Expects each kernel within one of its stages, and commands between their queueing and their end.
 void expectKernelsInStages(const std::vector<Span>& spans, const std::set<std::string>& kernels) {
@@ -159,8 +160,8 @@ class TraceOption : public ProgramTest {
   }
 };
 
-const std::set<std::string> kAllKernels{"count_lights",   "scan_lists",  "fill_lists",
-                                        "count_in_range", "find_needed", "shade"};
+const std::set<std::string> kAllKernels{"find_lights", "scan_lists", "count_in_range", "find_needed",
+                                        "shade"};
 
 std::size_t countOf(const std::vector<Span>& spans, const std::string& name, const std::string& track) {
   return std::size_t(std::count_if(spans.begin(), spans.end(), [&](const Span& span) {
@@ -201,7 +202,7 @@ TEST_F(TraceOption, OfFramesHasEachOnTheSameTracks) {
 TEST_F(TraceOption, OfGBufferShadeAndReferenceHasTheirStages) {
   traceOf("gbuffer scene.json --quiet -o g.exr --stats s.json", {"s.json"}, {});
   traceOf("gbuffer scene.json --shading gouraud --quiet -o v.exr --stats s.json", {"s.json"},
-          {"count_lights", "scan_lists", "fill_lists", "find_needed", "shade"});
+          {"find_lights", "scan_lists", "find_needed", "shade"});
   traceOf("shade g.exr --scene scene.json --quiet -o a.png --stats s.json", {"s.json"}, kAllKernels);
   traceOf("reference scene.json --size 24x16 --quiet -o r.exr --stats s.json", {"s.json"}, {});
 }

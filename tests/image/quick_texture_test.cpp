@@ -68,14 +68,17 @@ TEST(QuickTexture, PngsOfEveryKindHaveTheTexelsThatOpenImageIOGives) {
                                                    {4, 8, 2},
                                                    {6, 8, 4}}) {
     for (const bool transparent : {false, true}) {
-      if (transparent && color_type != 3) continue;
+      if (transparent && color_type > 3) continue;  // has alpha
       std::string between;
       if (color_type == 3) {
         std::string colors;
         for (int i = 0; i < 3 << bits; ++i) colors += char(i * 37);
         between = pngChunk("PLTE", colors);
       }
-      if (transparent) between += pngChunk("tRNS", std::string(2, '\x15'));
+      // The first pixel's grey or colour, as 16 bits a channel; or the alphas of two colours of the palette.
+      const std::string first_pixel("\0\0\0\x39\0\xe4", 6), alphas(2, '\x15');
+      if (transparent)
+        between += pngChunk("tRNS", color_type == 3 ? alphas : first_pixel.substr(0, 2 * channels));
       for (const auto& [width, height] : {std::pair{13, 11}, {1, 1}, {3, 9}}) {
         std::string rows;
         for (int y = 0; y < height; ++y) {
@@ -130,10 +133,7 @@ TEST(QuickTexture, LeavesRareKindsAndDamagedFilesToTheOtherReader) {
   EXPECT_TRUE(isRead(png));
   EXPECT_FALSE(isRead(pngFile(1, 2, 8, 0, true, "", rows))) << "interlaced";
   EXPECT_FALSE(isRead(pngFile(1, 2, 16, 0, false, "", std::string(6, '\0')))) << "16 bits";
-  EXPECT_FALSE(isRead(pngFile(1, 2, 8, 0, false, pngChunk("tRNS", rows.substr(0, 2)), rows)));
   EXPECT_FALSE(isRead(pngFile(1, 2, 8, 3, false, "", rows))) << "no palette";
-  EXPECT_FALSE(isRead(pngFile(1, 2, 8, 3, false, pngChunk("PLTE", "abcdef"), rows))) << "no such colour";
-  EXPECT_FALSE(isRead(pngFile(1, 2, 8, 0, false, "", rows + '\0'))) << "more bytes than pixels";
   EXPECT_FALSE(isRead(pngFile(1, 2, 8, 0, false, "", std::string("\5\x10\0\x20", 4)))) << "no such filter";
   EXPECT_FALSE(isRead(pngFile(1, 2, 8, 0, false, pngChunk("MUST", ""), rows)));
   for (std::size_t i = 8; i < png.size() - 12; ++i) {

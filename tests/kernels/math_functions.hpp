@@ -115,26 +115,25 @@ inline MathFunction expFunction() {
           }};
 }
 
-inline MathFunction log2OneMinusHalfFunction() {
-  Column s = sweep(2 * kSmallestNormal, 0x1p-7f, 50000);
-  append(s, sweep(0x1p-7f, 2 * kBelowOne, 400000));
-  return {"probe_log2_one_minus_half", 1, {s}, [](const double* a, std::size_t) {
-            return std::log1p(-a[0] / 2) / std::log(2.0);
+inline MathFunction log2OnePlusFunction() {
+  Column f = sweep(kSmallestNormal, 0x1p-8f, 50000);
+  append(f, sweep(0x1p-8f, kBelowOne, 400000));
+  return {"probe_log2_one_plus", 1, {negated(f)}, [](const double* a, std::size_t) {
+            return std::log1p(a[0]) / std::log(2.0);
           }};
 }
 
-/// log2 of (1 − s/2)^n.
-inline double exponentOf(double s, double n) { return n * std::log1p(-s / 2) / std::log(2.0); }
+/// log2 of (1 + f)^n.
+inline double exponentOf(double f, double n) { return n * std::log1p(f) / std::log(2.0); }
 
-/// (1 − s/2)^n where it is above 2^-125.5, and not so near that a rounding of the exponent crosses the
-/// border.
-inline MathFunction powOneMinusHalfFunction() {
-  MathFunction function{"probe_pow_one_minus_half", 1, std::vector<Column>(2),
+/// (1 + f)^n where it is above 2^-125.5, and not so near that a rounding of the exponent crosses the border.
+inline MathFunction powOnePlusFunction() {
+  MathFunction function{"probe_pow_one_plus", 1, std::vector<Column>(2),
                         [](const double* a, std::size_t) { return std::exp2(exponentOf(a[0], a[1])); }};
   for (const float n : {1e-6f, 0.1f, 1.0f, 2.0f, 32.0f, 128.0f, 1e4f, 1e6f}) {
-    for (const float s : sweep(1e-12f, 2 * kBelowOne, 40000)) {
-      if (exponentOf(s, n) < -125.499) continue;
-      function.in[0].push_back(s);
+    for (const float f : negated(sweep(5e-13f, kBelowOne, 40000))) {
+      if (exponentOf(f, n) < -125.499) continue;
+      function.in[0].push_back(f);
       function.in[1].push_back(n);
     }
   }

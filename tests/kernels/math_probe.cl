@@ -19,11 +19,11 @@ INLINE floatL root(floatL x) { return x * rsqrt_lanes(x); }
 PROBE_1(probe_rsqrt, rsqrt_lanes)
 PROBE_1(probe_sqrt, root)
 PROBE_1(probe_exp, exp_lanes)
-PROBE_1(probe_log2_one_minus_half, log2_one_minus_half)
+PROBE_1(probe_log2_one_plus, log2_one_plus)
 PROBE_1(probe_finite_color, finite_color)
 PROBE_1(probe_clamp01, clamp01)
 PROBE_2(probe_exp2_product, exp2_product)
-PROBE_2(probe_pow_one_minus_half, pow_one_minus_half)
+PROBE_2(probe_pow_one_plus, pow_one_plus)
 PROBE_2(probe_max, max_lanes)
 PROBE_2(probe_min, min_lanes)
 

@@ -25,11 +25,11 @@ struct Degrees {
   int log2, exp2;
   double log2_error, exp2_error;
 };
-const Degrees kUsual{8, 6, std::exp2(-21.4), 3 * kUnit};
+const Degrees kUsual{7, 6, std::exp2(-21.0), 3 * kUnit};
 const Degrees kOthers[] = {
     {3, 2, std::exp2(-11.4), std::exp2(-8.7)},  {4, 3, std::exp2(-14.2), std::exp2(-11.1)},
     {5, 4, std::exp2(-17.0), std::exp2(-18.0)}, {6, 5, std::exp2(-19.5), std::exp2(-20.6)},
-    {7, 5, std::exp2(-21.1), std::exp2(-20.6)}, {9, 7, std::exp2(-21.6), std::exp2(-22.4)}};
+    {8, 5, std::exp2(-21.1), std::exp2(-20.6)}, {9, 7, std::exp2(-21.6), std::exp2(-22.4)}};
 
 /// Calls `check(device, degrees, defines)` for the usual degrees at every width and in both dialects,
 /// and for the others with the extremes.
@@ -65,7 +65,7 @@ TEST(MathKernels, ReciprocalRootAndRoot) {
   }
 }
 
-TEST(MathKernels, ReciprocalRootOfAlmostNothingIsFiniteAndOfInfinityNone) {
+TEST(MathKernels, ReciprocalRootOfAlmostNothingIsFiniteAndOfInfinityInfinite) {
   const Column x{0.0f, kSmallest, std::nextafter(kSmallestNormal, 0.0f), kSmallestNormal,
                  1.5f * kSmallestNormal};
   for (const int lanes : kAllLanes) {
@@ -73,7 +73,7 @@ TEST(MathKernels, ReciprocalRootOfAlmostNothingIsFiniteAndOfInfinityNone) {
       EXPECT_TRUE(std::isfinite(y)) << lanes << " lanes";
       EXPECT_GT(y, 1e18f) << lanes << " lanes";
     }
-    EXPECT_TRUE(std::isnan(run(lanes, "probe_rsqrt", {{kInfinity}})[0])) << lanes << " lanes";
+    EXPECT_EQ(run(lanes, "probe_rsqrt", {{kInfinity}}), Column{kInfinity}) << lanes << " lanes";
   }
 }
 
@@ -203,32 +203,32 @@ TEST(MathKernels, ExponentialAtEveryDegree) {
   });
 }
 
-TEST(MathKernels, LogarithmOfOneMinusHalfAtEveryDegree) {
-  const MathFunction log2 = log2OneMinusHalfFunction();
+TEST(MathKernels, LogarithmOfOnePlusAtEveryDegree) {
+  const MathFunction log2 = log2OnePlusFunction();
   forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
     const MathErrors errors = measureErrors(device, log2, defines);
     EXPECT_LE(errors.max_relative, degrees.log2_error);
     if (degrees.log2 == kUsual.log2) {
-      EXPECT_LE(errors.max_ulp, 3.1);
+      EXPECT_LE(errors.max_ulp, 3.7);
     }
   });
 }
 
-TEST(MathKernels, LogarithmOfOneMinusHalfAtItsEnds) {
+TEST(MathKernels, LogarithmOfOnePlusAtItsEnds) {
   for (const int lanes : kAllLanes) {
-    EXPECT_EQ(run(lanes, "probe_log2_one_minus_half", {{0.0f, 2.0f, 3.0f, kLargest, kInfinity, kNaN}}),
+    EXPECT_EQ(run(lanes, "probe_log2_one_plus", {{0.0f, -1.0f, -1.5f, -kLargest, -kInfinity, kNaN}}),
               (Column{0, -1e9f, -1e9f, -1e9f, -1e9f, -1e9f}))
         << lanes << " lanes";
-    for (const float s : {kSmallest, kSmallestNormal, 1.9f * kSmallestNormal}) {
-      const float log2 = run(lanes, "probe_log2_one_minus_half", {{s}})[0];
-      EXPECT_TRUE(log2 <= 0 && log2 >= -s) << lanes << " lanes";
+    for (const float f : {-kSmallest, -std::nextafter(kSmallestNormal, 0.0f)}) {
+      const float log2 = run(lanes, "probe_log2_one_plus", {{f}})[0];
+      EXPECT_TRUE(log2 <= 0 && log2 >= 2 * f) << lanes << " lanes";
     }
-    EXPECT_NEAR(run(lanes, "probe_log2_one_minus_half", {{2 - 0x1p-23f}})[0], -24, 24 * kUsual.log2_error);
+    EXPECT_NEAR(run(lanes, "probe_log2_one_plus", {{-kBelowOne}})[0], -24, 24 * kUsual.log2_error);
   }
 }
 
-TEST(MathKernels, PowerOfOneMinusHalfAtEveryDegree) {
-  const MathFunction pow = powOneMinusHalfFunction();
+TEST(MathKernels, PowerOfOnePlusAtEveryDegree) {
+  const MathFunction pow = powOnePlusFunction();
   forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
     double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
     forEachResult(device, pow, defines, [&](const double* a, float result, double exact) {
@@ -240,38 +240,38 @@ TEST(MathKernels, PowerOfOneMinusHalfAtEveryDegree) {
     });
     EXPECT_LE(worst, 1);
     if (degrees.log2 == kUsual.log2) {
-      EXPECT_LE(worst_absolute, 4 * kUnit);
+      EXPECT_LE(worst_absolute, 5 * kUnit);
     }
   });
 }
 
-TEST(MathKernels, PowerOfOneMinusHalfAtItsEnds) {
-  const Column s{0, 0, 0, 0, 2, 2, 2, 2, 2, 1, kSmallest, 2 * kBelowOne, 1, 3, kInfinity, kNaN};
+TEST(MathKernels, PowerOfOnePlusAtItsEnds) {
+  const Column f{0, 0, 0, 0, -1, -1, -1, -1, -1, -0.5, -kSmallest, -kBelowOne, -0.5f, -2, -kInfinity, kNaN};
   const Column n{0, 1, 1e6f, kLargest, 0, 1, 1e-6f, 1e6f, kLargest, 0, 1e6f, 1e6f, kInfinity, 1, 1, 1};
   for (const int lanes : kAllLanes)
-    EXPECT_EQ(run(lanes, "probe_pow_one_minus_half", {s, n}),
+    EXPECT_EQ(run(lanes, "probe_pow_one_plus", {f, n}),
               (Column{1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0}))
         << lanes << " lanes";
 }
 
 TEST(MathKernels, PowersBelowTheBorderNeverReturn) {
-  Column s, n;
+  Column f, n;
   for (const float exponent : {2.0f, 32.0f, 1e4f, 1e6f}) {
-    for (const float value : sweep(1e-6f, 2.0f, 40000)) {
+    for (const float value : negated(sweep(5e-7f, 1.0f, 40000))) {
       if (exponentOf(value, exponent) > -125.5) continue;
-      s.push_back(value);
+      f.push_back(value);
       n.push_back(exponent);
     }
   }
-  // 2^-125.5, as pow_one_minus_half may have it wrong.
-  constexpr double kBorder = 1.4142136 * 0x1p-126 * (1 + 126 * 4.2 * kUnit + 3 * kUnit);
+  // 2^-125.5, as pow_one_plus may have it wrong.
+  constexpr double kBorder = 1.4142136 * 0x1p-126 * (1 + 126 * 5.6 * kUnit + 3 * kUnit);
   for (const int lanes : kAllLanes)
-    for (const float y : run(lanes, "probe_pow_one_minus_half", {s, n}))
+    for (const float y : run(lanes, "probe_pow_one_plus", {f, n}))
       ASSERT_TRUE(y == 0 || (y >= kSmallestNormal && y <= kBorder)) << y << ", " << lanes << " lanes";
 }
 
 TEST(MathKernels, DegreesThatAreNotThereAreRefused) {
-  for (const auto& [log2, exp2] : {std::pair{8, 1}, {8, 8}, {2, 6}, {10, 6}})
+  for (const auto& [log2, exp2] : {std::pair{7, 1}, {7, 8}, {2, 6}, {10, 6}})
     EXPECT_THROW(
         probe(deviceWithLanes(1), "math_probe.cl", "probe_exp", {{0}}, 1, {}, degreeDefines(log2, exp2)),
         MachineError);

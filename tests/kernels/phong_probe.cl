@@ -9,6 +9,8 @@ __kernel void probe_lobes(__global const float *in, __global float *out, uint st
   vec3L to_eye = load_vec3(in + 6 * stride + first, stride);
   floatL exponent = load_lanes(in + 9 * stride + first);
   floatL inverse_d = rsqrt_lanes(dot3(to_light, to_light));
-  store_lanes(out + first, pow_one_minus_half(phong_chord2(to_light, inverse_d, mirror(to_eye, normal)), exponent));
-  store_lanes(out + first + stride, pow_one_minus_half(blinn_chord2(to_light, inverse_d, to_eye, normal), exponent));
+  floatL n_dot_l = dot3(normal, to_light) * inverse_d, n_dot_v = dot3(normal, to_eye);
+  floatL blinn = blinn_lobe(to_light, inverse_d, to_eye, normal, n_dot_l, n_dot_v);
+  store_lanes(out + first, pow_one_plus(phong_lobe(to_light, inverse_d, mirror(to_eye, normal)), exponent));
+  store_lanes(out + first + stride, pow_one_plus(blinn, 0.5f * exponent));
 }

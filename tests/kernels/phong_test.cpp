@@ -53,30 +53,40 @@ struct Worst {
   double of_bound = 0, of_peak = 0;
 };
 
-// The kernel's argument is t = |a − b|²/2 for the cosine 1 − t. An error δ of the vector a − b changes t by
-// √(2t)·δ + δ²/2 at most; its components' own roundings (2 in a square), the squares' and the sums' (3) are
-// relative to t. In units of 2^-24, unit float vectors are off by 1 in length, and L by 5.2 in all once it is
-// scaled (see MathKernels.UnitVectors):
-//   Phong: a = L, b = V′ = 2(V·N)N − V. V·N has 3 roundings, which count twice, and N's length, which counts
-//   twice in it and again in its product with N; two products and a difference round (2 + 1); V's length:
-//   5.2 + 6 + 4 + 3 + 1 < 20.
-//   Blinn: a = N, b = (L + V)/|L + V|. L's and V's errors tilt the sum by 6.2/|L + V| ≤ 12.4, it rounds (1)
-//   and is scaled (5.2), N has 1: < 20.
-// The power's own error is n·|log2(1 − t)|·4.2 + 3.
+// What is raised to a power is 1 − x. In units of 2^-24, unit float vectors are off by 1 in length, and L
+// by 5.2 in all once it is scaled (see MathKernels.UnitVectors).
+//   Phong: x = |a − b|²/2 with a = L, b = V′ = 2(V·N)N − V. V·N has 3 roundings, which count twice, and N's
+//   length, which counts twice in it and again in its product with N; two products and a difference round (2
+//   + 1); V's length: 5.2 + 6 + 4 + 3 + 1 < 20. An error δ of a − b changes x by √(2x)·δ + δ²/2 at most; its
+//   components' own roundings (2 in a square), the squares' and the sums' (3) are relative to x. Blinn: x =
+//   |w|²/(|w|² + c²) with h = L + V, c = N·h and w = h − c N, so x = sin². Across N, w has L's error, V's
+//   length and the sum's rounding, 5.2 + 1 + 2 < 10, over |h| ≥ ½: δ < 20, by which x changes by 2√x·δ + δ².
+//   Along N it has c's error: N·L and N·V with 3 + 1 roundings each, the lengths of N, L and V, N's again in
+//   its product with c, and the sum's: < 20, over |h| < 40. It adds its square to x, and doubled it is
+//   relative to x by way of c². The square's roundings (5), the sum's (1) and the quotient's (5 as OpenCL has
+//   it) are relative to x.
+// The power's own error is |log2|·5.6 + 3.
 Worst worstError(const Lobes& lobes, const Column& result, bool blinn) {
-  constexpr double kDelta = 20 * kUnit;
+  constexpr double kDelta = 20 * kUnit, kAlong = 40 * kUnit;
   Worst worst;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const glm::dvec3 n = lobes.normal[i], l = lobes.to_light[i], v = lobes.to_eye[i];
-    const double cosine =
-        blinn ? glm::dot(n, glm::normalize(l + v)) : glm::dot(2 * glm::dot(n, l) * n - l, v);
-    const double exponent = lobes.in[9][i];
-    const auto power = [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); };
-    const double exact = power(cosine), t = std::max(1 - cosine, 0.0);
-    const double moved = std::sqrt(2 * t) * kDelta + kDelta * kDelta + 5 * kUnit * t;
-    const double log2 = cosine > 0 ? -std::log2(std::min(cosine, 1.0)) : 0.0;
-    const double bound = std::max(power(cosine + moved) - exact, exact - power(cosine - moved)) +
-                         exact * (exponent * log2 * 5 * kUnit + 3 * kUnit) + 0x1p-125;
+    const double exponent = lobes.in[9][i] * (blinn ? 0.5 : 1.0);
+    double x = 0, moved = 0;
+    if (blinn) {
+      const double cosine = std::max(glm::dot(n, glm::normalize(l + v)), 0.0);
+      x = 1 - cosine * cosine;
+      moved = 2 * std::sqrt(std::max(x, 0.0)) * kDelta + kDelta * kDelta + kAlong * kAlong +
+              (2 * kAlong + 11 * kUnit) * x;
+    } else {
+      x = std::max(1 - glm::dot(2 * glm::dot(n, l) * n - l, v), 0.0);
+      moved = std::sqrt(2 * x) * kDelta + kDelta * kDelta + 5 * kUnit * x;
+    }
+    const auto power = [&](double y) { return std::pow(std::clamp(1 - y, 0.0, 1.0), exponent); };
+    const double exact = power(x);
+    const double log2 = x < 1 ? -std::log2(std::min(1 - x, 1.0)) : 0.0;
+    const double bound = std::max(power(x - moved) - exact, exact - power(x + moved)) +
+                         exact * (exponent * log2 * 5.6 * kUnit + 3 * kUnit) + 0x1p-125;
     const double error = std::abs(result[i] - exact);
     worst.of_bound = std::max(worst.of_bound, error / bound);
     worst.of_peak = std::max(worst.of_peak, error);
@@ -93,7 +103,8 @@ TEST(PhongKernels, LobesKeepTheirShapeUpToLargeExponents) {
         const auto out = probe(deviceWithLanes(lanes), "phong_probe.cl", "probe_lobes", lobes.in, 2);
         const Worst worst = worstError(lobes, out[blinn], blinn);
         EXPECT_LE(worst.of_bound, 1) << exponent << (blinn ? " Blinn " : " Phong ") << lanes << " lanes";
-        // n·√(2t)·δ·(1 − t)ⁿ peaks at nt = ½ with √(n/e)·δ: 7.3e-4 for n = 10⁶ and δ = 20 · 2^-24.
+        // n·√(2x)·δ·(1 − x)ⁿ peaks at nx = ½ with √(n/e)·δ: 7.3e-4 for n = 10⁶ and δ = 20 · 2^-24. So does
+        // n/2·2√x·δ·(1 − x)^(n/2).
         EXPECT_LE(worst.of_peak, 1e-3) << exponent << (blinn ? " Blinn " : " Phong ") << lanes << " lanes";
       }
     }
@@ -109,7 +120,7 @@ TEST(PhongKernels, MirrorDirectionIsThePeak) {
   }
   for (const int lanes : kAllLanes)
     for (const Column& lobe : probe(deviceWithLanes(lanes), "phong_probe.cl", "probe_lobes", lobes.in, 2))
-      // t is at most (2^-23)²/2 here: n·t < 1e-8.
+      // x is at most (2^-23)² here: n·x < 2e-8.
       for (const float value : lobe) EXPECT_NEAR(value, 1, 2e-7) << lanes << " lanes";
 }
 

@@ -71,12 +71,12 @@ inline Interval attenuationInterval(const Light& light, const WayToLight& way) {
       .widened(20 * kUnit);
 }
 
-/// cosⁿ, by pow_one_minus_half within (|log2 cosⁿ|·4.2 + 3) units, and 0 below 2^-125.5.
+/// cosⁿ, by pow_one_plus within (|log2 cosⁿ|·5.6 + 3) units, and 0 below 2^-125.5.
 inline Interval powerInterval(double cosine, double error, double exponent) {
   const Interval power =
       growing(cosine, error, [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); });
   const double log2 = -std::log2(std::clamp(cosine - error, 1e-300, 1.0));
-  const Interval result = power.widened(std::min((exponent * log2 * 5 + 4) * kUnit, 1.0));
+  const Interval result = power.widened(std::min((exponent * log2 * 6 + 4) * kUnit, 1.0));
   return {std::max(result.low - 0x1p-125, 0.0), result.high};
 }
 
@@ -115,6 +115,19 @@ inline ChordCosine halfCosine(const glm::dvec3& normal, const WayToLight& way, c
   const glm::dvec3 sum = way.unit + to_eye;
   const double length = std::max(glm::length(sum), 1e-12);
   return chordCosine(glm::dot(normal, sum / length), (way.error + 8 * kUnit) / length + 8 * kUnit);
+}
+
+/// (N·H)ⁿ; see PhongKernels for the constants.
+inline Interval blinnInterval(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye,
+                              double exponent) {
+  const glm::dvec3 sum = way.unit + to_eye;
+  const double length = std::max(glm::length(sum), 1e-12), cosine = glm::dot(normal, sum / length);
+  const double square = cosine > 0 ? cosine * cosine : 0, sine2 = 1 - square;
+  const double delta = std::min((way.error + 12 * kUnit) / length, 1.0);
+  const double along = std::min((way.error + 24 * kUnit) / length, 1.0);
+  const double error =
+      2 * std::sqrt(sine2) * delta + delta * delta + along * along + (2 * along + 11 * kUnit) * sine2;
+  return powerInterval(square, error, exponent / 2);
 }
 
 /// R·V
@@ -170,7 +183,7 @@ inline ReflectedInterval reflectedInterval(Model model, const glm::dvec3& normal
     case Model::kPhong:
       return {cosine, lobe(mirrorCosine(normal, way, to_eye)) * f0};
     case Model::kBlinnPhong:
-      return {cosine, lobe(halfCosine(normal, way, to_eye)) * f0};
+      return {cosine, blinnInterval(normal, way, to_eye, shininess) * f0};
     case Model::kToon:
       return {toonInterval(cosine, toonTone),
               toonInterval(lobe(mirrorCosine(normal, way, to_eye)), toonHighlight) * f0};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "raster/raster_scenes.hpp"
 
@@ -113,6 +114,29 @@ TEST(Invariance, TheNumberOfThreadsChangesNothing) {
     EXPECT_EQ(one.lift, many.lift);
     EXPECT_TRUE(std::ranges::equal(one_depth, many_depth, sameTexel));
     EXPECT_EQ(one_outside, many_outside);
+  }
+}
+
+TEST(Invariance, TheMemoryOfAUsedGBufferLeavesNothingInTheNextOne) {
+  const Scene busy = busyScene(), sparse = rectangleScene(1.0f, 1.0f, -5.0f);
+  for (const glm::ivec2& size : {glm::ivec2(211, 167), {100, 90}, {260, 300}}) {
+    for (const PlaneSet& planes : {kAll, PlaneSet{}}) {
+      GBuffer used = draw(busy, cameraView(frontCamera(), {211, 167}), Shading::kPhong, kAll);
+      const View view = cameraView(frontCamera(), size);
+      const GBuffer fresh = draw(sparse, view, Shading::kPhong, planes);
+      const GBuffer next =
+          rasterize(sparse, allObjects(sparse), view, Shading::kPhong, planes, {}, nullptr, std::move(used));
+      EXPECT_EQ(next.width, fresh.width);
+      EXPECT_EQ(next.height, fresh.height);
+      EXPECT_EQ(next.position, fresh.position);
+      EXPECT_EQ(next.normal, fresh.normal);
+      EXPECT_EQ(next.diffuse, fresh.diffuse);
+      EXPECT_EQ(next.specular, fresh.specular);
+      EXPECT_EQ(next.ambient, fresh.ambient);
+      EXPECT_EQ(next.emission, fresh.emission);
+      EXPECT_EQ(next.geometric_normal, fresh.geometric_normal);
+      EXPECT_EQ(next.lift, fresh.lift);
+    }
   }
 }
 

@@ -43,6 +43,19 @@ inline Scene meshScene(std::vector<glm::vec3> positions, std::vector<glm::uvec3>
   return scene;
 }
 
+/// A texture of random texels, of a size and its coarser levels down to a width of 1.
+inline Texture randomChain(glm::ivec2 size, std::mt19937& random) {
+  std::uniform_int_distribution<int> code(0, 65535);
+  Texture texture;
+  for (; texture.levels.empty() || texture.levels.back().width > 1;
+       size = glm::max(size / 2, glm::ivec2(1))) {
+    MipLevel level{size.x, size.y, {}};
+    for (int i = 0; i < size.x * size.y * 4; ++i) level.texels.push_back(std::uint16_t(code(random)));
+    texture.levels.push_back(level);
+  }
+  return texture;
+}
+
 /// Two triangles a cell of a grid of cells², whose vertices come row by row.
 inline std::vector<glm::uvec3> gridTriangles(std::uint32_t cells) {
   std::vector<glm::uvec3> triangles;

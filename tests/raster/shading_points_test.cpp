@@ -269,7 +269,9 @@ TEST(ShadingPoints, EverySampleOfAChosenPixelIsAPointWhereItIsAsked) {
   const std::vector<int> covered = samplesCovered(scene, view, 16);
   std::vector<std::uint8_t> chosen(covered.size());
   for (std::size_t i = 0; i < chosen.size(); i += 7) chosen[i] = 1;
-  const PointLists points = everySample(sampled, chosen, 0, sampled.bins.size());
+  RasterCounts counts;
+  const SharedSamples shared = shareSamples(sampled, counts);
+  const PointLists points = everySample(sampled, shared.labels, chosen, 0, sampled.bins.size());
   std::size_t in_bins = 0;
   for (const std::size_t count : chosenInBins(sampled, chosen)) in_bins += count;
   EXPECT_EQ(in_bins, std::size_t(std::count(chosen.begin(), chosen.end(), 1)));

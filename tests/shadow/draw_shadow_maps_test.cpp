@@ -156,6 +156,45 @@ TEST(DrawShadowMaps, OnlyNeededBinsAreDrawnAndOnlyOnce) {
   for (const ShadowTexel& texel : maps.texels) ASSERT_TRUE(texel.depth == 0.25f && texel.slopes == 7);
 }
 
+TEST(DrawShadowMaps, WhereMoreIsExpectedLookupsALittleDeeperAndFartherFindWhatTheyNeed) {
+  const Scene scene = terrainScene();
+  ShadowMaps maps = planFor(scene, {200, 100}, {.size = 512});
+  maps.expects_more = true;
+  std::vector<std::uint32_t> needed = nothing(maps);
+  const auto bin = [&](uint x, uint y) -> std::uint32_t& {
+    return needed.at(maps.faces[2].first_bin + y * maps.faces[2].bins + x);
+  };
+  bin(2, 2) = std::bit_cast<std::uint32_t>(0.5f);
+  drawNeeded(scene, needed, maps);
+  bin(2, 2) = std::bit_cast<std::uint32_t>(0.25f);
+  EXPECT_TRUE(drawNeeded(scene, needed, maps).empty());
+  const std::size_t held = maps.texels.size();
+  bin(3, 1) = std::bit_cast<std::uint32_t>(0.5f);
+  EXPECT_EQ(drawNeeded(scene, needed, maps).size(), 1u);
+  EXPECT_EQ(maps.texels.size(), held) << "the rectangle had room for it";
+}
+
+TEST(DrawShadowMaps, AFaceThatGrowsTakesItsTexelsAlong) {
+  const Scene scene = terrainScene();
+  ShadowMaps maps = planFor(scene, {200, 100}, {.size = 512});
+  std::vector<std::uint32_t> needed = nothing(maps);
+  const auto bin = [&](uint x, uint y) -> std::uint32_t& {
+    return needed.at(maps.faces[2].first_bin + y * maps.faces[2].bins + x);
+  };
+  bin(2, 2) = 0;
+  drawNeeded(scene, needed, maps);
+  for (ShadowTexel& texel : maps.texels) texel = {0.25f, 7};
+  bin(1, 3) = 0;
+  drawNeeded(scene, needed, maps);
+  ASSERT_EQ(maps.planned[2].first, glm::ivec2(kShadowBin, 2 * kShadowBin));
+  for (int y = 0; y < kShadowBin; ++y)
+    for (int x = 0; x < kShadowBin; ++x) {
+      const uint place =
+          maps.faces[2].first + uint(2 * kShadowBin + y) * maps.faces[2].width + uint(2 * kShadowBin + x);
+      ASSERT_EQ(maps.texels[place].slopes, 7u) << x << ',' << y;
+    }
+}
+
 TEST(DrawShadowMaps, FloorThatIsWideBeyondMeasureIsDrawn) {
   // Where a face's rim sees it, 10¹¹ m away, is a place of 10¹⁴ texels.
   Scene scene = terrainScene();
