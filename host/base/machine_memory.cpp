@@ -1,6 +1,7 @@
 #include "base/machine_memory.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -144,6 +145,13 @@ void requireMappings(double addresses, double writable, unsigned threads, const 
   narrow(data, RLIMIT_DATA, "VmData:", "ulimit -d");
   require(addresses + stacks, mapped, what);
   require(writable + stacks, data, what);
+}
+
+void saveAddresses() {
+#if defined(__GLIBC__)
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) mallopt(M_ARENA_MAX, 1);
+#endif
 }
 
 }  // namespace luciole

@@ -35,4 +35,10 @@ void requireMemory(double bytes, const std::string& what);
 /// The stacks of `threads` threads are added to both.
 void requireMappings(double addresses, double writable, unsigned threads, const std::string& what);
 
+/// Where addresses are limited (`ulimit -v`), lets all threads allocate from one arena. glibc gives threads
+/// that meet arenas of 64 MiB of addresses each, so that what the process takes depended on how threads are
+/// scheduled, and OpenCL's compiler aborts or hangs where addresses run out. To be called before any thread
+/// is started.
+void saveAddresses();
+
 }  // namespace luciole

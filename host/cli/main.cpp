@@ -12,6 +12,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine_memory.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/suggest.hpp"
@@ -173,6 +174,7 @@ constexpr bool kLooksForLeaks = false;
 
 int main(int argument_count, char** arguments) {
   std::set_terminate(endUncaught);
+  saveAddresses();
   CommandContext context{joinedArguments(argument_count, arguments)};
   if (asksForEvents(argument_count, arguments)) startEventLog();
   logEvent("start", {{"command", context.command_line}, {"version", LUCIOLE_VERSION}});

@@ -2,11 +2,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <latch>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "base/error.hpp"
 #include "shared_files.hpp"
@@ -82,6 +90,41 @@ TEST(MachineMemory, WhatIsTooMuchIsRefusedInFigures) {
       EXPECT_THAT(error.what(), HasSubstr(memoryRoom().limited_by));
     }
   }
+}
+
+/// Arenas from which this process's threads allocate, when there are eight of them at once.
+int arenasOfThreads() {
+  std::latch all_here(8);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i)
+    threads.emplace_back([&] {
+      const std::vector<char> memory(1000);
+      all_here.arrive_and_wait();
+    });
+  for (std::thread& thread : threads) thread.join();
+  char* text = nullptr;
+  std::size_t size = 0;
+  FILE* file = open_memstream(&text, &size);
+  malloc_info(0, file);
+  std::fclose(file);
+  int arenas = 0;
+  for (const char* place = text; (place = std::strstr(place, "<heap nr=")) != nullptr; ++place) ++arenas;
+  std::free(text);
+  return arenas;
+}
+
+TEST(MachineMemory, WhereAddressesAreLimitedThreadsShareAnArena) {
+  // Ends with the number of arenas, in a process of its own, which keeps the limit.
+  const auto endWithArenas = [](rlim_t most) {
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = most;
+    setrlimit(RLIMIT_AS, &limit);
+    saveAddresses();
+    std::_Exit(arenasOfThreads());
+  };
+  // A limit, but more than even the sanitizers take.
+  EXPECT_EXIT(endWithArenas(rlim_t{1} << 50), testing::ExitedWithCode(1), "");
 }
 
 }  // namespace

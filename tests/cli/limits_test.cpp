@@ -79,7 +79,7 @@ TEST_F(Limits, OfDataLetTheProgramWorkOrEndInOneLine) {
 
 TEST_F(Limits, LetKernelsBeCompiledOrEndInOneLine) {
   // Nothing is in these caches. What hangs is killed.
-  for (const char* limit : {"-v 620000", "-v 780000", "-v 860000", "-d 200000", "-d 380000"})
+  for (const char* limit : {"-v 620000", "-v 780000", "-v 845000", "-v 860000", "-d 200000", "-d 380000"})
     expectDoneOrRefused(
         fmt::format("ulimit {} && POCL_CACHE_DIR=\"cache {}\" timeout -s KILL 240 '" LUCIOLE_BINARY
                     "' render scene.json --quiet --shadows exact -o out.png",
