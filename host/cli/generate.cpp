@@ -31,14 +31,11 @@ struct LightsOptions {
   std::vector<double> low, high, center, points, colors, range;
   std::optional<double> radius, offset, density, cutoff;
   double intensity = 1;
-  bool shadow = false;
+  bool no_range = false, shadow = false;
   std::string missing_textures = "error";
 };
 
 constexpr std::uint64_t kDefaultCount = 1000;
-constexpr double kDefaultDensity = 8;
-/// Number of visible points: enough for a mean that is right to a few percent.
-constexpr std::size_t kSeenPoints = 1000;
 
 const Bounds kDefaultBox{{-10, 0, -10}, {10, 10, 10}};
 
@@ -123,23 +120,19 @@ void setColors(const LightsOptions& options, LightField& field) {
     field.colors.emplace_back(vectorAt(options.colors, i));
 }
 
-/// Points at which the density is measured: what the camera sees, or without a scene, points in the field.
-std::vector<glm::dvec3> densityPoints(const LightsOptions& options, LightField field,
-                                      const std::vector<glm::dvec3>& seen) {
+/// Points at which density and brightness are measured: what the camera sees, or without a scene, places in
+/// the field.
+std::vector<glm::dvec3> measuredPoints(const LightsOptions& options, const LightField& field,
+                                       const std::vector<glm::dvec3>& seen) {
   if (!options.scene.empty()) {
     if (seen.empty())
       throw InputError(options.scene + ": its first camera sees nothing to measure a density at");
     return seen;
   }
   if (field.shape == FieldShape::kList)
-    throw InputError("generate lights: --density needs a SCENE beside --csv");
-  field.count = kSeenPoints;
-  ++field.seed;
-  Scene other;
-  expandLightField(field, other);
-  std::vector<glm::dvec3> points;
-  for (const Light& light : other.lights) points.push_back(light.position);
-  return points;
+    throw InputError(fmt::format("generate lights: {} needs a SCENE beside --csv",
+                                 options.no_range ? "--no-range" : "--density"));
+  return fieldPlaces(field, {});
 }
 
 void generateLights(const LightsOptions& options) {
@@ -155,7 +148,7 @@ void generateLights(const LightsOptions& options) {
     tellWarnings(scene.warnings);
     scene.lights.clear();
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
-                         kSeenPoints, 0);
+                         kMeasuredPlaces, 0);
   }
   LightField field = shapedField(options, shape, scene, seen);
   field.seed = options.seed;
@@ -169,10 +162,13 @@ void generateLights(const LightsOptions& options) {
   field.shadow = options.shadow;
   expandLightField(field, scene);
   const bool is_ranged = !options.range.empty() || options.cutoff || shape == "csv";
-  if (options.density || !is_ranged) {
-    const float range = rangeForDensity(scene.lights, densityPoints(options, field, seen),
-                                        options.density.value_or(kDefaultDensity));
-    for (Light& light : scene.lights) light.range = range;
+  if (options.density || options.no_range || !is_ranged) {
+    const std::vector<glm::dvec3> points = measuredPoints(options, field, seen);
+    if (options.density || !is_ranged) {
+      const float range = rangeForDensity(scene.lights, points, options.density.value_or(kUsualDensity));
+      for (Light& light : scene.lights) light.range = range;
+    }
+    if (options.no_range) removeRanges(scene.lights, points);
   }
 
   // Paths in a scene file are relative to it.
@@ -247,12 +243,20 @@ void addGenerateCommand(CLI::App& app, CommandContext&) {
                        "the range with which that many lights reach a visible pixel on average (default: 8)")
           ->check(positive)
           ->excludes(range);
+  auto* cutoff =
+      lights
+          ->add_option("--cutoff", options->cutoff,
+                       "fade with the square of the distance; the range is where the light has faded to this")
+          ->check(positive)
+          ->excludes(range)
+          ->excludes(density);
   lights
-      ->add_option("--cutoff", options->cutoff,
-                   "fade with the square of the distance; the range is where the light has faded to this")
-      ->check(positive)
+      ->add_flag(
+          "--no-range", options->no_range,
+          "reach everywhere, faded with the square of the distance; as bright on average as without this")
       ->excludes(range)
-      ->excludes(density);
+      ->excludes(density)
+      ->excludes(cutoff);
   lights->add_option("--intensity", options->intensity)->check(not_negative)->capture_default_str();
   lights->add_option("--color", options->colors, "r,g,b; several: each light picks one")
       ->delimiter(',')

@@ -411,6 +411,9 @@ TEST_F(CommandLine, OptionsOfLightsThatContradictAreRefusedInOneLine) {
   refuse(command + "--range 1 --density 2", 2, "--range");
   refuse(command + "--range 1 --cutoff 2", 2, "--range");
   refuse(command + "--density 1 --cutoff 2", 2, "--density");
+  for (const char* other : {"--range 1", "--density 2", "--cutoff 2"})
+    refuse(command + "--no-range " + other, 2, "--no-range");
+  refuse(command + "--csv lamps.csv --no-range", 2, "SCENE");
   refuse(command + "--range 2,1", 2, "--range");
   refuse(command + "--range 1,2,3", 2, "--range");
   refuse(command + "--color 1,2", 2, "--color");

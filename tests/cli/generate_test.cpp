@@ -104,6 +104,31 @@ TEST_F(Generate, EveryShapeHasItsDensityInThePictureOfAMeshAndOfAScene) {
   }
 }
 
+TEST_F(Generate, LightsWithoutRangeAreAsBrightAsLightsWithWhateverTheCount) {
+  for (const char* shape : {"box", "clusters", "surface"}) {
+    double first = 0;
+    for (const int count : {300, 3000}) {
+      const auto mean = [&](const char* option) {
+        succeed(
+            fmt::format("luciole generate lights hall.obj --shape {} --color 1,1,1 --count {} --seed 3 {} -o "
+                        "lit.json && luciole render lit.json --quiet --size 96x54 --aov depth -o lit.exr",
+                        shape, count, option));
+        const Image image = readImage(folder / "lit.exr");
+        double sum = 0;
+        for (std::size_t i = 0; i < image.pixels.size(); i += image.channels.size()) sum += image.pixels[i];
+        return sum;
+      };
+      const double ranged = mean(""), everywhere = mean("--no-range");
+      // What arrives is the same on average. What surfaces make of it depends on the angle: a surface gets
+      // from a quarter (light from all sides) to all of it (from the front), with ranges and without.
+      EXPECT_LT(everywhere, 4 * ranged) << shape << count;
+      EXPECT_GT(everywhere, ranged / 4) << shape << count;
+      if (first == 0) first = everywhere;
+      EXPECT_NEAR(everywhere / first, 1, 0.5) << shape;
+    }
+  }
+}
+
 TEST_F(Generate, TheFileHasTheCameraThatTheLightsWereMadeFor) {
   for (const char* file : {"hall.obj", "boxes.json"}) {
     const Camera seen = loadScene(folder / file).cameras.front();

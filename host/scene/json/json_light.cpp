@@ -159,7 +159,8 @@ void readShape(const JsonNode& node, LightField& field) {
 
 void readList(const JsonNode& csv, const JsonNode& node, const std::string& folder, LightField& field) {
   refuseKeys(node,
-             {"shape", "min", "max", "center", "radius", "offset", "clusters", "points", "color", "colors"},
+             {"shape", "min", "max", "center", "radius", "offset", "clusters", "points", "color", "colors",
+              "no_range"},
              "beside csv");
   std::optional<std::uint64_t> count;
   if (const auto n = find(node, "count")) count = readCount(*n, kMostLights);
@@ -247,8 +248,9 @@ void readLight(const JsonNode& node, Scene& scene) {
 }
 
 LightField readLightField(const JsonNode& node, const std::string& folder) {
-  allowKeys(node, {"count", "seed", "shape", "min", "max", "center", "radius", "offset", "points", "clusters",
-                   "csv", "color", "colors", "intensity", "range", "cutoff", "attenuation", "shadow"});
+  allowKeys(node,
+            {"count", "seed", "shape", "min", "max", "center", "radius", "offset", "points", "clusters",
+             "csv", "color", "colors", "intensity", "range", "cutoff", "attenuation", "no_range", "shadow"});
   LightField field;
   if (const auto n = find(node, "seed"))
     field.seed = readCount(*n, std::numeric_limits<std::uint64_t>::max());
@@ -277,6 +279,10 @@ LightField readLightField(const JsonNode& node, const std::string& folder) {
     refuseKeys(node, {"range", "attenuation"}, "beside cutoff");
     field.cutoff = readPositive(*n);
     field.attenuation = {0, 0, 1};
+  }
+  if (const auto n = find(node, "no_range")) {
+    refuseKeys(node, {"range", "cutoff", "attenuation"}, "beside no_range");
+    field.no_range = readBool(*n);
   }
   if (const auto n = find(node, "shadow")) field.shadow = readBool(*n);
   return field;

@@ -47,6 +47,14 @@ void appendLights(const LightField& field, const std::function<glm::dvec3(std::u
   }
 }
 
+/// Takes the ranges away from a field's lights (see LightField::no_range).
+void spreadEverywhere(const LightField& field, const Scene& scene, std::span<Light> lights) {
+  const std::vector<glm::dvec3> places = fieldPlaces(field, scene);
+  const float range = rangeForDensity(lights, places, kUsualDensity);
+  for (Light& light : lights) light.range = range;
+  removeRanges(lights, places);
+}
+
 }  // namespace
 
 std::optional<FieldShape> fieldShapeNamed(std::string_view name) {
@@ -90,11 +98,23 @@ void expandLightField(const LightField& field, Scene& scene) {
   requireMemory(double(field.count) * (sizeof(Light) + sizeof(glm::dvec3)),
                 fmt::format("a light field of {} lights", field.count));
   try {
-    lights.reserve(lights.size() + field.count);
+    const std::size_t before = lights.size();
+    lights.reserve(before + field.count);
     appendLights(field, lightPlaces(field, scene), lights);
+    if (field.no_range) spreadEverywhere(field, scene, std::span(lights).subspan(before));
   } catch (const std::bad_alloc&) {
     throw MachineError(fmt::format("light field: no memory for {} lights", field.count));
   }
+}
+
+std::vector<glm::dvec3> fieldPlaces(const LightField& field, const Scene& scene) {
+  LightField other = field;
+  ++other.seed;
+  const std::function<glm::dvec3(std::uint64_t&)> placeOf = lightPlaces(other, scene);
+  std::uint64_t state = other.seed;
+  std::vector<glm::dvec3> places(kMeasuredPlaces);
+  for (glm::dvec3& place : places) place = placeOf(state);
+  return places;
 }
 
 void expandLightFields(std::span<const LightField> fields, Scene& scene) {

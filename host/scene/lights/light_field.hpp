@@ -52,6 +52,11 @@ struct LightField {
   /// If > 0, ranges are those of rangeForCutoff instead. With an attenuation of (0,0,1) a light has faded to
   /// this value there.
   double cutoff = 0.0;
+  /// Lights reach everywhere and fade with the square of the distance. Their intensity is such that other
+  /// places of the field (see fieldPlaces()) get as much light on average as from lights with the range of
+  /// kUsualDensity, whatever the count. Then `range`, `attenuation` and `cutoff` must be as here. Not for
+  /// kList.
+  bool no_range = false;
   bool shadow = false;
 };
 
@@ -72,6 +77,13 @@ LightField fieldInBox(FieldShape shape, const Bounds& box);
 /// Throws InputError where there would be more than kMostLights or there is no surface to put them on,
 /// MachineError where they don't fit into memory. O(count), and O(triangles) for kSurface.
 void expandLightField(const LightField& field, Scene& scene);
+
+/// Places at which a field's density and brightness are measured: those that kMeasuredPlaces lights of the
+/// next seed would have, world space, metres. Not for FieldShape::kList. Throws as expandLightField.
+std::vector<glm::dvec3> fieldPlaces(const LightField& field, const Scene& scene);
+
+/// Enough places for a mean that is right to a few percent.
+inline constexpr std::size_t kMeasuredPlaces = 1000;
 
 /// The same for one field after the other, without copying the lights of those before.
 void expandLightFields(std::span<const LightField> fields, Scene& scene);

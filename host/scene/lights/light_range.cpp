@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/error.hpp"
 #include "scene/bounds.hpp"
 #include "scene/z_curve.hpp"
 
@@ -183,6 +184,36 @@ float rangeBeyond(double squared) {
   return std::max(range, static_cast<float>(kShortestRange));
 }
 
+/// What removeRanges() needs of a light.
+struct Emitter {
+  glm::dvec3 position;
+  double brightness;  ///< sum of the diffuse channels
+  glm::dvec3 attenuation;
+  double inverse_range;    ///< 0 without a range
+  double squared_nearest;  ///< squared metres; a nearer point counts as being as far
+};
+
+Emitter emitterOf(const Light& light) {
+  const double brightness = double(light.diffuse.r) + light.diffuse.g + light.diffuse.b;
+  const double nearest = std::isfinite(light.range) ? double(light.range) / 100 : kShortestRange;
+  return {light.position, brightness, light.attenuation, 1.0 / light.range, nearest * nearest};
+}
+
+/// Light that arrives at points: with the ranges and attenuations that lights have, and with 1/d² alone.
+struct Arriving {
+  double with_ranges = 0, without = 0;
+};
+
+void addArriving(const Emitter& light, const glm::dvec3& point, Arriving& sum) {
+  const double squared = std::max(squaredLength(light.position - point), light.squared_nearest);
+  sum.without += light.brightness / squared;
+  const double distance = std::sqrt(squared), share = distance * light.inverse_range;
+  if (share >= 1) return;
+  const double window = 1 - share * share * share * share;
+  const glm::dvec3& a = light.attenuation;
+  sum.with_ranges += light.brightness * window * window / (a.x + a.y * distance + a.z * squared);
+}
+
 }  // namespace
 
 float rangeForDensity(std::span<const Light> lights, std::span<const glm::dvec3> points, double density) {
@@ -207,6 +238,37 @@ float rangeForDensity(std::span<const Light> lights, std::span<const glm::dvec3>
 float rangeForCutoff(const Light& light, double cutoff) {
   const double brightest = std::max({light.diffuse.r, light.diffuse.g, light.diffuse.b});
   return static_cast<float>(std::clamp(std::sqrt(brightest / cutoff), kShortestRange, kLongestRange));
+}
+
+void removeRanges(std::span<Light> lights, std::span<const glm::dvec3> points) {
+  std::vector<Emitter> emitters;
+  emitters.reserve(lights.size());
+  for (const Light& light : lights) emitters.push_back(emitterOf(light));
+  // Lights go through the cache once for a few points. Each point's sum keeps the lights' order.
+  constexpr std::size_t kPointsAtOnce = 8;
+  std::vector<Arriving> arriving(points.size());
+  tbb::parallel_for(std::size_t{0}, (points.size() + kPointsAtOnce - 1) / kPointsAtOnce, [&](std::size_t i) {
+    const std::size_t first = i * kPointsAtOnce, end = std::min(first + kPointsAtOnce, points.size());
+    for (const Emitter& emitter : emitters)
+      for (std::size_t point = first; point < end; ++point)
+        addArriving(emitter, points[point], arriving[point]);
+  });
+  Arriving sum;
+  for (const Arriving& one : arriving) {
+    sum.with_ranges += one.with_ranges;
+    sum.without += one.without;
+  }
+  const bool gives_light = sum.without > 0;
+  if (gives_light && sum.with_ranges == 0)
+    throw InputError("lights without range: with their ranges they reach nothing that would say how bright");
+  const auto factor = gives_light ? static_cast<float>(sum.with_ranges / sum.without) : 1.0f;
+  for (Light& light : lights) {
+    light.ambient *= factor;
+    light.diffuse *= factor;
+    light.specular *= factor;
+    light.attenuation = {0, 0, 1};
+    light.range = std::numeric_limits<float>::infinity();
+  }
 }
 
 }  // namespace luciole

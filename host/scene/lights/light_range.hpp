@@ -19,4 +19,16 @@ float rangeForDensity(std::span<const Light> lights, std::span<const glm::dvec3>
 /// faded to `cutoff` > 0: √(brightest diffuse channel / cutoff), from 1e-18 to 1e18.
 float rangeForCutoff(const Light& light, double cutoff);
 
+/// The density that makes a field neither dim nor crowded, whatever its count.
+inline constexpr double kUsualDensity = 8;
+
+/// Makes lights with positions reach everywhere, fading with the square of the distance: attenuation (0,0,1),
+/// no range. All colours are multiplied by one factor, with which the light that arrives at the points on
+/// average (all channels, whatever the surface's direction) stays what it was with the lights' own ranges and
+/// attenuations. A point nearer than a hundredth of a light's range counts as being that far off, so that no
+/// pair outshines the others. Black lights stay black, and lights without points keep their colours. Throws
+/// InputError where lights reached no point before. The same for any number of threads. O(lights · points),
+/// in parallel.
+void removeRanges(std::span<Light> lights, std::span<const glm::dvec3> points);
+
 }  // namespace luciole

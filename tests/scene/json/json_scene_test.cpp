@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -302,6 +303,10 @@ TEST_F(JsonScene, RefusesWhatCannotBeDrawn) {
       R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "cutoff": 0}]})",
       R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "cutoff": 1, "range": 1}]})",
       R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "cutoff": 1, "attenuation": [1,0,0]}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "no_range": true, "range": 1}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "no_range": true, "cutoff": 1}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "no_range": true, "attenuation": [1,0,0]}]})",
+      R"({"light_fields": [{"count": 1, "min": [0,0,0], "max": [1,1,1], "no_range": 1}]})",
       R"({"light_fields": [{"count": 1, "shape": "surface"}]})",
       R"({"light_fields": [{"count": 1, "shape": "surface", "radius": 1}], "objects": [{"primitive": "box"}]})",
       R"({"light_fields": [{"count": 1, "shape": "clusters", "min": [0,0,0], "max": [1,1,1], "radius": 1}]})",
@@ -330,8 +335,9 @@ TEST_F(JsonScene, ReadsEveryShapeOfLightField) {
     {"count": 3, "shape": "clusters", "clusters": 2, "min": [9,9,9], "max": [9,9,9], "radius": 0.5},
     {"count": 4, "shape": "curve", "points": [[0,0,7],[1,0,7],[2,0,7]]},
     {"csv": "lamps.csv", "count": 2, "intensity": 3},
-    {"csv": "lamps.csv", "range": 2}]})");
-  ASSERT_EQ(scene.lights.size(), 14u);
+    {"csv": "lamps.csv", "range": 2},
+    {"count": 3, "min": [0,0,0], "max": [1,1,1], "no_range": true}]})");
+  ASSERT_EQ(scene.lights.size(), 17u);
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(scene.lights[i].position.y, 5.5);
     EXPECT_EQ(scene.lights[i].range, 4);
@@ -344,6 +350,10 @@ TEST_F(JsonScene, ReadsEveryShapeOfLightField) {
   EXPECT_EQ(scene.lights[9].diffuse, glm::vec3(3));
   EXPECT_EQ(scene.lights[9].range, 4);
   EXPECT_EQ(scene.lights[13].range, 2);
+  for (int i = 14; i < 17; ++i) {
+    EXPECT_TRUE(std::isinf(scene.lights[i].range));
+    EXPECT_EQ(scene.lights[i].attenuation, glm::vec3(0, 0, 1));
+  }
 }
 
 TEST_F(JsonScene, MistakesInListsOfLightsNameTheirFileAndLine) {

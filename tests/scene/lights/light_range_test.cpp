@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "scene/lights/light_field.hpp"
 
 namespace luciole {
@@ -113,6 +114,78 @@ TEST(LightRange, CutoffIsTheRootOfBrightestOverIt) {
   EXPECT_EQ(rangeForCutoff(light, 0.25), 6);
   light.diffuse = glm::vec3(1e38f);
   EXPECT_EQ(rangeForCutoff(light, 1e-18), 1e18f);
+}
+
+/// Light that arrives at the points on average, without regard to direction, by the formulae of FORMATS.md.
+double meanLight(const std::vector<Light>& lights, const std::vector<glm::dvec3>& points) {
+  double sum = 0;
+  for (const glm::dvec3& point : points) {
+    for (const Light& light : lights) {
+      const double d = glm::distance(light.position, point), share = d / light.range;
+      const double window = share < 1 ? std::pow(1 - std::pow(share, 4), 2) : 0;
+      const glm::dvec3 a = light.attenuation;
+      sum += window * glm::dot(glm::dvec3(light.diffuse), glm::dvec3(1)) / (a.x + a.y * d + a.z * d * d);
+    }
+  }
+  return sum / double(points.size());
+}
+
+TEST(RemoveRanges, KeepsTheMeanLightWhateverTheCountAndTheShape) {
+  const std::vector<glm::dvec3> points = somePoints(200);
+  for (const FieldShape shape : {FieldShape::kBox, FieldShape::kClusters, FieldShape::kCurve}) {
+    for (const std::uint64_t count : {1, 200, 3000}) {
+      std::vector<Light> lights = someLights(shape, count, count);
+      const float range = rangeForDensity(lights, points, kUsualDensity);
+      for (Light& light : lights) light.range = range;
+      // A point this near to a light counts as farther off; none is.
+      for (const glm::dvec3& point : points)
+        std::erase_if(lights, [&](const Light& light) {
+          return glm::distance(light.position, point) < 0.01 * double(range);
+        });
+      const double wanted = meanLight(lights, points);
+      removeRanges(lights, points);
+      for (const Light& light : lights) {
+        ASSERT_TRUE(std::isinf(light.range));
+        ASSERT_EQ(light.attenuation, glm::vec3(0, 0, 1));
+      }
+      // The factor and the colours are rounded to float.
+      EXPECT_NEAR(meanLight(lights, points), wanted, 3 * 0x1p-24 * wanted) << count;
+    }
+  }
+}
+
+TEST(RemoveRanges, APointAtALightCountsAsAHundredthOfItsRangeAway) {
+  std::vector<Light> lights(1);
+  lights[0].range = 200;
+  removeRanges(lights, std::vector<glm::dvec3>{glm::dvec3(0)});
+  // It had 1, and would have 1/2² at two metres.
+  EXPECT_EQ(lights[0].diffuse, glm::vec3(4));
+}
+
+TEST(RemoveRanges, BlackLightsAndNoPointsLeaveColoursAlone) {
+  std::vector<Light> lights(1);
+  removeRanges(lights, {});
+  EXPECT_EQ(lights[0].diffuse, glm::vec3(1));
+  lights[0].diffuse = glm::vec3(0);
+  removeRanges(lights, somePoints(3));
+  EXPECT_EQ(lights[0].diffuse, glm::vec3(0));
+}
+
+TEST(RemoveRanges, LightsThatReachedNothingAreRefused) {
+  std::vector<Light> lights(1);
+  lights[0].range = 1;
+  EXPECT_THROW(removeRanges(lights, std::vector<glm::dvec3>{{2, 0, 0}}), InputError);
+}
+
+TEST(RemoveRanges, ThreadsDoNotMatter) {
+  std::vector<Light> lights = someLights(FieldShape::kClusters, 5000, 5), others;
+  for (Light& light : lights) light.range = 1;
+  others = lights;
+  const std::vector<glm::dvec3> points = somePoints(100);
+  removeRanges(lights, points);
+  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  removeRanges(others, points);
+  for (std::size_t i = 0; i < lights.size(); ++i) ASSERT_EQ(lights[i].diffuse, others[i].diffuse);
 }
 
 }  // namespace
