@@ -75,6 +75,36 @@ typedef struct {
 } ShadeLight;
 SHARED_SIZE(ShadeLight, 112);
 
+// Lights that clusters may stand for: point lights without range whose attenuation is quadratic·d² alone (light_clusters.hpp). They
+// lie in the leaves of a balanced binary tree whose inner nodes are clusters.
+//
+// A cluster is a column of a row of kClusterSlots: the two children of a node, their four and their eight children come in this order,
+// from slots 0, 2 and 6 on. So one vector tests three levels. Row r belongs to a node whose level is a multiple of 3, and its slots
+// 6 to 13 to the rows 8·r + 1 to 8·r + 8. Row 0 is the root's.
+enum { kClusterSlots = 16, kRowClusters = 14, kLeafLights = 8 };
+
+// Fields of a cluster, kClusterSlots floats each; view space, metres. The lights are at δ from the centre, and q is a channel of a light's
+// diffuse colour over its quadratic attenuation. Bounds hold for every channel.
+enum {
+  kClusterCentre = 0,     // 3: xyz
+  kClusterExtent = 3,     // 3: |xyz| of any δ, at most
+  kClusterRadius = 6,     // |δ| of any light, at most
+  kClusterAbsolute = 7,   // 4: bounds of Σ q·|δ|ʲ, j = 0 … 3
+  kClusterHarmonic = 11,  // 4: bounds of |Σ q·Yⱼ(δ)|, j = 1 … 4: Y₁ to Y₄ are the solid harmonics of a degree, |Yⱼ(δ)| = |δ|ʲ
+  kClusterMoments = 15,   // of each channel
+};
+
+// Moments of a channel: Σ q, Σ q·δ, Σ q·δδ (xx xy xz yy yz zz).
+enum { kMoment0 = 0, kMoment1 = 1, kMoment2 = 4, kMoments = 10, kClusterFields = kClusterMoments + 3 * kMoments };
+
+// A light of the tree's leaves, in the tree's order.
+typedef struct {
+  float4 position;  // xyz; w: what 1/d² is held below, as attenuation is below 2¹⁰⁰
+  float4 rest;      // xyz: what rounding took from the position; w: unused, 0
+  float4 diffuse;   // rgb over quadratic attenuation; w: the largest
+} ClusteredLight;
+SHARED_SIZE(ClusteredLight, 48);
+
 // Where a light's shadow map is looked up. (u, v) are tangents from the light, right and up of the face's axis, or for a
 // parallel map metres; depths are reversed and grow towards the light, 0 where nothing was drawn.
 // - Cube: rows x, y, z give the vector from the light to the view-space position p, in world axes; the faces are those of

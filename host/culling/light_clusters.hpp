@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "base/array_memory.hpp"
+#include "kernels/shared.h"
+
+namespace luciole {
+
+/// A point light without range whose attenuation is quadratic·d² alone. View space, metres.
+struct UnboundedLight {
+  glm::dvec3 position;
+  glm::dvec3 diffuse;  ///< ≥ 0
+  double quadratic;    ///< at least kLeastQuadratic
+};
+
+/// Attenuation is held at 2¹⁰⁰ where quadratic·d² is less than 2⁻¹⁰⁰. Clusters, which are farther than 2⁻²⁵ m
+/// from what they light, are beyond that for larger ones than this.
+inline constexpr double kLeastQuadratic = 0x1p-40;
+
+/// A balanced tree over lights that clusters may stand for; its layout is that of kernels/shared.h.
+struct LightClusters {
+  std::vector<ClusteredLight, RawArrayAllocator<ClusteredLight>> lights;
+  /// kClusterFields · kClusterSlots floats a row. Slots without a cluster are 0.
+  std::vector<float, RawArrayAllocator<float>> rows;
+  unsigned levels =
+      0;  ///< of the tree below its root; its 2^levels leaves hold up to kLeafLights lights each
+};
+
+/// Where the lights of node `index` of a level begin among `lights` lights. The nodes of a level share them
+/// evenly, so the tree is a function of their number alone.
+constexpr std::size_t clusterBegin(std::size_t lights, unsigned level, std::size_t index) {
+  return (lights * index) >> level;
+}
+
+/// Builds the tree in O(n log n), in parallel: each node's lights are halved along the longest side of their
+/// box. Deterministic.
+LightClusters buildLightClusters(std::span<const UnboundedLight> lights);
+
+}  // namespace luciole

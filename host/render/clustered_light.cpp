@@ -1,0 +1,52 @@
+#include "render/clustered_light.hpp"
+
+#include <vector>
+
+#include "cl/launch.hpp"
+
+namespace luciole {
+namespace {
+
+/// Tiles side by side that a work-item takes.
+constexpr int kRun = 8;
+
+}  // namespace
+
+ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
+                                    const ClusteredLightArguments& arguments) {
+  Kernel kernel = makeKernel(device, "clustered_light.cl", "clustered_light", defines);
+  const GBufferBuffers& gbuffer = arguments.gbuffer;
+  const LightClusters& clusters = arguments.clusters;
+  const std::size_t tiles = arguments.frame.plane_stride / kTilePixels;
+  std::vector<uint> counts(4 * tiles);
+  const Buffer<uint> counts_buffer = borrowedForOutput(device, counts);
+  const Buffer<const float> rows = borrowed(device, clusters.rows);
+  const Buffer<const ClusteredLight> lights = borrowed(device, clusters.lights);
+  launch(device, kernel,
+         {{"frame", arguments.frame},
+          {"position", gbuffer.position},
+          {"normal", gbuffer.normal},
+          {"diffuse", gbuffer.diffuse},
+          {"rows", rows},
+          {"lights", lights},
+          {"light_count", uint(clusters.lights.size())},
+          {"levels", uint(clusters.levels)},
+          {"light_error", arguments.light_error},
+          {"tiles_x", uint(arguments.tiles_x)},
+          {"run", uint(kRun)},
+          {"light", arguments.light},
+          {"bound", arguments.bound},
+          {"counts", counts_buffer}},
+         {.items = std::size_t((arguments.tiles_x + kRun - 1) / kRun) * std::size_t(arguments.tiles_y)});
+  download(device, counts_buffer, counts);
+  ClusteredLightCounts sums;
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    sums.far += counts[4 * tile];
+    sums.clusters += counts[4 * tile + 1];
+    sums.lights += counts[4 * tile + 2];
+    sums.redone += counts[4 * tile + 3];
+  }
+  return sums;
+}
+
+}  // namespace luciole
