@@ -1,0 +1,43 @@
+#include "culling/exact_reason.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace luciole {
+
+const char* exactReasonName(ExactReason reason) {
+  static constexpr const char* kNames[]{"none", "model", "kind", "shadow", "range", "attenuation", "ambient"};
+  static_assert(std::size(kNames) == kExactReasons);
+  return kNames[std::size_t(reason)];
+}
+
+ExactReason exactReason(const Light& light, Model model, bool shadows) {
+  if (model != Model::kPhong && model != Model::kBlinnPhong) return ExactReason::kModel;
+  if (light.kind != LightKind::kPoint) return ExactReason::kKind;
+  if (shadows && light.shadow) return ExactReason::kShadow;
+  if (std::isfinite(light.range)) return ExactReason::kRange;
+  const glm::vec3& falloff = light.attenuation;
+  if (falloff.x != 0 || falloff.y != 0 || !(falloff.z > 0)) return ExactReason::kAttenuation;
+  if (light.ambient != glm::vec3(0.0f)) return ExactReason::kAmbient;
+  return ExactReason::kNone;
+}
+
+std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights, Model model,
+                                                    bool shadows) {
+  using Counts = std::array<std::size_t, kExactReasons>;
+  const auto count = [&](const tbb::blocked_range<std::size_t>& some, Counts counts) {
+    for (std::size_t i = some.begin(); i < some.end(); ++i)
+      ++counts[std::size_t(exactReason(lights[i], model, shadows))];
+    return counts;
+  };
+  const auto join = [](Counts a, const Counts& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+    return a;
+  };
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, lights.size()), Counts{}, count, join);
+}
+
+}  // namespace luciole
