@@ -12,6 +12,7 @@
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
+#include "culling/exact_reason.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/layers.hpp"
 #include "render/estimate.hpp"
@@ -165,6 +166,25 @@ void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
             fmt::format("{} cast shadows, {} reach everywhere", lights.casting, lights.everywhere));
 }
 
+/// For how many of the lights clusters may stand (--light-error), and why not for the others.
+void addLightUses(const Scene& scene, const ShadeSettings& settings, Report& report) {
+  const auto counts = countReasons(scene.lights, lightUse(materialTraits(scene), settings));
+  Json& json = report.json["lights"];
+  json["clusterable"] = counts[std::size_t(ExactReason::kNone)];
+  json["exact"] = Json::object();
+  std::vector<std::string> reasons;
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
+    json["exact"][exactReasonName(ExactReason(i))] = counts[i];
+    reasons.push_back(fmt::format("{} by {}", counts[i], exactReasonName(ExactReason(i))));
+  }
+  if (scene.lights.empty()) return;
+  addLine(
+      report, "",
+      fmt::format("clusters may stand for {} (--light-error){}{}", counts[std::size_t(ExactReason::kNone)],
+                  reasons.empty() ? "" : "; not: ", fmt::join(reasons, ", ")));
+}
+
 /// Two digits of a duration: "450 ms", "1.5 s", "12 min".
 std::string durationText(double milliseconds) {
   const auto [value, unit] = milliseconds < 995      ? std::pair(milliseconds, "ms")
@@ -210,6 +230,7 @@ Report sceneReport(InfoOptions options) {
   addMaterials(scene, info, report);
   addCameras(scene, report);
   addLights(scene, info.lights, report);
+  addLightUses(scene, settings.shade, report);
   report.json["ignored_extensions"] = scene.ignored_extensions;
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));

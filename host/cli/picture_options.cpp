@@ -29,9 +29,10 @@ namespace luciole {
 namespace {
 
 const std::map<std::string, Aov> kAovs{
-    {"position", Aov::kPosition},      {"normal", Aov::kNormal},     {"depth", Aov::kDepth},
-    {"diffuse", Aov::kDiffuse},        {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
-    {"list_length", Aov::kListLength}, {"shadow", Aov::kShadow},     {"shading_count", Aov::kShadingCount}};
+    {"position", Aov::kPosition},         {"normal", Aov::kNormal},     {"depth", Aov::kDepth},
+    {"diffuse", Aov::kDiffuse},           {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
+    {"list_length", Aov::kListLength},    {"shadow", Aov::kShadow},     {"light_error", Aov::kLightError},
+    {"shading_count", Aov::kShadingCount}};
 
 std::vector<std::string> compressionNames() {
   std::vector<std::string> names(kPngCompressions.begin(), kPngCompressions.end());
@@ -59,6 +60,23 @@ std::optional<double> exposureStops(const std::string& text) {
   const auto [end, error] = std::from_chars(start, text_end, stops);
   if (error != std::errc() || end != text_end || !(std::abs(stops) <= kMostStops)) return std::nullopt;
   return stops;
+}
+
+/// The share from 0 to 1 that a text names: a number, or a fraction such as 1/256. Nothing for another text.
+std::optional<float> typedShare(const std::string& text) {
+  const char* const text_end = text.c_str() + text.size();
+  double over = 0, under = 1;
+  auto [end, error] = std::from_chars(text.c_str(), text_end, over);
+  if (error == std::errc() && end != text_end && *end == '/') {
+    const auto below = std::from_chars(end + 1, text_end, under);
+    end = below.ptr;
+    error = below.ec;
+  }
+  const double share = over / under;
+  if (error != std::errc() || end != text_end || !(under > 0) || !std::isfinite(under) ||
+      !(share >= 0 && share <= 1))
+    return std::nullopt;
+  return float(share);
 }
 
 /// Accepts stops, and "auto" if the command measures exposures.
@@ -231,11 +249,26 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "half as many for each face of a point light's")
         ->check(CLI::Range(kSmallestFace, kLargestFace))
         ->capture_default_str();
+    command
+        .add_option_function<std::string>(
+            "--light-error", [&options](const std::string& text) { options.light_error = *typedShare(text); },
+            "lights without range may be stood for by clusters of them, as long as no pixel is wrong by more "
+            "than so "
+            "much of the larger of 1 and itself: from 0 (each light by itself) to 1, such as 1/256")
+        ->check(CLI::Validator(
+            [](std::string& text) {
+              return typedShare(text)
+                         ? std::string()
+                         : fmt::format("expected a number or a fraction from 0 to 1, such as 1/256, got {}",
+                                       text);
+            },
+            ""))
+        ->default_str("0");
     if (is_one_picture)
       command.add_option(
           "--aov", options.aovs,
           "extra layers of an EXR: "
-          "position,normal,depth,diffuse,material,light_count,list_length,shadow,shading_count");
+          "position,normal,depth,diffuse,material,light_count,list_length,shadow,light_error,shading_count");
   }
   if (groups & kCastOption) addCastShadowsOption(command, options);
   addMissingTexturesOption(command, options.missing_textures);
@@ -329,7 +362,7 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
       for (const auto& [known, aov] : kAovs) names.push_back(known);
       throw InputError(
           fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
-                      "list_length, shadow, shading_count{}",
+                      "list_length, shadow, light_error, shading_count{}",
                       name, didYouMean(name, names)));
     }
     if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
@@ -368,6 +401,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                            : options.shadows == "pcf"  ? ShadowMethod::kPcf
                            : options.shadows == "soft" ? ShadowMethod::kSoft
                                                        : ShadowMethod::kExact;
+  settings.shade.light_error = options.light_error;
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;

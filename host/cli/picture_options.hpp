@@ -28,6 +28,7 @@ struct PictureOptions {
   std::string culling = "auto";
   int tile = ShadeSettings{}.tile_size;
   std::string shadows = "hard";
+  float light_error = ShadeSettings{}.light_error;
   bool shadows_given = false;  ///< --shadows was typed
   std::string cast_shadows;    ///< empty: see openScene()
   int pcf_width = ShadeSettings{}.pcf_width;
@@ -55,7 +56,8 @@ enum OptionGroup : unsigned {
   kViewOptions = 1,    ///< --size, --camera, --crop, --shading
   kSampleOption = 2,   ///< --samples
   kModelOptions = 4,   ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
-  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size, --aov;
+  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size,
+                       ///< --light-error, --aov;
                        ///< with kSampleOption also --samples-shading
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames

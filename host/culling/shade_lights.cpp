@@ -31,10 +31,10 @@ float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y
 
 }  // namespace
 
-LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps) {
+LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> order, const Camera& camera,
+                         const ShadowMaps& shadow_maps) {
   const glm::dmat4 world_to_view = worldToView(camera);
   const glm::dmat3 rotation(world_to_view);
-  const std::vector<std::uint32_t> order = spatialOrder(scene.lights);
   LightArray result(order.size());
   tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
     // Neighbours in space lie anywhere in memory.
@@ -71,6 +71,10 @@ LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowM
     out.shadow = shadow_maps.map_of_light.empty() ? kNoShadow : shadow_maps.map_of_light[order[i]];
   });
   return result;
+}
+
+LightArray prepareLights(const Scene& scene, const Camera& camera, const ShadowMaps& shadow_maps) {
+  return prepareLights(scene, spatialOrder(scene.lights), camera, shadow_maps);
 }
 
 }  // namespace luciole

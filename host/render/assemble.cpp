@@ -12,6 +12,12 @@ namespace luciole {
 namespace {
 
 constexpr const char* kShadingCount = "shading_count";
+constexpr const char* kLightErrorR = "light_error.R";
+
+/// Where a channel of that name is; the number of channels if there is none.
+std::size_t channelOf(const Image& image, const char* name) {
+  return std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin();
+}
 
 /// A channel of the finished picture, and where its values are.
 struct Layer {
@@ -93,6 +99,7 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
       case Aov::kPosition:
       case Aov::kNormal:
       case Aov::kDiffuse:
+      case Aov::kLightError:
         count += 3;
         break;
       case Aov::kMaterial:
@@ -148,6 +155,9 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
       case Aov::kShadow:
         append({{"shadow", first.color.size() == 4 * n ? first.color.data() + 3 * n : all_visible.data()}});
         break;
+      case Aov::kLightError:
+        append({{kLightErrorR, nullptr}, {"light_error.G", nullptr}, {"light_error.B", nullptr}});
+        break;
       case Aov::kShadingCount:
         append({{kShadingCount, nullptr}});
         break;
@@ -177,12 +187,20 @@ void countCovered(const GBuffer& gbuffer, Plane& covered) {
 void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image) {
   const std::size_t n = gbuffer.pixels();
   const Plane& shadings = sums.shadings.empty() ? sums.covered : sums.shadings;
-  const std::size_t counted =
-      std::find(image.channels.begin(), image.channels.end(), kShadingCount) - image.channels.begin();
+  const std::size_t counted = channelOf(image, kShadingCount);
+  const std::size_t bounded =
+      sums.light_error.empty() ? image.channels.size() : channelOf(image, kLightErrorR);
   const float scale = std::exp2(settings.exposure) / float(settings.samples);
+  // Each of n samples' products and sums rounds both colour and bound, and so do the factor and the product
+  // with it: fewer than 2n + 3 roundings of 2⁻²⁴, of terms ≥ 0.
+  const double rounding = (2 * settings.samples + 3) * 0x1p-24;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(sums.color[place + c * n] * scale);
     if (settings.alpha) pixel[3] = sums.covered[place] / float(settings.samples);
+    for (int c = 0; c < 3 && bounded < image.channels.size(); ++c) {
+      const double bound = double(sums.light_error[place + c * n]) * scale;
+      pixel[bounded + c] = finiteColor(float((1 + rounding) * bound + rounding * double(pixel[c])));
+    }
     if (counted < image.channels.size()) pixel[counted] = shadings[place];
   });
 }

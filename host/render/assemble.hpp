@@ -28,8 +28,9 @@ void countCovered(const GBuffer& gbuffer, Plane& covered);
 bool countsCovered(const RenderSettings& settings);
 
 /// Fills in R G B: the mean of the samples times 2^exposure, clamped to finite floats; A and the number of
-/// shadings, if asked for. sums: over `settings.samples` samples, in the G-buffer's layout; `covered` as
-/// countsCovered() says, and empty `shadings` where each of those samples was shaded.
+/// shadings and bounds of the light's error, if asked for. sums: over `settings.samples` samples, in the
+/// G-buffer's layout; `covered` as countsCovered() says, and empty `shadings` where each of those samples was
+/// shaded.
 void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image);
 
 }  // namespace luciole

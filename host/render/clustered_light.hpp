@@ -31,4 +31,8 @@ struct ClusteredLightCounts {
 ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments);
 
+/// Whether clusters take less work than so many lights that are each summed by themselves. It counts, so a
+/// picture doesn't depend on the machine. light_error: > 0.
+bool clustersPay(std::size_t lights, float light_error);
+
 }  // namespace luciole

@@ -7,6 +7,7 @@
 
 #include "kernels/shared.h"
 #include "raster/lift.hpp"
+#include "render/clustered_light.hpp"
 #include "shadow/shadow_views.hpp"
 
 namespace luciole {
@@ -43,6 +44,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"LIGHT_LISTS", "light lists", "lists of the lights that matter to a few pixels, instead of all lights"},
     {"LONG_SUMS", "long sums", "more lights than float adds up one by one"},
     {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
+    {"CLUSTERED_LIGHTS", "clustered lights", "clusters that stand for lights, with a bound of the error"},
 }};
 
 std::vector<std::string> featureNames(const FeatureSet& features) {
@@ -62,6 +64,16 @@ SurfaceTraits materialTraits(const Scene& scene) {
       std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; });
   traits.smooth = shadows && hasBentCorners(scene);
   return traits;
+}
+
+LightUse lightUse(SurfaceTraits surfaces, const ShadeSettings& settings) {
+  return {settings.model, settings.shadows != ShadowMethod::kOff, surfaces.specular};
+}
+
+bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings) {
+  if (!scene.lighting || !(settings.light_error > 0)) return false;
+  const auto counts = countReasons(scene.lights, lightUse(surfaces, settings));
+  return clustersPay(counts[std::size_t(ExactReason::kNone)], settings.light_error);
 }
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
@@ -93,7 +105,12 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     return features;
   }
   bool light_specular = false, any_cone = false, any_exponent = false;
+  const bool clustered = standsForLights(scene, surfaces, settings), shadows = settings.shadows != ShadowMethod::kOff;
+  std::size_t summed = 0;  // lights that are summed by themselves
   for (const Light& light : scene.lights) {
+    light_specular |= light.specular != glm::vec3(0.0f);
+    if (clustered && exactReason(light, lightUse(surfaces, settings)) == ExactReason::kNone) continue;
+    ++summed;
     features.set(light.kind == LightKind::kPoint         ? Feature::kPointLights
                  : light.kind == LightKind::kDirectional ? Feature::kDirectionalLights
                                                          : Feature::kSpotLights);
@@ -107,8 +124,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
         features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);
     }
     if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
-    light_specular |= light.specular != glm::vec3(0.0f);
-    if (light.shadow && settings.shadows != ShadowMethod::kOff) {
+    if (light.shadow && shadows) {
       features.set(usesCubeMap(light)                      ? Feature::kCubeShadows
                    : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
                                                            : Feature::kPerspectiveShadows);
@@ -126,8 +142,11 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
   features.set(Feature::kSpecular, surfaces.specular && light_specular);
   features.set(featureOf(settings.model), !scene.lights.empty());
-  features.set(Feature::kLightLists, settings.culling == Culling::kTiles && !scene.lights.empty());
-  features.set(Feature::kLongSums, scene.lights.size() > kSumBlock);
+  features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
+  features.set(Feature::kLongSums, summed > kSumBlock);
+  // What clusters give a pixel reaches the shading kernels as light that the surface emits.
+  features.set(Feature::kClusteredLights, clustered);
+  if (clustered) features.set(Feature::kEmission);
   return features;
 }
 
@@ -137,6 +156,18 @@ FeatureSet lookupFeatures(const FeatureSet& features) {
                                 Feature::kCubeShadows, Feature::kLift, Feature::kLightLists})
     lookups.set(feature, features.has(feature));
   return lookups;
+}
+
+FeatureSet clusterFeatures(const FeatureSet& features) {
+  FeatureSet kept;
+  for (const Feature feature :
+       {Feature::kSpecular, Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
+        Feature::kFogPerChannel, Feature::kFogRadial, Feature::kClusteredLights})
+    kept.set(feature, features.has(feature));
+  for (const Model model : kAllModels) kept.set(featureOf(model), features.has(featureOf(model)));
+  kept.set(Feature::kPointLights);
+  kept.set(Feature::kAttenuation);
+  return kept;
 }
 
 PlaneSet neededPlanes(const FeatureSet& features) {

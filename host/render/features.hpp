@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "culling/exact_reason.hpp"
 #include "raster/rasterize.hpp"
 #include "scene/model.hpp"
 #include "scene/scene.hpp"
@@ -45,6 +46,7 @@ enum class Feature : unsigned {
   kLightLists,
   kLongSums,
   kOutputShadow,
+  kClusteredLights,
   kCount
 };
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::kCount);
@@ -102,7 +104,17 @@ struct ShadeSettings {
   ShadowLimits shadow_limits{};
   int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
   int exp2_degree = 6;
+  /// E, 0 to 1: lights may be stood for by clusters of them as long as each pixel's error stays below
+  /// E·max(1, colour) in each channel. 0: each light is summed by itself.
+  float light_error = 0;
 };
+
+/// Whether clusters stand for some of the scene's lights in a picture with these settings: where the settings
+/// allow it, for those without an ExactReason, if there are enough of them (clustersPay). O(lights).
+bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings);
+
+/// Which of a picture's lights others may stand for.
+LightUse lightUse(SurfaceTraits surfaces, const ShadeSettings& settings);
 
 /// The features that this scene's lights, fog and surfaces need, seen by this camera.
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
@@ -111,6 +123,9 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
 /// The features that decide where shadow maps are looked up. kernels/find_needed.cl and kernels/classify.cl
 /// depend on no others, so scenes that differ only in others share these programs.
 FeatureSet lookupFeatures(const FeatureSet& features);
+
+/// What of a program's features kernels need that light pixels by clusters.
+FeatureSet clusterFeatures(const FeatureSet& features);
 
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);

@@ -3,9 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "culling/cull.hpp"
+#include "culling/exact_reason.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "rays/shadow_rays.hpp"
 #include "render/count_in_range.hpp"
@@ -35,7 +38,6 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettin
   frame.fog_mode = static_cast<uint>(scene.fog.mode);
   frame.fog_radial = scene.fog.radial;
   frame.model = static_cast<uint>(settings.model);
-  frame.light_count = scene.lighting ? static_cast<uint>(scene.lights.size()) : 0;
   return frame;
 }
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
@@ -199,6 +201,72 @@ void countLights(Device& device, Lighting& lighting, const LightLists* lists, co
   for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
 }
 
+/// Takes from `order` those lights that clusters may stand for, and returns them; view space.
+std::vector<UnboundedLight> takeClustered(const Scene& scene, const Camera& camera, const LightUse& use,
+                                          std::vector<std::uint32_t>& order) {
+  const auto first = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t light) {
+    return exactReason(scene.lights[light], use) != ExactReason::kNone;
+  });
+  const glm::dmat4 world_to_view = worldToView(camera);
+  std::vector<UnboundedLight> clustered(std::size_t(order.end() - first));
+  tbb::parallel_for(std::size_t(0), clustered.size(), [&](std::size_t i) {
+    const Light& light = scene.lights[first[std::ptrdiff_t(i)]];
+    clustered[i] = {glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), glm::dvec3(light.diffuse),
+                    light.attenuation.z};
+  });
+  order.erase(first, order.end());
+  return clustered;
+}
+
+/// Lights the G-buffer by clusters, and sets the bounds. Returns planes r g b of that light and the
+/// G-buffer's emission together.
+Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet& features,
+                      const ShadeFrame& frame, const GBuffer& gbuffer, const GBufferBuffers& buffers,
+                      LitPlanes& lit) {
+  Plane light(3 * gbuffer.pixels());
+  lit.light_error.resize(light.size());
+  {
+    const Buffer<float> light_buffer = borrowedForOutput(device, light);
+    const Buffer<float> bound_buffer = borrowedForOutput(device, lit.light_error);
+    lit.clustered = clusteredLight(device, featureDefines(clusterFeatures(features)) + lighting.math_defines,
+                                   {.frame = frame,
+                                    .gbuffer = buffers,
+                                    .tiles_x = gbuffer.tiles_x,
+                                    .tiles_y = gbuffer.tiles_y,
+                                    .clusters = lighting.clusters,
+                                    .light_error = lighting.light_error,
+                                    .light = light_buffer,
+                                    .bound = bound_buffer});
+    download(device, light_buffer, light);
+    download(device, bound_buffer, lit.light_error);
+  }
+  if (!gbuffer.emission.empty())
+    tbb::parallel_for(std::size_t(0), light.size(), [&](std::size_t i) { light[i] += gbuffer.emission[i]; });
+  return light;
+}
+
+/// What rounding adds to a bound, times the colour that is seen. Between the light of clusters and the colour
+/// stand at most four roundings of 2⁻²⁴: the sum with the surface's emission, that with the light of other
+/// lights, the fog's own light, and the sum of both through the fog (fog.clh). All terms are ≥ 0, so none is
+/// more than the colour, but for the roundings after it, which a fifth 2⁻²⁴ covers.
+constexpr double kSeenRounding = 5 * 0x1p-24;
+
+/// Makes the bounds hold for the colours that were shaded: those of clusters there are already, or a vertex's
+/// for all pixels.
+void boundSeenLight(const GBuffer& gbuffer, const std::optional<glm::vec3>& vertex_error, LitPlanes& lit) {
+  const std::size_t n = gbuffer.pixels();
+  lit.light_error.resize(3 * n);
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const bool covered = std::isfinite(gbuffer.position[i + 2 * n]);
+    for (int c = 0; c < 3; ++c) {
+      float& bound = lit.light_error[i + c * n];
+      const double given = vertex_error ? (*vertex_error)[c] : bound;
+      const double seen = given + kSeenRounding * double(lit.color[i + c * n]);
+      bound = covered ? std::nextafter(float(seen), std::numeric_limits<float>::infinity()) : 0.0f;
+    }
+  });
+}
+
 }  // namespace
 
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
@@ -213,15 +281,26 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
     lighting.host_shadows = timed(stats, Stage::kShadowMaps, [&] {
       return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits);
     });
-  if (features.has(Feature::kExact)) {
-    lighting.order = spatialOrder(scene.lights);
+  if (features.has(Feature::kExact))
     lighting.shadow_rays = timed(stats, Stage::kRayTree, [&] {
       return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3]));
     });
-  }
   timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
   timed(stats, Stage::kPrepareLights, [&] {
-    if (scene.lighting) lighting.host_lights = prepareLights(scene, camera, lighting.host_shadows);
+    if (scene.lighting) {
+      std::vector<std::uint32_t> order = spatialOrder(scene.lights);
+      if (features.has(Feature::kClusteredLights)) {
+        const SurfaceTraits surfaces{.specular = features.has(Feature::kSpecular)};
+        const std::vector<UnboundedLight> clustered =
+            takeClustered(scene, camera, lightUse(surfaces, settings), order);
+        lighting.clusters = buildLightClusters(clustered);
+        lighting.clustered_lights = clustered.size();
+        lighting.light_error = settings.light_error;
+      }
+      lighting.host_lights = prepareLights(scene, order, camera, lighting.host_shadows);
+      if (features.has(Feature::kExact)) lighting.order = std::move(order);
+    }
+    lighting.frame.light_count = static_cast<uint>(lighting.host_lights.size());
     lighting.host_tree = buildLightTree(lighting.host_lights);
     uploadLighting(device, lighting);
   });
@@ -240,7 +319,8 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   Plane level;  // lifts of 0, for a G-buffer without lifts
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
   const Plane& lift = level.empty() ? gbuffer.lift : level;
-  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
+  Plane emission;  // with the light of clusters
+  GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
   LitPlanes lit;
   lit.color = std::move(used);
   const bool together = needsNoLists(device, lighting, features, counts);
@@ -262,6 +342,12 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(shadows.texels.size(), 1));
+  if (features.has(Feature::kClusteredLights)) {
+    emission = timed(stats, Stage::kClusteredLight, [&] {
+      return lightByClusters(device, lighting, features, frame, gbuffer, buffers, lit);
+    });
+    buffers.emission = borrowed(device, emission);
+  }
   lit.color.resize(pixels * (features.has(Feature::kOutputShadow) ? 4 : 3));
   const Buffer<float> image = borrowedForOutput(device, lit.color);
   timed(stats, Stage::kShade, [&] {
@@ -293,6 +379,8 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
            .image = image});
   });
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
+  if (features.has(Feature::kClusteredLights) || lighting.vertex_error)
+    boundSeenLight(gbuffer, lighting.vertex_error, lit);
   PixelCounts missing = counts;
   if (together) missing.evaluated = false;
   if (missing.in_range || missing.evaluated || missing.list_length)
@@ -300,7 +388,8 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
           [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, missing, lit); });
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             geometric_normal.size() + lift.size() + lit.color.size();
+                             geometric_normal.size() + lift.size() + emission.size() +
+                             lit.light_error.size() + lit.color.size();
   stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
                                                         shadows.texels.size() * sizeof(ShadowTexel) +
                                                         shadows.bounds.size() * sizeof(BoundTexel) +

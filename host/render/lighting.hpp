@@ -1,13 +1,16 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "culling/cull.hpp"
+#include "culling/light_clusters.hpp"
 #include "culling/light_tree.hpp"
 #include "culling/shade_lights.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "raster/view.hpp"
 #include "rays/ray_cast.hpp"
+#include "render/clustered_light.hpp"
 #include "render/exact_shadows.hpp"
 #include "render/features.hpp"
 #include "render/stats.hpp"
@@ -23,8 +26,8 @@ struct Lighting {
   std::string math_defines;  ///< as by mathDefines
   ShadeFrame frame{};        ///< all but plane_stride and texel_count, which depend on the G-buffer
   unsigned group_log2 = 0;   ///< see CullArguments
-  bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
-  LightArray host_lights;
+  bool unlit = false;      ///< the scene switches lighting off: the diffuse colour takes the place of ambient
+  LightArray host_lights;  ///< those that are summed by themselves
   LightTree host_tree;
   ShadowMaps host_shadows;
   RayScene shadow_rays;              ///< with Feature::kExact only
@@ -37,7 +40,13 @@ struct Lighting {
   Buffer<const BoundTexel> shadow_bounds;   ///< those drawn so far, with Feature::kExact
   LightLists lists;                         ///< of the last G-buffer that was shaded by lists
   LightLists lists_in_range;                ///< lists by range alone, to count lights in range
-  std::size_t bytes = 0;                    ///< of lights and tree on the device
+  LightClusters clusters;                   ///< with Feature::kClusteredLights only
+  std::size_t clustered_lights = 0;         ///< that they stand for
+  float light_error = 0;                    ///< see ShadeSettings
+  /// With Gouraud shading and clusters: the largest bound of any vertex, r g b. A pixel mixes vertices by
+  /// weights that add up to 1, and maps don't make it brighter, so it is a bound for each pixel.
+  std::optional<glm::vec3> vertex_error;
+  std::size_t bytes = 0;  ///< of lights and tree on the device
 
   Lighting() = default;
   Lighting(const Lighting&) = delete;
@@ -53,7 +62,11 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
 
 /// A lit G-buffer: planes of pixels() floats.
 struct LitPlanes {
-  Plane color;        ///< r g b, then with Feature::kOutputShadow the shadow layer
+  Plane color;  ///< r g b, then with Feature::kOutputShadow the shadow layer
+  /// Bounds of the error of `color` that clusters of lights make, r g b; 0 for background. Empty where none
+  /// do.
+  Plane light_error;
+  ClusteredLightCounts clustered;
   Plane light_count;  ///< lights in range of each pixel, if asked for
   Plane
       list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists

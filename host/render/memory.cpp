@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/machine_memory.hpp"
+#include "culling/exact_reason.hpp"
 #include "raster/bins.hpp"
 #include "render/assemble.hpp"
 
@@ -16,7 +17,9 @@ std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step 
 
 std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
                           const Scene& scene) {
-  const std::size_t gbuffer = 9 + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
+  // Beside the groups the light of clusters, with its bounds and their sum.
+  const bool clustered = features.has(Feature::kClusteredLights);
+  const std::size_t gbuffer = 9 + (clustered ? 9 : 0) + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
                               (planes.lift ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
@@ -33,9 +36,12 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
                                  (wants(settings, Aov::kShadow) ? 1 : 0);
+  const LightUse use = lightUse({.specular = features.has(Feature::kSpecular)}, settings.shade);
   const std::size_t everywhere =
-      std::count_if(scene.lights.begin(), scene.lights.end(),
-                    [](const Light& light) { return !std::isfinite(light.range); });
+      std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
+        return !std::isfinite(light.range) &&
+               !(clustered && exactReason(light, use) == ExactReason::kNone);
+      });
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
                                 : 0;

@@ -6,15 +6,18 @@
 
 namespace luciole {
 
-PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit) {
+PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit,
+                      Plane light_error) {
   const std::size_t n = layout.pixels();
-  PixelSums sums{std::move(lit), Plane(n), Plane(n)};
+  PixelSums sums{std::move(lit), Plane(n), Plane(n), std::move(light_error)};
   sums.color.resize(3 * n);
   tbb::parallel_for(0, layout.height, [&](int y) {
     const std::uint16_t* row = samples.data() + std::size_t(y) * layout.width;
     for (int x = 0; x < layout.width; ++x) {
       const std::size_t i = layout.index(x, y);
       for (int c = 0; c < 3; ++c) sums.color[i + c * n] *= float(row[x]);
+      if (!sums.light_error.empty())
+        for (int c = 0; c < 3; ++c) sums.light_error[i + c * n] *= float(row[x]);
       sums.covered[i] = float(row[x]);
       sums.shadings[i] = row[x] > 0 ? 1.0f : 0.0f;
     }
@@ -23,7 +26,7 @@ PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samp
 }
 
 void addPoints(const GBuffer& layout, const PointLists& points, std::size_t first_list, std::size_t end_list,
-               const Plane& lit, std::size_t stride, PixelSums& sums) {
+               const Plane& lit, const Plane& light_error, std::size_t stride, PixelSums& sums) {
   const std::size_t n = layout.pixels(), first_point = points.starts[first_list];
   // All points of a pixel are in one list.
   tbb::parallel_for(first_list, end_list, [&](std::size_t list) {
@@ -33,6 +36,9 @@ void addPoints(const GBuffer& layout, const PointLists& points, std::size_t firs
       const std::size_t i = layout.index(int(point.pixel % width), int(point.pixel / width));
       const float samples = float(point.samples);
       for (int c = 0; c < 3; ++c) sums.color[i + c * n] += samples * lit[k - first_point + c * stride];
+      if (!sums.light_error.empty())
+        for (int c = 0; c < 3; ++c)
+          sums.light_error[i + c * n] += samples * light_error[k - first_point + c * stride];
       sums.covered[i] += samples;
       sums.shadings[i] += 1.0f;
     }

@@ -11,19 +11,21 @@ namespace luciole {
 
 /// Sums over the samples of a picture's pixels, in a G-buffer's layout. All but color may be empty.
 struct PixelSums {
-  Plane color;     ///< r g b
-  Plane covered;   ///< samples that see a surface
-  Plane shadings;  ///< points that were shaded for them
+  Plane color;        ///< r g b
+  Plane covered;      ///< samples that see a surface
+  Plane shadings;     ///< points that were shaded for them
+  Plane light_error;  ///< bounds of color's errors, r g b
 };
 
 /// Begins with the first points of the pixels. layout: their G-buffer, of which the planes aren't used.
-/// samples: as in SharedSamples. lit: their colours, r g b and perhaps more.
-PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit);
+/// samples: as in SharedSamples. lit: their colours, r g b and perhaps more. light_error: r g b, or empty.
+PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit,
+                      Plane light_error);
 
-/// Adds the lit points of the lists from first_list up to end_list. stride: of the planes of `lit`, in which
-/// the first of these points comes first.
+/// Adds the lit points of the lists from first_list up to end_list. stride: of the planes of `lit` and
+/// `light_error`, in which the first of these points comes first.
 void addPoints(const GBuffer& layout, const PointLists& points, std::size_t first_list, std::size_t end_list,
-               const Plane& lit, std::size_t stride, PixelSums& sums);
+               const Plane& lit, const Plane& light_error, std::size_t stride, PixelSums& sums);
 
 /// Adds the background's colour for the samples of a picture of so many samples a pixel that see no surface.
 void addBackground(const glm::vec3& background, int samples, PixelSums& sums);

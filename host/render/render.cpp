@@ -13,6 +13,7 @@
 
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
+#include "culling/exact_reason.hpp"
 #include "culling/fog_cull.hpp"
 #include "gbuffer/planes.hpp"
 #include "raster/lift.hpp"
@@ -53,6 +54,62 @@ FeatureSet fogOnly(const FeatureSet& features) {
   return kept;
 }
 
+void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
+  for (auto& [known, sum] : stats.counts) {
+    if (known == name) {
+      sum += count;
+      return;
+    }
+  }
+  stats.counts.emplace_back(name, count);
+}
+
+/// Adds to the statistics what clusters of lights cost a pass.
+void countClusters(const ClusteredLightCounts& counts, Stats& stats) {
+  addCount(stats, "pixel_clusters_evaluated", counts.clusters);
+  addCount(stats, "pixel_clustered_lights_evaluated", counts.lights);
+  addCount(stats, "pixels_redone", counts.redone);
+}
+
+/// Adds to the statistics how far the light of clusters may be wrong.
+void countLightErrors(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
+  const std::size_t n = gbuffer.pixels();
+  const auto add = [&](const tbb::blocked_range<std::size_t>& some, LightErrorStats bounds) {
+    for (std::size_t i = some.begin(); i < some.end(); ++i) {
+      if (!std::isfinite(gbuffer.position[i + 2 * n])) continue;
+      for (int c = 0; c < 3; ++c) {
+        const double bound = lit.light_error[i + c * n];
+        bounds.largest = std::max(bounds.largest, bound);
+        bounds.sum += bound;
+      }
+      bounds.values += 3;
+    }
+    return bounds;
+  };
+  const auto join = [](const LightErrorStats& a, const LightErrorStats& b) {
+    return LightErrorStats{std::max(a.largest, b.largest), a.sum + b.sum, a.values + b.values};
+  };
+  // The sum's order, and with it its last bits, doesn't depend on the threads.
+  stats.light_error = join(stats.light_error, tbb::parallel_deterministic_reduce(
+                                                  tbb::blocked_range<std::size_t>(0, n, kTilePixels),
+                                                  LightErrorStats{}, add, join));
+}
+
+/// Says how many lights clusters stand for, and why not for the others. Nothing where that wasn't asked for.
+void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lighting& lighting,
+                    Stats& stats) {
+  if (!(settings.light_error > 0) || !scene.lighting) return;
+  addCount(stats, "lights_stood_for", lighting.clustered_lights);
+  addCount(stats, "lights_exact", scene.lights.size() - lighting.clustered_lights);
+  const auto counts = countReasons(
+      scene.lights, lightUse({.specular = lighting.features.has(Feature::kSpecular)}, settings));
+  for (std::size_t reason = 1; reason < counts.size(); ++reason)
+    if (counts[reason] > 0)
+      addCount(stats, std::string("lights_exact_by_") + exactReasonName(ExactReason(reason)), counts[reason]);
+  const std::size_t few = counts[0] - lighting.clustered_lights;
+  if (few > 0) addCount(stats, "lights_exact_as_few", few);
+}
+
 /// The colours of the lit vertices, in the order of gatherVertices(), before fog.
 std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
                                      const std::vector<std::uint32_t>& objects, const View& view,
@@ -62,6 +119,13 @@ std::vector<glm::vec3> lightVertices(Device& device, const Scene& scene,
     return gatherVertices(scene, objects, view, neededPlanes(features));
   });
   const LitPlanes lit = lightGBuffer(device, scene, lighting, features, vertices, {}, stats);
+  if (!lit.light_error.empty()) {
+    countClusters(lit.clustered, stats);
+    glm::vec3 largest(0.0f);
+    for (std::size_t i = 0; i < lit.light_error.size(); ++i)
+      largest[int(i / vertices.pixels())] = std::max(largest[int(i / vertices.pixels())], lit.light_error[i]);
+    lighting.vertex_error = largest;
+  }
   std::vector<glm::vec3> colors(vertices.pixels());
   for (std::size_t i = 0; i < colors.size(); ++i)
     colors[i] = {lit.color[i], lit.color[i + colors.size()], lit.color[i + 2 * colors.size()]};
@@ -79,21 +143,15 @@ std::uint64_t coveredPixels(const GBuffer& gbuffer) {
       std::plus<>());
 }
 
-void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
-  for (auto& [known, sum] : stats.counts) {
-    if (known == name) {
-      sum += count;
-      return;
-    }
-  }
-  stats.counts.emplace_back(name, count);
-}
-
 /// Adds a pass to the statistics. counted: whether lit.evaluated was counted.
 void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   if (counted) addCount(stats, "pixel_lights_evaluated", lit.evaluated);
   addCount(stats, "list_entries", lit.list_entries);
+  if (!lit.light_error.empty()) {
+    countClusters(lit.clustered, stats);
+    countLightErrors(gbuffer, lit, stats);
+  }
   if (lit.traced > 0) addCount(stats, "shadow_rays", lit.traced);
   if (lit.light_count.empty()) return;
   double in_range = 0;
@@ -212,9 +270,12 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
       if (sample == 0) {
         picture = startPicture(gbuffer, lit, settings, std::move(used.picture));
         sums.color = std::move(lit.color);
+        sums.light_error = std::move(lit.light_error);
       } else {
         tbb::parallel_for(std::size_t(0), 3 * gbuffer.pixels(),
                           [&](std::size_t i) { sums.color[i] += lit.color[i]; });
+        tbb::parallel_for(std::size_t(0), lit.light_error.size(),
+                          [&](std::size_t i) { sums.light_error[i] += lit.light_error[i]; });
         used.color = std::move(lit.color);
       }
       if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
@@ -281,7 +342,7 @@ void addLit(Device& device, const Scene& scene, const RenderSettings& settings, 
                                        wantedCounts(settings, 1), stats);
     countPass(gbuffer, lit, settings.count_lights, stats);
     timed(stats, Stage::kResolve,
-          [&] { addPoints(layout, points, first, end, lit.color, gbuffer.pixels(), sums); });
+          [&] { addPoints(layout, points, first, end, lit.color, lit.light_error, gbuffer.pixels(), sums); });
   }
 }
 
@@ -331,7 +392,7 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
     Image started = startPicture(shared.gbuffer, lit, settings, std::move(prepared.used.picture));
     uneven = unevenPixels(sampled, shared, lit.color);
     leaveOut(uneven, shared);
-    sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color));
+    sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));
     return started;
   });
   freePlanes(shared.gbuffer);
@@ -357,6 +418,8 @@ PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settin
   result.all = neededFeatures(scene, settings.camera, surfaces, shadeSettings(settings));
   result.pixels = settings.shading == Shading::kGouraud ? fogOnly(result.all) : result.all;
   result.planes = neededPlanes(result.pixels);
+  // The light of clusters has planes of its own.
+  if (result.pixels.has(Feature::kClusteredLights)) result.planes.emission = surfaces.emission;
   if (!scene.lighting) result.planes.ambient = false;  // diffuse takes its place
   if (wants(settings, Aov::kMaterial))
     result.planes.specular = result.planes.ambient = result.planes.emission = true;
@@ -422,6 +485,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     prepared.used.picture = render(device, scene, settings, prepared, band, triangles, progress, stats);
     take(prepared.used.picture);
   }
+  countLightUses(scene, shade, prepared.lighting, stats);
   countShadows(prepared.lighting.host_shadows, stats);
   countTriangles(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - prepared.objects.size());
@@ -491,12 +555,13 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   stats.height = gbuffer.height;
   LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, wantedCounts(settings, 0), stats);
   countPass(gbuffer, lit, settings.count_lights, stats);
+  countLightUses(scene, shade, lighting, stats);
   countShadows(lighting.host_shadows, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
   return timed(stats, Stage::kResolve, [&] {
     Image picture = startPicture(gbuffer, lit, one_sample);
-    PixelSums sums{std::move(lit.color), {}, {}};
+    PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error)};
     if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
     setColors(gbuffer, sums, one_sample, picture);
     return picture;

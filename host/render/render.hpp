@@ -26,6 +26,10 @@ enum class Aov : std::uint8_t {
   kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
                 ///< counted from the band's first pixel, so it depends on the band and the crop
   kShadow,
+  /// Bounds of the error, r g b, in the units of R G B, that lights that clusters stand for may make
+  /// (ShadeSettings::light_error): the mean over the samples. With Shading::kGouraud the largest of any
+  /// vertex.
+  kLightError,
   kShadingCount,  ///< points that were shaded for all samples of the pixel
 };
 
@@ -43,7 +47,8 @@ struct RenderSettings {
   SampleShading sample_shading = SampleShading::kShared;
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  /// Layers. They show the first sample, or the point that is shaded for it.
+  /// Layers. But for kLightError and kShadingCount they show the first sample, or the point that is shaded
+  /// for it.
   std::vector<Aov> aovs;
   float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the

@@ -13,28 +13,14 @@ namespace luciole {
 
 const char* stageName(Stage stage) {
   static constexpr const char* kNames[]{
-      "load scene",
-      "read G-buffer",
-      "open device",
-      "compile kernels",
-      "wait for device",
-      "wait for kernels",
-      "measure exposure",
-      "ray tree",
-      "prepare lights",
-      "gather vertices",
-      "rasterize",
-      "cull",
-      "find shadow texels",
-      "shadow maps",
-      "classify",
-      "trace unsure",
-      "shade",
-      "read back",
-      "resolve",
-      "count lights",
-      "check G-buffer",
-      "write",
+      "load scene",         "read G-buffer",   "open device",
+      "compile kernels",    "wait for device", "wait for kernels",
+      "measure exposure",   "ray tree",        "prepare lights",
+      "gather vertices",    "rasterize",       "cull",
+      "find shadow texels", "shadow maps",     "classify",
+      "trace unsure",       "clustered light", "shade",
+      "read back",          "resolve",         "count lights",
+      "check G-buffer",     "write",
   };
   static_assert(std::size(kNames) == std::size_t(Stage::kWrite) + 1);
   return kNames[std::size_t(stage)];
@@ -104,6 +90,8 @@ std::string statsJson(const Stats& stats, double ended) {
   json["counts"] = nlohmann::ordered_json::object();
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
   for (const auto& [name, error] : stats.errors) json["errors"][name] = error;
+  if (const LightErrorStats& bounds = stats.light_error; bounds.values > 0)
+    json["light_error"] = {{"largest", bounds.largest}, {"mean", bounds.sum / double(bounds.values)}};
   json["memory"] = {{"peak_bytes", peakBytes()},
                     {"device_bytes", stats.device_bytes},
                     {"uploaded_bytes", stats.traffic.bytes_up},

@@ -30,6 +30,7 @@ enum class Stage : std::uint8_t {
   kShadowMaps,
   kClassify,
   kTraceUnsure,
+  kClusteredLight,
   kShade,
   kReadBack,
   kResolve,
@@ -44,6 +45,13 @@ const char* stageName(Stage stage);
 /// Whether a stage is done only once in a process (opening the device, compiling kernels, waiting for them),
 /// so that it is no work on the picture.
 bool isStart(Stage stage);
+
+/// Bounds of the error of light that clusters give (ShadeSettings::light_error), in all channels of all
+/// points that were lit, in linear radiance before exposure.
+struct LightErrorStats {
+  double largest = 0, sum = 0;
+  std::uint64_t values = 0;
+};
 
 /// What a picture cost: the content of --stats.
 struct Stats {
@@ -62,6 +70,7 @@ struct Stats {
   double began = 0;  ///< when the picture was begun, in milliseconds since the program's start
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< by name, if the command measures any
+  LightErrorStats light_error;                         ///< without values where no light was stood for
   /// Bytes of OpenCL buffers for one sample of the largest band, including those in the host's arrays
   std::size_t device_bytes = 0;
   Traffic traffic;  ///< of the whole picture, compiling its kernels included

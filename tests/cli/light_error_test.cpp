@@ -1,0 +1,80 @@
+// --light-error as a person would type it.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/program_test.hpp"
+#include "image/image.hpp"
+
+namespace luciole::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class LightError : public ProgramTest {
+ protected:
+  LightError() {
+    std::string lights;
+    for (int i = 0; i < 2500; ++i)
+      lights += fmt::format(
+          R"({{"type": "point", "position": [{}, 1, {}], "intensity": 0.001, "attenuation": [0, 0, 1]}},)",
+          0.1 * (i % 50) - 2.5, 0.1 * (i / 50) - 2.5);
+    writeText(folder / "scene.json", R"({"size": [32, 24], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
+      "objects": [{"primitive": "plane", "scale": 4}], "lights": [)" +
+                                         lights + R"({"type": "directional", "direction": [0, -1, 0]}]})");
+  }
+};
+
+TEST_F(LightError, WithoutOrOfZeroIsTheSamePicture) {
+  succeed("luciole render scene.json --quiet -o usual.exr");
+  for (const std::string zero : {"0", "0/256", "0.0"})
+    succeed("luciole render scene.json --quiet --light-error " + zero +
+            " -o zero.exr && luciole compare usual.exr zero.exr --max-abs 0");
+}
+
+TEST_F(LightError, ANumberAndAFractionAreTheSame) {
+  succeed("luciole render scene.json --quiet --light-error 1/256 -o a.exr");
+  succeed("luciole render scene.json --quiet --light-error 0.00390625 -o b.exr");
+  succeed("luciole compare a.exr b.exr --max-abs 0");
+}
+
+TEST_F(LightError, WhatIsNoShareIsRefused) {
+  for (const std::string wrong :
+       {"-0.1", "1.5", "nan", "inf", "1/0", "1/", "/2", "a", "1/256x", "3/2", "1/-2", "''"})
+    refuse("luciole render scene.json -o out.png --light-error " + wrong, 2, "--light-error");
+}
+
+TEST_F(LightError, LayerAndStatsTellTheBoundOfPicturesAndGBuffers) {
+  succeed("luciole gbuffer scene.json --quiet -o g.exr");
+  for (const std::string command : {"render scene.json", "shade g.exr --scene scene.json"}) {
+    succeed("luciole " + command +
+            " --quiet --light-error 1/64 --aov light_error -o out.exr --stats stats.json");
+    const Image image = readImage(folder / "out.exr");
+    for (const char* name : {"light_error.R", "light_error.G", "light_error.B"})
+      EXPECT_NE(std::find(image.channels.begin(), image.channels.end(), name), image.channels.end()) << name;
+    const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
+    EXPECT_EQ(stats["counts"]["lights_stood_for"], 2500);
+    EXPECT_EQ(stats["counts"]["lights_exact"], 1);
+    EXPECT_EQ(stats["counts"]["lights_exact_by_kind"], 1);
+    for (const char* count :
+         {"pixels_redone", "pixel_clusters_evaluated", "pixel_clustered_lights_evaluated"})
+      EXPECT_TRUE(stats["counts"].contains(count)) << count;
+    EXPECT_GT(stats["light_error"]["largest"], 0);
+    EXPECT_LE(stats["light_error"]["mean"], stats["light_error"]["largest"]);
+  }
+}
+
+TEST_F(LightError, InfoSaysForWhichLightsClustersMayStand) {
+  EXPECT_THAT(succeed("luciole info scene.json"),
+              HasSubstr("clusters may stand for 2500 (--light-error); not: 1 by kind"));
+  const auto lights = nlohmann::json::parse(succeed("luciole info scene.json --json -"))["lights"];
+  EXPECT_EQ(lights["clusterable"], 2500);
+  EXPECT_EQ(lights["exact"]["kind"], 1);
+}
+
+}  // namespace
+}  // namespace luciole::test

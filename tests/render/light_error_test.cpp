@@ -1,0 +1,193 @@
+// --light-error: a picture in which clusters stand for lights is as close to the exact one as its layer says.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "render/clustered_light.hpp"
+#include "render_json.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// Lights that others may stand for, with others that are summed by themselves and cast shadows. `changes`:
+/// further keys of the scene.
+std::string manyLights(
+    const std::string& emission, const std::string& changes = "",
+    const std::string& exact =
+        R"(, {"type": "directional", "direction": [-1, -2, -1], "intensity": 0.5, "shadow": true},
+     {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "cutoff": 40, "intensity": 0.5},
+     {"type": "point", "position": [1, 2, 2], "range": 4, "shadow": true})") {
+  std::string lights;
+  for (int i = 0; i < 2100; ++i)
+    lights += fmt::format(
+        R"({}{{"type": "point", "position": [{}, {}, {}], "color": [1, 0.5, 0.2], "intensity": 0.002, "attenuation": [0, 0, 1]}})",
+        i ? "," : "", 0.2 * (i % 21) - 2.1, 1.5 + 0.1 * (i / 21 % 10), 0.4 * (i / 210) - 2.1);
+  return R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 60}, "background": [0, 0, 0.25], "ambient": 0.05,
+  "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0, "shininess": 32)" +
+         emission + R"(}},
+  "objects": [{"primitive": "plane", "scale": 8, "segments": 9, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"}],
+  )" + changes +
+         R"("lights": [)" + lights + exact + "]}";
+}
+
+constexpr const char* kEmits = R"(, "emission": [0.2, 0.1, 0])";
+constexpr const char* kThickFog =
+    R"("fog": {"mode": "exp2", "density": [0.05, 0.02, 0.01], "color": [0.2, 0.3, 0.4]},)";
+
+/// Both pictures, the second by clusters with its bounds.
+struct Both {
+  Image exact, clustered;
+  Stats stats;
+};
+
+Both renderBoth(const Scene& scene, RenderSettings settings) {
+  Both both;
+  both.exact = picture(scene, settings);
+  settings.shade.light_error = 1.0f / 256;
+  settings.aovs.push_back(Aov::kLightError);
+  settings.count_lights = true;
+  both.clustered = renderScene(testDevice(), scene, settings, both.stats);
+  return both;
+}
+
+/// The exact picture errs, too. Each of the 2100 lights of 0.002 gives at most 0.002 / d², of which d² > 1 in
+/// the mean, so all of them 4.2. A cosine errs by 8 · 2⁻²⁴, a highlight by n = 32 times as much: 4.2 · (0.6 ·
+/// 8
+/// + 0.5 · 256) · 2⁻²⁴ < 2⁻¹⁴. The few other lights, and the roundings of sums, add less than what is left.
+constexpr double kExactError = 0x1p-14;
+
+void expectWithinBounds(const Both& both) {
+  const Image &exact = both.exact, &clustered = both.clustered;
+  const std::size_t layer = channelIndex(clustered, "light_error.R"), channels = clustered.channels.size();
+  ASSERT_EQ(clustered.channels[layer + 1], "light_error.G");
+  ASSERT_EQ(clustered.channels[layer + 2], "light_error.B");
+  ASSERT_EQ(exact.pixels.size() / exact.channels.size(), clustered.pixels.size() / channels);
+  std::size_t bounded = 0;
+  for (std::size_t pixel = 0; pixel < clustered.pixels.size() / channels; ++pixel) {
+    for (int c = 0; c < 3; ++c) {
+      const double color = clustered.pixels[pixel * channels + c],
+                   bound = clustered.pixels[pixel * channels + layer + c];
+      const double truth = exact.pixels[pixel * exact.channels.size() + c];
+      bounded += bound > 0;
+      ASSERT_GE(bound, 0);
+      ASSERT_LE(bound, std::max(color, 1.0) / 256);
+      ASSERT_LE(std::abs(color - truth), bound + kExactError) << "pixel " << pixel << " channel " << c;
+    }
+  }
+  EXPECT_GT(bounded, clustered.pixels.size() / channels / 4);
+  EXPECT_EQ(countOf(both.stats, "lights_stood_for"), 2100u);
+  EXPECT_GT(both.stats.light_error.largest, 0);
+  EXPECT_GE(both.stats.light_error.largest * double(both.stats.light_error.values),
+            both.stats.light_error.sum);
+}
+
+TEST(LightError, PicturesAreWithinTheirBoundsInAllShadingsFogAndEmission) {
+  for (const char* emission : {"", kEmits})
+    for (const char* fog : {"", kThickFog}) {
+      const Scene scene = sceneFromJson(manyLights(emission, fog));
+      for (const Shading shading : {Shading::kPhong, Shading::kFlat, Shading::kGouraud}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", emission, fog, int(shading)));
+        RenderSettings settings = settingsFor(scene, {40, 30});
+        settings.shading = shading;
+        expectWithinBounds(renderBoth(scene, settings));
+      }
+    }
+}
+
+TEST(LightError, SamplesAreWithinTheMeanOfTheirBounds) {
+  const Scene scene = sceneFromJson(manyLights(kEmits, kThickFog));
+  for (const auto shading : {SampleShading::kShared, SampleShading::kAll})
+    for (const Model model : {Model::kPhong, Model::kBlinnPhong}) {
+      RenderSettings settings = settingsFor(scene, {40, 30});
+      settings.samples = 4;
+      settings.sample_shading = shading;
+      settings.shade.model = model;
+      settings.exposure = -0.5f;
+      expectWithinBounds(renderBoth(scene, settings));
+    }
+}
+
+TEST(LightError, WithoutOtherLightsNoneIsLeftToTheShadingKernels) {
+  const Scene scene = sceneFromJson(manyLights("", "", ""));
+  const Both both = renderBoth(scene, settingsFor(scene, {40, 30}));
+  expectWithinBounds(both);
+  EXPECT_EQ(countOf(both.stats, "pixel_lights_evaluated"), 0u);
+  EXPECT_EQ(countOf(both.stats, "lights_exact"), 0u);
+}
+
+TEST(LightError, CropsAndBandsAreThePictureBitForBit) {
+  const Scene scene = sceneFromJson(manyLights(kEmits, kThickFog));
+  for (const int samples : {1, 4}) {
+    RenderSettings settings = settingsFor(scene, {40, 100});
+    settings.samples = samples;
+    settings.shade.light_error = 1.0f / 256;
+    settings.aovs = {Aov::kLightError};
+    settings.band_height = 1 << 20;
+    const Image whole = picture(scene, settings);
+    settings.band_height = 37;
+    EXPECT_EQ(picture(scene, settings).pixels, whole.pixels) << samples;
+    settings.crop = Crop{7, 30, 20, 50};
+    const Image crop = picture(scene, settings);
+    const std::size_t row = crop.width * crop.channels.size();
+    for (int y = 0; y < crop.height; ++y) {
+      const auto first =
+          whole.pixels.begin() + std::ptrdiff_t((std::size_t(30 + y) * 40 + 7) * crop.channels.size());
+      ASSERT_TRUE(std::equal(first, first + std::ptrdiff_t(row),
+                             crop.pixels.begin() + std::ptrdiff_t(std::size_t(y) * row)))
+          << samples << " samples, row " << y;
+    }
+  }
+}
+
+TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
+  Scene scene = sceneFromJson(manyLights(kEmits));
+  RenderSettings settings = settingsFor(scene, {40, 30});
+  EXPECT_FALSE(standsForLights(scene, materialTraits(scene), settings.shade));
+  scene.lights.resize(100);
+  ASSERT_FALSE(clustersPay(100, 1.0f / 256));
+  const Both both = renderBoth(scene, settings);
+  for (std::size_t i = 0; i < both.clustered.pixels.size(); ++i) {
+    if (i % 6 < 3)
+      ASSERT_EQ(both.clustered.pixels[i], both.exact.pixels[i / 6 * 3 + i % 6]);
+    else
+      ASSERT_EQ(both.clustered.pixels[i], 0);
+  }
+  EXPECT_EQ(countOf(both.stats, "lights_stood_for"), 0u);
+  EXPECT_EQ(countOf(both.stats, "lights_exact_as_few"), 100u);
+}
+
+TEST(LightError, StatsSayWhyLightsAreExact) {
+  const Scene scene = sceneFromJson(manyLights(""));
+  RenderSettings settings = settingsFor(scene, {8, 8});
+  const Both shadowed = renderBoth(scene, settings);
+  EXPECT_EQ(countOf(shadowed.stats, "lights_exact"), 3u);
+  EXPECT_EQ(countOf(shadowed.stats, "lights_exact_by_kind"), 2u);
+  EXPECT_EQ(countOf(shadowed.stats, "lights_exact_by_shadow"), 1u);
+  settings.shade.shadows = ShadowMethod::kOff;
+  EXPECT_EQ(countOf(renderBoth(scene, settings).stats, "lights_exact_by_range"), 1u);
+}
+
+TEST(LightError, ExactShadowsOfOtherLightsStayThoseOfTheirLights) {
+  const Scene scene = sceneFromJson(manyLights(kEmits));
+  RenderSettings settings = settingsFor(scene, {40, 30});
+  settings.shade.shadows = ShadowMethod::kExact;
+  expectWithinBounds(renderBoth(scene, settings));
+}
+
+TEST(LightError, GBuffersAreLitAsTheSceneIs) {
+  const Scene scene = sceneFromJson(manyLights(kEmits, kThickFog));
+  RenderSettings settings = settingsFor(scene, {40, 30});
+  Stats stats;
+  const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
+  settings.shade.light_error = 1.0f / 256;
+  settings.aovs = {Aov::kLightError};
+  EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels,
+            picture(scene, settings).pixels);
+}
+
+}  // namespace
+}  // namespace luciole::test
