@@ -101,8 +101,8 @@ void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lig
   if (!(settings.light_error > 0) || !scene.lighting) return;
   addCount(stats, "lights_stood_for", lighting.clustered_lights);
   addCount(stats, "lights_exact", scene.lights.size() - lighting.clustered_lights);
-  const auto counts = countReasons(
-      scene.lights, lightUse({.specular = lighting.features.has(Feature::kSpecular)}, settings));
+  const auto counts =
+      countReasons(scene.lights, lightUse({.specular = lighting.features.has(Feature::kSpecular)}, settings));
   for (std::size_t reason = 1; reason < counts.size(); ++reason)
     if (counts[reason] > 0)
       addCount(stats, std::string("lights_exact_by_") + exactReasonName(ExactReason(reason)), counts[reason]);
@@ -409,6 +409,13 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
   return cut;
 }
 
+/// Whether any pixel reflects specular light.
+bool anyShines(const GBuffer& gbuffer) {
+  const auto colors = std::ptrdiff_t(gbuffer.specular.empty() ? 0 : 3 * gbuffer.pixels());
+  return std::any_of(gbuffer.specular.begin(), gbuffer.specular.begin() + colors,
+                     [](float color) { return color > 0; });
+}
+
 }  // namespace
 
 PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings) {
@@ -542,7 +549,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
       "picture",
       {{"width", gbuffer.width}, {"height", gbuffer.height}, {"lights", std::int64_t(scene.lights.size())}});
   const ShadeSettings shade = shadeSettings(settings);
-  const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
+  const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
   const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);
   std::future<double> compiling = startCompiling(device, {features}, shade);
   Lighting lighting;
