@@ -112,6 +112,15 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
   if (!options.quiet) tellWarnings({stats.warnings.back()});
 }
 
+void reportLightError(const PictureOptions& options, Stats& stats) {
+  // A few roundings more than allowed are no reason to worry anybody.
+  if (!(stats.light_error.least > 1.000001 * options.light_error)) return;
+  stats.warnings.push_back(fmt::format(
+      "--light-error {}: floats can't promise it for this picture; the least that they can is {:.3g}",
+      options.light_error, 1.05 * stats.light_error.least));
+  if (!options.quiet) tellWarnings({stats.warnings.back()});
+}
+
 Metadata pictureMetadata(const Stats& stats, const Device* device) {
   Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
   if (stats.measured_exposure)

@@ -40,6 +40,9 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
 /// the file. limited: as writeImage returns.
 void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
 
+/// Warns if bounds of --light-error are larger than allowed, because floats can't promise so little.
+void reportLightError(const PictureOptions& options, Stats& stats);
+
 /// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
 /// device: null if none was used.
 Metadata pictureMetadata(const Stats& stats, const Device* device);

@@ -78,6 +78,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   renderBands(device, scene, settings, write, stats);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
   reportHalves(options, limited, stats);
+  reportLightError(options, stats);
 }
 
 /// Whether a frame's file exists. Files are written as a whole or not at all, so such a frame is done.
@@ -393,6 +394,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
                         writeOptions(*options, gbuffer));
     });
     reportHalves(*options, limited, stats);
+    reportLightError(*options, stats);
     reportStats(*options, stats, frame);
   });
 }

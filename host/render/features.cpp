@@ -105,7 +105,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     return features;
   }
   bool light_specular = false, any_cone = false, any_exponent = false;
-  const bool clustered = standsForLights(scene, surfaces, settings), shadows = settings.shadows != ShadowMethod::kOff;
+  const bool clustered = standsForLights(scene, surfaces, settings),
+             shadows = settings.shadows != ShadowMethod::kOff;
   std::size_t summed = 0;  // lights that are summed by themselves
   for (const Light& light : scene.lights) {
     light_specular |= light.specular != glm::vec3(0.0f);

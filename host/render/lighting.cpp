@@ -218,6 +218,12 @@ std::vector<UnboundedLight> takeClustered(const Scene& scene, const Camera& came
   return clustered;
 }
 
+/// What rounding adds to a bound, times the colour that is seen. Between the light of clusters and the colour
+/// stand at most four roundings of 2⁻²⁴: the sum with the surface's emission, that with the light of other
+/// lights, the fog's own light, and the sum of both through the fog (fog.clh). All terms are ≥ 0, so none is
+/// more than the colour, but for the roundings after it, which a fifth 2⁻²⁴ covers.
+constexpr float kSeenRounding = 5 * 0x1p-24f;
+
 /// Lights the G-buffer by clusters, and sets the bounds. Returns planes r g b of that light and the
 /// G-buffer's emission together.
 Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet& features,
@@ -234,7 +240,7 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
                                     .tiles_x = gbuffer.tiles_x,
                                     .tiles_y = gbuffer.tiles_y,
                                     .clusters = lighting.clusters,
-                                    .light_error = lighting.light_error,
+                                    .light_error = std::max(lighting.light_error - kSeenRounding, 1e-9f),
                                     .light = light_buffer,
                                     .bound = bound_buffer});
     download(device, light_buffer, light);
@@ -244,12 +250,6 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
     tbb::parallel_for(std::size_t(0), light.size(), [&](std::size_t i) { light[i] += gbuffer.emission[i]; });
   return light;
 }
-
-/// What rounding adds to a bound, times the colour that is seen. Between the light of clusters and the colour
-/// stand at most four roundings of 2⁻²⁴: the sum with the surface's emission, that with the light of other
-/// lights, the fog's own light, and the sum of both through the fog (fog.clh). All terms are ≥ 0, so none is
-/// more than the colour, but for the roundings after it, which a fifth 2⁻²⁴ covers.
-constexpr double kSeenRounding = 5 * 0x1p-24;
 
 /// Makes the bounds hold for the colours that were shaded: those of clusters there are already, or a vertex's
 /// for all pixels.
@@ -261,7 +261,7 @@ void boundSeenLight(const GBuffer& gbuffer, const std::optional<glm::vec3>& vert
     for (int c = 0; c < 3; ++c) {
       float& bound = lit.light_error[i + c * n];
       const double given = vertex_error ? (*vertex_error)[c] : bound;
-      const double seen = given + kSeenRounding * double(lit.color[i + c * n]);
+      const double seen = given + double(kSeenRounding) * double(lit.color[i + c * n]);
       bound = covered ? std::nextafter(float(seen), std::numeric_limits<float>::infinity()) : 0.0f;
     }
   });

@@ -39,8 +39,7 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const LightUse use = lightUse({.specular = features.has(Feature::kSpecular)}, settings.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
-        return !std::isfinite(light.range) &&
-               !(clustered && exactReason(light, use) == ExactReason::kNone);
+        return !std::isfinite(light.range) && !(clustered && exactReason(light, use) == ExactReason::kNone);
       });
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels

@@ -81,13 +81,15 @@ void countLightErrors(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats
         const double bound = lit.light_error[i + c * n];
         bounds.largest = std::max(bounds.largest, bound);
         bounds.sum += bound;
+        bounds.least = std::max(bounds.least, bound / std::max(1.0, double(lit.color[i + c * n])));
       }
       bounds.values += 3;
     }
     return bounds;
   };
   const auto join = [](const LightErrorStats& a, const LightErrorStats& b) {
-    return LightErrorStats{std::max(a.largest, b.largest), a.sum + b.sum, a.values + b.values};
+    return LightErrorStats{std::max(a.largest, b.largest), a.sum + b.sum, std::max(a.least, b.least),
+                           a.values + b.values};
   };
   // The sum's order, and with it its last bits, doesn't depend on the threads.
   stats.light_error = join(stats.light_error, tbb::parallel_deterministic_reduce(

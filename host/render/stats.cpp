@@ -91,7 +91,9 @@ std::string statsJson(const Stats& stats, double ended) {
   for (const auto& [name, count] : stats.counts) json["counts"][name] = count;
   for (const auto& [name, error] : stats.errors) json["errors"][name] = error;
   if (const LightErrorStats& bounds = stats.light_error; bounds.values > 0)
-    json["light_error"] = {{"largest", bounds.largest}, {"mean", bounds.sum / double(bounds.values)}};
+    json["light_error"] = {{"largest", bounds.largest},
+                           {"mean", bounds.sum / double(bounds.values)},
+                           {"least_allowing", bounds.least}};
   json["memory"] = {{"peak_bytes", peakBytes()},
                     {"device_bytes", stats.device_bytes},
                     {"uploaded_bytes", stats.traffic.bytes_up},

@@ -50,6 +50,7 @@ bool isStart(Stage stage);
 /// points that were lit, in linear radiance before exposure.
 struct LightErrorStats {
   double largest = 0, sum = 0;
+  double least = 0;  ///< the least E that would allow all of them: the largest of bound / max(1, colour)
   std::uint64_t values = 0;
 };
 

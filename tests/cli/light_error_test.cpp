@@ -68,6 +68,22 @@ TEST_F(LightError, LayerAndStatsTellTheBoundOfPicturesAndGBuffers) {
   }
 }
 
+TEST_F(LightError, LessThanFloatsCanPromiseIsToldInOneLine) {
+  const Outcome met = run("luciole render scene.json --light-error 1/1024 -o out.exr");
+  EXPECT_EQ(met.status, 0) << met.err;
+  EXPECT_THAT(met.err, Not(HasSubstr("warning")));
+  writeText(folder / "many.json", R"({"size": [32, 24], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
+      "objects": [{"primitive": "plane", "scale": 4}],
+      "light_fields": [{"count": 40000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "no_range": true}]})");
+  const Outcome outcome = run("luciole render many.json --light-error 1e-5 -o out.exr --stats stats.json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: --light-error 1e-05: floats can't promise it"));
+  const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
+  EXPECT_GT(stats["light_error"]["least_allowing"], 1e-5);
+  EXPECT_LT(stats["light_error"]["least_allowing"], 1e-3);
+  EXPECT_EQ(stats["warnings"].size(), 1u);
+}
+
 TEST_F(LightError, InfoSaysForWhichLightsClustersMayStand) {
   EXPECT_THAT(succeed("luciole info scene.json"),
               HasSubstr("clusters may stand for 2500 (--light-error); not: 1 by kind"));
