@@ -241,7 +241,7 @@ INLINE void light_tile(const Tile *tile, const ShadeFrame *frame, const ClusterT
       clusters += walk.far_clusters;
       float worst = finish_group(&pixels, frame, &sums, &group, row_sums, blocks, cuts, light_error, out);
       // Errors grow somewhat slower than what is accepted.
-      *share *= min(max(0.75f / worst, 0.125f), 4.0f);
+      *share *= min(max(0.6f / worst, 0.125f), 4.0f);
       if (worst <= 1.0f || tries == kMostTries) break;
       redone += pixels.count;
     }
