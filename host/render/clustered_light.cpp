@@ -11,9 +11,6 @@ namespace {
 /// Tiles side by side that a work-item takes.
 constexpr int kRun = 8;
 
-/// From so many lights on clusters pay with an error of 1; with a fourth of it from twice as many.
-constexpr double kFewestClustered = 100;
-
 }  // namespace
 
 ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
@@ -53,8 +50,13 @@ ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
   return sums;
 }
 
+double clusteredWork(std::size_t lights, float light_error) {
+  // Fitted to Sponza with 300 to 10⁶ lights in a box and errors of 1/16 to 1/1024: within a half.
+  return 3.75 * std::sqrt(double(lights) / std::sqrt(double(light_error)));
+}
+
 bool clustersPay(std::size_t lights, float light_error) {
-  return double(lights) >= kFewestClustered / std::sqrt(double(light_error));
+  return clusteredWork(lights, light_error) < double(lights);
 }
 
 }  // namespace luciole

@@ -31,8 +31,11 @@ struct ClusteredLightCounts {
 ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments);
 
-/// Whether clusters take less work than so many lights that are each summed by themselves. It counts, so a
-/// picture doesn't depend on the machine. light_error: > 0.
+/// About the work for a pixel of clusters that stand for so many lights, in lights that are each summed by
+/// themselves. It counts and never times, so no picture depends on the machine. light_error: > 0.
+double clusteredWork(std::size_t lights, float light_error);
+
+/// Whether clusters take less work than the lights.
 bool clustersPay(std::size_t lights, float light_error);
 
 }  // namespace luciole

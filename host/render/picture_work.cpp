@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "render/clustered_light.hpp"
 #include "render/memory.hpp"
 #include "render/scene_info.hpp"
 
@@ -72,18 +73,23 @@ struct MeanLights {
   double tile = 0;                  ///< in that of its tile
 };
 
-MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, const FeatureSet& features) {
+/// Clusters count as the lights that would be as much work.
+MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, const FeatureSet& features,
+                      const ShadeSettings& settings) {
   struct Counts {
     std::size_t square = 0, shadowed = 0, tile = 0;
   };
   if (points.empty() || !scene.lighting) return {};
   const bool culled = features.has(Feature::kLightLists), by_facing = !features.has(Feature::kLightAmbient);
+  const LightUse use = lightUse({.specular = features.has(Feature::kSpecular)}, settings);
+  const bool clustered = features.has(Feature::kClusteredLights);
   const double tests = double(points.size()) * double(scene.lights.size());
   const std::size_t step = std::size_t(std::ceil(std::max(tests / kMostTests, 1.0)));
   std::vector<Counts> counts((points.size() + step - 1) / step);
   tbb::parallel_for(std::size_t(0), counts.size(), [&](std::size_t i) {
     const SeenPoint& point = points[i * step];
     for (const Light& light : scene.lights) {
+      if (clustered && exactReason(light, use) == ExactReason::kNone) continue;
       if (culled && !reaches(light, point, point.tile, by_facing)) continue;
       ++counts[i].tile;
       if (culled && !reaches(light, point, point.square, by_facing)) continue;
@@ -97,6 +103,7 @@ MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, 
     mean.shadowed += double(each.shadowed) / double(counts.size());
     mean.tile += double(each.tile) / double(counts.size());
   }
+  if (clustered) mean.square += clusteredWork(countReasons(scene.lights, use)[0], settings.light_error);
   return mean;
 }
 
@@ -147,7 +154,7 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   const SceneInfo info = sceneInfo(scene);
   double grid = 0;
   const std::vector<SeenPoint> points = seenPoints(scene, settings, grid);
-  const MeanLights mean = meanLights(scene, points, needs.all);
+  const MeanLights mean = meanLights(scene, points, needs.all, settings.shade);
   const double pixels = double(settings.size.x) * settings.size.y, covered = double(points.size()) / grid;
   const bool gouraud = settings.shading == Shading::kGouraud;
   const bool shared = sharesSamples(settings);
