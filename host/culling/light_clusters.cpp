@@ -146,17 +146,18 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
   std::array<std::array<Doubles, kSums>, 3> sums{};
   std::array<Doubles, 4> farthest{};  // |xyz| and the square of the distance
   for (std::size_t first = begin; first < end; first += kAbreast) {
+    // Those beyond the end are taken for black ones at the centre.
+    std::array<Doubles, 3> way{}, color{};
+    for (std::size_t i = 0; i < std::min(kAbreast, end - first); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        way[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
+        color[axis][i] = lights.color[axis][first + i];
+      }
     std::array<Doubles, kSums> each;
-    std::array<Doubles, 3> color;
     for (std::size_t i = 0; i < kAbreast; ++i) {
-      const bool inside = first + i < end;
-      // Those beyond the end are taken for black ones at the centre.
-      const double x = inside ? lights.position[0][first + i] - centre.x : 0.0,
-                   y = inside ? lights.position[1][first + i] - centre.y : 0.0,
-                   z = inside ? lights.position[2][first + i] - centre.z : 0.0;
+      const double x = way[0][i], y = way[1][i], z = way[2][i];
       const std::array<double, kSums> terms = summands(x, y, z);
       for (std::size_t m = 0; m < kSums; ++m) each[m][i] = terms[m];
-      for (std::size_t c = 0; c < 3; ++c) color[c][i] = inside ? lights.color[c][first + i] : 0.0;
       farthest[0][i] = std::max(farthest[0][i], std::abs(x));
       farthest[1][i] = std::max(farthest[1][i], std::abs(y));
       farthest[2][i] = std::max(farthest[2][i], std::abs(z));
