@@ -289,6 +289,22 @@ TEST_F(HardClusteredLight, AtOnePixelAndAtNormalsInAllDirections) {
   }
 }
 
+// Each light is less than half the last bit of the sum that it is added to, so sums lose them all.
+TEST_F(HardClusteredLight, OfManyLightsTooDimToCountBesideOne) {
+  GBuffer gbuffer = wavySurface(1, 1, 0, random, 0);
+  const std::size_t n = gbuffer.pixels(), place = gbuffer.index(0, 0);
+  for (std::size_t c = 0; c < 3; ++c) gbuffer.diffuse[place + c * n] = 1;
+  const glm::dvec3 above = vectorAt(gbuffer.position, place, n) + glm::dvec3(0, 0, 1);
+  // The leftmost light comes first in the tree.
+  Lights lights{{above, glm::dvec3(1.02), 1}};
+  for (int i = 1; i < 64; ++i)
+    lights.push_back({above + glm::dvec3(1e-3 * i, 0, 0), glm::dvec3(0.96 * 0x1p-24), 1});
+  const Lit lit = lightBy(deviceWithLanes(16), gbuffer, lights, 1e-7f);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, lit, 1e-7, false));
+  EXPECT_GT(truthAt(gbuffer, place, lights).x - vectorAt(lit.light, place, n).x, 50 * 0x1p-24)
+      << "they are lost";
+}
+
 // Float has seven digits: a bound that can't be met is given as it is, and nothing is looked for forever.
 TEST_F(HardClusteredLight, ThatFloatsCantHoldTellsHowFarItMayBeOff) {
   const Lights lights = lightsIn({-6, -5, -10}, {6, 5, 4}, 500, random);
