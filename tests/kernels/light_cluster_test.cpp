@@ -150,11 +150,15 @@ TEST(FarFieldKernels, AreWithinTheirBoundOfTheTruth) {
 TEST(FarFieldKernels, CountTheRoundingOfAllTermsOfTheSeries) {
   std::vector<Case> cases;
   for (const double k : {0.0, 0.01, 0.1, 0.3, 0.5, 0.69})
-    cases.push_back({.centre = {0, 0, 1}, .lights = {{{0, 0, -k}, glm::dvec3(1)}}});
+    for (const double of_light : {0.0, 0.5, 1.0})
+      cases.push_back({.centre = {0, 0, 1},
+                       .lights = {{{0, 0, -of_light * k}, glm::dvec3(1)}},
+                       .radius = float((1 - of_light) * k)});
   for (const int lanes : kAllLanes) {
     const std::vector<Column> out = probeFar(lanes, cases);
     for (std::size_t i = 0; i < cases.size(); ++i) {
-      const double k = -cases[i].lights[0].offset.z, magnitudes = 1 + 4 * k + 12 * k * k;
+      const double k = double(cases[i].radius) - cases[i].lights[0].offset.z,
+                   magnitudes = 1 + 4 * k + 12 * k * k;
       // k is taken 10⁻⁵ larger, and its polynomial rounds.
       EXPECT_GE(out[5][i], magnitudes * (1 - 8 * 0x1p-24)) << k;
       EXPECT_LE(out[5][i], magnitudes * 1.0001) << k;
