@@ -289,6 +289,66 @@ TEST_F(HardClusteredLight, AtOnePixelAndAtNormalsInAllDirections) {
   }
 }
 
+// Each light is less than half the last bit of the sum that it is added to, so sums lose them all.
+TEST_F(HardClusteredLight, OfManyLightsTooDimToCountBesideOne) {
+  GBuffer gbuffer = wavySurface(1, 1, 0, random, 0);
+  const std::size_t n = gbuffer.pixels(), place = gbuffer.index(0, 0);
+  for (std::size_t c = 0; c < 3; ++c) gbuffer.diffuse[place + c * n] = 1;
+  const glm::dvec3 above = vectorAt(gbuffer.position, place, n) + glm::dvec3(0, 0, 1);
+  // The leftmost light comes first in the tree.
+  Lights lights{{above, glm::dvec3(1.02), 1}};
+  for (int i = 1; i < 64; ++i)
+    lights.push_back({above + glm::dvec3(1e-3 * i, 0, 0), glm::dvec3(0.96 * 0x1p-24), 1});
+  const Lit lit = lightBy(deviceWithLanes(16), gbuffer, lights, 1e-7f);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, lit, 1e-7, false));
+  EXPECT_GT(truthAt(gbuffer, place, lights).x - vectorAt(lit.light, place, n).x, 50 * 0x1p-24)
+      << "they are lost";
+}
+
+// A cosine near 0 is rounding and little else, in whichever block of a sum.
+TEST_F(HardClusteredLight, OfLightsThatGraze) {
+  const glm::dvec3 place(0.3, 0.2, -3);
+  for (const auto& [before, after] : {std::pair(0, 0), std::pair(0, 300), std::pair(300, 0)}) {
+    SCOPED_TRACE(std::to_string(before) + " black lights before, " + std::to_string(after) + " after");
+    GBuffer gbuffer = wavySurface(40, 24, 0.2, random, 0);
+    const std::size_t n = gbuffer.pixels();
+    for (int y = 0; y < gbuffer.height; ++y)
+      for (int x = 0; x < gbuffer.width; ++x) {
+        const std::size_t i = gbuffer.index(x, y);
+        const glm::dvec3 way = glm::normalize(place - vectorAt(gbuffer.position, i, n));
+        const double height = random.between(-1, 1) * std::pow(10.0, random.between(-9, -6));
+        const glm::dvec3 normal = glm::normalize(glm::cross(way, random.direction())) + height * way;
+        for (int c = 0; c < 3; ++c) gbuffer.normal[i + c * n] = float(normal[c]);
+      }
+    Lights lights(before, {place, glm::dvec3(0), 1});
+    lights.insert(lights.end(), 8, {place, glm::dvec3(1), 1});
+    lights.insert(lights.end(), after, {place, glm::dvec3(0), 1});
+    ASSERT_NO_FATAL_FAILURE(
+        expectCertified(gbuffer, lights, lightBy(deviceWithLanes(16), gbuffer, lights, 1e-7f), 1e-7, false));
+  }
+}
+
+// Steps that one group of pixels holds both of: the lights between them light the lower one alone.
+TEST_F(HardClusteredLight, OfLightsBetweenTheStepsOfAStair) {
+  GBuffer gbuffer = wavySurface(40, 24, 0, random, 0);
+  for (int y = 0; y < gbuffer.height; ++y)
+    for (int x = 0; x < gbuffer.width; ++x)
+      gbuffer.position[gbuffer.index(x, y) + 2 * gbuffer.pixels()] = x % 2 == 0 ? -6.0f : -5.9f;
+  const Lights lights = lightsIn({-20, -20, -5.94}, {20, 20, -5.94}, 3000, random, 10);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(
+      gbuffer, lights, lightBy(deviceWithLanes(16), gbuffer, lights, 1.0f / 16), 1.0f / 16, false));
+}
+
+// Walks that list more lights, and more than once, than a list holds; cut clusters too.
+TEST_F(HardClusteredLight, OfMoreLightsThanAListHolds) {
+  const GBuffer gbuffer = wavySurface(16, 16, 0, random, 0);
+  const Lights lights = lightsIn({-6, 1, -6.5}, {0, 5, -5.5}, 20000, random);
+  const Lit lit = lightBy(deviceWithLanes(16), gbuffer, lights, 1.0f / 512);
+  EXPECT_GT(double(lit.counts.lights), 3000.0 * 16 * 16);
+  EXPECT_GT(double(lit.counts.clusters), 50.0 * 16 * 16);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, lit, 1.0 / 512));
+}
+
 // Float has seven digits: a bound that can't be met is given as it is, and nothing is looked for forever.
 TEST_F(HardClusteredLight, ThatFloatsCantHoldTellsHowFarItMayBeOff) {
   const Lights lights = lightsIn({-6, -5, -10}, {6, 5, 4}, 500, random);

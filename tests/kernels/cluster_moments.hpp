@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "kernels/shared.h"
+
+// A cluster of lights by brute force, in double precision and without solid harmonics.
+namespace luciole::test {
+
+/// A light of a cluster: its place from the cluster's centre, and its colour over quadratic attenuation.
+struct ClusterLight {
+  glm::dvec3 offset, color;
+};
+
+/// A cluster's fields as kernels/shared.h defines them, a double each, and what bounds are at most before
+/// they cancel: of the harmonic ones Σ q·|δ|ʲ.
+struct ClusterMoments {
+  std::array<double, kClusterFields> field{};
+  std::array<double, 4> most{};
+};
+
+/// P. Legendre's polynomials.
+inline double legendre(int degree, double x) {
+  double before = 1, value = x;
+  for (int j = 1; j < degree; ++j) {
+    const double next = ((2 * j + 1) * x * value - j * before) / (j + 1);
+    before = value;
+    value = next;
+  }
+  return degree == 0 ? 1 : value;
+}
+
+/// The square of |Σ q·Yⱼ(δ)| is Σₐ Σᵦ qₐqᵦ|δₐ|ʲ|δᵦ|ʲPⱼ(cos), by the addition theorem.
+inline ClusterMoments clusterMoments(const glm::dvec3& centre, const std::vector<ClusterLight>& lights) {
+  ClusterMoments moments;
+  auto& field = moments.field;
+  for (int axis = 0; axis < 3; ++axis) field[std::size_t(kClusterCentre + axis)] = centre[axis];
+  for (const ClusterLight& light : lights) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double& extent = field[std::size_t(kClusterExtent + axis)];
+      extent = std::max(extent, std::abs(light.offset[axis]));
+    }
+    field[kClusterRadius] = std::max(field[kClusterRadius], glm::length(light.offset));
+  }
+  for (int c = 0; c < 3; ++c) {
+    const std::size_t first = kClusterMoments + std::size_t(c) * kMoments;
+    std::array<double, 5> absolute{}, square{};
+    for (const ClusterLight& a : lights) {
+      const glm::dvec3& d = a.offset;
+      const double q = a.color[c], length = glm::length(d);
+      const double terms[kMoments] = {1,         d.x,       d.y,       d.z,       d.x * d.x,
+                                      d.x * d.y, d.x * d.z, d.y * d.y, d.y * d.z, d.z * d.z};
+      for (std::size_t m = 0; m < kMoments; ++m) field[first + m] += q * terms[m];
+      for (int j = 0; j <= 4; ++j) absolute[std::size_t(j)] += q * std::pow(length, j);
+      if (length == 0) continue;
+      for (const ClusterLight& b : lights) {
+        const double other = glm::length(b.offset);
+        if (other == 0) continue;
+        const double cosine = std::clamp(glm::dot(d, b.offset) / (length * other), -1.0, 1.0);
+        for (int j = 1; j <= 4; ++j)
+          square[std::size_t(j)] += q * b.color[c] * std::pow(length * other, j) * legendre(j, cosine);
+      }
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      double &all = field[kClusterAbsolute + j], &harmonic = field[kClusterHarmonic + j];
+      all = std::max(all, absolute[j]);
+      harmonic = std::max(harmonic, std::sqrt(std::max(square[j + 1], 0.0)));
+      moments.most[j] = std::max(moments.most[j], absolute[j + 1]);
+    }
+  }
+  return moments;
+}
+
+/// Rows of kClusterSlots clusters each, filled up with the last one. Bounds are rounded up.
+inline std::vector<float> clusterRows(const std::vector<ClusterMoments>& clusters) {
+  const std::size_t rows = (clusters.size() + kClusterSlots - 1) / kClusterSlots;
+  std::vector<float> out(rows * kClusterFields * kClusterSlots);
+  for (std::size_t i = 0; i < rows * kClusterSlots; ++i) {
+    const auto& field = clusters[std::min(i, clusters.size() - 1)].field;
+    for (std::size_t f = 0; f < kClusterFields; ++f) {
+      const bool bound = f >= kClusterExtent && f < kClusterMoments;
+      const float value = float(field[f]);
+      out[(i / kClusterSlots * kClusterFields + f) * kClusterSlots + i % kClusterSlots] =
+          bound ? std::nextafter(value, INFINITY) : value;
+    }
+  }
+  return out;
+}
+
+}  // namespace luciole::test
