@@ -12,7 +12,8 @@
 namespace luciole {
 
 const char* exactReasonName(ExactReason reason) {
-  static constexpr const char* kNames[]{"none", "model", "kind", "shadow", "range", "attenuation", "ambient", "specular", "place"};
+  static constexpr const char* kNames[]{"none",        "model",   "kind",     "shadow", "range",
+                                        "attenuation", "ambient", "specular", "place"};
   static_assert(std::size(kNames) == kExactReasons);
   return kNames[std::size_t(reason)];
 }
