@@ -38,10 +38,10 @@ inline double legendre(int degree, double x) {
 inline ClusterMoments clusterMoments(const glm::dvec3& centre, const std::vector<ClusterLight>& lights) {
   ClusterMoments moments;
   auto& field = moments.field;
-  for (int axis = 0; axis < 3; ++axis) field[std::size_t(kClusterCentre + axis)] = centre[axis];
+  for (int axis = 0; axis < 3; ++axis) field[kClusterCentre + std::size_t(axis)] = centre[axis];
   for (const ClusterLight& light : lights) {
     for (int axis = 0; axis < 3; ++axis) {
-      double& extent = field[std::size_t(kClusterExtent + axis)];
+      double& extent = field[kClusterExtent + std::size_t(axis)];
       extent = std::max(extent, std::abs(light.offset[axis]));
     }
     field[kClusterRadius] = std::max(field[kClusterRadius], glm::length(light.offset));
