@@ -1,6 +1,7 @@
 // Small pictures of random scenes, for a checking OpenCL runtime to watch the kernels that light them.
 //
 //   checked_pictures NUMBER    one of the pictures, any number
+//   checked_pictures clustersL a picture by clusters of lights, L pixels side by side
 //   checked_pictures MISTAKE   a kernel of mistake_probe.cl
 #include <charconv>
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,6 +11,7 @@
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "raster/view.hpp"
+#include "render/clustered_light.hpp"
 #include "render/lighting.hpp"
 #include "render/pair_visibility.hpp"
 #include "scene/primitives.hpp"
@@ -83,6 +85,30 @@ void lightPicture(unsigned number) {
   pairVisibility(device, featureDefines(features) + mathDefines(settings), with_facets, shadows, pairs);
 }
 
+void lightByClusters(int lanes) {
+  Device device;
+  openChecked(lanes, device);
+  Random random(static_cast<unsigned>(lanes));
+  const Camera camera;
+  const GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  std::vector<UnboundedLight> lights;
+  for (int i = 0; i < 150; ++i) lights.push_back({10.0 * random.direction(), 0.1 * random.color(), 1});
+  const LightClusters clusters = buildLightClusters(lights);
+  ShadeFrame frame{};
+  frame.plane_stride = uint(gbuffer.pixels());
+  frame.eye = {0, 0, 0, 1};
+  Plane light(3 * gbuffer.pixels()), bound(3 * gbuffer.pixels());
+  clusteredLight(device, mathDefines({}),
+                 {.frame = frame,
+                  .gbuffer = borrowedGBuffer(device, gbuffer, {}, {}, false),
+                  .tiles_x = gbuffer.tiles_x,
+                  .tiles_y = gbuffer.tiles_y,
+                  .clusters = clusters,
+                  .light_error = 1.0f / 16,
+                  .light = borrowedForOutput(device, light),
+                  .bound = borrowedForOutput(device, bound)});
+}
+
 void makeMistake(const char* mistake) {
   Device device;
   openChecked(1, device);
@@ -100,6 +126,9 @@ int main(int, char** words) {
   unsigned number = 0;
   if (std::from_chars(word.data(), word.data() + word.size(), number).ec == std::errc()) {
     luciole::test::lightPicture(number);
+  } else if (constexpr std::string_view kClusters = "clusters";
+             word.substr(0, kClusters.size()) == kClusters) {
+    luciole::test::lightByClusters(word.back() - '0');
   } else {
     luciole::test::makeMistake(words[1]);
   }

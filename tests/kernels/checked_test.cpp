@@ -66,6 +66,7 @@ std::set<std::string> kernelsToRun(int picture) {
   if (picture == 3 || picture == 6) {
     names = allKernels();
     names.erase("shade_tiles");
+    names.erase("clustered_light");
     names.erase(picture == 3 ? "pair_visibility" : "classify");
   }
   return names;
@@ -80,6 +81,16 @@ TEST_P(CheckedPictures, HaveNoReports) {
   EXPECT_THAT(checked.kernels, IsSupersetOf(kernelsToRun(GetParam())));
 }
 
+class CheckedClusters : public testing::TestWithParam<int> {};
+
+TEST_P(CheckedClusters, HaveNoReports) {
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
+  const Checked checked = runChecked("clusters" + std::to_string(GetParam()));
+  EXPECT_EQ(checked.reports, "");
+  EXPECT_THAT(checked.kernels, IsSupersetOf({"clustered_light"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, CheckedClusters, testing::Values(1, 4, 8), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 15), testing::PrintToStringParamName());
 
 }  // namespace
