@@ -1,23 +1,23 @@
-// The diffuse light of lights without range, of which clusters stand for those far enough, with a bound of its error at each pixel.
+// The light of lights without range, of which clusters stand for those far enough, with a bound of its error at each pixel.
 //
 // A work-item takes a run of tiles. The pixels of a tile that are near each other and face about the same way are a group:
 //
-//   take_group → walk_clusters (light_clusters.clh) → for each row: add_listed, then the far field (far_field.clh)
+//   take_pixels → light_group:      walk_clusters (light_clusters.clh) → for each row: add_listed, then the far field (far_field.clh)
+//               → highlight_group:  walk_highlights (highlights.clh) → for each row: add_listed_highlights, then the series
 //
 // A group whose bound is above what is allowed, light_error·max(1, colour), is lit again with smaller errors of each cluster. What was
 // accepted steers the groups after it in the run. So a pixel's light is a function of its run alone.
 #include "cut_clusters.clh"
 #include "far_field.clh"
+#include "features.clh"
 #include "fog.clh"
+#include "highlights.clh"
 #include "lanes.clh"
 #include "light_clusters.clh"
 #include "math.clh"
 #include "shared.h"
 
 enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
-
-// How many lights are added one by one.
-enum { kSumTerms = 128 };
 
 // A light's rounding, in units of 2⁻²⁴. Of its light: 6 of 1/d, 3 of a normal's length, 13 of the falloff, 10 of colour, place and products.
 // And of its colour over d², however small the cosine is: 4 of the difference and of the dot product.
@@ -27,20 +27,49 @@ enum { kSumTerms = 128 };
 // Pixels of a group lie this share of the first one's distance from the eye around it, and their normals this near to its own.
 #define GROUP_RADIUS 0.03f
 #define GROUP_SPREAD 0.08f
+// So many pixels of a group, which follow each other in Z order, share the series of highlights.
+enum { kHighlightPixels = 64 };
 // What a bound that no float holds is given as.
 #define LARGEST_BOUND 3e38f
+// Of the allowed error what the diffuse light of pixels with highlights may take. The highlights may take the rest.
+#define DIFFUSE_SHARE 0.5f
 
-// The planes of a G-buffer that are read, x y z or r g b each, from a tile's first pixel on.
+// The planes of a G-buffer that are read, x y z or r g b each, from a tile's first pixel on. specular: r g b and the exponent.
 typedef struct {
-  __global const float *position, *normal, *diffuse;
+  __global const float *position, *normal, *diffuse, *specular;
   uint stride;
 } Tile;
 
-// The pixels of a group, in rows of LANES. The last row is filled up with its first pixel.
+// Lights, and the tree over them.
+typedef struct {
+  ClusterTree tree;
+  __global const ClusteredLight *lights;
+} Clusters;
+
+// What is the same for all tiles.
+typedef struct {
+  ShadeFrame frame;
+  Clusters diffuse, specular;
+  float light_error;
+} Scene;
+
+// Of the allowed error what is accepted of a cluster.
+typedef struct {
+  float diffuse, specular;
+} Shares;
+
+// For a tile.
+typedef struct {
+  uint far_clusters, clusters, lights, redone;
+} Counts;
+
+// The pixels of a group, in rows of LANES. The last row is filled up with its first pixel. All have the same exponent.
+enum { kPosition = 0, kNormal = 3, kDiffuse = 6, kSpecular = 9, kPixelValues = CLUSTERED_HIGHLIGHTS ? 12 : 9 };
 typedef struct {
   uint count;
   uint place[kTilePixels];  // in the tile
-  float value[9][kTilePixels] __attribute__((aligned(64)));  // position, normal, diffuse
+  float exponent;
+  float value[kPixelValues][kTilePixels] __attribute__((aligned(64)));
 } GroupPixels;
 
 INLINE floatL pixel_values(const GroupPixels *pixels, uint value, uint first) { return *(const floatL *)(pixels->value[value] + first); }
@@ -58,6 +87,7 @@ INLINE void take_pixels(const Tile *tile, intL *left, GroupPixels *pixels) {
   float4 place = {p[0], p[tile->stride], p[2 * tile->stride], 0.0f}, facing = {n[0], n[tile->stride], n[2 * tile->stride], 0.0f};
   float reach2 = GROUP_RADIUS * GROUP_RADIUS * (place.x * place.x + place.y * place.y + place.z * place.z);
   pixels->count = 0;
+  pixels->exponent = CLUSTERED_HIGHLIGHTS ? tile->specular[seed + 3 * tile->stride] : 0.0f;
   for (uint row = 0; row < kTileRows; ++row) {
     if (!any_lane(left[row])) continue;
     vec3L position = load_vec3(tile->position + row * LANES, tile->stride), normal = load_vec3(tile->normal + row * LANES, tile->stride);
@@ -66,28 +96,30 @@ INLINE void take_pixels(const Tile *tile, intL *left, GroupPixels *pixels) {
     intL is_near = dot3(from, from) <= reach2, faces_alike = dot3(turn, turn) <= GROUP_SPREAD * GROUP_SPREAD;
     intL is_seed = LANE_NUMBERS + (int)(row * LANES) == (int)seed;
     intL member = left[row] & ((is_near & faces_alike) | is_seed);
+    if (CLUSTERED_HIGHLIGHTS) member &= (load_lanes(tile->specular + row * LANES + 3 * tile->stride) == (floatL)(pixels->exponent)) | is_seed;
     left[row] &= ~member;
     for (uint bits = lane_bits(member); bits; bits &= bits - 1) {
       uint at = row * LANES + lowest_bit(bits);
       pixels->place[pixels->count] = at;
       for (uint axis = 0; axis < 3; ++axis) {
-        pixels->value[axis][pixels->count] = tile->position[at + axis * tile->stride];
-        pixels->value[3 + axis][pixels->count] = tile->normal[at + axis * tile->stride];
-        pixels->value[6 + axis][pixels->count] = tile->diffuse[at + axis * tile->stride];
+        pixels->value[kPosition + axis][pixels->count] = tile->position[at + axis * tile->stride];
+        pixels->value[kNormal + axis][pixels->count] = tile->normal[at + axis * tile->stride];
+        pixels->value[kDiffuse + axis][pixels->count] = tile->diffuse[at + axis * tile->stride];
+        if (CLUSTERED_HIGHLIGHTS) pixels->value[kSpecular + axis][pixels->count] = tile->specular[at + axis * tile->stride];
       }
       ++pixels->count;
     }
   }
   for (uint i = pixels->count; i % LANES > 0; ++i)
-    for (uint value = 0; value < 9; ++value) pixels->value[value][i] = pixels->value[value][i / LANES * LANES];
+    for (uint value = 0; value < kPixelValues; ++value) pixels->value[value][i] = pixels->value[value][i / LANES * LANES];
 }
 
-// What bounds a group's pixels.
-INLINE PixelGroup bound_group(const GroupPixels *pixels, float light_error) {
+// What bounds the pixels from `first` to `end` of a group. colors: kDiffuse or kSpecular.
+INLINE PixelGroup bound_group(const GroupPixels *pixels, uint first, uint end, uint colors, float light_error) {
   PixelGroup group;
   for (uint axis = 0; axis < 6; ++axis) {
     float low = INFINITY, high = -INFINITY;
-    for (uint i = 0; i < pixels->count; i += LANES) {
+    for (uint i = first; i < end; i += LANES) {
       low = min(low, least_lane(pixel_values(pixels, axis, i)));
       high = max(high, greatest_lane(pixel_values(pixels, axis, i)));
     }
@@ -96,8 +128,8 @@ INLINE PixelGroup bound_group(const GroupPixels *pixels, float light_error) {
     else group.normal[axis - 3] = middle;
   }
   float radius2 = 0.0f, spread2 = 0.0f, thickness = 0.0f, brightest = 0.0f;
-  for (uint i = 0; i < pixels->count; i += LANES) {
-    vec3L position = pixel_vector(pixels, 0, i), normal = pixel_vector(pixels, 3, i), color = pixel_vector(pixels, 6, i);
+  for (uint i = first; i < end; i += LANES) {
+    vec3L position = pixel_vector(pixels, kPosition, i), normal = pixel_vector(pixels, kNormal, i), color = pixel_vector(pixels, colors, i);
     vec3L from = {position.x - group.middle[0], position.y - group.middle[1], position.z - group.middle[2]};
     vec3L turn = {normal.x - group.normal[0], normal.y - group.normal[1], normal.z - group.normal[2]};
     radius2 = max(radius2, greatest_lane(dot3(from, from)));
@@ -111,6 +143,14 @@ INLINE PixelGroup bound_group(const GroupPixels *pixels, float light_error) {
   group.thickness = thickness + 0x1p-20f * group.radius;
   group.gain = brightest / light_error;
   return group;
+}
+
+// Whether any of a group's pixels has a specular colour.
+INLINE bool any_specular(const GroupPixels *pixels) {
+  floatL most = 0.0f;
+  for (uint i = 0; i < pixels->count; i += LANES)
+    for (uint c = 0; c < 3; ++c) most = max_lanes(most, pixel_values(pixels, kSpecular + c, i));
+  return greatest_lane(most) > 0.0f;
 }
 
 // What a row of pixels is lit by one by one.
@@ -128,8 +168,7 @@ INLINE void add_listed_lights(const ClusterWalk *walk, __global const ClusteredL
     floatL some_weight = 0.0f;
     for (uint i = from; i < end; ++i) {
       __global const ClusteredLight *light = lights + walk->light[i];
-      vec3L u = {light->position.x - position.x + light->rest.x, light->position.y - position.y + light->rest.y,
-                 light->position.z - position.z + light->rest.z};
+      vec3L u = to_clustered_light(light, position);
       floatL inverse_d = rsqrt_lanes(dot3(u, u));
       floatL cosine = max_lanes(dot3(normal, u) * inverse_d, (floatL)(0.0f));
       floatL falloff = min_lanes(inverse_d * inverse_d, (floatL)(light->position.w));
@@ -163,24 +202,22 @@ INLINE floatL share_of(floatL light, floatL bound, float light_error) {
   return share <= 1e30f ? share : (floatL)(1e30f);
 }
 
-// Writes the light and the bound of a group's pixels to `out`, six planes of a tile. blocks, cuts: how many numbers the sums over lights and
-// over clusters were made of. Returns the largest share that a bound has of the error that is allowed.
-INLINE float finish_group(const GroupPixels *pixels, const ShadeFrame *frame, FieldSums *sums, const PixelGroup *group,
-                          const RowSums *row_sums, uint blocks, uint cuts, float light_error, float out[6][kTilePixels]) {
+// Writes the diffuse light and its bound of a group's pixels to `out`, six planes of a tile. blocks, cuts: how many numbers the sums over
+// lights and over clusters were made of. Returns the largest share that a bound has of the error that is allowed.
+INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const PixelGroup *group, const RowSums *row_sums, uint blocks, uint cuts,
+                          float light_error, float out[6][kTilePixels]) {
   Field field;
   finish_field(sums, &field);
   float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + blocks), of_clusters = 0x1p-24f * (float)(64 + cuts);
   float worst = 0.0f;
   for (uint i = 0; i < pixels->count; i += LANES) {
-    vec3L position = pixel_vector(pixels, 0, i), normal = pixel_vector(pixels, 3, i), color = pixel_vector(pixels, 6, i);
+    vec3L position = pixel_vector(pixels, kPosition, i), normal = pixel_vector(pixels, kNormal, i), color = pixel_vector(pixels, kDiffuse, i);
     vec3L h = {position.x - group->middle[0], position.y - group->middle[1], position.z - group->middle[2]};
     FieldFactors factors = field_factors(normal, h);
     const RowSums *had = row_sums + i / LANES;
     floatL lights[3] = {had->lights.x, had->lights.y, had->lights.z}, albedo[3] = {color.x, color.y, color.z};
     floatL cut[3] = {had->cut.light.x, had->cut.light.y, had->cut.light.z};
     floatL cut_bound[3] = {had->cut.bound.x, had->cut.bound.y, had->cut.bound.z};
-    vec3L seen = FOG ? fog_share(*frame, position) : (vec3L){(floatL)(1.0f), (floatL)(1.0f), (floatL)(1.0f)};
-    floatL transmittance[3] = {seen.x, seen.y, seen.z};
     floatL light[3], bound[3];
     for (uint c = 0; c < 3; ++c) {
       light[c] = albedo[c] * (field_value(field.term + c * kFieldTerms, &factors) + cut[c] + lights[c]);
@@ -189,9 +226,6 @@ INLINE float finish_group(const GroupPixels *pixels, const ShadeFrame *frame, Fi
       // The factor is more than the rounding of sums of so many bounds. Colours, products and the sum of the parts are rounded, too.
       bound[c] = fma_lanes((floatL)(0x1p-21f), light[c], 1.001f * albedo[c] * bound[c]);
       worst = max(worst, greatest_lane(share_of(light[c], bound[c], light_error)));
-      light[c] = finite_color(light[c]);
-      bound[c] = bound[c] * transmittance[c];
-      bound[c] = bound[c] <= LARGEST_BOUND ? bound[c] : (floatL)(LARGEST_BOUND);
     }
     for (uint lane = 0; lane < LANES && i + lane < pixels->count; ++lane)
       for (uint c = 0; c < 3; ++c) {
@@ -202,9 +236,172 @@ INLINE float finish_group(const GroupPixels *pixels, const ShadeFrame *frame, Fi
   return worst;
 }
 
-// Lights a tile. share: of the allowed error that is accepted of a cluster; updated. counts: as clusteredLight() sums them.
-INLINE void light_tile(const Tile *tile, const ShadeFrame *frame, const ClusterTree *tree, __global const ClusteredLight *lights, float light_error, float *share,
-                       __global float *light, __global float *bound, __global uint *counts) {
+// Errors grow somewhat slower than what is accepted.
+INLINE float next_share(float share, float worst) { return share * min(max(0.6f / worst, 0.125f), 4.0f); }
+
+// Sets the diffuse light of a group's pixels in `out`.
+INLINE void light_group(const GroupPixels *pixels, const Clusters *clusters, float light_error, float *share, float out[6][kTilePixels],
+                        Counts *counts) {
+  PixelGroup group = bound_group(pixels, 0, pixels->count, kDiffuse, light_error);
+  for (uint tries = 1;; ++tries) {
+    ClusterWalk walk;
+    FieldSums sums;
+    RowSums row_sums[kTileRows];
+    vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
+    for (uint row = 0; row < kTileRows; ++row) {
+      row_sums[row].cut.light = row_sums[row].cut.bound = row_sums[row].lights = dark;
+      row_sums[row].weight = 0.0f;
+    }
+    start_field(&sums);
+    start_cluster_walk(&clusters->tree, &walk);
+    uint blocks = 0, cuts = 0;  // that the sums of lights and of clusters are made of
+    for (bool done = false; !done;) {
+      done = walk_clusters(&clusters->tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
+      add_listed(&walk, pixels, clusters->tree.rows, clusters->lights, row_sums);
+      blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
+      cuts += walk.clusters;
+      counts->lights += walk.lights * pixels->count;
+      counts->clusters += walk.clusters * pixels->count;
+      walk.lights = walk.clusters = 0;
+    }
+    counts->far_clusters += walk.far_clusters;
+    float worst = finish_group(pixels, &sums, &group, row_sums, blocks, cuts, light_error, out);
+    *share = next_share(*share, worst);
+    if (worst <= 1.0f || tries == kMostTries) return;
+    counts->redone += pixels->count;
+  }
+}
+
+// The axes of a row of a group's pixels.
+INLINE HighlightPixels highlight_pixels(const GroupPixels *pixels, uint first, const ShadeFrame *frame) {
+  HighlightPixels row;
+  row.position = pixel_vector(pixels, kPosition, first);
+  row.normal = pixel_vector(pixels, kNormal, first);
+  row.eye = to_eye(frame, row.position);
+  row.mirrored_eye = mirror(row.eye, row.normal);
+  row.n_dot_v = dot3(row.normal, row.eye);
+  return row;
+}
+
+// What the lobes turn about: Phong's by the mirrored eye, Blinn's by the eye.
+INLINE vec3L lobe_axis(const HighlightPixels *row, uint model) { return MODEL_IS(kBlinnPhongModel) ? row->eye : row->mirrored_eye; }
+
+// What bounds the highlights of the pixels from `first` to `end` of a group.
+INLINE HighlightGroup bound_highlights(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, float light_error) {
+  HighlightGroup group;
+  group.place = bound_group(pixels, first, end, kSpecular, light_error);
+  group.exponent = pixels->exponent;
+  group.model = frame->model;
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (uint i = first; i < end; i += LANES) {
+    HighlightPixels row = highlight_pixels(pixels, i, frame);
+    vec3L axis = lobe_axis(&row, group.model);
+    floatL value[3] = {axis.x, axis.y, axis.z};
+    for (uint c = 0; c < 3; ++c) {
+      low[c] = min(low[c], least_lane(value[c]));
+      high[c] = max(high[c], greatest_lane(value[c]));
+    }
+  }
+  vec3L middle = {(floatL)(0.5f * (low[0] + high[0])), (floatL)(0.5f * (low[1] + high[1])), (floatL)(0.5f * (low[2] + high[2]))};
+  vec3L normal = {(floatL)(group.place.normal[0]), (floatL)(group.place.normal[1]), (floatL)(group.place.normal[2])};
+  middle = normalize_lanes(middle);
+  normal = normalize_lanes(normal);
+  floatL axis[3] = {middle.x, middle.y, middle.z}, facing[3] = {normal.x, normal.y, normal.z};
+  for (uint c = 0; c < 3; ++c) {
+    group.axis[c] = ((const float *)&axis[c])[0];
+    group.normal[c] = ((const float *)&facing[c])[0];
+  }
+  float turn2 = 0.0f;
+  for (uint i = first; i < end; i += LANES) {
+    HighlightPixels row = highlight_pixels(pixels, i, frame);
+    vec3L of_row = lobe_axis(&row, group.model);
+    vec3L turned = {of_row.x - group.axis[0], of_row.y - group.axis[1], of_row.z - group.axis[2]};
+    turn2 = max(turn2, greatest_lane(dot3(turned, turned)));
+  }
+  // More than the rounding of axes.
+  group.turn = 1.00001f * sqrt(turn2) + 0x1p-19f;
+  return group;
+}
+
+// Computes the highlights of a group's pixels from `first` to `end` and their bounds, planes of light and bound. had: the diffuse light and its
+// bound. Returns the largest share that both bounds together have of the error that is allowed.
+INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, LobeSums *sums,
+                               const HighlightGroup *group, const HighlightSums *row_sums, uint blocks, float light_error,
+                               float had[6][kTilePixels], float result[6][kHighlightPixels]) {
+  Lobes lobes;
+  finish_lobes(sums, group->exponent, &lobes);
+  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + blocks), of_lobes = lobe_rounding(group->exponent);
+  float worst = 0.0f;
+  for (uint i = first; i < end; i += LANES) {
+    HighlightPixels row = highlight_pixels(pixels, i, frame);
+    vec3L color = pixel_vector(pixels, kSpecular, i);
+    vec3L h = {row.position.x - group->place.middle[0], row.position.y - group->place.middle[1], row.position.z - group->place.middle[2]};
+    vec3L w = {row.mirrored_eye.x - group->axis[0], row.mirrored_eye.y - group->axis[1], row.mirrored_eye.z - group->axis[2]};
+    LobeFactors factors = lobe_factors(h, w);
+    const HighlightSums *of_row = row_sums + (i - first) / LANES;
+    floatL lights[3] = {of_row->light.x, of_row->light.y, of_row->light.z}, specular[3] = {color.x, color.y, color.z};
+    for (uint c = 0; c < 3; ++c) {
+      floatL light = specular[c] * (lobes_value(lobes.term + c * kLobeTerms, &factors) + lights[c]);
+      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + of_row->unsure + of_lobes * of_row->weight;
+      bound = fma_lanes((floatL)(0x1p-21f), light, 1.001f * specular[c] * bound);
+      for (uint lane = 0; lane < LANES && i + lane < end; ++lane) {
+        uint place = pixels->place[i + lane];
+        float of_light = ((const float *)&light)[lane], of_bound = ((const float *)&bound)[lane];
+        // Their sum is rounded, too.
+        float all = had[c][place] + of_light, bound_of_all = 1.00001f * (had[3 + c][place] + of_bound + 0x1p-24f * all);
+        result[c][i + lane - first] = all;
+        result[3 + c][i + lane - first] = bound_of_all;
+        float share = bound_of_all / (light_error * max(all, 1.0f));
+        worst = max(worst, share <= 1e30f ? share : 1e30f);
+      }
+    }
+  }
+  return worst;
+}
+
+// Adds the highlights of a group's pixels from `first` to `end` to `out`.
+INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, const Clusters *clusters, float light_error,
+                            float *share, float out[6][kTilePixels], Counts *counts) {
+  HighlightGroup group = bound_highlights(pixels, first, end, frame, light_error);
+  if (!(group.place.gain > 0.0f)) return;
+  float result[6][kHighlightPixels];
+  for (uint tries = 1;; ++tries) {
+    ClusterWalk walk;
+    LobeSums sums;
+    HighlightSums row_sums[kHighlightPixels / LANES];
+    vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
+    for (uint row = 0; row < kHighlightPixels / LANES; ++row) {
+      row_sums[row].light = dark;
+      row_sums[row].unsure = row_sums[row].weight = 0.0f;
+    }
+    start_lobes(&sums);
+    start_cluster_walk(&clusters->tree, &walk);
+    uint blocks = 0;
+    for (bool done = false; !done;) {
+      done = walk_highlights(&clusters->tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
+      for (uint i = first; i < end; i += LANES) {
+        HighlightPixels row = highlight_pixels(pixels, i, frame);
+        HighlightSums some = row_sums[(i - first) / LANES];
+        add_listed_highlights(&walk, clusters->lights, &row, group.exponent, group.model, &some);
+        row_sums[(i - first) / LANES] = some;
+      }
+      blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
+      counts->lights += walk.lights * (end - first);
+      walk.lights = 0;
+    }
+    counts->far_clusters += walk.far_clusters;
+    float worst = finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, blocks, light_error, out, result);
+    *share = next_share(*share, worst);
+    if (worst <= 1.0f || tries == kMostTries) break;
+    counts->redone += end - first;
+  }
+  for (uint i = first; i < end; ++i)
+    for (uint plane = 0; plane < 6; ++plane) out[plane][pixels->place[i]] = result[plane][i - first];
+}
+
+// Lights a tile. shares: updated by what was accepted.
+INLINE void light_tile(const Tile *tile, const Scene *scene, Shares *shares, __global float *light, __global float *bound,
+                       __global uint *counts) {
   float out[6][kTilePixels] __attribute__((aligned(64)));
   intL left[kTileRows], any_left = 0;
   for (uint row = 0; row < kTileRows; ++row) {
@@ -212,74 +409,61 @@ INLINE void light_tile(const Tile *tile, const ShadeFrame *frame, const ClusterT
     any_left |= left[row];
     for (uint i = 0; i < 6; ++i) *(floatL *)(out[i] + row * LANES) = 0.0f;
   }
-  uint clusters = 0, cut = 0, listed = 0, redone = 0;
+  Counts counted = {0, 0, 0, 0};
   while (any_lane(any_left)) {
     GroupPixels pixels;
     take_pixels(tile, left, &pixels);
-    PixelGroup group = bound_group(&pixels, light_error);
-    for (uint tries = 1;; ++tries) {
-      ClusterWalk walk;
-      FieldSums sums;
-      RowSums row_sums[kTileRows];
-      vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
-      for (uint row = 0; row < kTileRows; ++row) {
-        row_sums[row].cut.light = row_sums[row].cut.bound = row_sums[row].lights = dark;
-        row_sums[row].weight = 0.0f;
-      }
-      start_field(&sums);
-      start_cluster_walk(tree, &walk);
-      uint blocks = 0, cuts = 0;  // that the sums of lights and of clusters are made of
-      for (bool done = false; !done;) {
-        done = walk_clusters(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
-        add_listed(&walk, &pixels, tree->rows, lights, row_sums);
-        blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
-        cuts += walk.clusters;
-        listed += walk.lights * pixels.count;
-        cut += walk.clusters * pixels.count;
-        walk.lights = walk.clusters = 0;
-      }
-      clusters += walk.far_clusters;
-      float worst = finish_group(&pixels, frame, &sums, &group, row_sums, blocks, cuts, light_error, out);
-      // Errors grow somewhat slower than what is accepted.
-      *share *= min(max(0.6f / worst, 0.125f), 4.0f);
-      if (worst <= 1.0f || tries == kMostTries) break;
-      redone += pixels.count;
-    }
+    bool shines = CLUSTERED_HIGHLIGHTS && any_specular(&pixels);
+    light_group(&pixels, &scene->diffuse, shines ? DIFFUSE_SHARE * scene->light_error : scene->light_error, &shares->diffuse, out, &counted);
+    if (shines)
+      for (uint first = 0; first < pixels.count; first += kHighlightPixels)
+        highlight_group(&pixels, first, min(first + kHighlightPixels, pixels.count), &scene->frame, &scene->specular, scene->light_error,
+                        &shares->specular, out, &counted);
     any_left = 0;
     for (uint row = 0; row < kTileRows; ++row) any_left |= left[row];
   }
-  for (uint row = 0; row < kTileRows; ++row)
+  for (uint row = 0; row < kTileRows; ++row) {
+    vec3L position = load_vec3(tile->position + row * LANES, tile->stride);
+    intL covered = position.z > -INFINITY;
+    vec3L seen = {(floatL)(1.0f), (floatL)(1.0f), (floatL)(1.0f)};
+    if (FOG) seen = fog_share(scene->frame, position);
+    floatL transmittance[3] = {seen.x, seen.y, seen.z};
     for (uint c = 0; c < 3; ++c) {
-      store_lanes(light + row * LANES + c * tile->stride, *(const floatL *)(out[c] + row * LANES));
-      store_lanes(bound + row * LANES + c * tile->stride, *(const floatL *)(out[3 + c] + row * LANES));
+      floatL of_bound = *(const floatL *)(out[3 + c] + row * LANES) * transmittance[c];
+      of_bound = of_bound <= LARGEST_BOUND ? of_bound : (floatL)(LARGEST_BOUND);
+      store_lanes(light + row * LANES + c * tile->stride, finite_color(*(const floatL *)(out[c] + row * LANES)));
+      store_lanes(bound + row * LANES + c * tile->stride, covered ? of_bound : (floatL)(0.0f));
     }
-  counts[0] = clusters;
-  counts[1] = cut;
-  counts[2] = listed;
-  counts[3] = redone;
+  }
+  counts[0] = counted.far_clusters;
+  counts[1] = counted.clusters;
+  counts[2] = counted.lights;
+  counts[3] = counted.redone;
 }
 
-WORK void light_run(Tile tile, ShadeFrame frame, ClusterTree tree, __global const ClusteredLight *lights, float light_error, uint tiles,
-                    __global float *light, __global float *bound, __global uint *counts) {
-  float share = 0x1p-8f;
+WORK void light_run(Tile tile, const Scene *scene, uint tiles, __global float *light, __global float *bound, __global uint *counts) {
+  Shares shares = {0x1p-8f, 0x1p-8f};
   for (uint i = 0; i < tiles; ++i) {
-    light_tile(&tile, &frame, &tree, lights, light_error, &share, light, bound, counts);
+    light_tile(&tile, scene, &shares, light, bound, counts);
     tile.position += kTilePixels;
     tile.normal += kTilePixels;
     tile.diffuse += kTilePixels;
+    tile.specular += kTilePixels;
     light += kTilePixels;
     bound += kTilePixels;
     counts += 4;
   }
 }
 
-__kernel void clustered_light(ShadeFrame frame, __global const float *position, __global const float *normal,
-                              __global const float *diffuse, __global const float *rows, __global const ClusteredLight *lights,
-                              uint light_count, uint levels, float light_error, uint tiles_x, uint run, __global float *light,
-                              __global float *bound, __global uint *counts) {
-  ClusterTree tree = {rows, light_count, levels};
+// rows, lights: of the tree of diffuse light; highlight_rows, highlight_lights: of that of specular light, which has the same places.
+__kernel void clustered_light(ShadeFrame frame, __global const float *position, __global const float *normal, __global const float *diffuse,
+                              __global const float *specular, __global const float *rows, __global const ClusteredLight *lights,
+                              __global const float *highlight_rows, __global const ClusteredLight *highlight_lights, uint light_count,
+                              uint levels, float light_error, uint tiles_x, uint run, __global float *light, __global float *bound,
+                              __global uint *counts) {
+  Scene scene = {frame, {{rows, light_count, levels}, lights}, {{highlight_rows, light_count, levels}, highlight_lights}, light_error};
   uint runs = (tiles_x + run - 1) / run, item = get_global_id(0), column = item % runs * run;
   uint first_tile = item / runs * tiles_x + column, first = first_tile * kTilePixels;
-  Tile tile = {position + first, normal + first, diffuse + first, frame.plane_stride};
-  light_run(tile, frame, tree, lights, light_error, min(run, tiles_x - column), light + first, bound + first, counts + 4 * first_tile);
+  Tile tile = {position + first, normal + first, diffuse + first, specular + first, frame.plane_stride};
+  light_run(tile, &scene, min(run, tiles_x - column), light + first, bound + first, counts + 4 * first_tile);
 }

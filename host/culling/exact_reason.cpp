@@ -12,8 +12,8 @@
 namespace luciole {
 
 const char* exactReasonName(ExactReason reason) {
-  static constexpr const char* kNames[]{"none",        "model",   "kind",     "shadow", "range",
-                                        "attenuation", "ambient", "specular", "place"};
+  static constexpr const char* kNames[]{"none",  "model",       "kind",    "shadow",
+                                        "range", "attenuation", "ambient", "place"};
   static_assert(std::size(kNames) == kExactReasons);
   return kNames[std::size_t(reason)];
 }
@@ -26,7 +26,6 @@ ExactReason exactReason(const Light& light, const LightUse& use) {
   const glm::vec3& falloff = light.attenuation;
   if (falloff.x != 0 || falloff.y != 0 || !(falloff.z >= kLeastQuadratic)) return ExactReason::kAttenuation;
   if (light.ambient != glm::vec3(0.0f)) return ExactReason::kAmbient;
-  if (use.specular && light.specular != glm::vec3(0.0f)) return ExactReason::kSpecular;
   const glm::dvec3 place = glm::abs(light.position);
   if (!(std::max({place.x, place.y, place.z}) <= kFarthestClustered)) return ExactReason::kPlace;
   return ExactReason::kNone;

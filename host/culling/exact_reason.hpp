@@ -20,7 +20,6 @@ enum class ExactReason : std::uint8_t {
   kRange,        ///< its range is finite
   kAttenuation,  ///< it doesn't fall off as 1 / (q d²)
   kAmbient,      ///< it has an ambient part
-  kSpecular,     ///< it has a specular part, and surfaces reflect it
   kPlace,        ///< it is farther from the origin than kFarthestClustered
   kCount
 };
@@ -35,8 +34,7 @@ inline constexpr double kFarthestClustered = 1e15;
 /// What of a picture decides which of its lights others may stand for.
 struct LightUse {
   Model model = Model::kPhong;
-  bool shadows = false;   ///< lights cast them that can
-  bool specular = false;  ///< surfaces reflect specular light
+  bool shadows = false;  ///< lights cast them that can
 };
 
 ExactReason exactReason(const Light& light, const LightUse& use);

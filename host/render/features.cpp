@@ -45,6 +45,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"LONG_SUMS", "long sums", "more lights than float adds up one by one"},
     {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
     {"CLUSTERED_LIGHTS", "clustered lights", "clusters that stand for lights, with a bound of the error"},
+    {"CLUSTERED_HIGHLIGHTS", "clustered highlights", "highlights of clusters that stand for lights"},
 }};
 
 std::vector<std::string> featureNames(const FeatureSet& features) {
@@ -66,14 +67,15 @@ SurfaceTraits materialTraits(const Scene& scene) {
   return traits;
 }
 
-LightUse lightUse(SurfaceTraits surfaces, const ShadeSettings& settings) {
-  return {settings.model, settings.shadows != ShadowMethod::kOff, surfaces.specular};
+LightUse lightUse(const ShadeSettings& settings) {
+  return {settings.model, settings.shadows != ShadowMethod::kOff};
 }
 
 bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings) {
   if (!scene.lighting || !(settings.light_error > 0)) return false;
-  const auto counts = countReasons(scene.lights, lightUse(surfaces, settings));
-  return clustersPay(counts[std::size_t(ExactReason::kNone)], settings.light_error);
+  const auto counts = countReasons(scene.lights, lightUse(settings));
+  return clustersPay(counts[std::size_t(ExactReason::kNone)], settings.light_error,
+                     surfaces.specular);
 }
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
@@ -104,13 +106,14 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     features.set(Feature::kAmbient);  // unlit: diffuse colour under an ambient light of 1
     return features;
   }
-  bool light_specular = false, any_cone = false, any_exponent = false;
+  bool any_specular = false, clusters_specular = false, any_cone = false, any_exponent = false;
   const bool clustered = standsForLights(scene, surfaces, settings),
              shadows = settings.shadows != ShadowMethod::kOff;
   std::size_t summed = 0;  // lights that are summed by themselves
   for (const Light& light : scene.lights) {
-    light_specular |= light.specular != glm::vec3(0.0f);
-    if (clustered && exactReason(light, lightUse(surfaces, settings)) == ExactReason::kNone) continue;
+    const bool in_clusters = clustered && exactReason(light, lightUse(settings)) == ExactReason::kNone;
+    (in_clusters ? clusters_specular : any_specular) |= light.specular != glm::vec3(0.0f);
+    if (in_clusters) continue;
     ++summed;
     features.set(light.kind == LightKind::kPoint         ? Feature::kPointLights
                  : light.kind == LightKind::kDirectional ? Feature::kDirectionalLights
@@ -141,12 +144,13 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   // tell it from a cone at run time.
   if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
-  features.set(Feature::kSpecular, surfaces.specular && light_specular);
+  features.set(Feature::kSpecular, surfaces.specular && any_specular);
   features.set(featureOf(settings.model), !scene.lights.empty());
   features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
   features.set(Feature::kLongSums, summed > kSumBlock);
   // What clusters give a pixel reaches the shading kernels as light that the surface emits.
   features.set(Feature::kClusteredLights, clustered);
+  features.set(Feature::kClusteredHighlights, surfaces.specular && clusters_specular);
   if (clustered) features.set(Feature::kEmission);
   return features;
 }
@@ -162,8 +166,8 @@ FeatureSet lookupFeatures(const FeatureSet& features) {
 FeatureSet clusterFeatures(const FeatureSet& features) {
   FeatureSet kept;
   for (const Feature feature :
-       {Feature::kSpecular, Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
-        Feature::kFogPerChannel, Feature::kFogRadial, Feature::kClusteredLights})
+       {Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
+        Feature::kFogPerChannel, Feature::kFogRadial, Feature::kClusteredLights, Feature::kClusteredHighlights})
     kept.set(feature, features.has(feature));
   for (const Model model : kAllModels) kept.set(featureOf(model), features.has(featureOf(model)));
   kept.set(Feature::kPointLights);
@@ -172,7 +176,7 @@ FeatureSet clusterFeatures(const FeatureSet& features) {
 }
 
 PlaneSet neededPlanes(const FeatureSet& features) {
-  return {.specular = features.has(Feature::kSpecular),
+  return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights),
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
           .geometric_normal = features.shadows(),

@@ -47,6 +47,7 @@ enum class Feature : unsigned {
   kLongSums,
   kOutputShadow,
   kClusteredLights,
+  kClusteredHighlights,
   kCount
 };
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::kCount);
@@ -114,7 +115,7 @@ struct ShadeSettings {
 bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings);
 
 /// Which of a picture's lights others may stand for.
-LightUse lightUse(SurfaceTraits surfaces, const ShadeSettings& settings);
+LightUse lightUse(const ShadeSettings& settings);
 
 /// The features that this scene's lights, fog and surfaces need, seen by this camera.
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,

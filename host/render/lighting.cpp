@@ -201,21 +201,42 @@ void countLights(Device& device, Lighting& lighting, const LightLists* lists, co
   for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
 }
 
-/// Takes from `order` those lights that clusters may stand for, and returns them; view space.
-std::vector<UnboundedLight> takeClustered(const Scene& scene, const Camera& camera, const LightUse& use,
-                                          std::vector<std::uint32_t>& order) {
+/// Takes from `order` those lights that clusters may stand for, and returns them.
+std::vector<std::uint32_t> takeClustered(const Scene& scene, const LightUse& use,
+                                         std::vector<std::uint32_t>& order) {
   const auto first = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t light) {
     return exactReason(scene.lights[light], use) != ExactReason::kNone;
   });
-  const glm::dmat4 world_to_view = worldToView(camera);
-  std::vector<UnboundedLight> clustered(std::size_t(order.end() - first));
-  tbb::parallel_for(std::size_t(0), clustered.size(), [&](std::size_t i) {
-    const Light& light = scene.lights[first[std::ptrdiff_t(i)]];
-    clustered[i] = {glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), glm::dvec3(light.diffuse),
-                    light.attenuation.z};
-  });
+  std::vector<std::uint32_t> clustered(first, order.end());
   order.erase(first, order.end());
   return clustered;
+}
+
+/// The clusters of these lights in the camera's view space. color: Light::diffuse or Light::specular.
+LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::vector<std::uint32_t>& chosen,
+                         glm::vec3 Light::*color) {
+  const glm::dmat4 world_to_view = worldToView(camera);
+  std::vector<UnboundedLight> lights(chosen.size());
+  tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
+    const Light& light = scene.lights[chosen[i]];
+    lights[i] = {glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), glm::dvec3(light.*color),
+                 light.attenuation.z};
+  });
+  return buildLightClusters(lights);
+}
+
+/// Fills in the clusters that the features need, of lights that it takes from `order`.
+void prepareClusters(const Scene& scene, const Camera& camera, const FeatureSet& features,
+                     const ShadeSettings& settings, std::vector<std::uint32_t>& order, Lighting& lighting) {
+  const std::vector<std::uint32_t> chosen = takeClustered(scene, lightUse(settings), order);
+  const bool one_color = std::all_of(chosen.begin(), chosen.end(), [&](std::uint32_t light) {
+    return scene.lights[light].diffuse == scene.lights[light].specular;
+  });
+  lighting.clusters = clustersOf(scene, camera, chosen, &Light::diffuse);
+  if (features.has(Feature::kClusteredHighlights) && !one_color)
+    lighting.highlight_clusters = clustersOf(scene, camera, chosen, &Light::specular);
+  lighting.clustered_lights = chosen.size();
+  lighting.light_error = settings.light_error;
 }
 
 /// What rounding adds to a bound, times the colour that is seen. Between the light of clusters and the colour
@@ -240,6 +261,9 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
                                     .tiles_x = gbuffer.tiles_x,
                                     .tiles_y = gbuffer.tiles_y,
                                     .clusters = lighting.clusters,
+                                    .highlights = lighting.highlight_clusters.lights.empty()
+                                                      ? lighting.clusters
+                                                      : lighting.highlight_clusters,
                                     .light_error = std::max(lighting.light_error - kSeenRounding, 1e-9f),
                                     .light = light_buffer,
                                     .bound = bound_buffer});
@@ -289,14 +313,8 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   timed(stats, Stage::kPrepareLights, [&] {
     if (scene.lighting) {
       std::vector<std::uint32_t> order = spatialOrder(scene.lights);
-      if (features.has(Feature::kClusteredLights)) {
-        const SurfaceTraits surfaces{.specular = features.has(Feature::kSpecular)};
-        const std::vector<UnboundedLight> clustered =
-            takeClustered(scene, camera, lightUse(surfaces, settings), order);
-        lighting.clusters = buildLightClusters(clustered);
-        lighting.clustered_lights = clustered.size();
-        lighting.light_error = settings.light_error;
-      }
+      if (features.has(Feature::kClusteredLights))
+        prepareClusters(scene, camera, features, settings, order, lighting);
       lighting.host_lights = prepareLights(scene, order, camera, lighting.host_shadows);
       if (features.has(Feature::kExact)) lighting.order = std::move(order);
     }

@@ -40,7 +40,8 @@ struct Lighting {
   Buffer<const BoundTexel> shadow_bounds;   ///< those drawn so far, with Feature::kExact
   LightLists lists;                         ///< of the last G-buffer that was shaded by lists
   LightLists lists_in_range;                ///< lists by range alone, to count lights in range
-  LightClusters clusters;                   ///< with Feature::kClusteredLights only
+  LightClusters clusters;                   ///< of diffuse light, with Feature::kClusteredLights only
+  LightClusters highlight_clusters;         ///< of specular light, where its colours are others
   std::size_t clustered_lights = 0;         ///< that they stand for
   float light_error = 0;                    ///< see ShadeSettings
   /// With Gouraud shading and clusters: the largest bound of any vertex, r g b. A pixel mixes vertices by

@@ -36,7 +36,7 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
                                  (wants(settings, Aov::kShadow) ? 1 : 0);
-  const LightUse use = lightUse({.specular = features.has(Feature::kSpecular)}, settings.shade);
+  const LightUse use = lightUse(settings.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
         return !std::isfinite(light.range) && !(clustered && exactReason(light, use) == ExactReason::kNone);

@@ -81,7 +81,7 @@ MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, 
   };
   if (points.empty() || !scene.lighting) return {};
   const bool culled = features.has(Feature::kLightLists), by_facing = !features.has(Feature::kLightAmbient);
-  const LightUse use = lightUse({.specular = features.has(Feature::kSpecular)}, settings);
+  const LightUse use = lightUse(settings);
   const bool clustered = features.has(Feature::kClusteredLights);
   const double tests = double(points.size()) * double(scene.lights.size());
   const std::size_t step = std::size_t(std::ceil(std::max(tests / kMostTests, 1.0)));
@@ -103,7 +103,8 @@ MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, 
     mean.shadowed += double(each.shadowed) / double(counts.size());
     mean.tile += double(each.tile) / double(counts.size());
   }
-  if (clustered) mean.square += clusteredWork(countReasons(scene.lights, use)[0], settings.light_error);
+  if (clustered) mean.square += clusteredWork(countReasons(scene.lights, use)[0], settings.light_error,
+                                              features.has(Feature::kClusteredHighlights));
   return mean;
 }
 

@@ -104,6 +104,7 @@ void lightByClusters(int lanes) {
                   .tiles_x = gbuffer.tiles_x,
                   .tiles_y = gbuffer.tiles_y,
                   .clusters = clusters,
+                  .highlights = clusters,
                   .light_error = 1.0f / 16,
                   .light = borrowedForOutput(device, light),
                   .bound = borrowedForOutput(device, bound)});

@@ -37,14 +37,16 @@ __kernel void probe_far_cluster(__global const float *in, __global float *out, u
   for (uint lane = 0; lane < LANES; ++lane) {
     uint i = first + lane;
     PixelGroup group = group_of(in, stride, i);
-    ClusterView view;
-    RowVerdict verdict = judge_clusters(row, part, &group, 1.0f, 0, &view);
+    ClusterView view = view_clusters(row, part, &group);
+    floatL error;
+    RowVerdict verdict = judge_clusters(row, part, &group, 1.0f, 0, &view, &error);
+    floatL weight = series_weight(row, part, view.inverse_d, view.k);
     intL it = LANE_NUMBERS == (int)lane;
     floatL none = 0.0f, one = 1.0f;
     vec3L direction = {it ? view.direction.x : none, it ? view.direction.y : none, it ? view.direction.z : none};
     FieldSums sums;
     start_field(&sums);
-    add_clusters(&sums, row, part, direction, it ? view.inverse_d : none, it ? one : none, it ? view.error : none, it ? view.weight : none);
+    add_clusters(&sums, row, part, direction, it ? view.inverse_d : none, it ? one : none, it ? error : none, it ? weight : none);
     count_field_row(&sums);
     Field field;
     finish_field(&sums, &field);
@@ -70,9 +72,10 @@ __kernel void probe_field_sums(__global const float *in, __global float *out, ui
   for (uint i = 0; i < *row_count; ++i) {
     __global const float *row = rows + (size_t)i * (kClusterFields * kClusterSlots);
     for (uint part = 0; part < SLOT_PARTS; ++part) {
-      ClusterView view;
-      judge_clusters(row, part, &group, 1.0f, 0, &view);
-      add_clusters(&sums, row, part, view.direction, view.inverse_d, (floatL)(1.0f), view.error, view.weight);
+      ClusterView view = view_clusters(row, part, &group);
+      floatL error;
+      judge_clusters(row, part, &group, 1.0f, 0, &view, &error);
+      add_clusters(&sums, row, part, view.direction, view.inverse_d, (floatL)(1.0f), error, series_weight(row, part, view.inverse_d, view.k));
     }
     count_field_row(&sums);
   }

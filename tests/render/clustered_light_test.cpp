@@ -41,6 +41,7 @@ Lit lightBy(Device& device, const GBuffer& gbuffer, const Lights& lights, float 
                                .tiles_x = gbuffer.tiles_x,
                                .tiles_y = gbuffer.tiles_y,
                                .clusters = clusters,
+                               .highlights = clusters,
                                .light_error = light_error,
                                .light = light,
                                .bound = bound});

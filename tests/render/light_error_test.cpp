@@ -148,7 +148,7 @@ TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
   RenderSettings settings = settingsFor(scene, {40, 30});
   EXPECT_FALSE(standsForLights(scene, materialTraits(scene), settings.shade));
   scene.lights.resize(100);
-  ASSERT_FALSE(clustersPay(100, 1.0f / 256));
+  ASSERT_FALSE(clustersPay(100, 1.0f / 256, false));
   const Both both = renderBoth(scene, settings);
   for (std::size_t i = 0; i < both.clustered.pixels.size(); ++i) {
     if (i % 6 < 3)
