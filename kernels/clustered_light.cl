@@ -40,16 +40,10 @@ typedef struct {
   uint stride;
 } Tile;
 
-// Lights, and the tree over them.
-typedef struct {
-  ClusterTree tree;
-  __global const ClusteredLight *lights;
-} Clusters;
-
 // What is the same for all tiles.
 typedef struct {
   ShadeFrame frame;
-  Clusters diffuse, specular;
+  ClusterTree diffuse, specular;
   float light_error;
 } Scene;
 
@@ -161,19 +155,19 @@ typedef struct {
 } RowSums;
 
 // Adds the lights of a walk's list to a row of pixels.
-INLINE void add_listed_lights(const ClusterWalk *walk, __global const ClusteredLight *lights, vec3L position, vec3L normal, RowSums *sums) {
+INLINE void add_listed_lights(const ClusterWalk *walk, const ClusterTree *tree, vec3L position, vec3L normal, RowSums *sums) {
   for (uint from = 0; from < walk->lights; from += kSumTerms) {
     uint end = min(from + kSumTerms, walk->lights);
     vec3L some = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     floatL some_weight = 0.0f;
     for (uint i = from; i < end; ++i) {
-      __global const ClusteredLight *light = lights + walk->light[i];
-      vec3L u = to_clustered_light(light, position);
+      ClusteredLight light = clustered_light_of(tree, walk->light[i]);
+      vec3L u = to_clustered_light(&light, position);
       floatL inverse_d = rsqrt_lanes(dot3(u, u));
       floatL cosine = max_lanes(dot3(normal, u) * inverse_d, (floatL)(0.0f));
-      floatL falloff = min_lanes(inverse_d * inverse_d, (floatL)(light->position.w));
-      add_scaled(&some, light->diffuse, cosine * falloff);
-      some_weight = fma_lanes((floatL)(light->diffuse.w), falloff, some_weight);
+      floatL falloff = min_lanes(inverse_d * inverse_d, (floatL)(light.falloff));
+      add_scaled(&some, light.color, cosine * falloff);
+      some_weight = fma_lanes((floatL)(light.color.w), falloff, some_weight);
     }
     sums->lights.x += some.x;
     sums->lights.y += some.y;
@@ -182,15 +176,14 @@ INLINE void add_listed_lights(const ClusterWalk *walk, __global const ClusteredL
   }
 }
 
-INLINE void add_listed(const ClusterWalk *walk, const GroupPixels *pixels, __global const float *rows, __global const ClusteredLight *lights,
-                       RowSums *sums) {
+INLINE void add_listed(const ClusterWalk *walk, const GroupPixels *pixels, const ClusterTree *tree, RowSums *sums) {
   for (uint i = 0; i < pixels->count; i += LANES) {
     vec3L position = pixel_vector(pixels, 0, i), normal = pixel_vector(pixels, 3, i);
     RowSums some = sums[i / LANES];
-    add_listed_lights(walk, lights, position, normal, &some);
+    add_listed_lights(walk, tree, position, normal, &some);
     for (uint k = 0; k < walk->clusters; ++k) {
       uint cluster = walk->cluster[k];
-      add_cut_cluster(rows + (size_t)(cluster / kClusterSlots) * (kClusterFields * kClusterSlots) + cluster % kClusterSlots, position, normal,
+      add_cut_cluster(tree->rows + (size_t)(cluster / kClusterSlots) * (kClusterFields * kClusterSlots) + cluster % kClusterSlots, position, normal,
                       &some.cut);
     }
     sums[i / LANES] = some;
@@ -237,10 +230,10 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
 }
 
 // Errors grow somewhat slower than what is accepted.
-INLINE float next_share(float share, float worst) { return share * min(max(0.6f / worst, 0.125f), 4.0f); }
+INLINE float next_share(float share, float worst) { return share * min(max(0.7f / worst, 0.125f), 4.0f); }
 
 // Sets the diffuse light of a group's pixels in `out`.
-INLINE void light_group(const GroupPixels *pixels, const Clusters *clusters, float light_error, float *share, float out[6][kTilePixels],
+INLINE void light_group(const GroupPixels *pixels, const ClusterTree *tree, float light_error, float *share, float out[6][kTilePixels],
                         Counts *counts) {
   PixelGroup group = bound_group(pixels, 0, pixels->count, kDiffuse, light_error);
   for (uint tries = 1;; ++tries) {
@@ -253,11 +246,11 @@ INLINE void light_group(const GroupPixels *pixels, const Clusters *clusters, flo
       row_sums[row].weight = 0.0f;
     }
     start_field(&sums);
-    start_cluster_walk(&clusters->tree, &walk);
+    start_cluster_walk(tree, &walk);
     uint blocks = 0, cuts = 0;  // that the sums of lights and of clusters are made of
     for (bool done = false; !done;) {
-      done = walk_clusters(&clusters->tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
-      add_listed(&walk, pixels, clusters->tree.rows, clusters->lights, row_sums);
+      done = walk_clusters(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
+      add_listed(&walk, pixels, tree, row_sums);
       blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
       cuts += walk.clusters;
       counts->lights += walk.lights * pixels->count;
@@ -360,7 +353,7 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
 }
 
 // Adds the highlights of a group's pixels from `first` to `end` to `out`.
-INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, const Clusters *clusters, float light_error,
+INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, const ClusterTree *tree, float light_error,
                             float *share, float out[6][kTilePixels], Counts *counts) {
   HighlightGroup group = bound_highlights(pixels, first, end, frame, light_error);
   if (!(group.place.gain > 0.0f)) return;
@@ -375,14 +368,14 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
       row_sums[row].unsure = row_sums[row].weight = 0.0f;
     }
     start_lobes(&sums);
-    start_cluster_walk(&clusters->tree, &walk);
+    start_cluster_walk(tree, &walk);
     uint blocks = 0;
     for (bool done = false; !done;) {
-      done = walk_highlights(&clusters->tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
+      done = walk_highlights(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
       for (uint i = first; i < end; i += LANES) {
         HighlightPixels row = highlight_pixels(pixels, i, frame);
         HighlightSums some = row_sums[(i - first) / LANES];
-        add_listed_highlights(&walk, clusters->lights, &row, group.exponent, group.model, &some);
+        add_listed_highlights(&walk, tree, &row, group.exponent, group.model, &some);
         row_sums[(i - first) / LANES] = some;
       }
       blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
@@ -455,13 +448,13 @@ WORK void light_run(Tile tile, const Scene *scene, uint tiles, __global float *l
   }
 }
 
-// rows, lights: of the tree of diffuse light; highlight_rows, highlight_lights: of that of specular light, which has the same places.
+// rows, light_rows: of the tree of diffuse light; highlight_rows, highlight_light_rows: of that of specular light, which has the same places.
 __kernel void clustered_light(ShadeFrame frame, __global const float *position, __global const float *normal, __global const float *diffuse,
-                              __global const float *specular, __global const float *rows, __global const ClusteredLight *lights,
-                              __global const float *highlight_rows, __global const ClusteredLight *highlight_lights, uint light_count,
+                              __global const float *specular, __global const float *rows, __global const float *light_rows,
+                              __global const float *highlight_rows, __global const float *highlight_light_rows, uint light_count,
                               uint levels, float light_error, uint tiles_x, uint run, __global float *light, __global float *bound,
                               __global uint *counts) {
-  Scene scene = {frame, {{rows, light_count, levels}, lights}, {{highlight_rows, light_count, levels}, highlight_lights}, light_error};
+  Scene scene = {frame, {rows, light_rows, light_count, levels}, {highlight_rows, highlight_light_rows, light_count, levels}, light_error};
   uint runs = (tiles_x + run - 1) / run, item = get_global_id(0), column = item % runs * run;
   uint first_tile = item / runs * tiles_x + column, first = first_tile * kTilePixels;
   Tile tile = {position + first, normal + first, diffuse + first, specular + first, frame.plane_stride};

@@ -97,13 +97,16 @@ enum {
 // Moments of a channel: Σ q, Σ q·δ, Σ q·δδ (xx xy xz yy yz zz).
 enum { kMoment0 = 0, kMoment1 = 1, kMoment2 = 4, kMoments = 10, kClusterFields = kClusterMoments + 3 * kMoments };
 
-// A light of the tree's leaves, in the tree's order.
-typedef struct {
-  float4 position;  // xyz; w: what 1/d² is held below, as attenuation is below 2¹⁰⁰
-  float4 rest;      // xyz: what rounding took from the position; w: unused, 0
-  float4 diffuse;   // rgb over quadratic attenuation; w: the largest
-} ClusteredLight;
-SHARED_SIZE(ClusteredLight, 48);
+// Fields of a light of the leaves, kClusterSlots floats each. A row of lights is two leaves side by side: lights 0 to 7 and 8 to 15. Slots without
+// a light are 0.
+enum {
+  kLightPlace = 0,   // 3: xyz
+  kLightRest = 3,    // 3: what rounding took from it
+  kLightFalloff = 6, // what 1/d² is held below, as attenuation is below 2¹⁰⁰
+  kLightColor = 7,   // 3: rgb over quadratic attenuation
+  kLightMost = 10,   // the largest of them
+  kLightFields
+};
 
 // Where a light's shadow map is looked up. (u, v) are tangents from the light, right and up of the face's axis, or for a
 // parallel map metres; depths are reversed and grow towards the light, 0 where nothing was drawn.

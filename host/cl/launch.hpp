@@ -42,10 +42,6 @@ constexpr std::string_view kernelTypeName<ShadeLight>() {
   return "ShadeLight";
 }
 template <>
-constexpr std::string_view kernelTypeName<ClusteredLight>() {
-  return "ClusteredLight";
-}
-template <>
 constexpr std::string_view kernelTypeName<ShadowMap>() {
   return "ShadowMap";
 }

@@ -14,6 +14,7 @@ namespace luciole {
 namespace {
 
 constexpr std::size_t kRowFloats = std::size_t(kClusterFields) * kClusterSlots;
+constexpr std::size_t kLightRowFloats = std::size_t(kLightFields) * kClusterSlots;
 /// Lights that are split in a thread of their own.
 constexpr std::size_t kParallelLights = 1 << 14;
 /// Moments that bound something are at least this, so that none is lost below the least float.
@@ -26,12 +27,18 @@ glm::dvec3 upperHalf(const glm::dvec3& x) {
   return scaled - (scaled - x);
 }
 
-ClusteredLight clusteredLight(const UnboundedLight& light) {
+/// Sets a light's fields, which lie kClusterSlots floats apart from `out` on.
+void setLight(const UnboundedLight& light, float* out) {
+  const auto field = [out](std::size_t number) -> float& { return out[number * kClusterSlots]; };
   const glm::dvec3 upper = upperHalf(light.position);
   const glm::vec3 place(upper), rest(light.position - upper), color(light.diffuse / light.quadratic);
-  return {{place.x, place.y, place.z, float(0x1p100 * light.quadratic)},
-          {rest.x, rest.y, rest.z, 0},
-          {color.x, color.y, color.z, std::max({color.x, color.y, color.z})}};
+  for (int axis = 0; axis < 3; ++axis) {
+    field(kLightPlace + std::size_t(axis)) = place[axis];
+    field(kLightRest + std::size_t(axis)) = rest[axis];
+    field(kLightColor + std::size_t(axis)) = color[axis];
+  }
+  field(kLightFalloff) = float(0x1p100 * light.quadratic);
+  field(kLightMost) = std::max({color.x, color.y, color.z});
 }
 
 /// Rows of a tree of that many levels.
@@ -214,14 +221,23 @@ LightClusters buildLightClusters(std::span<const UnboundedLight> lights) {
     planes.position[axis].resize(count);
     planes.color[axis].resize(count);
   }
-  clusters.lights.resize(count);
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
-    const UnboundedLight& light = lights[order[i]];
-    clusters.lights[i] = clusteredLight(light);
-    const float4& color = clusters.lights[i].diffuse;
-    for (int axis = 0; axis < 3; ++axis) {
-      planes.position[std::size_t(axis)][i] = light.position[axis];
-      planes.color[std::size_t(axis)][i] = axis == 0 ? color.x : axis == 1 ? color.y : color.z;
+  clusters.lights = count;
+  const std::size_t leaves = std::size_t(1) << clusters.levels;
+  clusters.light_rows.resize(std::max<std::size_t>(leaves / 2, 1) * kLightRowFloats);
+  tbb::parallel_for(std::size_t(0), clusters.light_rows.size() / kLightRowFloats, [&](std::size_t row) {
+    float* const out = &clusters.light_rows[row * kLightRowFloats];
+    std::fill_n(out, kLightRowFloats, 0.0f);
+    for (std::size_t leaf = 2 * row; leaf < std::min(2 * row + 2, leaves); ++leaf) {
+      const std::size_t begin = clusterBegin(count, clusters.levels, leaf);
+      for (std::size_t i = begin; i < clusterBegin(count, clusters.levels, leaf + 1); ++i) {
+        const UnboundedLight& light = lights[order[i]];
+        float* const slot = out + leaf % 2 * kLeafLights + (i - begin);
+        setLight(light, slot);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          planes.position[axis][i] = light.position[int(axis)];
+          planes.color[axis][i] = slot[(kLightColor + axis) * kClusterSlots];
+        }
+      }
     }
   });
   clusters.rows.resize(rowCount(clusters.levels) * kRowFloats);

@@ -23,7 +23,9 @@ inline constexpr double kLeastQuadratic = 0x1p-40;
 
 /// A balanced tree over lights that clusters may stand for; its layout is that of kernels/shared.h.
 struct LightClusters {
-  std::vector<ClusteredLight, RawArrayAllocator<ClusteredLight>> lights;
+  std::size_t lights = 0;
+  /// kLightFields · kClusterSlots floats for each pair of leaves. Slots without a light are 0.
+  std::vector<float, RawArrayAllocator<float>> light_rows;
   /// kClusterFields · kClusterSlots floats a row. Slots without a cluster are 0.
   std::vector<float, RawArrayAllocator<float>> rows;
   unsigned levels =

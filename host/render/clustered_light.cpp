@@ -22,11 +22,11 @@ ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
   std::vector<uint> counts(4 * tiles);
   const Buffer<uint> counts_buffer = borrowedForOutput(device, counts);
   const Buffer<const float> rows = borrowed(device, clusters.rows);
-  const Buffer<const ClusteredLight> lights = borrowed(device, clusters.lights);
+  const Buffer<const float> light_rows = borrowed(device, clusters.light_rows);
   const bool shared = &arguments.highlights == &clusters;
   const Buffer<const float> highlight_rows = shared ? rows : borrowed(device, arguments.highlights.rows);
-  const Buffer<const ClusteredLight> highlight_lights =
-      shared ? lights : borrowed(device, arguments.highlights.lights);
+  const Buffer<const float> highlight_light_rows =
+      shared ? light_rows : borrowed(device, arguments.highlights.light_rows);
   launch(device, kernel,
          {{"frame", arguments.frame},
           {"position", gbuffer.position},
@@ -34,10 +34,10 @@ ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
           {"diffuse", gbuffer.diffuse},
           {"specular", gbuffer.specular},
           {"rows", rows},
-          {"lights", lights},
+          {"light_rows", light_rows},
           {"highlight_rows", highlight_rows},
-          {"highlight_lights", highlight_lights},
-          {"light_count", uint(clusters.lights.size())},
+          {"highlight_light_rows", highlight_light_rows},
+          {"light_count", uint(clusters.lights)},
           {"levels", uint(clusters.levels)},
           {"light_error", arguments.light_error},
           {"tiles_x", uint(arguments.tiles_x)},

@@ -261,7 +261,7 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
                                     .tiles_x = gbuffer.tiles_x,
                                     .tiles_y = gbuffer.tiles_y,
                                     .clusters = lighting.clusters,
-                                    .highlights = lighting.highlight_clusters.lights.empty()
+                                    .highlights = lighting.highlight_clusters.rows.empty()
                                                       ? lighting.clusters
                                                       : lighting.highlight_clusters,
                                     .light_error = std::max(lighting.light_error - kSeenRounding, 1e-9f),
