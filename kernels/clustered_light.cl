@@ -14,6 +14,7 @@
 #include "highlights.clh"
 #include "lanes.clh"
 #include "light_clusters.clh"
+#include "long_sum.clh"
 #include "math.clh"
 #include "shared.h"
 
@@ -26,7 +27,7 @@ enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
 
 // Pixels of a group lie this share of the first one's distance from the eye around it, and their normals this near to its own.
 #define GROUP_RADIUS 0.03f
-#define GROUP_SPREAD 0.08f
+#define GROUP_SPREAD 0.12f
 // So many pixels of a group, which follow each other in Z order, share the series of highlights.
 enum { kHighlightPixels = 64 };
 // What a bound that no float holds is given as.
@@ -63,6 +64,7 @@ typedef struct {
   uint count;
   uint place[kTilePixels];  // in the tile
   float exponent;
+  bool redone;  // whether all were lit again
   float value[kPixelValues][kTilePixels] __attribute__((aligned(64)));
 } GroupPixels;
 
@@ -81,6 +83,7 @@ INLINE void take_pixels(const Tile *tile, intL *left, GroupPixels *pixels) {
   float4 place = {p[0], p[tile->stride], p[2 * tile->stride], 0.0f}, facing = {n[0], n[tile->stride], n[2 * tile->stride], 0.0f};
   float reach2 = GROUP_RADIUS * GROUP_RADIUS * (place.x * place.x + place.y * place.y + place.z * place.z);
   pixels->count = 0;
+  pixels->redone = false;
   pixels->exponent = CLUSTERED_HIGHLIGHTS ? tile->specular[seed + 3 * tile->stride] : 0.0f;
   for (uint row = 0; row < kTileRows; ++row) {
     if (!any_lane(left[row])) continue;
@@ -150,7 +153,7 @@ INLINE bool any_specular(const GroupPixels *pixels) {
 // What a row of pixels is lit by one by one.
 typedef struct {
   Certified cut;
-  vec3L lights;
+  LongSum lights;
   floatL weight;  // sum of the lights' largest channel over d²
 } RowSums;
 
@@ -169,9 +172,7 @@ INLINE void add_listed_lights(const ClusterWalk *walk, const ClusterTree *tree, 
       add_scaled(&some, light.color, cosine * falloff);
       some_weight = fma_lanes((floatL)(light.color.w), falloff, some_weight);
     }
-    sums->lights.x += some.x;
-    sums->lights.y += some.y;
-    sums->lights.z += some.z;
+    add_block(&sums->lights, some);
     sums->weight += some_weight;
   }
 }
@@ -195,20 +196,19 @@ INLINE floatL share_of(floatL light, floatL bound, float light_error) {
   return share <= 1e30f ? share : (floatL)(1e30f);
 }
 
-// Writes the diffuse light and its bound of a group's pixels to `out`, six planes of a tile. blocks, cuts: how many numbers the sums over
-// lights and over clusters were made of. Returns the largest share that a bound has of the error that is allowed.
-INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const PixelGroup *group, const RowSums *row_sums, uint blocks, uint cuts,
-                          float light_error, float out[6][kTilePixels]) {
+// Writes the diffuse light and its bound of a group's pixels to `out`, six planes of a tile. cuts: how many clusters were summed. Returns the largest share that a bound has of the error that is allowed.
+INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const PixelGroup *group, const RowSums *row_sums, uint cuts, float light_error, float out[6][kTilePixels]) {
   Field field;
   finish_field(sums, &field);
-  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + blocks), of_clusters = 0x1p-24f * (float)(64 + cuts);
+  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4), of_clusters = 0x1p-24f * (float)(64 + cuts);
   float worst = 0.0f;
   for (uint i = 0; i < pixels->count; i += LANES) {
     vec3L position = pixel_vector(pixels, kPosition, i), normal = pixel_vector(pixels, kNormal, i), color = pixel_vector(pixels, kDiffuse, i);
     vec3L h = {position.x - group->middle[0], position.y - group->middle[1], position.z - group->middle[2]};
     FieldFactors factors = field_factors(normal, h);
     const RowSums *had = row_sums + i / LANES;
-    floatL lights[3] = {had->lights.x, had->lights.y, had->lights.z}, albedo[3] = {color.x, color.y, color.z};
+    vec3L of_row = sum_of_blocks(&had->lights);
+    floatL lights[3] = {of_row.x, of_row.y, of_row.z}, albedo[3] = {color.x, color.y, color.z};
     floatL cut[3] = {had->cut.light.x, had->cut.light.y, had->cut.light.z};
     floatL cut_bound[3] = {had->cut.bound.x, had->cut.bound.y, had->cut.bound.z};
     floatL light[3], bound[3];
@@ -233,35 +233,35 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
 INLINE float next_share(float share, float worst) { return share * min(max(0.7f / worst, 0.125f), 4.0f); }
 
 // Sets the diffuse light of a group's pixels in `out`.
-INLINE void light_group(const GroupPixels *pixels, const ClusterTree *tree, float light_error, float *share, float out[6][kTilePixels],
+INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float light_error, float *share, float out[6][kTilePixels],
                         Counts *counts) {
   PixelGroup group = bound_group(pixels, 0, pixels->count, kDiffuse, light_error);
+  if (!(group.gain > 0.0f)) return;
   for (uint tries = 1;; ++tries) {
     ClusterWalk walk;
     FieldSums sums;
     RowSums row_sums[kTileRows];
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kTileRows; ++row) {
-      row_sums[row].cut.light = row_sums[row].cut.bound = row_sums[row].lights = dark;
+      row_sums[row].cut.light = row_sums[row].cut.bound = row_sums[row].lights.total = row_sums[row].lights.lost = dark;
       row_sums[row].weight = 0.0f;
     }
     start_field(&sums);
     start_cluster_walk(tree, &walk);
-    uint blocks = 0, cuts = 0;  // that the sums of lights and of clusters are made of
+    uint cuts = 0;
     for (bool done = false; !done;) {
       done = walk_clusters(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
       add_listed(&walk, pixels, tree, row_sums);
-      blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
       cuts += walk.clusters;
       counts->lights += walk.lights * pixels->count;
       counts->clusters += walk.clusters * pixels->count;
       walk.lights = walk.clusters = 0;
     }
     counts->far_clusters += walk.far_clusters;
-    float worst = finish_group(pixels, &sums, &group, row_sums, blocks, cuts, light_error, out);
+    float worst = finish_group(pixels, &sums, &group, row_sums, cuts, light_error, out);
     *share = next_share(*share, worst);
     if (worst <= 1.0f || tries == kMostTries) return;
-    counts->redone += pixels->count;
+    pixels->redone = true;
   }
 }
 
@@ -319,11 +319,11 @@ INLINE HighlightGroup bound_highlights(const GroupPixels *pixels, uint first, ui
 // Computes the highlights of a group's pixels from `first` to `end` and their bounds, planes of light and bound. had: the diffuse light and its
 // bound. Returns the largest share that both bounds together have of the error that is allowed.
 INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, LobeSums *sums,
-                               const HighlightGroup *group, const HighlightSums *row_sums, uint blocks, float light_error,
+                               const HighlightGroup *group, const HighlightSums *row_sums, float light_error,
                                float had[6][kTilePixels], float result[6][kHighlightPixels]) {
   Lobes lobes;
   finish_lobes(sums, group->exponent, &lobes);
-  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + blocks), of_lobes = lobe_rounding(group->exponent);
+  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4), of_lobes = lobe_rounding(group->exponent);
   float worst = 0.0f;
   for (uint i = first; i < end; i += LANES) {
     HighlightPixels row = highlight_pixels(pixels, i, frame);
@@ -332,7 +332,8 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
     vec3L w = {row.mirrored_eye.x - group->axis[0], row.mirrored_eye.y - group->axis[1], row.mirrored_eye.z - group->axis[2]};
     LobeFactors factors = lobe_factors(h, w);
     const HighlightSums *of_row = row_sums + (i - first) / LANES;
-    floatL lights[3] = {of_row->light.x, of_row->light.y, of_row->light.z}, specular[3] = {color.x, color.y, color.z};
+    vec3L listed = sum_of_blocks(&of_row->light);
+    floatL lights[3] = {listed.x, listed.y, listed.z}, specular[3] = {color.x, color.y, color.z};
     for (uint c = 0; c < 3; ++c) {
       floatL light = specular[c] * (lobes_value(lobes.term + c * kLobeTerms, &factors) + lights[c]);
       floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + of_row->unsure + of_lobes * of_row->weight;
@@ -364,12 +365,11 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
     HighlightSums row_sums[kHighlightPixels / LANES];
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kHighlightPixels / LANES; ++row) {
-      row_sums[row].light = dark;
+      row_sums[row].light.total = row_sums[row].light.lost = dark;
       row_sums[row].unsure = row_sums[row].weight = 0.0f;
     }
     start_lobes(&sums);
     start_cluster_walk(tree, &walk);
-    uint blocks = 0;
     for (bool done = false; !done;) {
       done = walk_highlights(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
       for (uint i = first; i < end; i += LANES) {
@@ -378,15 +378,14 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
         add_listed_highlights(&walk, tree, &row, group.exponent, group.model, &some);
         row_sums[(i - first) / LANES] = some;
       }
-      blocks += (walk.lights + kSumTerms - 1) / kSumTerms;
       counts->lights += walk.lights * (end - first);
       walk.lights = 0;
     }
     counts->far_clusters += walk.far_clusters;
-    float worst = finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, blocks, light_error, out, result);
+    float worst = finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, light_error, out, result);
     *share = next_share(*share, worst);
     if (worst <= 1.0f || tries == kMostTries) break;
-    counts->redone += end - first;
+    if (!pixels->redone && tries == 1) counts->redone += end - first;
   }
   for (uint i = first; i < end; ++i)
     for (uint plane = 0; plane < 6; ++plane) out[plane][pixels->place[i]] = result[plane][i - first];
@@ -398,7 +397,14 @@ INLINE void light_tile(const Tile *tile, const Scene *scene, Shares *shares, __g
   float out[6][kTilePixels] __attribute__((aligned(64)));
   intL left[kTileRows], any_left = 0;
   for (uint row = 0; row < kTileRows; ++row) {
-    left[row] = load_lanes(tile->position + row * LANES + 2 * tile->stride) > -INFINITY;
+    // Black pixels stay as they are.
+    vec3L color = load_vec3(tile->diffuse + row * LANES, tile->stride);
+    floatL most = max_lanes(color.x, max_lanes(color.y, color.z));
+    if (CLUSTERED_HIGHLIGHTS) {
+      vec3L specular = load_vec3(tile->specular + row * LANES, tile->stride);
+      most = max_lanes(most, max_lanes(specular.x, max_lanes(specular.y, specular.z)));
+    }
+    left[row] = (load_lanes(tile->position + row * LANES + 2 * tile->stride) > -INFINITY) & (most > 0.0f);
     any_left |= left[row];
     for (uint i = 0; i < 6; ++i) *(floatL *)(out[i] + row * LANES) = 0.0f;
   }
@@ -408,6 +414,7 @@ INLINE void light_tile(const Tile *tile, const Scene *scene, Shares *shares, __g
     take_pixels(tile, left, &pixels);
     bool shines = CLUSTERED_HIGHLIGHTS && any_specular(&pixels);
     light_group(&pixels, &scene->diffuse, shines ? DIFFUSE_SHARE * scene->light_error : scene->light_error, &shares->diffuse, out, &counted);
+    if (pixels.redone) counted.redone += pixels.count;
     if (shines)
       for (uint first = 0; first < pixels.count; first += kHighlightPixels)
         highlight_group(&pixels, first, min(first + kHighlightPixels, pixels.count), &scene->frame, &scene->specular, scene->light_error,
