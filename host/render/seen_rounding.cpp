@@ -17,8 +17,10 @@ constexpr double kRounding = 0x1p-24;
 /// none is more than the colour, but for the roundings after it, which a fifth 2⁻²⁴ covers.
 constexpr double kSeenRounding = 5 * kRounding;
 
-/// What the rounding of fog's share adds at most, times 1 and the fog's brightest channel: 64 roundings of
-/// the share of light that comes through by e⁻⁴ or more, and at most 9 of all (exponentialShare()).
+/// What the rounding of fog's share adds to a colour, times the larger of 1 and the colour, and times the
+/// fog's brightest channel. Of light of which e⁻⁴ or more comes through, it is 3 + 15.23·4 < 64 roundings at
+/// most, and of the fog's own 3 + 15.23/e < 9. Linear fog that ends soon after it starts, and brighter light
+/// through thicker fog, may take more than this leaves. Then their bound says so.
 constexpr double kFogRounding = 64 * kRounding;
 
 bool seesFog(const FeatureSet& features) {

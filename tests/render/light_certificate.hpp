@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,15 +73,15 @@ struct CertificateCheck {
   std::size_t values = 0;  ///< channels of pixels that were compared
   std::size_t broken = 0;  ///< of these farther from the truth than their bound says
   std::size_t unmet = 0;   ///< whose bound is above E·max(1, picture)
-  double worst = 0;        ///< largest and mean share that the true error has of the bound
-  double mean = 0;
-  double largest_error =
-      0;  ///< largest true error, and mean and largest bound, as shares of E·max(1, picture)
-  double mean_bound = 0, largest_bound = 0;
+  /// Shares that true errors have of their bounds: the largest, where it is, and the mean.
+  double worst = 0, mean = 0;
   glm::ivec2 worst_pixel{0};
+  /// The largest true error, and the largest and the mean bound, as shares of E·max(1, picture).
+  double largest_error = 0, largest_bound = 0, mean_bound = 0;
   Stats stats;
 };
 
+/// Lights the pixels by clusters within `light_error`, and compares.
 inline CertificateCheck checkCertificate(Device& device, const TrueLight& truth, float light_error) {
   RenderSettings settings;
   settings.shade.light_error = light_error;

@@ -140,17 +140,16 @@ TEST(Memory, OfADeviceHoldsTheClustersOfLights) {
   RenderSettings settings;
   settings.size = {16, 16};
   settings.camera = scene.cameras.front();
-  Stats exact, clustered;
-  renderScene(testDevice(), scene, settings, exact);
   settings.shade.light_error = 1.0f / 64;
-  renderScene(testDevice(), scene, settings, clustered);
+  Stats stats;
+  renderScene(testDevice(), scene, settings, stats);
   // The tree's size is that of any so many lights.
   const LightClusters clusters = buildLightClusters(std::vector<UnboundedLight>(5000, {{}, {}, 1}));
   const std::size_t bytes =
       clusters.lights.size() * sizeof(ClusteredLight) + clusters.rows.size() * sizeof(float);
-  // Which take the place of the 5000 lights and their tree.
-  EXPECT_GT(clustered.device_bytes, bytes);
-  EXPECT_GT(exact.device_bytes, 5000 * sizeof(ShadeLight));
+  EXPECT_GT(stats.device_bytes, bytes);
+  EXPECT_LT(stats.device_bytes, bytes + 256 * (kGBufferBytesPerPixel + 100))
+      << "more than that and the pixels";
 }
 
 }  // namespace
