@@ -14,6 +14,7 @@
 #include "render/count_in_range.hpp"
 #include "render/exact_shadows.hpp"
 #include "render/find_needed.hpp"
+#include "render/seen_rounding.hpp"
 #include "render/shade.hpp"
 #include "render/shade_tiles.hpp"
 #include "shadow/draw_shadow_maps.hpp"
@@ -239,12 +240,6 @@ void prepareClusters(const Scene& scene, const Camera& camera, const FeatureSet&
   lighting.light_error = settings.light_error;
 }
 
-/// What rounding adds to a bound, times the colour that is seen. Between the light of clusters and the colour
-/// stand at most four roundings of 2⁻²⁴: the sum with the surface's emission, that with the light of other
-/// lights, the fog's own light, and the sum of both through the fog (fog.clh). All terms are ≥ 0, so none is
-/// more than the colour, but for the roundings after it, which a fifth 2⁻²⁴ covers.
-constexpr float kSeenRounding = 5 * 0x1p-24f;
-
 /// Lights the G-buffer by clusters, and sets the bounds. Returns planes r g b of that light and the
 /// G-buffer's emission together.
 Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet& features,
@@ -264,7 +259,7 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
                                     .highlights = lighting.highlight_clusters.rows.empty()
                                                       ? lighting.clusters
                                                       : lighting.highlight_clusters,
-                                    .light_error = std::max(lighting.light_error - kSeenRounding, 1e-9f),
+                                    .light_error = clusteredError(lighting.light_error, frame, features),
                                     .light = light_buffer,
                                     .bound = bound_buffer});
     download(device, light_buffer, light);
@@ -273,22 +268,6 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
   if (!gbuffer.emission.empty())
     tbb::parallel_for(std::size_t(0), light.size(), [&](std::size_t i) { light[i] += gbuffer.emission[i]; });
   return light;
-}
-
-/// Makes the bounds hold for the colours that were shaded: those of clusters there are already, or a vertex's
-/// for all pixels.
-void boundSeenLight(const GBuffer& gbuffer, const std::optional<glm::vec3>& vertex_error, LitPlanes& lit) {
-  const std::size_t n = gbuffer.pixels();
-  lit.light_error.resize(3 * n);
-  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
-    const bool covered = std::isfinite(gbuffer.position[i + 2 * n]);
-    for (int c = 0; c < 3; ++c) {
-      float& bound = lit.light_error[i + c * n];
-      const double given = vertex_error ? (*vertex_error)[c] : bound;
-      const double seen = given + double(kSeenRounding) * double(lit.color[i + c * n]);
-      bound = covered ? std::nextafter(float(seen), std::numeric_limits<float>::infinity()) : 0.0f;
-    }
-  });
 }
 
 }  // namespace
@@ -322,8 +301,10 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
     lighting.host_tree = buildLightTree(lighting.host_lights);
     uploadLighting(device, lighting);
   });
-  lighting.bytes =
-      lighting.host_lights.size() * sizeof(ShadeLight) + lighting.host_tree.planes.size() * sizeof(float);
+  const LightClusters& clusters = lighting.clusters;
+  lighting.bytes = lighting.host_lights.size() * sizeof(ShadeLight) +
+                   clusters.lights.size() * sizeof(ClusteredLight) +
+                   (lighting.host_tree.planes.size() + clusters.rows.size()) * sizeof(float);
 }
 
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,
@@ -398,7 +379,8 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   });
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
   if (features.has(Feature::kClusteredLights) || lighting.vertex_error)
-    boundSeenLight(gbuffer, lighting.vertex_error, lit);
+    boundSeenLight(gbuffer, frame, features, emission.empty() ? gbuffer.emission : emission, lit.color,
+                   lighting.vertex_error, lit.light_error);
   PixelCounts missing = counts;
   if (together) missing.evaluated = false;
   if (missing.in_range || missing.evaluated || missing.list_length)

@@ -15,6 +15,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
+constexpr const char* kManyLights = R"({"size": [32, 24],
+  "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "keys": [{"frame": 1, "eye": [0, 3, 5]}, {"frame": 3, "eye": [2, 3, 4]}]},
+  "objects": [{"primitive": "plane", "scale": 4}],
+  "light_fields": [{"count": 40000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "no_range": true}]})";
+
 class LightError : public ProgramTest {
  protected:
   LightError() {
@@ -72,9 +77,7 @@ TEST_F(LightError, LessThanFloatsCanPromiseIsToldInOneLine) {
   const Outcome met = run("luciole render scene.json --light-error 1/1024 -o out.exr");
   EXPECT_EQ(met.status, 0) << met.err;
   EXPECT_THAT(met.err, Not(HasSubstr("warning")));
-  writeText(folder / "many.json", R"({"size": [32, 24], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
-      "objects": [{"primitive": "plane", "scale": 4}],
-      "light_fields": [{"count": 40000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "no_range": true}]})");
+  writeText(folder / "many.json", kManyLights);
   const Outcome outcome = run("luciole render many.json --light-error 1e-5 -o out.exr --stats stats.json");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("warning: --light-error 1e-05: floats can't promise it"));
@@ -82,6 +85,58 @@ TEST_F(LightError, LessThanFloatsCanPromiseIsToldInOneLine) {
   EXPECT_GT(stats["light_error"]["least_allowing"], 1e-5);
   EXPECT_LT(stats["light_error"]["least_allowing"], 1e-3);
   EXPECT_EQ(stats["warnings"].size(), 1u);
+}
+
+TEST_F(LightError, TheLeastThatFloatsCanPromiseIsPromised) {
+  writeText(folder / "many.json", kManyLights);
+  const std::string render = "luciole render many.json --quiet -o out.exr --stats stats.json --light-error ";
+  succeed(render + "1e-6");
+  const auto told = nlohmann::json::parse(readText(folder / "stats.json"));
+  const std::string warning = told["warnings"].at(0), before = "the least that they can is ";
+  ASSERT_THAT(warning, HasSubstr(before));
+  const std::string least = warning.substr(warning.find(before) + before.size());
+  succeed(render + least);
+  const auto kept = nlohmann::json::parse(readText(folder / "stats.json"));
+  EXPECT_EQ(kept["warnings"].size(), 0u) << kept["warnings"];
+  EXPECT_LE(kept["light_error"]["least_allowing"], 1.000001 * std::stod(least));
+  succeed(render + fmt::format("{}", 0.9 * std::stod(least)));
+  const auto missed = nlohmann::json::parse(readText(folder / "stats.json"));
+  EXPECT_EQ(missed["warnings"].size(), 1u) << "less can be promised than the least";
+}
+
+TEST_F(LightError, ChangesNoBitWithThreadsLanesOrTiles) {
+  writeText(folder / "many.json", kManyLights);
+  const std::string render =
+      "luciole render many.json --quiet --size 100x70 --light-error 1/256 --aov light_error ";
+  succeed(render + "-o usual.exr");
+  for (const char* other : {"--threads 1", "--threads 2", "--threads 3", "--device ,lanes=1",
+                            "--device ,lanes=4", "--device ,lanes=8", "--tile 16", "--culling none"})
+    succeed(render + other + " -o other.exr && luciole compare usual.exr other.exr --max-abs 0");
+}
+
+TEST_F(LightError, FramesAndTheirShardsArePicturesRenderedAlone) {
+  writeText(folder / "many.json", kManyLights);
+  const std::string render = "luciole render many.json --quiet --light-error 1/256 --aov light_error ";
+  succeed(render + "--frames 1-3 -o all.#.exr");
+  succeed(render + "--frames 1-3 --shard 1/2 -o part.#.exr");
+  succeed(render + "--frames 1-3 --shard 2/2 -o part.#.exr");
+  for (const int frame : {1, 2, 3}) {
+    succeed(render + fmt::format("--frames {} -o alone.exr", frame));
+    for (const char* name : {"all", "part"})
+      succeed(fmt::format("luciole compare {}.{}.exr alone.exr --max-abs 0", name, frame));
+  }
+  EXPECT_EQ(runLine(folder, "luciole compare all.1.exr all.2.exr --max-abs 0").status, 1) << "nothing moves";
+}
+
+TEST_F(LightError, LightsThatTakeLightAwayAreRefused) {
+  for (const char* light : {R"("color": [1, -0.1, 1])", R"("intensity": -1)", R"("attenuation": [0, 0, -1])",
+                            R"("diffuse": -1)", R"("attenuation": [0, 0, 0])"}) {
+    writeText(folder / "dark.json", fmt::format(R"({{"camera": {{"eye": [0, 3, 5], "target": [0, 0, 0]}},
+                "objects": [{{"primitive": "plane"}}],
+                "lights": [{{"type": "point", "position": [0, 1, 0], "attenuation": [0, 0, 1], {}}}]}})",
+                                                light));
+    refuse("luciole render dark.json -o out.png --light-error 1/64", 2, "lights[0]");
+  }
 }
 
 TEST_F(LightError, InfoSaysForWhichLightsClustersMayStand) {

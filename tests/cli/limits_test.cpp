@@ -112,6 +112,21 @@ TEST_F(Limits, WithLittleMemoryBandsAreSmallerAndThePictureIsTheSame) {
   EXPECT_EQ(runLine(folder, "luciole compare usual.png little.png --max-abs 0").status, 0);
 }
 
+// Their tree and what it is made of take some 300 bytes a light.
+TEST_F(Limits, OfAddressesLetClustersOfLightsWorkOrEndInOneLine) {
+  writeText(folder / "many.json", R"({"size": [16, 9], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
+    "objects": [{"primitive": "plane", "scale": 4}], "light_fields":
+    [{"count": 400000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "attenuation": [0, 0, 1], "intensity": 1e-5}]})");
+  const int enough = 1400 + 16 * int(std::thread::hardware_concurrency());
+  for (const int mebibytes : {540, 580, 620, 660, 700, 740, 800, enough}) {
+    const int status = expectDoneOrRefused(fmt::format(
+        "ulimit -v {} && luciole render many.json --quiet --light-error 1/64 -o out.png", mebibytes * 1024));
+    if (mebibytes == enough) {
+      EXPECT_EQ(status, 0);
+    }
+  }
+}
+
 /// A control group of this test's own with a limit of memory, gone at its end.
 class ControlGroup {
  public:

@@ -133,5 +133,24 @@ TEST(Memory, BytesPerLightAreAsStated) {
   EXPECT_GE(measured, 0.98 * stated);
 }
 
+TEST(Memory, OfADeviceHoldsTheClustersOfLights) {
+  const Scene scene = sceneFromJson(
+      R"({"camera": {"eye": [0, 5, 0.1], "target": [0, 0, 0]}, "objects": [{"primitive": "plane"}],
+    "light_fields": [{"count": 5000, "min": [-1, 1, -1], "max": [1, 2, 1], "no_range": true}]})");
+  RenderSettings settings;
+  settings.size = {16, 16};
+  settings.camera = scene.cameras.front();
+  settings.shade.light_error = 1.0f / 64;
+  Stats stats;
+  renderScene(testDevice(), scene, settings, stats);
+  // The tree's size is that of any so many lights.
+  const LightClusters clusters = buildLightClusters(std::vector<UnboundedLight>(5000, {{}, {}, 1}));
+  const std::size_t bytes =
+      clusters.lights.size() * sizeof(ClusteredLight) + clusters.rows.size() * sizeof(float);
+  EXPECT_GT(stats.device_bytes, bytes);
+  EXPECT_LT(stats.device_bytes, bytes + 256 * (kGBufferBytesPerPixel + 100))
+      << "more than that and the pixels";
+}
+
 }  // namespace
 }  // namespace luciole::test
