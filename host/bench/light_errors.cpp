@@ -13,6 +13,7 @@
 #include "figures/kept_bounds.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference.hpp"
+#include "render/features.hpp"
 #include "render/render.hpp"
 #include "render/stats.hpp"
 #include "scene/bounds.hpp"
@@ -23,13 +24,17 @@ namespace luciole {
 namespace {
 
 constexpr glm::ivec2 kBoundedSize(1280, 720);
-constexpr std::size_t kJudgedPixels = 500;
+constexpr std::size_t kJudgedPixels = 1000;
 constexpr std::uint64_t kFewestLights = 1000;
 constexpr int kParts[] = {16, 64, 256, 1024};  ///< errors of 1/16 …
-/// Milliseconds that all timed runs of one scene's rows may take together, but for the first round.
+/// Milliseconds that all timed runs of one scene's rows may take together, but for the first rounds.
 constexpr double kMostMilliseconds = 8000;
+constexpr double kFewestRounds = 3;
 /// Pairs of a pixel and a light that are summed one by one, seconds of work; the time of more is estimated.
 constexpr double kMostExactPairs = 1e10;
+
+const NoValue kTooLong{"so many lights one by one would take too long"};
+constexpr std::size_t kBoundColumns = 7;  ///< the last of the table
 
 struct Placement {
   const char* name;
@@ -92,6 +97,15 @@ double lightingTime(Device& device, const LitStage& stage, float light_error) {
   return sum;
 }
 
+/// Whether lighting is too much work to be measured, because it sums too many lights one by one.
+bool takesTooLong(const LitStage& stage, float light_error) {
+  const GBuffer& gbuffer = stage.gbuffer;
+  const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), false};
+  const double pixels = double(gbuffer.picture_size.x) * gbuffer.picture_size.y;
+  return double(stage.scene.lights.size()) * pixels > kMostExactPairs &&
+         !standsForLights(stage.scene, surfaces, settingsFor(light_error).shade);
+}
+
 /// How the picture with this error keeps its bounds; nothing where no light is stood for.
 std::optional<KeptBounds> judge(Device& device, const LitStage& stage, const std::vector<glm::dvec3>& truth,
                                 float light_error) {
@@ -104,7 +118,7 @@ std::optional<KeptBounds> judge(Device& device, const LitStage& stage, const std
 }
 
 std::vector<SpeedCell> boundCells(const std::optional<KeptBounds>& kept) {
-  if (!kept) return std::vector<SpeedCell>(7, NoValue{"clusters stand for no light"});
+  if (!kept) return std::vector<SpeedCell>(kBoundColumns, NoValue{"clusters stand for no light"});
   return {kept->max_bound * k8BitSteps,
           kept->mean_bound * k8BitSteps,
           kept->max_error * k8BitSteps,
@@ -114,66 +128,78 @@ std::vector<SpeedCell> boundCells(const std::optional<KeptBounds>& kept) {
           double(kept->violations)};
 }
 
+/// What is timed: a row of the table, or the lights one by one.
+struct TimedLighting {
+  float light_error = 0;
+  std::optional<std::size_t> row{};
+};
+
+/// Appends the rows of a stage's lights, without times, and returns those that don't take too long.
+std::vector<TimedLighting> addBounds(const SpeedInput& input, const LitStage& stage,
+                                     const std::string& placement, SpeedTable& table) {
+  const std::uint64_t lights = stage.scene.lights.size();
+  const std::string what = fmt::format("{}: {} lights, {}: bounds", table.name, lights, placement);
+  const auto report = [&](std::size_t done) {
+    if (input.on_progress) input.on_progress(what, done, std::size(kParts));
+  };
+  std::vector<glm::dvec3> truth;  // once it is needed
+  std::vector<TimedLighting> timed;
+  for (std::size_t i = 0; i < std::size(kParts); ++i) {
+    report(i);
+    SpeedRow row{fmt::format("{}, 1/{}", placement, kParts[i]), {double(lights)}};
+    const float light_error = 1.0f / float(kParts[i]);
+    if (takesTooLong(stage, light_error)) {
+      row.cells.resize(table.columns.size(), kTooLong);
+    } else {
+      if (truth.empty()) truth = referencePixels(stage.scene, stage.gbuffer, stage.judged, {});
+      const std::optional<KeptBounds> kept = judge(input.device, stage, truth, light_error);
+      row.cells.resize(table.columns.size() - kBoundColumns);
+      for (const SpeedCell& cell : boundCells(kept)) row.cells.push_back(cell);
+      if (kept && kept->violations > 0)
+        table.failures.push_back(
+            fmt::format("{}: {} lights, {}: {} of {} values are wrong by more than their bounds", table.name,
+                        lights, row.name, kept->violations, kept->values));
+      timed.push_back({light_error, table.rows.size()});
+    }
+    table.rows.push_back(row);
+  }
+  return timed;
+}
+
 /// The time of all lights one by one, by the most of a placement's that were measured.
 struct ExactTime {
   double lights = 0, milliseconds = 0;
 };
 
-/// Appends the rows of a stage's lights. exact: of fewer lights in the same places; becomes theirs if it is
+/// Times the rows of a stage's lights. exact: of fewer lights in the same places; becomes theirs if it is
 /// measured.
-void addRows(const SpeedInput& input, const LitStage& stage, const std::string& placement,
-             std::optional<ExactTime>& exact, SpeedTable& table) {
+void addTimes(const SpeedInput& input, const LitStage& stage, std::vector<TimedLighting> timed,
+              std::optional<ExactTime>& exact, SpeedTable& table) {
   const auto lights = double(stage.scene.lights.size());
-  const std::string what = fmt::format("{}: {} lights, {}", table.name, lights, placement);
-  const auto report = [&](std::size_t done) {
-    if (input.on_progress) input.on_progress(what + ": the truth", done, 1 + std::size(kParts));
-  };
-  std::vector<float> errors;
-  for (const int parts : kParts) errors.push_back(1.0f / float(parts));
-  const std::size_t first = table.rows.size();
-  report(0);
-  const std::vector<glm::dvec3> truth = referencePixels(stage.scene, stage.gbuffer, stage.judged, {});
-  double once = 0;  // milliseconds of a round
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    report(1 + i);
-    once += millisecondsOf([&] {  // compiles, too
-      const std::optional<KeptBounds> kept = judge(input.device, stage, truth, errors[i]);
-      std::vector<SpeedCell> cells{lights, {}, {}, {}, {}};
-      for (const SpeedCell& cell : boundCells(kept)) cells.push_back(cell);
-      table.rows.push_back({fmt::format("{}, 1/{}", placement, kParts[i]), cells});
-      if (kept && kept->violations > 0)
-        table.failures.push_back(
-            fmt::format("{}: {} lights, {}: {} of {} values are wrong by more than "
-                        "their bounds",
-                        table.name, lights, table.rows.back().name, kept->violations, kept->values));
-    });
-  }
-  const double pixels = double(stage.gbuffer.picture_size.x) * stage.gbuffer.picture_size.y;
-  const bool is_exact_timed = lights * pixels <= kMostExactPairs;
-  if (is_exact_timed) {
-    errors.push_back(0);
-    once += lightingTime(input.device, stage, 0);
-  }
-  const int rounds_affordable = int(std::clamp(kMostMilliseconds / once, 1.0, double(input.repeats)));
+  const bool is_exact_timed = !takesTooLong(stage, 0);
+  if (is_exact_timed) timed.push_back({});
+  if (timed.empty()) return;
+  double once = 0;  // milliseconds of a round, which isn't counted: it makes memory and caches warm
+  for (const TimedLighting& one : timed) once += lightingTime(input.device, stage, one.light_error);
+  const int runs = std::min(input.repeats, int(std::max(kFewestRounds, kMostMilliseconds / once)));
   const auto rounds = runInRounds(
-      errors.size(), rounds_affordable, what, input.on_progress,
-      [&](std::size_t row) { return std::vector{lightingTime(input.device, stage, errors[row])}; });
+      timed.size(), runs, table.name + ": times", input.on_progress,
+      [&](std::size_t i) { return std::vector{lightingTime(input.device, stage, timed[i].light_error)}; });
   if (is_exact_timed) exact = {lights, rounds.back().summary(0).median};
-  for (std::size_t i = 0; i < std::size(kParts); ++i) {
+  for (std::size_t i = 0; i < timed.size(); ++i) {
+    if (!timed[i].row) continue;
     const Repeated time = rounds[i].summary(0);
-    std::vector<SpeedCell>& cells = table.rows[first + i].cells;
-    cells[1] = double(rounds_affordable);
-    cells[2] = time;
+    SpeedCell one_by_one = kTooLong, times_faster = kTooLong;
     if (is_exact_timed) {
-      cells[3] = rounds.back().summary(0);
-      cells[4] = ratio(rounds.back().figures[0], rounds[i].figures[0]);
+      one_by_one = rounds.back().summary(0);
+      times_faster = ratio(rounds.back().figures[0], rounds[i].figures[0]);
     } else if (exact) {
       const double estimate = exact->milliseconds * lights / exact->lights;
-      cells[3] = Estimate{estimate};
-      cells[4] = Estimate{estimate / time.median};
-    } else {
-      cells[3] = cells[4] = NoValue{"even the fewest lights would take too long one by one"};
+      one_by_one = Estimate{estimate};
+      times_faster = Estimate{estimate / time.median};
     }
+    const SpeedCell cells[] = {double(runs), time, one_by_one, times_faster};
+    std::copy(std::begin(cells), std::end(cells), table.rows[*timed[i].row].cells.begin() + 1);
   }
 }
 
@@ -186,8 +212,7 @@ SpeedTable measureLightErrors(const SpeedInput& input) {
       .name = kLightErrors,
       .measured = fmt::format(
           "{}{}, lit by point lights without range in place of its own, {} x {} pixels; bounds and errors "
-          "are "
-          "in 8-bit steps of the larger of 1 and the colour; errors are from all lights in double precision, "
+          "in 8-bit steps of the larger of 1 and the colour; errors are from all lights in double precision "
           "at {} pixels; ≈: as many times what fewer lights take as there are more",
           stage.scene.name, input.scene ? "" : " with matte surfaces", size.x, size.y, stage.judged.size()),
       .columns = {{"lights", "lights", 0},
@@ -206,7 +231,7 @@ SpeedTable measureLightErrors(const SpeedInput& input) {
     std::optional<ExactTime> exact;
     for (std::uint64_t lights = kFewestLights; lights <= input.most_lights; lights *= 10) {
       placeLights(stage, placement.shape, lights);
-      addRows(input, stage, placement.name, exact, table);
+      addTimes(input, stage, addBounds(input, stage, placement.name, table), exact, table);
     }
   }
   return table;

@@ -79,7 +79,10 @@ int bench(const BenchOptions& options) {
   if (options.json != "-") writeTextFile("-", benchTable(result));
   int status = kDone;
   for (const SpeedTable& table : result.speed) {
-    for (const std::string& failure : table.failures) tellError(failure, status = kDifferent);
+    for (const std::string& failure : table.failures) {
+      status = kDifferent;
+      tellError(failure, status);
+    }
   }
   return status;
 }

@@ -190,9 +190,14 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   ImageDifference difference = compareImages(truth.image, colors);
   fillCells(bench.checked, difference);
 
-  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated"),
-                   .pairs_in_range = countOf(stats, "pixel_lights_in_range"),
-                   .pixels_lit = countOf(stats, "pixels_lit"),
+  const std::uint64_t pixels_lit = countOf(stats, "pixels_lit");
+  const std::uint64_t pairs_of_clusters =
+      countOf(stats, "pixel_clusters_evaluated") + countOf(stats, "pixel_clustered_lights_evaluated");
+  // All lights that clusters stand for reach all pixels.
+  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated") + pairs_of_clusters,
+                   .pairs_in_range = countOf(stats, "pixel_lights_in_range") +
+                                     countOf(stats, "lights_stood_for") * pixels_lit,
+                   .pixels_lit = pixels_lit,
                    .list_entries = countOf(stats, "list_entries"),
                    .pixels = difference.pixels,
                    .mean_abs = difference.mean_abs,

@@ -75,7 +75,8 @@ struct ScaleExperiment {
 
 /// What is measured only once for a point: the error of its picture, and counts.
 struct PointCheck {
-  std::uint64_t pairs_evaluated = 0, pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
+  std::uint64_t pairs_evaluated = 0;  ///< of a pixel and a light, or a cluster that stands for lights
+  std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
   double reach =
       0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
   std::uint64_t pixels = 0;                    ///< compared with the reference

@@ -257,6 +257,8 @@ TEST_F(ScaleCommand, LightErrorsAreHeldAgainstOneTruthWithinTheirBounds) {
     EXPECT_LE(std::stod(row.at("max_used")), 1);
     EXPECT_GT(std::stod(row.at("bounded_values")), 60);
     EXPECT_EQ(row.at("violations"), "0");
+    EXPECT_GT(std::stod(row.at("pairs_evaluated")), 0);
+    EXPECT_EQ(row.at("pairs_in_range"), rows[row.at("lights") == "3000" ? 0 : 3].at("pairs_in_range"));
     EXPECT_EQ(readImage(folder / ("run/" + row.at("bound_map"))).width, 480);
   }
   EXPECT_LT(std::stod(rows[2].at("mean_abs")), std::stod(rows[1].at("mean_abs")));
