@@ -60,3 +60,4 @@ fi
 picture scenes/colonnade_error.png compare rays.exr maps.exr --error-map
 picture scenes/speed_against_error.svg bench --json bench.json --plot
 picture scenes/scale.svg scale scenes/fireflies.json --lights 1,10,...,100000 --vary culling -o fireflies --plot
+picture scenes/light_errors.svg scale scenes/cornell.json --lights 1000,2000,...,1024000 --vary light-error=0,1/64,1/256,1/1024 -o errors --plot

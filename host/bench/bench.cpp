@@ -8,6 +8,7 @@
 #include "bench/anti_aliasing.hpp"
 #include "bench/culled_shading.hpp"
 #include "bench/given_gbuffer.hpp"
+#include "bench/light_errors.hpp"
 #include "bench/many_lights.hpp"
 #include "bench/memory_use.hpp"
 #include "bench/picture_time.hpp"
@@ -24,12 +25,14 @@ constexpr const char* kCullAndShade = "cull and shade";
 struct SpeedMeasurement {
   const char* name;  ///< by which it is chosen; one may choose several
   SpeedTable (*measure)(const SpeedInput&);
+  bool only_by_name = false;  ///< too long to be part of all
 };
 constexpr SpeedMeasurement kSpeed[] = {
     {"shading rate", measureShadingRate},
     {"culling and shading", measureCulledShading},
     {kCullAndShade, measureGivenGBuffer},
     {"many lights", measureManyLights},
+    {kLightErrors, measureLightErrors, true},
     {"anti-aliasing", measureAntiAliasing},
     {"shadow errors", measureShadowErrors},
     {"rasterizer", measureRasterizer},
@@ -81,7 +84,8 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
                          .program = choice.program,
                          .on_progress = settings.on_progress};
   for (const SpeedMeasurement& one : kSpeed)
-    if (chosen(one.name) && (choice.given || one.name != std::string_view(kCullAndShade)))
+    if (chosen(one.name) && (choice.given || one.name != std::string_view(kCullAndShade)) &&
+        !(one.only_by_name && choice.only.empty()))
       result.speed.push_back(one.measure(input));
   if (result.groups.empty() && result.speed.empty())
     throw InputError(fmt::format("--only {}: {} has no shadows", choice.only.front(), scene.name));

@@ -69,6 +69,8 @@ std::string cellText(const SpeedCell& cell, int decimals, Reasons& reasons) {
   if (const double* value = std::get_if<double>(&cell)) return fmt::format("{:.{}f}", *value, decimals);
   if (const Repeated* runs = std::get_if<Repeated>(&cell))
     return fmt::format("{:.{}f} {}", runs->median, decimals, spreadText(*runs));
+  if (const Estimate* estimate = std::get_if<Estimate>(&cell))
+    return fmt::format("≈ {:.{}f}", estimate->value, decimals);
   reasons.add(std::get<NoValue>(cell).why);
   return kNoFigure;
 }
@@ -132,6 +134,8 @@ Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
     if (const double* value = std::get_if<double>(&row.cells[i])) json[table.columns[i].key] = *value;
     if (const Repeated* runs = std::get_if<Repeated>(&row.cells[i]))
       json[table.columns[i].key] = {{"median", runs->median}, {"spread", runs->spread}};
+    if (const Estimate* estimate = std::get_if<Estimate>(&row.cells[i]))
+      json[table.columns[i].key] = {{"estimate", estimate->value}};
     if (const NoValue* none = std::get_if<NoValue>(&row.cells[i])) {
       json[table.columns[i].key] = nullptr;
       json["reasons"][table.columns[i].key] = none->why;
@@ -202,6 +206,7 @@ std::string benchJson(const BenchResult& result) {
     Json rows = Json::array();
     for (const SpeedRow& row : table.rows) rows.push_back(speedRowJson(table, row));
     json["speed"].push_back({{"name", table.name}, {"measured", table.measured}, {"rows", std::move(rows)}});
+    if (!table.failures.empty()) json["speed"].back()["failures"] = table.failures;
   }
   return json.dump(2) + "\n";
 }

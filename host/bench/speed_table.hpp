@@ -20,8 +20,13 @@ struct NoValue {
   std::string why{};  ///< for people
 };
 
-/// A cell: no value, a figure that is counted or computed, or one from repeated runs.
-using SpeedCell = std::variant<NoValue, double, Repeated>;
+/// A figure that would take too long to measure, reckoned from others.
+struct Estimate {
+  double value = 0;
+};
+
+/// A cell: no value, a figure that is counted or computed, one from repeated runs, or one that is estimated.
+using SpeedCell = std::variant<NoValue, double, Repeated, Estimate>;
 
 /// over / under. If `under` is 0: no value, because of `why`.
 SpeedCell quotient(double over, double under, const std::string& why);
@@ -41,6 +46,7 @@ struct SpeedTable {
   std::string measured;  ///< in a sentence, for people
   std::vector<SpeedColumn> columns;
   std::vector<SpeedRow> rows{};
+  std::vector<std::string> failures{};  ///< promises that the program broke, a line each, for people
 };
 
 }  // namespace luciole

@@ -8,6 +8,7 @@
 #include "base/write_file.hpp"
 #include "bench/bench.hpp"
 #include "bench/bench_scene.hpp"
+#include "bench/light_errors.hpp"
 #include "bench/plot.hpp"
 #include "bench/report.hpp"
 #include "cli/commands.hpp"
@@ -29,19 +30,21 @@ struct BenchOptions {
 };
 
 bool isPlotted(const std::string& name) {
-  return name == "shading" || name == "shadows" || name == "samples";
+  return name == "shading" || name == "shadows" || name == "samples" || name == kLightErrors;
 }
 
 std::string joinedNames() { return fmt::format("{}", fmt::join(benchNames(), ", ")); }
 
-void bench(const BenchOptions& options) {
+/// Returns the exit status.
+int bench(const BenchOptions& options) {
   if (!options.json.empty()) checkPlace(options.json);
   if (!options.plot.empty()) {
     if (!options.plot.ends_with(".svg"))
       throw InputError(fmt::format("--plot {}: expected a .svg file", options.plot));
     if (!options.only.empty() && std::none_of(options.only.begin(), options.only.end(), isPlotted))
-      throw InputError(fmt::format(
-          "--plot {}: shows shading, shadows and samples, of which --only names none", options.plot));
+      throw InputError(
+          fmt::format("--plot {}: shows shading, shadows, samples and {}, of which --only names none",
+                      options.plot, kLightErrors));
     checkPlace(options.plot);
   }
   const Scene scene = options.scene.empty() ? makeBenchScene() : openScene(options.scene, 1, options.picture);
@@ -74,11 +77,19 @@ void bench(const BenchOptions& options) {
   if (!options.json.empty()) writeTextFile(options.json, benchJson(result));
   if (!options.plot.empty()) writeTextFile(options.plot, benchPlot(result));
   if (options.json != "-") writeTextFile("-", benchTable(result));
+  int status = kDone;
+  for (const SpeedTable& table : result.speed) {
+    for (const std::string& failure : table.failures) {
+      status = kDifferent;
+      tellError(failure, status);
+    }
+  }
+  return status;
 }
 
 }  // namespace
 
-void addBenchCommand(CLI::App& app, CommandContext&) {
+void addBenchCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "bench", "what everything costs: speed against error, and each stage's speed, in tables");
   auto options = std::make_shared<BenchOptions>();
@@ -112,7 +123,7 @@ void addBenchCommand(CLI::App& app, CommandContext&) {
   addMissingTexturesOption(*command, options->picture.missing_textures);
   addThreadsOption(*command);
   command->add_flag("--quiet", options->picture.quiet, "no progress line");
-  command->callback([options] { bench(*options); });
+  command->callback([&context, options] { context.status = bench(*options); });
 }
 
 }  // namespace luciole

@@ -34,9 +34,9 @@ void checkDrawing(const std::string& plot) {
   checkPlace(plot);
 }
 
-/// Writes all files that are made from a log.
-void writeResults(const ScaleResults& results, const std::string& folder, const std::string& plot,
-                  const std::string& command_line, bool quiet) {
+/// Writes all files that are made from a log. Returns the exit status.
+int writeResults(const ScaleResults& results, const std::string& folder, const std::string& plot,
+                 const std::string& command_line, bool quiet) {
   const ScaleSummary summary = summarizeScale(results);
   writeTextFile(folder + "/results.csv", scaleCsv(summary));
   writeTextFile(folder + "/growth.json", growthJson(summary));
@@ -46,6 +46,8 @@ void writeResults(const ScaleResults& results, const std::string& folder, const 
   if (summary.incomplete > 0)
     fmt::print(stderr, "{}: {} of {} points are not complete\n", folder, summary.incomplete,
                summary.description.points.size());
+  for (const std::string& violation : summary.violations) tellError(violation, kDifferent);
+  return summary.violations.empty() ? kDone : kDifferent;
 }
 
 /// Returns the exit status.
@@ -59,6 +61,11 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   std::erase(scene.warnings, nothingLights(scene));
   if (!options.picture.quiet) tellWarnings(scene.warnings);
   ScaleExperiment experiment = planExperiment(command, options, scene);
+  if (experiment.too_exact > 0 && !options.picture.quiet)
+    fmt::print(
+        stderr,
+        "points with a light error of 0 that are left out, as so many lights one by one take long: {}\n",
+        experiment.too_exact);
   Device device;
   openDevice(options.picture.device, device);
   ScaleLog log(options.output, experiment.description);
@@ -75,8 +82,9 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   progress.clear();
   for (const ScaleFailure& failure : failures)
     fmt::print(stderr, "luciole: {}: {}\n", failure.point, failure.reason);
-  writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet);
-  return failures.empty() ? kDone : kMachineFailed;
+  const int status =
+      writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet);
+  return failures.empty() ? status : kMachineFailed;
 }
 
 }  // namespace
@@ -122,13 +130,22 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   auto* range = command->add_option("--range", options->range, "or: metres that all lights reach")
                     ->check(positive)
                     ->excludes(density);
+  auto* cutoff =
+      command
+          ->add_option(
+              "--cutoff", options->cutoff,
+              "or: lights fade with the square of the distance, and reach to where they have faded to this")
+          ->check(positive)
+          ->excludes(density)
+          ->excludes(range);
   command
-      ->add_option(
-          "--cutoff", options->cutoff,
-          "or: lights fade with the square of the distance, and reach to where they have faded to this")
-      ->check(positive)
+      ->add_flag(
+          "--no-range", options->no_range,
+          "or: lights reach everywhere, faded with the square of the distance; as bright on average as with "
+          "a density of 8 (default with --light-error)")
       ->excludes(density)
-      ->excludes(range);
+      ->excludes(range)
+      ->excludes(cutoff);
   command->add_option("--intensity", options->intensity, "of each light")
       ->check(CLI::Range(0.0, 1e18))
       ->capture_default_str();
@@ -146,8 +163,8 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   merge->add_option("--plot", merging->plot, "as for scale");
   merge->callback([&context, merging] {
     checkDrawing(merging->plot);
-    writeResults(mergeScaleLogs(merging->folders, merging->output), merging->output, merging->plot,
-                 context.command_line, false);
+    context.status = writeResults(mergeScaleLogs(merging->folders, merging->output), merging->output,
+                                  merging->plot, context.command_line, false);
   });
   command->callback([&context, command, merge, options] {
     if (!merge->parsed()) context.status = scale(*command, *options, context.command_line);

@@ -28,13 +28,19 @@ const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"density", {"1", "8", "64"}},
                                    {"range", {}},
                                    {"cutoff", {"0.1", "0.01", "0.001"}},
+                                   {"no-range", {"true"}},
                                    {"intensity", {"0.5", "1", "2"}},
                                    {"pcf-width", {"2", "4", "6"}},
                                    {"shadow-memory", {"64", "512"}},
-                                   {"shadow-size", {"512", "1024", "2048", "4096"}}};
+                                   {"shadow-size", {"512", "1024", "2048", "4096"}},
+                                   {kLightErrorAxis, {"0", "1/16", "1/64", "1/256", "1/1024"}}};
 
 /// Axes that say how far lights reach. A variant takes a value of only one of them.
-constexpr const char* kReaches[] = {"density", "range", "cutoff"};
+constexpr const char* kReaches[] = {"density", "range", "cutoff", "no-range"};
+
+/// The most pairs of a pixel and a light, seconds of work, of a picture without light error beside others
+/// with one.
+constexpr double kMostExactPairs = 1e10;
 
 constexpr glm::ivec2 kDefaultSize(640, 360);
 /// Number of visible points that make a box which holds most of what is seen.
@@ -175,6 +181,16 @@ bool isLeftOut(const std::vector<ScaleAxis>& axes, const std::vector<std::string
          (has("shadows", "off") && (!isFirst("shadow-memory") || !isFirst("shadow-size")));
 }
 
+/// Whether a point without light error is left out, beside others with one, because each of its pictures
+/// would take long.
+bool isTooExact(const RenderSettings& settings, std::uint64_t lights, const std::vector<ScaleAxis>& axes) {
+  const bool has_rivals = std::any_of(axes.begin(), axes.end(), [](const ScaleAxis& axis) {
+    return axis.name == kLightErrorAxis && axis.values.size() > 1;
+  });
+  const double samples = double(settings.size.x) * settings.size.y * settings.samples;
+  return has_rivals && settings.shade.light_error == 0 && samples * double(lights) > kMostExactPairs;
+}
+
 /// Sets an option as if it had been typed, and runs its checks.
 void setOption(CLI::App& command, const std::string& name, const std::string& value) {
   CLI::Option* option = command.get_option("--" + name);
@@ -186,6 +202,22 @@ void setOption(CLI::App& command, const std::string& name, const std::string& va
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("--vary {}={}: {}", name, value, error.what()));
   }
+}
+
+bool isGiven(const CLI::App& command, const std::string& name) {
+  return command.get_option("--" + name)->count() > 0;
+}
+
+/// Takes the values of ways to say how far lights reach that the variant leaves to another one.
+void forgetReaches(const CLI::App& command, ScaleOptions& options) {
+  if (!isGiven(command, "range")) options.range.reset();
+  if (!isGiven(command, "cutoff")) options.cutoff.reset();
+  if (!isGiven(command, "no-range")) options.no_range = false;
+}
+
+bool variesLightError(const std::vector<ScaleAxis>& axes) {
+  return std::any_of(axes.begin(), axes.end(),
+                     [](const ScaleAxis& axis) { return axis.name == kLightErrorAxis; });
 }
 
 LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64_t most_lights) {
@@ -215,8 +247,18 @@ LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64
 /// Whether ranges are chosen for a density of lights: if --density is given, or if nothing else says the
 /// range (--range, --cutoff, or a file of lights).
 bool choosesRanges(const CLI::App& command, const ScaleOptions& options) {
-  const bool is_asked_for = command.get_option("--density")->count() > 0;
-  return is_asked_for || (!options.range && !options.cutoff && !options.field.ends_with(".csv"));
+  return isGiven(command, "density") ||
+         (!options.range && !options.cutoff && !options.field.ends_with(".csv"));
+}
+
+/// Whether lights lose their ranges: if that is asked for, or if a light error is, which concerns lights
+/// without range alone, and nothing else says how far they reach.
+bool removesRanges(const CLI::App& command, const ScaleOptions& options, const std::vector<ScaleAxis>& axes) {
+  if (options.no_range) return true;
+  const bool is_reach_said = std::any_of(std::begin(kReaches), std::end(kReaches),
+                                         [&](const char* name) { return isGiven(command, name); }) ||
+                             options.field.ends_with(".csv");
+  return (options.picture.light_error > 0 || variesLightError(axes)) && !is_reach_said;
 }
 
 /// The settings that all points share, as text for people.
@@ -234,15 +276,18 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
     const bool is_varied =
         std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; }) ||
         (varies_reach && isReach({name, {}}));
-    const bool is_meant = name == "range"       ? options.range.has_value()
-                          : name == "cutoff"    ? options.cutoff.has_value()
-                          : name == "density"   ? choosesRanges(command, options)
-                          : name == "pcf-width" ? options.picture.shadows == "pcf"
-                          : name == "shadow-memory" || name == "shadow-size"
-                              ? options.picture.shadows != "off"
-                              : true;
+    const bool is_meant =
+        name == "range"           ? options.range.has_value()
+        : name == "cutoff"        ? options.cutoff.has_value()
+        : name == "no-range"      ? false  // told below
+        : name == "density"       ? choosesRanges(command, options) && !removesRanges(command, options, axes)
+        : name == kLightErrorAxis ? options.picture.light_error > 0
+        : name == "pcf-width"     ? options.picture.shadows == "pcf"
+        : name == "shadow-memory" || name == "shadow-size" ? options.picture.shadows != "off"
+                                                           : true;
     if (!is_varied && is_meant) shared.emplace_back(name, command.get_option("--" + name)->as<std::string>());
   }
+  if (!varies_reach && removesRanges(command, options, axes)) shared.emplace_back("no-range", "true");
   if (!options.picture.device.empty()) shared.emplace_back("device", options.picture.device);
   return shared;
 }
@@ -255,14 +300,15 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
         std::pair("--output", &options.output)})
     if (value->empty()) throw InputError(fmt::format("scale: {} is required", name));
   if (options.scene == "-") throw InputError("scale: expected a file as SCENE, got standard input");
-  int reaches = options.range.has_value() + options.cutoff.has_value();
+  int reaches = options.range.has_value() + options.cutoff.has_value() + options.no_range;
   for (const ScaleAxis& axis : parseAxes(options.vary)) {
     if (command.get_option("--" + axis.name)->count() > 0)
       throw InputError(fmt::format("scale: --{} is given and varied; expected one", axis.name));
     reaches += isReach(axis) && command.get_option("--density")->count() > 0;
     if (isReach(axis) && reaches > 0)
       throw InputError(fmt::format(
-          "scale: --vary {}, --density, --range and --cutoff say how far lights reach; expected one",
+          "scale: --vary {}, --density, --range, --cutoff and --no-range say how far lights reach; expected "
+          "one",
           axis.name));
   }
 }
@@ -301,6 +347,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
   for (const std::vector<std::string>& variant : allVariants(description.axes)) {
     if (isLeftOut(description.axes, variant)) continue;
     for (std::size_t i = 0; i < variant.size(); ++i) setOption(command, description.axes[i].name, variant[i]);
+    forgetReaches(command, options);
     const bool has_range = !choosesRanges(command, options);
     const auto [place, is_new] = field_of.try_emplace(
         fmt::format("{} {} {} {} {}", options.field, options.range.value_or(0), options.cutoff.value_or(0),
@@ -308,12 +355,19 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
         experiment.fields.size());
     if (is_new) experiment.fields.push_back(makeField(options, box, description.lights.back()));
     variants.push_back(variant);
-    of_variant.push_back({settingsNow(), place->second, has_range ? 0 : options.density});
+    of_variant.push_back({.settings = settingsNow(),
+                          .field = place->second,
+                          .density = has_range ? 0 : options.density,
+                          .no_range = removesRanges(command, options, description.axes)});
     most_samples = std::max(most_samples, options.picture.samples);
   }
   if (most_samples > 1) experiment.truth_samples = kTruthSamples * most_samples;
   for (const std::uint64_t lights : description.lights) {
     for (std::size_t i = 0; i < variants.size(); ++i) {
+      if (isTooExact(of_variant[i].settings, lights, description.axes)) {
+        ++experiment.too_exact;
+        continue;
+      }
       description.points.push_back({lights, variants[i]});
       experiment.tasks.push_back(of_variant[i]);
     }

@@ -17,6 +17,7 @@ struct ScaleOptions {
   std::vector<std::string> vary;
   double density = 8;
   std::optional<double> range, cutoff;
+  bool no_range = false;
   double intensity = 1;
   int repeats = 5;
   std::size_t check_pixels = 1024;

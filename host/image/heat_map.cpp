@@ -189,4 +189,25 @@ Image listMap(int width, int height, const std::vector<float>& list_lengths) {
                   .swatches = {{kZeroColor, "none"}}});
 }
 
+Image boundMap(int width, int height, const std::vector<float>& bounds) {
+  const std::vector<double> values(bounds.begin(), bounds.end());
+  double largest = 0, sum = 0;
+  std::size_t bounded = 0;
+  for (const double value : values) {
+    largest = std::max(largest, value);
+    sum += value;
+    bounded += value > 0;
+  }
+  return drawMap({.width = width,
+                  .height = height,
+                  .values = values,
+                  .scale = {-5, -1},
+                  .title = "bound of the error, linear",
+                  .figures = fmt::format("largest {:.2g}, mean {:.2g}", largest,
+                                         sum / double(std::max<std::size_t>(bounded, 1))),
+                  .mark = 1.0 / 255,
+                  .mark_name = "1/255",
+                  .swatches = {{kZeroColor, "no surface"}}});
+}
+
 }  // namespace luciole

@@ -18,4 +18,9 @@ Image errorMap(const ImageDifference& difference);
 /// scale is logarithmic, from 1 to the power of ten at or above the largest. Pixels without lights are black.
 Image listMap(int width, int height, const std::vector<float>& list_lengths);
 
+/// Draws bounds of each pixel's error in the same way. `bounds`: one a pixel, row-major, linear. The scale is
+/// the same for all pictures, so that the colours of several compare: logarithmic, from 10⁻⁵ to 10⁻¹, whose
+/// ends stand for what lies beyond. Pixels without a bound are black.
+Image boundMap(int width, int height, const std::vector<float>& bounds);
+
 }  // namespace luciole

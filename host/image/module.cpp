@@ -81,6 +81,10 @@ Image listMap(int width, int height, const std::vector<float>& list_lengths) {
   return functions().list_map(width, height, list_lengths);
 }
 
+Image boundMap(int width, int height, const std::vector<float>& bounds) {
+  return functions().bound_map(width, height, bounds);
+}
+
 Image sideBySide(const Image& a, const Image& b, const ImageDifference& difference, const std::string& name_a,
                  const std::string& name_b) {
   return functions().side_by_side(a, b, difference, name_a, name_b);

@@ -29,6 +29,7 @@ struct ImageFunctions {
   Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);
   decltype(&errorMap) error_map;
   decltype(&listMap) list_map;
+  decltype(&boundMap) bound_map;
   decltype(&sideBySide) side_by_side;
   decltype(&openImageIOWrites) open_image_io_writes;
 };

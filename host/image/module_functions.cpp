@@ -12,6 +12,7 @@ const ImageFunctions luciole_image_functions{
     .read_texture_in_memory = readTexture,
     .error_map = errorMap,
     .list_map = listMap,
+    .bound_map = boundMap,
     .side_by_side = sideBySide,
     .open_image_io_writes = openImageIOWrites,
 };

@@ -301,10 +301,10 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
     lighting.host_tree = buildLightTree(lighting.host_lights);
     uploadLighting(device, lighting);
   });
-  const LightClusters& clusters = lighting.clusters;
-  lighting.bytes = lighting.host_lights.size() * sizeof(ShadeLight) +
-                   clusters.lights.size() * sizeof(ClusteredLight) +
-                   (lighting.host_tree.planes.size() + clusters.rows.size()) * sizeof(float);
+  std::size_t floats = lighting.host_tree.planes.size();
+  for (const LightClusters* clusters : {&lighting.clusters, &lighting.highlight_clusters})
+    floats += clusters->rows.size() + clusters->light_rows.size();
+  lighting.bytes = lighting.host_lights.size() * sizeof(ShadeLight) + floats * sizeof(float);
 }
 
 LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, const FeatureSet& features,

@@ -12,7 +12,8 @@
 
 #include "base/error.hpp"
 #include "base/peak_memory.hpp"
-#include "base/random.hpp"
+#include "figures/checked_pixels.hpp"
+#include "figures/kept_bounds.hpp"
 #include "image/compare.hpp"
 #include "image/heat_map.hpp"
 #include "raster/visible_points.hpp"
@@ -34,35 +35,22 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// The pixels that are compared with the truth: one at random in each cell of side × side pixels, so that
-/// they show where in the picture errors are.
-struct CheckedPixels {
-  int side = 1;
-  glm::ivec2 cells{0};
-  std::vector<glm::ivec2> pixels;  ///< one for each cell, row by row
-};
-
-CheckedPixels chooseCheckedPixels(const glm::ivec2& size, std::size_t count, std::uint64_t seed) {
-  CheckedPixels checked;
-  checked.side = std::max(1, int(std::sqrt(double(size.x) * size.y / double(count))));
-  checked.cells = (size + checked.side - 1) / checked.side;
-  for (int y = 0; y < checked.cells.y; ++y) {
-    for (int x = 0; x < checked.cells.x; ++x) {
-      const glm::ivec2 low = glm::ivec2(x, y) * checked.side;
-      const glm::ivec2 extent = glm::min(glm::ivec2(checked.side), size - low);
-      const int place = int(nextUniform(seed) * extent.x * extent.y);
-      checked.pixels.push_back(low + glm::ivec2(place % extent.x, place / extent.x));
-    }
-  }
-  return checked;
-}
-
-/// The truth at the checked pixels: channels R G B and `sampled`, and what it was made with.
+/// The truth at the checked pixels, and what it was made with.
 struct Truth {
   std::vector<Light> lights;
   Model model = Model::kPhong;
   Shading shading = Shading::kPhong;
-  Image image;
+  std::vector<glm::dvec3> colors;  ///< linear R G B of each, exposed
+  Image image;                     ///< the same as channels R G B and `sampled`
+};
+
+/// What decides the lights of a point.
+struct LightsKey {
+  std::size_t field;
+  std::uint64_t lights;
+  double density;
+  bool no_range;
+  bool operator==(const LightsKey&) const = default;
 };
 
 /// What all points of an experiment share.
@@ -74,6 +62,7 @@ struct Bench {
   CheckedPixels checked;
   std::vector<glm::dvec3> seen;  ///< points that the camera sees, where densities are wanted
   std::map<std::size_t, float> range_of_task;
+  std::optional<LightsKey> lit_by;  ///< the lights that the scene has now
   Truth truth;  ///< the last one; points with the same lights follow each other, and share it
 };
 
@@ -82,12 +71,18 @@ void setLights(Bench& bench, std::size_t index) {
   const ScaleTask& task = bench.experiment.tasks[index];
   LightField field = bench.experiment.fields[task.field];
   field.count = bench.experiment.description.points[index].lights;
+  const LightsKey key{task.field, field.count, task.density, task.no_range};
+  if (bench.lit_by == key) return;
+  bench.lit_by.reset();  // until they are there
   bench.scene.lights.clear();
   expandLightField(field, bench.scene);
-  if (task.density == 0) return;
-  const auto [place, is_new] = bench.range_of_task.try_emplace(index);
-  if (is_new) place->second = rangeForDensity(bench.scene.lights, bench.seen, task.density);
-  for (Light& light : bench.scene.lights) light.range = place->second;
+  if (task.density > 0) {
+    const auto [place, is_new] = bench.range_of_task.try_emplace(index);
+    if (is_new) place->second = rangeForDensity(bench.scene.lights, bench.seen, task.density);
+    for (Light& light : bench.scene.lights) light.range = place->second;
+  }
+  if (task.no_range) removeRanges(bench.scene.lights, bench.seen);
+  bench.lit_by = key;
 }
 
 bool isSame(const Light& a, const Light& b) {
@@ -96,34 +91,34 @@ bool isSame(const Light& a, const Light& b) {
 }
 
 /// The truth by the scene's lights: the last one if that fits, otherwise a new one.
-const Image& findTruth(Bench& bench, const RenderSettings& settings) {
+const Truth& findTruth(Bench& bench, const RenderSettings& settings) {
   Truth& truth = bench.truth;
   const Scene& scene = bench.scene;
   if (!truth.image.pixels.empty() && truth.model == settings.shade.model &&
       truth.shading == settings.shading &&
       std::equal(truth.lights.begin(), truth.lights.end(), scene.lights.begin(), scene.lights.end(), isSame))
-    return truth.image;
+    return truth;
   ReferenceSettings reference;
   reference.model = settings.shade.model;
   std::optional<RayScene> rays;
   if (std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; }))
     reference.shadow_rays =
         &rays.emplace(buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3])));
-  const std::vector<glm::dvec3> colors =
-      referencePicture(scene, cameraView(settings.camera, settings.size), settings.shading,
-                       bench.experiment.truth_samples, bench.checked.pixels, reference);
+  truth.colors = referencePicture(scene, cameraView(settings.camera, settings.size), settings.shading,
+                                  bench.experiment.truth_samples, bench.checked.pixels, reference);
   truth.lights = scene.lights;
   truth.model = settings.shade.model;
   truth.shading = settings.shading;
   truth.image = {settings.size.x, settings.size.y, {"R", "G", "B", "sampled"}, {}};
   truth.image.pixels.assign(std::size_t(settings.size.x) * settings.size.y * 4, 0.0f);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
+  for (std::size_t i = 0; i < truth.colors.size(); ++i) {
+    truth.colors[i] *= std::exp2(double(settings.exposure));
     const glm::ivec2& at = bench.checked.pixels[i];
     float* pixel = truth.image.pixels.data() + (std::size_t(at.y) * settings.size.x + at.x) * 4;
-    for (int c = 0; c < 3; ++c) pixel[c] = pictureValue(colors[i][c] * std::exp2(settings.exposure));
+    for (int c = 0; c < 3; ++c) pixel[c] = pictureValue(truth.colors[i][c]);
     pixel[3] = 1;
   }
-  return truth.image;
+  return truth;
 }
 
 /// Gives every pixel the difference of its cell's checked pixel.
@@ -165,21 +160,44 @@ std::string fileName(const ScaleDescription& description, std::size_t index) {
   return fmt::format("{}/{:04}-{}", kPictureFolder, index + 1, name);
 }
 
+/// The largest bound of each pixel's channels.
+std::vector<float> largestBounds(const Image& picture) {
+  std::vector<float> largest = layerOf(picture, "light_error.R");
+  for (const char* name : {"light_error.G", "light_error.B"}) {
+    const std::vector<float> layer = layerOf(picture, name);
+    for (std::size_t i = 0; i < layer.size(); ++i) largest[i] = std::max(largest[i], layer[i]);
+  }
+  return largest;
+}
+
+/// Whether the picture's bounds hold for the truth: other lights err, too, and with several samples the truth
+/// has others.
+bool boundsTheTruth(const ScaleExperiment& experiment, const Stats& stats) {
+  return stats.light_error.values > 0 && countOf(stats, "lights_exact") == 0 && experiment.truth_samples == 1;
+}
+
 /// Makes a point's picture with all counts, and compares it with the truth.
 PointCheck checkPoint(Bench& bench, std::size_t index) {
   setLights(bench, index);
   RenderSettings settings = bench.experiment.tasks[index].settings;
   settings.count_lights = true;
   settings.aovs = {Aov::kListLength};
+  if (settings.shade.light_error > 0) settings.aovs.push_back(Aov::kLightError);
   Stats stats;
   const Image picture = renderScene(bench.device, bench.scene, settings, stats);
   const Image colors = colorsOf(picture);
-  ImageDifference difference = compareImages(findTruth(bench, settings), colors);
+  const Truth& truth = findTruth(bench, settings);
+  ImageDifference difference = compareImages(truth.image, colors);
   fillCells(bench.checked, difference);
 
-  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated"),
-                   .pairs_in_range = countOf(stats, "pixel_lights_in_range"),
-                   .pixels_lit = countOf(stats, "pixels_lit"),
+  const std::uint64_t pixels_lit = countOf(stats, "pixels_lit");
+  const std::uint64_t pairs_of_clusters =
+      countOf(stats, "pixel_clusters_evaluated") + countOf(stats, "pixel_clustered_lights_evaluated");
+  // All lights that clusters stand for reach all pixels.
+  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated") + pairs_of_clusters,
+                   .pairs_in_range = countOf(stats, "pixel_lights_in_range") +
+                                     countOf(stats, "lights_stood_for") * pixels_lit,
+                   .pixels_lit = pixels_lit,
                    .list_entries = countOf(stats, "list_entries"),
                    .pixels = difference.pixels,
                    .mean_abs = difference.mean_abs,
@@ -199,6 +217,10 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   check.error_map = write(errorMap(difference), "-error.png");
   check.list_map =
       write(listMap(picture.width, picture.height, layerOf(picture, "list_length")), "-lists.png");
+  if (boundsTheTruth(bench.experiment, stats)) {
+    check.bounds = judgeBounds(picture, settings.exposure, bench.checked.pixels, truth.colors);
+    check.bound_map = write(boundMap(picture.width, picture.height, largestBounds(picture)), "-bounds.png");
+  }
   return check;
 }
 
@@ -301,9 +323,9 @@ std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExpe
   const RenderSettings& any = experiment.tasks.front().settings;
   Bench bench{
       device, scene, experiment, log, chooseCheckedPixels(any.size, experiment.check_pixels, experiment.seed),
-      {},     {},    {}};
+      {},     {},    {},         {}};
   if (std::any_of(experiment.tasks.begin(), experiment.tasks.end(),
-                  [](const ScaleTask& task) { return task.density > 0; })) {
+                  [](const ScaleTask& task) { return task.density > 0 || task.no_range; })) {
     bench.seen = visiblePoints(scene, any.camera, any.size, kDensityPoints, experiment.seed);
     if (bench.seen.empty())
       throw InputError(fmt::format("{}: its camera sees nothing, so there is no density of lights to have",

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "figures/kept_bounds.hpp"
 #include "figures/rounds.hpp"
 #include "render/render.hpp"
 #include "scene/lights/light_field.hpp"
@@ -28,6 +29,8 @@ struct ScaleAxis {
 
 /// The value of an axis whose option doesn't apply to the point, because another axis's takes its place.
 inline constexpr const char* kNotThis = "-";
+/// The axis of ShadeSettings::light_error.
+inline constexpr const char* kLightErrorAxis = "light-error";
 
 /// One way to make the picture, with one number of lights.
 struct ScalePoint {
@@ -56,6 +59,8 @@ struct ScaleTask {
   /// The range of all lights is chosen so that, on average, so many reach a point that the camera sees. 0:
   /// the range is the field's.
   double density = 0;
+  /// Then the range is taken away, and the lights are as bright as with it on average (removeRanges).
+  bool no_range = false;
 };
 
 struct ScaleExperiment {
@@ -65,16 +70,21 @@ struct ScaleExperiment {
   std::size_t check_pixels = 1024;  ///< about how many pixels are compared with the reference
   std::uint64_t seed = 0;           ///< chooses these pixels
   int truth_samples = 1;            ///< samples a pixel that make the truth
+  std::size_t too_exact = 0;        ///< points that aren't there because every light one by one takes long
 };
 
 /// What is measured only once for a point: the error of its picture, and counts.
 struct PointCheck {
-  std::uint64_t pairs_evaluated = 0, pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
+  std::uint64_t pairs_evaluated = 0;  ///< of a pixel and a light, or a cluster that stands for lights
+  std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
   double reach =
       0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
   std::uint64_t pixels = 0;                    ///< compared with the reference
   double mean_abs = 0, max_abs = 0, rmse = 0;  ///< errors of these pixels, in linear units
   std::string picture, error_map, list_map;    ///< files in the experiment's folder
+  /// Where clusters stand for all lights of a picture of one sample a pixel, and a map of the bounds
+  std::optional<KeptBounds> bounds{};
+  std::string bound_map{};
 };
 
 /// The names of a check's figures that aren't finite, which JSON can't hold, each with the reason.

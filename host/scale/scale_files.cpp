@@ -150,6 +150,7 @@ Json pointJson(const ScaleDescription& description, const PointSummary& point) {
               {"max_abs", finiteOrNull(point.check.max_abs)},
               {"rmse", finiteOrNull(point.check.rmse)},
               {"pixels", point.check.pixels}}},
+            {"bounds", point.check.bounds ? toJson(*point.check.bounds) : Json(nullptr)},
             {"truth", point.truth},
             {"front", point.front}};
   for (const auto& [name, why] : reasonsForNull(point.check)) json["reasons"][name] = why;
@@ -187,6 +188,9 @@ std::string scaleCsv(const ScaleSummary& summary) {
                            "device_bytes", "peak_bytes", "checked_pixels", "mean_abs", "max_abs", "rmse",
                            "front", "picture", "error_map", "list_map", "truth"})
     head.push_back(name);
+  for (const auto& [name, figure] : kBoundFigures) head.push_back(name);
+  for (const auto& [name, count] : kBoundCounts) head.push_back(name);
+  head.push_back("bound_map");
   std::string csv = csvLine(head);
   for (const PointSummary& point : summary.points) {
     std::vector<std::string> cells{fmt::format("{}", point.point.lights)};
@@ -214,6 +218,12 @@ std::string scaleCsv(const ScaleSummary& summary) {
     cells.push_back(point.front ? "1" : "0");
     for (const std::string& file : {check.picture, check.error_map, check.list_map}) cells.push_back(file);
     cells.push_back(point.truth);
+    const KeptBounds bounds = check.bounds.value_or(KeptBounds{});
+    for (const auto& [name, figure] : kBoundFigures)
+      cells.push_back(check.bounds ? fmt::format("{}", bounds.*figure) : "");
+    for (const auto& [name, count] : kBoundCounts)
+      cells.push_back(check.bounds ? fmt::format("{}", bounds.*count) : "");
+    cells.push_back(check.bound_map);
     csv += csvLine(cells);
   }
   return csv;
@@ -240,6 +250,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
     points[i]["picture"] = pictures.add(check.picture);
     points[i]["error_map"] = pictures.add(check.error_map);
     points[i]["tile_map"] = pictures.add(check.list_map);
+    points[i]["bound_map"] = check.bounds ? pictures.add(check.bound_map) : Json(nullptr);
   }
   Json axes = Json::array();
   for (const ScaleAxis& axis : description.axes)
@@ -257,6 +268,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   json["growth"] = growthRows(summary);
   json["pictures"] = pictures.urls();
   json["incomplete"] = summary.incomplete;
+  json["violations"] = summary.violations;
   // Names of files and scenes may be in any encoding: what isn't UTF-8 is replaced.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -118,6 +118,13 @@ double numberOrInfinity(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
 }
 
+KeptBounds boundsOf(const Json& json) {
+  KeptBounds bounds;
+  for (const auto& [name, figure] : kBoundFigures) bounds.*figure = numberOrInfinity(json.at(name));
+  for (const auto& [name, count] : kBoundCounts) bounds.*count = wholeMember<std::uint64_t>(json, name);
+  return bounds;
+}
+
 Json toJson(const std::string& point, const PointCheck& check) {
   Json json{{"point", point},
             {"check",
@@ -133,6 +140,10 @@ Json toJson(const std::string& point, const PointCheck& check) {
               {"picture", check.picture},
               {"error_map", check.error_map},
               {"list_map", check.list_map}}}};
+  if (check.bounds) {
+    json["check"]["bounds"] = toJson(*check.bounds);
+    json["check"]["bound_map"] = check.bound_map;
+  }
   for (const auto& [name, why] : reasonsForNull(check)) json["reasons"][name] = why;
   return json;
 }
@@ -151,6 +162,7 @@ std::string fileNamed(const Json& json, const char* key) {
 
 PointCheck checkOf(const Json& line) {
   const Json& json = line.at("check");
+  const bool is_bounded = json.contains("bounds");
   return {.pairs_evaluated = wholeMember<std::uint64_t>(json, "pairs_evaluated"),
           .pairs_in_range = wholeMember<std::uint64_t>(json, "pairs_in_range"),
           .pixels_lit = wholeMember<std::uint64_t>(json, "pixels_lit"),
@@ -162,7 +174,9 @@ PointCheck checkOf(const Json& line) {
           .rmse = numberOrInfinity(json.at("rmse")),
           .picture = fileNamed(json, "picture"),
           .error_map = fileNamed(json, "error_map"),
-          .list_map = fileNamed(json, "list_map")};
+          .list_map = fileNamed(json, "list_map"),
+          .bounds = is_bounded ? std::optional(boundsOf(json.at("bounds"))) : std::nullopt,
+          .bound_map = is_bounded ? fileNamed(json, "bound_map") : ""};
 }
 
 Json toJson(const std::string& point, int repeat, const PointRun& run) {
@@ -198,7 +212,9 @@ void take(const Json& line, ScaleResults& results) {
 }
 
 std::vector<std::string> filesOf(const PointCheck& check) {
-  return {check.picture, check.error_map, check.list_map};
+  std::vector<std::string> files{check.picture, check.error_map, check.list_map};
+  if (check.bounds) files.push_back(check.bound_map);
+  return files;
 }
 
 /// The log in `text`, which ends after a whole line. Throws InputError with the path and the line's number.
@@ -244,6 +260,13 @@ std::string difference(const ScaleDescription& a, const ScaleDescription& b) {
 }
 
 }  // namespace
+
+Json toJson(const KeptBounds& bounds) {
+  Json json;
+  for (const auto& [name, figure] : kBoundFigures) json[name] = finiteOrNull(bounds.*figure);
+  for (const auto& [name, count] : kBoundCounts) json[name] = bounds.*count;
+  return json;
+}
 
 Json finiteOrNull(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 

@@ -68,5 +68,7 @@ ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::
 
 /// As the log and results.json write a number: null where it is not finite, for JSON has no infinity.
 nlohmann::ordered_json finiteOrNull(double number);
+/// All figures by their names.
+nlohmann::ordered_json toJson(const KeptBounds& bounds);
 
 }  // namespace luciole

@@ -43,6 +43,8 @@ struct ScaleSummary {
   std::vector<PointSummary> points;  ///< in the order of the description
   std::vector<StageGrowth> growth;
   std::size_t incomplete = 0;  ///< points that lack their check or one of their runs
+  /// Points whose picture breaks its bounds, a line each, for people: a fault of the program.
+  std::vector<std::string> violations;
 };
 
 /// The axes' values in one line, for people: "culling tiles, tile 4"; empty if there are no axes.

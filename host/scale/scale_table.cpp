@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "figures/text_table.hpp"
@@ -33,6 +34,10 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
   for (const std::string& name : axisNames(summary.description)) head.push_back(name);
   for (const char* name : {"ms", "spread", "mean error", "largest", "memory, MiB", "front"})
     head.push_back(name);
+  const bool are_bounded = std::any_of(
+      points.begin(), points.end(), [](const PointSummary& point) { return point.check.bounds.has_value(); });
+  if (are_bounded)
+    for (const char* name : {"largest bound", "mean", "error / bound, largest", "mean"}) head.push_back(name);
   // Errors compare, and a front is meaningful, only among points with the same truth.
   const bool truths_differ = std::any_of(points.begin(), points.end(), [&](const PointSummary& point) {
     return point.truth != points.front().truth;
@@ -41,6 +46,7 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
   std::vector<Cells> lines{head};
   for (const PointSummary& point : points) {
     const Quartiles& time = point.milliseconds;
+    const std::optional<KeptBounds>& bounds = point.check.bounds;
     Cells cells{fmt::format("{}", point.point.lights)};
     cells.insert(cells.end(), point.point.values.begin(), point.point.values.end());
     cells.push_back(fmt::format("{:.1f}", time.median));
@@ -50,6 +56,12 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
     cells.push_back(errorText(point.check.max_abs));
     cells.push_back(fmt::format("{:.0f}", double(point.peak_bytes) / (1 << 20)));
     cells.push_back(point.front ? "*" : "");
+    if (are_bounded) {
+      cells.push_back(bounds ? fmt::format("{:.1e}", bounds->max_bound) : "–");
+      cells.push_back(bounds ? fmt::format("{:.1e}", bounds->mean_bound) : "–");
+      cells.push_back(bounds ? fmt::format("{:.2f}", bounds->max_used) : "–");
+      cells.push_back(bounds ? fmt::format("{:.2f}", bounds->mean_used) : "–");
+    }
     if (truths_differ) cells.push_back(point.truth);
     lines.push_back(cells);
   }
@@ -108,6 +120,9 @@ std::string scaleTable(const ScaleSummary& summary) {
   if (is_cut)
     text += fmt::format("The {} points of fewer lights are in results.csv.\n",
                         summary.points.size() - points.size());
+  if (std::any_of(points.begin(), points.end(),
+                  [](const PointSummary& point) { return point.check.bounds.has_value(); }))
+    text += "Bounds are shares of the larger of 1 and the colour. –: clusters don't stand for all lights.\n";
   return text + "\nGrowth: ms = a + b * lights^c. All stages, with a and b, are in growth.json.\n\n" +
          growthTable(summary);
 }

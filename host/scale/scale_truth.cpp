@@ -5,9 +5,10 @@
 namespace luciole {
 namespace {
 
-/// Axes that change how the picture is made but not what it approximates: light lists, samples, shadow maps.
-constexpr const char* kWaysToMakeIt[] = {"culling",   "tile",          "samples",
-                                         "pcf-width", "shadow-memory", "shadow-size"};
+/// Axes that change how the picture is made but not what it approximates: light lists, samples, shadow maps,
+/// clusters of lights.
+constexpr const char* kWaysToMakeIt[] = {"culling",       "tile",        "samples",      "pcf-width",
+                                         "shadow-memory", "shadow-size", kLightErrorAxis};
 
 bool isWayToMakeIt(const std::string& axis) {
   return std::find(std::begin(kWaysToMakeIt), std::end(kWaysToMakeIt), axis) != std::end(kWaysToMakeIt);

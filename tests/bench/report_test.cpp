@@ -60,6 +60,17 @@ TEST(BenchTable, ATableOfSpeedHasAFigureOrADashAndItsReasonInEachCell) {
   EXPECT_EQ(linesWith(table, "–: "), std::vector<std::string>{"–: nobody counted."});
 }
 
+TEST(BenchReport, AnEstimateIsMarkedAsOneAndFailuresAreInTheJson) {
+  BenchResult result = madeUpResult();
+  result.speed[0].rows[1].cells[0] = Estimate{1234.567};
+  result.speed[0].failures = {"two is wrong"};
+  EXPECT_THAT(linesWith(benchTable(result), "| two ")[0], HasSubstr(" ≈ 1234.57 |"));
+  const auto json = nlohmann::json::parse(benchJson(result))["speed"][0];
+  EXPECT_EQ(json["rows"][1]["milliseconds"], (nlohmann::json{{"estimate", 1234.567}}));
+  EXPECT_EQ(json["failures"], nlohmann::json::array({"two is wrong"}));
+  EXPECT_FALSE(nlohmann::json::parse(benchJson(madeUpResult()))["speed"][0].contains("failures"));
+}
+
 TEST(BenchJson, ATableOfSpeedHasItsFiguresByKey) {
   const auto json = nlohmann::json::parse(benchJson(madeUpResult()))["speed"][0];
   EXPECT_EQ(json["name"], "a stage");

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "base/embedded_files.hpp"
 #include "base/error.hpp"
 #include "bench/culled_shading.hpp"
+#include "bench/light_errors.hpp"
 #include "bench/many_lights.hpp"
 #include "bench/memory_use.hpp"
 #include "bench/picture_time.hpp"
@@ -118,6 +121,44 @@ TEST(ManyLights, ASeriesOfPowersOfTenAfterTheSphere) {
       EXPECT_LE(median(table, row, stage), median(table, row, "milliseconds")) << stage;
     }
   }
+}
+
+TEST(LightErrors, ThreePlacementsOfTwoNumbersKeepFourBounds) {
+  SpeedInput input = tinyInput();
+  input.most_lights = 10'000;
+  const SpeedTable table = measureLightErrors(input);
+  expectWhole(table);
+  ASSERT_EQ(table.rows.size(), 3u * 2 * 4);
+  EXPECT_EQ(table.rows[0].name, "box, 1/16");
+  EXPECT_EQ(table.rows[12].name, "clusters, 1/16");
+  EXPECT_EQ(table.rows[23].name, "surfaces, 1/1024");
+  EXPECT_TRUE(table.failures.empty());
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const double steps = 255.0 / std::array{16, 64, 256, 1024}[row % 4];
+    EXPECT_EQ(count(table, row, "lights"), row / 4 % 2 == 0 ? 1000 : 10'000);
+    EXPECT_LE(count(table, row, "runs"), input.repeats);
+    EXPECT_GT(median(table, row, "milliseconds"), 0);
+    EXPECT_GT(median(table, row, "exact_milliseconds"), 0);
+    EXPECT_GT(median(table, row, "times_faster"), 0);
+    // A float's rounding more.
+    EXPECT_LE(count(table, row, "max_bound_steps"), 1.000001 * steps);
+    EXPECT_GT(count(table, row, "max_bound_steps"), 0.5 * steps);
+    EXPECT_LT(count(table, row, "mean_bound_steps"), count(table, row, "max_bound_steps"));
+    EXPECT_GT(count(table, row, "max_error_steps"), 0);
+    EXPECT_LT(count(table, row, "mean_error_steps"), count(table, row, "max_error_steps"));
+    EXPECT_LE(count(table, row, "max_used"), 1);
+    EXPECT_LT(count(table, row, "mean_used"), count(table, row, "max_used"));
+    EXPECT_EQ(count(table, row, "violations"), 0);
+  }
+}
+
+TEST(LightErrors, WithNothingToLightThereIsNothingToMeasure) {
+  SpeedInput input = tinyInput();
+  Scene scene;
+  scene.name = "nothing";
+  scene.cameras.emplace_back();
+  input.scene = &scene;
+  EXPECT_THROW(measureLightErrors(input), InputError);
 }
 
 TEST(RasterSpeed, DrawsAGBufferAndADepthMapOfTheHallOrOfTheNamedScene) {

@@ -228,6 +228,86 @@ TEST_F(ScaleCommand, WaysToSayHowFarLightsReachTakeTurns) {
   EXPECT_EQ(reaches.size(), 5u);
 }
 
+/// kSmallScene with matte surfaces.
+std::string matteScene() {
+  std::string scene = kSmallScene;
+  const std::string shiny = "\"specular\": 0.5";
+  scene.replace(scene.find(shiny), shiny.size(), "\"specular\": 0");
+  return scene;
+}
+
+TEST_F(ScaleCommand, LightErrorsAreHeldAgainstOneTruthWithinTheirBounds) {
+  writeText(folder / "scene.json", matteScene());
+  succeed(
+      "--lights 3000,6000 --vary light-error=0,1/16,1/256 --exposure 0.5 --repeat 1 -o run --plot plot.svg");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 6u);
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.at("reach"), "inf") << "light errors are of lights without range";
+    EXPECT_EQ(row.at("truth"), "");
+    const bool is_exact = row.at("light-error") == "0";
+    EXPECT_EQ(row.at("max_bound").empty(), is_exact);
+    EXPECT_EQ(row.at("bound_map").empty(), is_exact);
+    if (is_exact) continue;
+    const double promised = row.at("light-error") == "1/16" ? 1.0 / 16 : 1.0 / 256;
+    EXPECT_LE(std::stod(row.at("max_bound")), 1.000001 * promised);  // a float's rounding more
+    EXPECT_GT(std::stod(row.at("max_bound")), promised / 4);
+    EXPECT_LT(std::stod(row.at("mean_bound")), std::stod(row.at("max_bound")));
+    EXPECT_GT(std::stod(row.at("max_error")), 0);
+    EXPECT_LE(std::stod(row.at("max_used")), 1);
+    EXPECT_GT(std::stod(row.at("bounded_values")), 60);
+    EXPECT_EQ(row.at("violations"), "0");
+    EXPECT_GT(std::stod(row.at("pairs_evaluated")), 0);
+    EXPECT_EQ(row.at("pairs_in_range"), rows[row.at("lights") == "3000" ? 0 : 3].at("pairs_in_range"));
+    EXPECT_EQ(readImage(folder / ("run/" + row.at("bound_map"))).width, 480);
+  }
+  EXPECT_LT(std::stod(rows[2].at("mean_abs")), std::stod(rows[1].at("mean_abs")));
+  EXPECT_THAT(readText(folder / "plot.svg"), HasSubstr(">true error<"));
+  EXPECT_THAT(readText(folder / "run/results.jsonl"), HasSubstr(R"("no-range":"true")"));
+}
+
+TEST_F(ScaleCommand, BrokenBoundsAreToldAndEndWithOne) {
+  writeText(folder / "scene.json", matteScene());
+  succeed("--lights 3000 --vary light-error=1/16,1/64 --repeat 1 -o run");
+  std::string log = readText(folder / "run/results.jsonl");
+  const std::string kept = "\"violations\":0";
+  log.replace(log.find(kept), kept.size(), "\"violations\":5");
+  writeText(folder / "run/results.jsonl", log);
+  const Outcome outcome = runLine(folder, "luciole scale merge run -o merged");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("lights=3000 light-error=1/16: 5 of "));
+  EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
+  EXPECT_THAT(readText(folder / "merged/report.html"), HasSubstr("5 of "));
+}
+
+TEST_F(ScaleCommand, WithoutRangeIsAWayToReachThatTakesItsTurn) {
+  writeText(folder / "scene.json", matteScene());
+  succeed("--lights 50 --vary no-range,density=2,cutoff=0.1 --repeat 1 -o run");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  std::set<std::string> reaches;
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.at("reach") == "inf", row.at("no-range") == "true");
+    reaches.insert(row.at("reach"));
+  }
+  EXPECT_EQ(reaches.size(), 3u);
+  // With a range that is asked for, no light is stood for.
+  succeed("--lights 2000 --vary light-error=1/16 --density 8 --repeat 1 -o ranged");
+  const std::vector<Row> ranged = readCsv(folder / "ranged/results.csv");
+  EXPECT_NE(ranged[0].at("reach"), "inf");
+  EXPECT_EQ(ranged[0].at("max_bound"), "");
+}
+
+TEST_F(ScaleCommand, LightsOneByOneThatWouldTakeLongAreLeftOutBesideLightErrors) {
+  writeText(folder / "scene.json", matteScene());
+  // 48 x 27 pixels: 1.3e10 pairs with the most.
+  const Outcome outcome =
+      scale("--lights 1000,10000000 --vary light-error=0,1 --repeat 1 --shard 1/4 -o run");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("so many lights one by one take long: 1"));
+  EXPECT_THAT(outcome.err, HasSubstr("2 of 3 points are not complete"));
+}
+
 TEST_F(ScaleCommand, MoreSamplesComeNearerToATruthOfMore) {
   succeed("--lights 100 --vary samples=1,16 --repeat 1 -o run");
   const std::vector<Row> rows = readCsv(folder / "run/results.csv");
@@ -333,6 +413,9 @@ TEST_F(ScaleCommand, WrongArgumentsAreRefusedBeforeAnythingIsWritten) {
            {"--lights 1 --vary tile=4,- -o run", "none"},
            {"--lights 1 --vary range --density 3 -o run", "expected one"},
            {"--lights 1 --vary range --cutoff 1 -o run", "expected one"},
+           {"--lights 1 --vary cutoff --no-range -o run", "expected one"},
+           {"--lights 1 --no-range --density 2 -o run", "--density"},
+           {"--lights 1 --vary light-error=2 -o run", "light-error=2"},
            {"--lights 1 --tile 8 --vary tile -o run", "--tile"},
            {"--lights 1 --range 1 --density 2 -o run", "--density"},
            {"--lights 1 --range 0 -o run", "--range"},

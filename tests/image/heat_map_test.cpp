@@ -221,6 +221,18 @@ TEST(ErrorMap, WithoutAFontThatCanBeReadItLacksOnlyItsLabels) {
   }
 }
 
+TEST(BoundMap, HasOneScaleForAllPicturesAndBlackWhereNothingIsBounded) {
+  // 10⁻⁵ and less, 10⁻¹ and more, and whatever the others are.
+  for (const float other : {1e-3f, 0.5f}) {
+    const Image map = boundMap(4, 1, {1e-6f, 0.0f, 0.1f, other});
+    EXPECT_EQ(codesAt(map, 60, 60), kLowest);
+    EXPECT_EQ(codesAt(map, 180, 60), kBlack);
+    EXPECT_EQ(codesAt(map, 300, 60), kHighest);
+    EXPECT_EQ(codesAt(map, 420, 60) == kHighest, other > 0.1f);
+  }
+  EXPECT_GT(barUnder(boundMap(1, 1, {0.0f}), 480).right, 400);
+}
+
 TEST(ListMap, OneLightIsTheLowestColourAndThePowerOfTenAboveTheMostTheHighest) {
   const Image map = listMap(4, 1, {0, 1, 10, 100});
   EXPECT_EQ(codesAt(map, 60, 60), kBlack);

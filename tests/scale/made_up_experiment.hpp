@@ -39,6 +39,37 @@ inline PointCheck madeUpCheck(const std::string& name, double error) {
           .list_map = "pictures/" + name + "-lists.png"};
 }
 
+/// Of an error that is a share of its bound.
+inline KeptBounds madeUpBounds(double bound, double used) {
+  return {.max_bound = bound,
+          .mean_bound = bound / 2,
+          .max_error = used * bound,
+          .mean_error = used * bound / 8,
+          .max_used = used,
+          .mean_used = used / 4,
+          .values = 48};
+}
+
+/// Light errors of 1/4 and 1/16 in two places, by 1 and 100 lights; the one of 1 light is exact.
+inline ScaleResults madeUpLightErrors() {
+  ScaleResults results{madeUpExperiment(), {}, {}};
+  ScaleDescription& description = results.description;
+  description.axes = {{"field", {"box", "ball"}}, {kLightErrorAxis, {"1/4", "1/16"}}};
+  description.points.clear();
+  for (const std::uint64_t lights : description.lights)
+    for (const std::string& field : description.axes[0].values)
+      for (const std::string& error : description.axes[1].values) {
+        description.points.push_back({lights, {field, error}});
+        PointRecord& record = results.records[pointName(description, description.points.back())];
+        const double bound = error == "1/4" ? 0.25 : 0.0625;
+        record.check = madeUpCheck(std::to_string(results.records.size()), 0.25 * bound);
+        if (lights > 1) record.check->bounds = madeUpBounds(bound, 0.5);
+        if (lights > 1) record.check->bound_map = "pictures/bounds.png";
+        record.runs[0] = record.runs[1] = PointRun{.stages = {{"shade", 1 / bound}}};
+      }
+  return results;
+}
+
 inline PointRun madeUpRun(double cull, double shade) {
   return {.stages = {{"cull", cull}, {"shade", shade}}, .device_bytes = 1000, .peak_bytes = 2000};
 }

@@ -98,6 +98,33 @@ inline nlohmann::json madeUpFront() {
   return data;
 }
 
+/// Three light errors at 100 and 10000 lights, the last of them none; 100 lights are all exact. A bound is
+/// half of what is promised, and an error a tenth of that.
+inline nlohmann::json madeUpPageOfLightErrors() {
+  nlohmann::json data = madeUpPageOfNoPoints();
+  const std::vector<std::string> names{"0", "1/16", "1/256"};
+  const double errors[] = {0, 1.0 / 16, 1.0 / 256};
+  data["axes"] = {{{"name", "light-error"}, {"values", names}}};
+  for (int lights : {100, 10000})
+    for (int i = 0; i < 3; ++i) {
+      nlohmann::json point = madeUpPoint(lights, 2 * i, {{"light-error", names[i]}});
+      const bool is_bounded = lights > 100 && i > 0;
+      point["picture"] = i;
+      point["bound_map"] = is_bounded ? nlohmann::json(3 - i) : nlohmann::json();
+      if (is_bounded)
+        point["bounds"] = {{"max_bound", errors[i] / 2},
+                           {"mean_bound", errors[i] / 4},
+                           {"max_error", errors[i] / 20},
+                           {"mean_error", errors[i] / 80},
+                           {"max_used", 0.1},
+                           {"mean_used", 0.05},
+                           {"bounded_values", 3072},
+                           {"violations", 0}};
+      data["points"].push_back(point);
+    }
+  return data;
+}
+
 /// 24 variants of three axes at seven numbers of lights.
 inline nlohmann::json madeUpHundreds() {
   nlohmann::json data = madeUpPageOfNoPoints();

@@ -318,6 +318,62 @@ TEST(Page, ChoicesChangeWhatIsShown) {
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 
+TEST(Page, SlidersGoThroughTheLightErrorsOfOneNumberOfLights) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser browser;
+  browser.open(pageOf(madeUpPageOfLightErrors()));
+  const auto shown = [&](const std::string& side) {
+    return browser.evaluate(
+        "[document.getElementById('picture_" + side + "').src, document.getElementById('error_" + side +
+        "').value, document.getElementById('error_" + side +
+        "_value').textContent, document.getElementById('point_" + side + "').selectedOptions[0].text]");
+  };
+  // The fastest of the most lights is exact: the end of the row. It has no bounds to show.
+  EXPECT_EQ(shown("a"), Json({kTinyPictures[0], "2", "0", "10,000 lights, light-error 0"}));
+  choose(browser, "point_b", "10,000 lights, light-error 1/256");
+  choose(browser, "kind_b", "Bound map");
+  EXPECT_EQ(shown("b"), Json({kTinyPictures[1], "1", "1/256", "10,000 lights, light-error 1/256"}));
+  browser.evaluate("document.getElementById('error_b').focus()");
+  browser.press("ArrowLeft", 37);
+  browser.settle();
+  EXPECT_EQ(shown("b"), Json({kTinyPictures[2], "0", "1/16", "10,000 lights, light-error 1/16"}));
+  EXPECT_EQ(browser.evaluate("document.getElementById('error_b').getAttribute('aria-valuetext')"), "1/16");
+  EXPECT_EQ(shown("a")[3], "10,000 lights, light-error 0") << "each side has its own";
+  // At the exact end there is another kind to show.
+  browser.press("End", 35);
+  browser.settle();
+  EXPECT_EQ(shown("b"), Json({kTinyPictures[0], "2", "0", "10,000 lights, light-error 0"}));
+  choose(browser, "point_b", "100 lights, light-error 1/16");
+  EXPECT_EQ(shown("b")[1], "0");
+  EXPECT_THAT(browser.complaints(), IsEmpty());
+
+  browser.open(pageOf(madeUpVariants()));
+  EXPECT_EQ(browser.evaluate("document.getElementById('error_a').checkVisibility()"), false);
+}
+
+TEST(Page, DrawsBoundsBesideTrueErrorsAgainstTime) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser browser;
+  Json data = madeUpPageOfLightErrors();
+  browser.open(pageOf(data));
+  EXPECT_EQ(linesOf(browser, "bound_plot"), Json({{"bound", {{302, 1.0 / 32}, {502, 1.0 / 512}}},
+                                                  {"true error", {{302, 1.0 / 320}, {502, 1.0 / 5120}}}}));
+  choose(browser, "bound_kind", "the mean");
+  EXPECT_EQ(linesOf(browser, "bound_plot")["true error"], Json({{302, 1.0 / 1280}, {502, 1.0 / 20480}}));
+  EXPECT_EQ(
+      browser.evaluate("[...document.getElementById('bound_lights').options].map(option => option.text)"),
+      Json({"10,000"}));
+  EXPECT_EQ(browser.evaluate("document.getElementById('violations').checkVisibility()"), false);
+  EXPECT_THAT(browser.complaints(), IsEmpty());
+
+  data["violations"] = {"lights=1 is wrong", "lights=2 is wrong"};
+  browser.open(pageOf(data));
+  EXPECT_EQ(browser.evaluate("document.getElementById('violations').innerText"),
+            "Bounds are broken, which is a fault of the program: lights=1 is wrong; lights=2 is wrong.");
+  browser.open(pageOf(madeUpVariants()));
+  EXPECT_EQ(browser.evaluate("document.getElementById('bounds').checkVisibility()"), false);
+}
+
 TEST(Page, SliderDividesThePicturesByKeyboardPointerAndTouch) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
@@ -488,7 +544,7 @@ TEST(Page, FitsAPhoneWithoutScrollingSideways) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
   browser.resize(320, 640);
-  for (Json data : {madeUpVariants(), madeUpHundreds()}) {
+  for (Json data : {madeUpVariants(), madeUpHundreds(), madeUpPageOfLightErrors()}) {
     data["settings"]["a_word"] = std::string(200, 'x');
     browser.open(pageOf(data));
     browser.evaluate("document.querySelectorAll('details').forEach(details => { details.open = true; })");

@@ -67,6 +67,29 @@ TEST(ScaleLog, HoldsWhatWasAppendedWhenItIsOpenedAgain) {
   EXPECT_FALSE(log.record(pointName(description, description.points[0])).check);
 }
 
+TEST(ScaleLog, HoldsBoundsWhereACheckHasThem) {
+  const TemporaryFolder folder;
+  const ScaleDescription description = madeUpExperiment();
+  PointCheck check = madeUpCheck("a", 0.5);
+  {
+    ScaleLog log(folder / "run", description);
+    log.append("lights=1 culling=none", check);
+    check.bounds = madeUpBounds(0.1 + 0.2, 0.75);
+    check.bounds->violations = 3;
+    check.bound_map = "pictures/a-bounds.png";
+    log.append("lights=1 culling=tiles", check);
+  }
+  const ScaleResults read = readScaleLog(folder / "run");
+  EXPECT_FALSE(read.records.at("lights=1 culling=none").check->bounds);
+  const PointCheck& bounded = *read.records.at("lights=1 culling=tiles").check;
+  ASSERT_TRUE(bounded.bounds);
+  for (const auto& [name, figure] : kBoundFigures)
+    EXPECT_EQ(*bounded.bounds.*figure, *check.bounds.*figure) << name;
+  for (const auto& [name, number] : kBoundCounts)
+    EXPECT_EQ(*bounded.bounds.*number, *check.bounds.*number) << name;
+  EXPECT_EQ(bounded.bound_map, check.bound_map);
+}
+
 TEST(ScaleLog, CutsOffALineThatWasNotFinished) {
   const TemporaryFolder folder;
   const std::string path = folder / "run", file = path + "/results.jsonl";
@@ -172,6 +195,22 @@ TEST(ScaleLog, MergedShardsHoldEveryRunPictureAndMachine) {
   const ScaleResults read = readScaleLog(folder / "merged");
   EXPECT_TRUE(read.description == description);
   EXPECT_EQ(read.records.size(), 3u);
+}
+
+TEST(ScaleLog, MergedShardsHoldMapsOfBounds) {
+  const TemporaryFolder folder;
+  const ScaleDescription description = madeUpExperiment();
+  makeShard(folder / "one", description, 0, "one");
+  {
+    ScaleLog log(folder / "one", description);
+    PointCheck check = madeUpCheck("0", 0.5);
+    check.bounds = madeUpBounds(0.5, 0.5);
+    check.bound_map = "pictures/0-bounds.png";
+    writeTextInFolder(folder / "one/pictures/0-bounds.png", "bounds");
+    log.append(pointName(description, description.points[1]), check);
+  }
+  mergeScaleLogs({folder / "one"}, folder / "merged");
+  EXPECT_EQ(readText(folder / "merged/pictures/0-bounds.png"), "bounds");
 }
 
 TEST(ScaleLog, MergeRefusesWhatIsNotOneExperiment) {

@@ -40,5 +40,21 @@ TEST(ScalePlot, OneVariantHasOnePanelAndThePictureNamesTheScene) {
   EXPECT_THAT(svg, Not(HasSubstr("by variant")));
 }
 
+TEST(ScalePlot, BoundsAndErrorsOfTheMostLightsHaveALineForEachOtherChoice) {
+  const std::string svg = scalePlot(summarizeScale(madeUpLightErrors()));
+  for (const char* text : {">largest bound and error at 100 lights<", ">mean bound and error at 100 lights<",
+                           ">field box, bound<", ">field ball, true error<", ">1/4<", ">1/16<"})
+    EXPECT_THAT(svg, HasSubstr(text));
+  EXPECT_THAT(scalePlot(summaryOf(2)), Not(HasSubstr("bound")));
+}
+
+TEST(ScalePlot, NamesHowEachVariantGrows) {
+  ScaleSummary summary = summaryOf(2);
+  for (StageGrowth& row : summary.growth) row.growth.fit = GrowthFit{.b = 1, .c = 0.456};
+  const std::string svg = scalePlot(summary);
+  EXPECT_THAT(svg, HasSubstr(">culling none: c = 0.46<"));
+  EXPECT_THAT(svg, HasSubstr("ms = a + b · lights^c"));
+}
+
 }  // namespace
 }  // namespace luciole::test

@@ -80,8 +80,8 @@ TEST(ScaleSummary, NoFrontIsDrawnAcrossTruths) {
     EXPECT_EQ(summary.points[i].front, i % 4 < 2) << i;
   }
   const std::string csv = scaleCsv(summary);
-  EXPECT_NE(csv.find(",list_map,truth\n"), std::string::npos) << csv;
-  EXPECT_NE(csv.find(",no shadows\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",list_map,truth,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",no shadows,"), std::string::npos) << csv;
   const TemporaryFolder folder;
   const auto json = nlohmann::json::parse(pageData(summary, folder.path().string(), "luciole scale"));
   EXPECT_EQ(json["points"][0]["truth"], "no shadows");
@@ -128,6 +128,38 @@ TEST(ScaleSummary, EachStageOfEachVariantHasItsGrowth) {
   for (const char* name : {"a", "b", "c", "c_low", "c_high"})
     EXPECT_TRUE(json["growth"][2][name].is_null()) << name;
   EXPECT_EQ(json["growth"][2]["reason"], "no growth beyond noise");
+}
+
+TEST(ScaleSummary, BrokenBoundsAreToldByPoint) {
+  ScaleResults results = madeUpLightErrors();
+  EXPECT_TRUE(summarizeScale(results).violations.empty());
+  results.records.at("lights=100 field=box light-error=1/16").check->bounds->violations = 2;
+  const ScaleSummary summary = summarizeScale(results);
+  ASSERT_EQ(summary.violations.size(), 1u);
+  EXPECT_EQ(summary.violations[0],
+            "lights=100 field=box light-error=1/16: 2 of 48 values are wrong by more than their bounds");
+  const auto page = nlohmann::json::parse(pageData(summary, "", ""));
+  EXPECT_EQ(page["violations"][0], summary.violations[0]);
+  EXPECT_EQ(page["points"][5]["bounds"]["violations"], 2);
+}
+
+TEST(ScaleFiles, BoundsAreInTheLastColumnsWhereThereAreAny) {
+  const ScaleSummary summary = summarizeScale(madeUpLightErrors());
+  std::istringstream lines(scaleCsv(summary));
+  std::string head, exact, bounded;
+  std::getline(lines, head);
+  std::getline(lines, exact);
+  for (int i = 0; i < 4; ++i) std::getline(lines, bounded);
+  EXPECT_TRUE(
+      head.ends_with(",truth,max_bound,mean_bound,max_error,mean_error,max_used,mean_used,"
+                     "bounded_values,violations,bound_map"))
+      << head;
+  EXPECT_TRUE(exact.ends_with(",field box,,,,,,,,,")) << exact;
+  EXPECT_TRUE(bounded.ends_with(",field box,0.25,0.125,0.125,0.015625,0.5,0.125,48,0,pictures/bounds.png"))
+      << bounded;
+  const auto page = nlohmann::json::parse(pageData(summary, "", ""));
+  EXPECT_TRUE(page["points"][0]["bounds"].is_null());
+  EXPECT_EQ(page["points"][4]["bounds"]["max_error"], 0.125);
 }
 
 TEST(ScaleFiles, GrowthFromTwoCountsIsAReasonAndNoNumbers) {

@@ -82,6 +82,15 @@ TEST(ScaleTable, ManyPointsShowThoseOfTheMostLightsAndSayWhereTheOthersAre) {
   EXPECT_LE(linesOf(text).size(), 2 + 12 + 1 + 3 + 2 + 12u);
 }
 
+TEST(ScaleTable, BoundsStandBesideErrorsWhereThereAreAny) {
+  const std::string text = scaleTable(summarizeScale(madeUpLightErrors()));
+  const std::vector<std::string> lines = linesOf(text);
+  EXPECT_THAT(lines[0], HasSubstr("| front | largest bound |    mean | error / bound, largest | mean |"));
+  EXPECT_THAT(lines[2], HasSubstr("|             – |       – |                      – |    – |"));
+  EXPECT_THAT(lines[6], HasSubstr("|       2.5e-01 | 1.2e-01 |                   0.50 | 0.12 |"));
+  EXPECT_THAT(text, HasSubstr("Bounds are shares of the larger of 1 and the colour"));
+}
+
 TEST(ScaleTable, OneWayOfManyHasNoColumnForIt) {
   ScaleSummary summary = summaryOf({1, 10}, 1, 0.5);
   summary.description.axes.clear();

@@ -22,7 +22,8 @@ TEST(ScaleTruth, ShadowsByAnyMethodHaveOneAndNoShadowsAnother) {
 }
 
 TEST(ScaleTruth, WaysToMakeThePictureDoNotChangeIt) {
-  for (const char* axis : {"culling", "tile", "samples", "pcf-width", "shadow-memory", "shadow-size"})
+  for (const char* axis :
+       {"culling", "tile", "samples", "pcf-width", "shadow-memory", "shadow-size", "light-error"})
     EXPECT_EQ(truthOf({{axis, "4"}}), "") << axis;
   EXPECT_EQ(
       truthOf({{"culling", "none"}, {"shadows", "pcf"}, {"pcf-width", "6"}, {"shadow-size", "512"}}),
@@ -30,7 +31,8 @@ TEST(ScaleTruth, WaysToMakeThePictureDoNotChangeIt) {
 }
 
 TEST(ScaleTruth, WhatChangesThePictureIsNamedWithItsValue) {
-  for (const char* axis : {"model", "shading", "field", "density", "range", "cutoff", "intensity"}) {
+  for (const char* axis :
+       {"model", "shading", "field", "density", "range", "cutoff", "no-range", "intensity"}) {
     EXPECT_EQ(truthOf({{axis, "a"}}), std::string(axis) + " a");
     EXPECT_NE(truthOf({{axis, "a"}}), truthOf({{axis, "b"}}));
   }

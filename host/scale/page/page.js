@@ -4,11 +4,13 @@
 //   axes: [{name, values}], what was varied beside the lights; incomplete: how many points lack some or all of their runs;
 //   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
 //     pairs_evaluated, pairs_in_range, pixels_lit, list_entries, device_bytes, peak_bytes,
-//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, reasons: {name: why it is null}}]:
+//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, bound_map, reasons: {name: why it is null},
+//     bounds: {max_bound, mean_bound, max_error, mean_error, max_used, mean_used, bounded_values, violations}}]:
 //     low and high are quartiles, truth says what the errors are from, front that no point of as many lights and the same
-//     truth beats this one in both time and mean error;
-//     all but lights and milliseconds may be absent or null, and picture, error_map and tile_map are indices into
+//     truth beats this one in both time and mean error, bounds how those of clusters of lights are kept (used: error over bound);
+//     all but lights and milliseconds may be absent or null, and picture, error_map, tile_map and bound_map are indices into
 //   pictures: [data URL];
+//   violations: [text], what breaks its bounds;
 //   growth: [{values, stage, a, b, c, c_low, c_high, reason}]: milliseconds ≈ a + b lights^c, 95 % confidence; numbers are
 //     null where there is no fit, and the reason says why.
 const data = JSON.parse(document.getElementById('data').textContent);
@@ -452,6 +454,9 @@ function fillHeader() {
   byId('title').textContent = data.title;
   byId('version').textContent = data.version || '';
   byId('summary').textContent = summary();
+  const violations = data.violations || [];
+  byId('violations').hidden = !violations.length;
+  byId('violations').textContent = `Bounds are broken, which is a fault of the program: ${violations.slice(0, 8).join('; ')}${violations.length > 8 ? ' …' : ''}.`;
   byId('truths').hidden = isOneTruth;
   byId('truths').textContent = `The variants are meant to make ${truths.length} different pictures, and each is held against a ` +
     `reference of its own: ${truths.slice(0, 8).join('; ')}${truths.length > 8 ? ' …' : ''}. Errors compare, and fronts are drawn, ` +
@@ -508,7 +513,13 @@ const quantities = [
   {name: 'Peak memory', unit: 'bytes', format: formatBytes, of: point => plainOf(point.peak_bytes)},
   {name: 'Mean error', format: formatError, of: point => plainOf(point.error && point.error.mean_abs)},
   {name: 'Largest error', format: formatError, of: point => plainOf(point.error && point.error.max_abs)},
+  {name: 'Mean bound', format: formatError, of: point => plainOf(boundOf(point, 'mean_bound'))},
+  {name: 'Largest bound', format: formatError, of: point => plainOf(boundOf(point, 'max_bound'))},
 ].filter(quantity => points.some(quantity.of));
+
+function boundOf(point, name) {
+  return point.bounds ? point.bounds[name] : null;
+}
 
 function pairRatio(point) {
   return point.pairs_in_range > 0 && isNumber(point.pairs_evaluated) ? point.pairs_evaluated / point.pairs_in_range : null;
@@ -689,9 +700,63 @@ function addError() {
   for (const id of ['error_kind', 'error_lights', 'error_truth']) byId(id).addEventListener('change', redraw);
 }
 
+// ------------------------------------------------------------------------------------------------ bounds against time
+
+const lightErrorAxis = axes.find(axis => axis.name === 'light-error');
+// "1/256" as a number.
+const shareOf = text => text.split('/').reduce((over, under) => over / under);
+const lightErrorOf = point => lightErrorAxis ? valueOf(point.values, lightErrorAxis) : '';
+const withoutLightError = values => lightErrorAxis ? {...values, [lightErrorAxis.name]: '-'} : values;
+
+const boundKinds = {max: 'the largest', mean: 'the mean'};
+
+// A line for the bounds, and one for the true errors, of each variant through its light errors.
+function describeBounds() {
+  const kind = byId('bound_kind').value || 'max', count = Number(byId('bound_lights').value);
+  const measured = points.filter(point => point.bounds && point.lights === count && isShown(point.values));
+  const rests = [...new Set(measured.map(point => variantName(withoutLightError(point.values))))];
+  const lineOf = (rest, name, figure, i) => ({
+    name: rest ? `${rest}, ${name}` : name, look: {hue: i % 8, dash: figure === 'error' ? 1 : 0, shape: i % 4},
+    values: measured.filter(point => variantName(withoutLightError(point.values)) === rest)
+      .map(point => ({x: point.milliseconds.median, y: boundOf(point, `${kind}_${figure}`), label: lightErrorOf(point),
+        note: `${lightsText(point.lights)}, ${formatTime(point.milliseconds.median)}`}))
+      .filter(value => isNumber(value.y)).sort((a, b) => a.x - b.x),
+  });
+  return {
+    title: `Bound and true error against time: ${boundKinds[kind]}, ${lightsText(count)}`, titleX: 'time', titleY: 'share of the larger of 1 and the pixel',
+    formatX: formatTime, formatY: formatError,
+    series: rests.flatMap((rest, i) => [lineOf(rest, 'bound', 'bound', 2 * i), lineOf(rest, 'true error', 'error', 2 * i + 1)]),
+    table: {
+      columns: [lightsColumn, ...axisColumns, {name: 'Time', unit: 'ms', format: formatTime}, ...boundColumns.map(({of, ...column}) => column)],
+      rows: measured.map(point => [point.lights, ...axisCells(point.values), point.milliseconds.median, ...boundColumns.map(column => column.of(point))]),
+    },
+  };
+}
+
+const boundColumns = [
+  {name: 'Largest bound', format: formatError, of: point => boundOf(point, 'max_bound')},
+  {name: 'Mean bound', format: formatError, of: point => boundOf(point, 'mean_bound')},
+  {name: 'Largest true error', format: formatError, of: point => boundOf(point, 'max_error')},
+  {name: 'Mean true error', format: formatError, of: point => boundOf(point, 'mean_error')},
+  {name: 'Largest error over bound', format: formatFixed, of: point => boundOf(point, 'max_used')},
+  {name: 'Mean error over bound', format: formatFixed, of: point => boundOf(point, 'mean_used')},
+  {name: 'Bounds broken', format: formatCount, of: point => boundOf(point, 'violations')},
+];
+
+function addBounds() {
+  const counts = [...new Set(points.filter(point => point.bounds).map(point => point.lights))];
+  if (!counts.length) return;
+  byId('bounds').hidden = false;
+  fillSelect(byId('bound_kind'), Object.entries(boundKinds));
+  fillSelect(byId('bound_lights'), counts.map(count => [count, formatCount(count)]));
+  byId('bound_lights').value = counts[counts.length - 1];
+  addPlot(byId('bound_plot'), describeBounds);
+  for (const id of ['bound_kind', 'bound_lights']) byId(id).addEventListener('change', redraw);
+}
+
 // -------------------------------------------------------------------------------------------------------- pictures
 
-const pictureKinds = {picture: 'Picture', error_map: 'Error map', tile_map: 'Tile heat map'};
+const pictureKinds = {picture: 'Picture', error_map: 'Error map', bound_map: 'Bound map', tile_map: 'Tile heat map'};
 const pictureOf = (point, kind) => isNumber(point[kind]) ? (data.pictures || [])[point[kind]] : undefined;
 const kindsOf = point => Object.keys(pictureKinds).filter(kind => pictureOf(point, kind));
 
@@ -701,6 +766,7 @@ const pointName = point => [lightsText(point.lights), variantName(point.values)]
 function captionOf(point, kind) {
   const parts = [pictureKinds[kind], lightsText(point.lights), variantName(point.values), formatTime(point.milliseconds.median)];
   if (hasError(point) && isNumber(point.error.mean_abs)) parts.push(`mean error ${formatError(point.error.mean_abs)}`);
+  if (isNumber(boundOf(point, 'max_bound'))) parts.push(`largest bound ${formatError(point.bounds.max_bound)}`);
   return parts.filter(part => part).join(' · ');
 }
 
@@ -713,6 +779,31 @@ function showSide(side) {
   byId(`picture_${side}`).src = pictureOf(point, kind);
   byId(`picture_${side}`).alt = captionOf(point, kind);
   byId(`caption_${side}`).textContent = `${side.toUpperCase()}: ${captionOf(point, kind)}`;
+  showLightError(side, point);
+}
+
+// The pictures of as many lights that differ from a point's in the light error alone, the largest first.
+function lightErrorRow(point) {
+  const isOfRow = other => other.lights === point.lights && hasPicture(other) &&
+    variantName(withoutLightError(other.values)) === variantName(withoutLightError(point.values));
+  return points.filter(isOfRow).sort((a, b) => shareOf(lightErrorOf(b)) - shareOf(lightErrorOf(a)));
+}
+
+// Puts a side's slider, which goes through a row of light errors, where its point is.
+function showLightError(side, point) {
+  const slider = byId(`error_${side}`), row = lightErrorAxis ? lightErrorRow(point) : [];
+  slider.parentElement.hidden = row.length < 2;
+  if (row.length < 2) return;
+  slider.max = row.length - 1;
+  slider.value = row.indexOf(point);
+  slider.setAttribute('aria-valuetext', lightErrorOf(point));
+  byId(`error_${side}_value`).textContent = lightErrorOf(point);
+}
+
+function chooseLightError(side) {
+  const row = lightErrorRow(points[byId(`point_${side}`).value]);
+  byId(`point_${side}`).value = points.indexOf(row[byId(`error_${side}`).value]);
+  showSide(side);
 }
 
 function split() {
@@ -743,7 +834,7 @@ function listenToViewer() {
   byId('beside').addEventListener('change', () => viewer.classList.toggle('beside', byId('beside').checked));
 }
 
-// At first the most lights of the main variant, and beside them where they are wrong.
+// At first the most lights of the main variant, and beside them where they are wrong, or may be.
 function addPictures() {
   const shown = variants.flatMap(variant => variant.points.filter(hasPicture));
   if (!shown.length) return;
@@ -754,8 +845,10 @@ function addPictures() {
     byId(`point_${side}`).value = points.indexOf(first);
     showSide(side);
     for (const id of [`point_${side}`, `kind_${side}`]) byId(id).addEventListener('change', () => showSide(side));
+    byId(`error_${side}`).addEventListener('input', () => chooseLightError(side));
   }
-  byId('kind_b').value = kindsOf(first)[1] || kindsOf(first)[0];
+  const kinds = kindsOf(first);
+  byId('kind_b').value = kinds.includes('bound_map') ? 'bound_map' : kinds[1] || kinds[0];
   showSide('b');
   listenToViewer();
   split();
@@ -782,6 +875,7 @@ const pointColumns = [
   {name: 'Mean error', format: formatError, of: point => errorOf(point, 'mean_abs')},
   {name: 'Largest error', format: formatError, of: point => errorOf(point, 'max_abs')},
   {name: 'RMS error', format: formatError, of: point => errorOf(point, 'rmse')},
+  ...boundColumns,
   {name: 'Held against', text: true, of: point => isOneTruth ? null : truthOf(point)},
   {name: 'Front', text: true, of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null},
 ].filter(column => points.some(point => (column.of(point) ?? '') !== ''));
@@ -856,6 +950,7 @@ function start() {
   addStages();
   addGrowth();
   addError();
+  addBounds();
   addPictures();
   addPoints();
   fillContents();

@@ -47,14 +47,6 @@ void appendLights(const LightField& field, const std::function<glm::dvec3(std::u
   }
 }
 
-/// Takes the ranges away from a field's lights (see LightField::no_range).
-void spreadEverywhere(const LightField& field, const Scene& scene, std::span<Light> lights) {
-  const std::vector<glm::dvec3> places = fieldPlaces(field, scene);
-  const float range = rangeForDensity(lights, places, kUsualDensity);
-  for (Light& light : lights) light.range = range;
-  removeRanges(lights, places);
-}
-
 }  // namespace
 
 std::optional<FieldShape> fieldShapeNamed(std::string_view name) {
@@ -101,7 +93,7 @@ void expandLightField(const LightField& field, Scene& scene) {
     const std::size_t before = lights.size();
     lights.reserve(before + field.count);
     appendLights(field, lightPlaces(field, scene), lights);
-    if (field.no_range) spreadEverywhere(field, scene, std::span(lights).subspan(before));
+    if (field.no_range) spreadEverywhere(std::span(lights).subspan(before), fieldPlaces(field, scene));
   } catch (const std::bad_alloc&) {
     throw MachineError(fmt::format("light field: no memory for {} lights", field.count));
   }

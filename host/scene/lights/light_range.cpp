@@ -271,4 +271,10 @@ void removeRanges(std::span<Light> lights, std::span<const glm::dvec3> points) {
   }
 }
 
+void spreadEverywhere(std::span<Light> lights, std::span<const glm::dvec3> points) {
+  const float range = rangeForDensity(lights, points, kUsualDensity);
+  for (Light& light : lights) light.range = range;
+  removeRanges(lights, points);
+}
+
 }  // namespace luciole

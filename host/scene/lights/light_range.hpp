@@ -31,4 +31,8 @@ inline constexpr double kUsualDensity = 8;
 /// in parallel.
 void removeRanges(std::span<Light> lights, std::span<const glm::dvec3> points);
 
+/// The same of lights whose range is the one with which kUsualDensity of them reach a point: so the points
+/// are about as bright by any number of lights.
+void spreadEverywhere(std::span<Light> lights, std::span<const glm::dvec3> points);
+
 }  // namespace luciole

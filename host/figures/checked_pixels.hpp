@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace luciole {
+
+/// The pixels of a picture that are compared with the truth: one at random in each cell of side × side
+/// pixels, so that they show where in the picture errors are.
+struct CheckedPixels {
+  int side = 1;
+  glm::ivec2 cells{0};
+  std::vector<glm::ivec2> pixels;  ///< one for each cell, row by row
+};
+
+/// About `count` pixels of a picture of this size. The same seed gives the same pixels.
+CheckedPixels chooseCheckedPixels(const glm::ivec2& size, std::size_t count, std::uint64_t seed);
+
+}  // namespace luciole

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+
+#include "image/image.hpp"
+
+namespace luciole {
+
+/// How a picture keeps the bounds of its error (Aov::kLightError). A value is a channel of a pixel that shows
+/// a surface. Bounds and errors are shares of the larger of 1 and the colour, both before exposure, as
+/// ShadeSettings::light_error is.
+struct KeptBounds {
+  double max_bound = 0, mean_bound = 0;  ///< of all values of the picture
+  double max_error = 0, mean_error = 0;  ///< of those whose truth is known
+  double max_used = 0, mean_used = 0;    ///< of these, error over bound: at most 1 where the bounds hold
+  std::uint64_t values = 0;              ///< whose truth is known
+  std::uint64_t violations = 0;          ///< of these, how many are wrong by more than their bound
+};
+
+/// The figures by the names that files give them.
+inline constexpr std::pair<const char*, double KeptBounds::*> kBoundFigures[] = {
+    {"max_bound", &KeptBounds::max_bound}, {"mean_bound", &KeptBounds::mean_bound},
+    {"max_error", &KeptBounds::max_error}, {"mean_error", &KeptBounds::mean_error},
+    {"max_used", &KeptBounds::max_used},   {"mean_used", &KeptBounds::mean_used}};
+inline constexpr std::pair<const char*, std::uint64_t KeptBounds::*> kBoundCounts[] = {
+    {"bounded_values", &KeptBounds::values}, {"violations", &KeptBounds::violations}};
+
+/// Holds a picture with the channels R G B and light_error.R, .G and .B, of one sample a pixel, against the
+/// truth. exposure: the picture's, in stops. truth: the linear R G B of each of `pixels` in double, at that
+/// exposure. Pixels whose bounds are all 0 show no surface and are left out. O(pixels of the picture).
+KeptBounds judgeBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
+                       std::span<const glm::dvec3> truth);
+
+}  // namespace luciole
