@@ -202,13 +202,15 @@ INLINE float finish_group(const GroupPixels *pixels, const ShadeFrame *frame, Fi
   return worst;
 }
 
-// Lights a tile. share: of the allowed error that is accepted of a cluster; updated. counts: as clusteredLight() sums them.
+// Lights a tile; black pixels stay as they are, without a look at the lights. share: of the allowed error that is accepted of a cluster; updated. counts: as clusteredLight() sums them.
 INLINE void light_tile(const Tile *tile, const ShadeFrame *frame, const ClusterTree *tree, __global const ClusteredLight *lights, float light_error, float *share,
                        __global float *light, __global float *bound, __global uint *counts) {
   float out[6][kTilePixels] __attribute__((aligned(64)));
   intL left[kTileRows], any_left = 0;
   for (uint row = 0; row < kTileRows; ++row) {
+    vec3L color = load_vec3(tile->diffuse + row * LANES, tile->stride);
     left[row] = load_lanes(tile->position + row * LANES + 2 * tile->stride) > -INFINITY;
+    left[row] &= max_lanes(color.x, max_lanes(color.y, color.z)) > 0.0f;
     any_left |= left[row];
     for (uint i = 0; i < 6; ++i) *(floatL *)(out[i] + row * LANES) = 0.0f;
   }
