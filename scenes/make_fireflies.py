@@ -9,7 +9,7 @@ import os
 import random
 
 from forest import broadleaf, leaf_clump, conifer, grass_tuft, reeds, fern, stone, lily_pad
-from meshes import Mesh, add, dot, mix, noise, octaves, scaled, smoothstep, write_scene
+from meshes import Mesh, add, dot, mix, noise, octaves, scaled, smoothstep, uniforms, write_scene
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOLDER = "fireflies"
@@ -149,16 +149,6 @@ def sky():
 
 
 # --- Fireflies ------------------------------------------------
-
-
-def uniforms(state):
-    """SplitMix64 as numbers in [0, 1)."""
-    mask = (1 << 64) - 1
-    while True:
-        state = (state + 0x9E3779B97F4A7C15) & mask
-        z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & mask
-        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & mask
-        yield ((z ^ (z >> 31)) >> 11) / 2**53
 
 
 def lights_of(field):

@@ -66,6 +66,16 @@ def octaves(x, y, z=0.0, count=3):
     return sum(noise(x * 2**i, y * 2**i, z * 2**i) / 2**i for i in range(count)) / (2 - 2.0 ** (1 - count))
 
 
+def uniforms(state):
+    """SplitMix64 as numbers in [0, 1): what the renderer places the lights of light fields by."""
+    mask = (1 << 64) - 1
+    while True:
+        state = (state + 0x9E3779B97F4A7C15) & mask
+        z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & mask
+        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & mask
+        yield ((z ^ (z >> 31)) >> 11) / 2**53
+
+
 class Mesh:
     """Vertices, perhaps coloured (linear), and faces by material; smooth where faces share vertices."""
 

@@ -139,6 +139,7 @@ std::string atLittleCost(std::string command) {
   command = std::regex_replace(command, std::regex("--frames 1-120\\b"), "--frames 1-2");
   command = std::regex_replace(command, std::regex("--samples 16\\b"), "--samples 2");
   if (command.find("--crop") != std::string::npos) return command;
+  command = std::regex_replace(command, std::regex("--size 1920x1080"), "--size 240x135");
   command = std::regex_replace(command, std::regex("--size 960x540"), "--size 240x135");
   command = std::regex_replace(command, std::regex("--size 640x360"), "--size 160x90");
   command = std::regex_replace(command, std::regex("--size 480x270"), "--size 160x90");

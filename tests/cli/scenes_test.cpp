@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "cli/run_program.hpp"
@@ -51,6 +52,22 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OwnScene,
                          testing::Values("fireflies", "cornell", "colonnade", "underwater", "spheres",
                                          "city"),
                          [](const auto& test) { return std::string(test.param); });
+
+// Each light at each pixel of the size that the others are looked at would take half a minute.
+TEST(Lanterns, LightByClustersIsWithinTheBoundThatIsTold) {
+  const TemporaryFolder folder;
+  const std::string render =
+      "luciole render '" LUCIOLE_SOURCE_DIR "/scenes/lanterns.json' --quiet --size 96x54 ";
+  ASSERT_EQ(runLine(folder, render + "-o exact.exr").status, 0);
+  ASSERT_EQ(runLine(folder, render + "--light-error 1/256 --stats s.json -o clusters.exr").status, 0);
+  const auto stats = nlohmann::json::parse(readText(folder / "s.json"));
+  EXPECT_EQ(stats["counts"]["lights_stood_for"], 366866);
+  EXPECT_EQ(stats["counts"]["lights_exact"], 1) << "the moon";
+  // What the exact picture's sums of two floats round is some thousandth of this.
+  const std::string largest = stats["light_error"]["largest"].dump();
+  const Outcome compared = runLine(folder, "luciole compare exact.exr clusters.exr --max-abs " + largest);
+  EXPECT_EQ(compared.status, 0) << compared.out << compared.err;
+}
 
 TEST(SharedScenes, ValidOnesRenderAndOthersSayWhyNot) {
   LUCIOLE_NEEDS_SHARED();

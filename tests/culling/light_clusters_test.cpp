@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "kernels/cluster_moments.hpp"
 #include "kernels/random_scene.hpp"
@@ -23,9 +22,28 @@ Lights someLights(int count, Random& random) {
   return lights;
 }
 
-glm::dvec3 placeOf(const ::luciole::ClusteredLight& light) {
-  return glm::dvec3(light.position.x, light.position.y, light.position.z) +
-         glm::dvec3(light.rest.x, light.rest.y, light.rest.z);
+/// A light as its row has it.
+struct LeafLight {
+  glm::dvec3 place;
+  glm::vec3 color;
+  float most, falloff;
+};
+
+/// The light at index `i` in the order of the tree, which is that of the leaves.
+LeafLight leafLight(const LightClusters& clusters, std::size_t i) {
+  std::size_t leaf = 0;
+  while (clusterBegin(clusters.lights, clusters.levels, leaf + 1) <= i) ++leaf;
+  const std::size_t slot =
+      leaf % 2 * kLeafLights + i - clusterBegin(clusters.lights, clusters.levels, leaf);
+  const auto field = [&](std::size_t f) {
+    return clusters.light_rows[(leaf / 2 * kLightFields + f) * kClusterSlots + slot];
+  };
+  LeafLight light{{}, {}, field(kLightMost), field(kLightFalloff)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    light.place[int(axis)] = double(field(kLightPlace + axis)) + double(field(kLightRest + axis));
+    light.color[int(axis)] = field(kLightColor + axis);
+  }
+  return light;
 }
 
 /// What brute force has of the lights from `begin` to `end`, about the centre that the row has.
@@ -37,9 +55,8 @@ void expectCluster(const LightClusters& clusters, std::size_t row, std::size_t s
   const glm::dvec3 centre(field(kClusterCentre), field(kClusterCentre + 1), field(kClusterCentre + 2));
   std::vector<ClusterLight> lights;
   for (std::size_t i = begin; i < end; ++i) {
-    const ::luciole::ClusteredLight& light = clusters.lights[i];
-    lights.push_back(
-        {placeOf(light) - centre, glm::dvec3(light.diffuse.x, light.diffuse.y, light.diffuse.z)});
+    const LeafLight light = leafLight(clusters, i);
+    lights.push_back({light.place - centre, glm::dvec3(light.color)});
   }
   const ClusterMoments truth = clusterMoments(centre, lights);
   // What places lose beyond 48 bits, and sums in double precision, is below 2⁻⁴⁰ of what is summed. A bound
@@ -72,23 +89,29 @@ TEST_P(LightClustersOf, HoldEachLightInOneLeafAndBoundEveryCluster) {
   const Lights lights = someLights(GetParam(), random);
   const LightClusters clusters = buildLightClusters(lights);
   const std::size_t count = lights.size();
-  ASSERT_EQ(clusters.lights.size(), count);
+  ASSERT_EQ(clusters.lights, count);
   // By their places, which are all different.
   std::vector<bool> found(count);
-  for (const ::luciole::ClusteredLight& light : clusters.lights) {
+  for (std::size_t index = 0; index < count; ++index) {
+    const LeafLight light = leafLight(clusters, index);
     const auto near = std::find_if(lights.begin(), lights.end(), [&](const UnboundedLight& other) {
-      return glm::distance(other.position, placeOf(light)) <= 0x1p-44 * glm::length(other.position);
+      return glm::distance(other.position, light.place) <= 0x1p-44 * glm::length(other.position);
     });
     ASSERT_NE(near, lights.end());
     const std::size_t i = std::size_t(near - lights.begin());
     EXPECT_FALSE(found[i]) << "twice";
     found[i] = true;
     const glm::dvec3 color = near->diffuse / near->quadratic;
-    EXPECT_EQ(light.diffuse.x, float(color.x));
-    EXPECT_EQ(light.diffuse.y, float(color.y));
-    EXPECT_EQ(light.diffuse.z, float(color.z));
-    EXPECT_EQ(light.diffuse.w, std::max({light.diffuse.x, light.diffuse.y, light.diffuse.z}));
+    EXPECT_EQ(light.color, glm::vec3(color));
+    EXPECT_EQ(light.most, std::max({light.color.x, light.color.y, light.color.z}));
+    EXPECT_EQ(light.falloff, float(0x1p100 * near->quadratic));
   }
+  // Slots without a light are black.
+  std::size_t bright = 0;
+  for (std::size_t row = 0; row * kLightFields * kClusterSlots < clusters.light_rows.size(); ++row)
+    for (std::size_t slot = 0; slot < kClusterSlots; ++slot)
+      bright += clusters.light_rows[(row * kLightFields + kLightMost) * kClusterSlots + slot] > 0;
+  EXPECT_EQ(bright, count);
   for (std::size_t leaf = 0; leaf < std::size_t(1) << clusters.levels; ++leaf)
     EXPECT_LE(clusterBegin(count, clusters.levels, leaf + 1) - clusterBegin(count, clusters.levels, leaf),
               std::size_t(kLeafLights));
@@ -113,9 +136,7 @@ TEST(LightClusters, AreTheSameEveryTime) {
   const Lights lights = someLights(40000, random);
   const LightClusters once = buildLightClusters(lights), again = buildLightClusters(lights);
   EXPECT_TRUE(once.rows == again.rows);
-  EXPECT_EQ(std::memcmp(once.lights.data(), again.lights.data(),
-                        once.lights.size() * sizeof(::luciole::ClusteredLight)),
-            0);
+  EXPECT_TRUE(once.light_rows == again.light_rows);
 }
 
 }  // namespace

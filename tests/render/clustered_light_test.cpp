@@ -164,6 +164,21 @@ TEST(ClusteredLights, StandForMostLightsThatAreFar) {
   ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, lit, 1.0f / 64));
 }
 
+TEST(ClusteredLights, BlackPixelsTakeNone) {
+  Random random(8);
+  GBuffer gbuffer = wavySurface(64, 48, 0.2, random);
+  const Lights lights = lightsIn({-6, -5, -10}, {6, 5, 4}, 3000, random);
+  const std::size_t n = gbuffer.pixels();
+  for (std::size_t i = 0; i < n; i += 3)
+    for (std::size_t c = 0; c < 3; ++c) gbuffer.diffuse[i + c * n] = 0;
+  const Lit some = lightBy(deviceWithLanes(16), gbuffer, lights, 1.0f / 256);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, some, 1.0f / 256));
+  gbuffer.diffuse.assign(3 * n, 0.0f);
+  const Lit none = lightBy(deviceWithLanes(16), gbuffer, lights, 1.0f / 256);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, none, 1.0f / 256));
+  EXPECT_EQ(none.counts.far + none.counts.lights + none.counts.redone, 0u);
+}
+
 // Bands of a picture are whole rows of tiles.
 TEST(ClusteredLights, OfARowOfTilesDontDependOnOtherRows) {
   Random random(6);

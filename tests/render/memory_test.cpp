@@ -146,7 +146,7 @@ TEST(Memory, OfADeviceHoldsTheClustersOfLights) {
   // The tree's size is that of any so many lights.
   const LightClusters clusters = buildLightClusters(std::vector<UnboundedLight>(5000, {{}, {}, 1}));
   const std::size_t bytes =
-      clusters.lights.size() * sizeof(ClusteredLight) + clusters.rows.size() * sizeof(float);
+      (clusters.light_rows.size() + clusters.rows.size()) * sizeof(float);
   EXPECT_GT(stats.device_bytes, bytes);
   EXPECT_LT(stats.device_bytes, bytes + 256 * (kGBufferBytesPerPixel + 100))
       << "more than that and the pixels";
