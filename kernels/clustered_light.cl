@@ -154,7 +154,7 @@ INLINE bool any_specular(const GroupPixels *pixels) {
 typedef struct {
   Certified cut;
   LongSum lights;
-  floatL weight;  // sum of the lights' largest channel over d²
+  vec3L weight;  // sum of the lights' colours over d²
 } RowSums;
 
 // Adds the lights of a walk's list to a row of pixels.
@@ -162,7 +162,7 @@ INLINE void add_listed_lights(const ClusterWalk *walk, const ClusterTree *tree, 
   for (uint from = 0; from < walk->lights; from += kSumTerms) {
     uint end = min(from + kSumTerms, walk->lights);
     vec3L some = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
-    floatL some_weight = 0.0f;
+    vec3L some_weight = some;
     for (uint i = from; i < end; ++i) {
       ClusteredLight light = clustered_light_of(tree, walk->light[i]);
       vec3L u = to_clustered_light(&light, position);
@@ -170,10 +170,10 @@ INLINE void add_listed_lights(const ClusterWalk *walk, const ClusterTree *tree, 
       floatL cosine = max_lanes(dot3(normal, u) * inverse_d, (floatL)(0.0f));
       floatL falloff = min_lanes(inverse_d * inverse_d, (floatL)(light.falloff));
       add_scaled(&some, light.color, cosine * falloff);
-      some_weight = fma_lanes((floatL)(light.color.w), falloff, some_weight);
+      add_scaled(&some_weight, light.color, falloff);
     }
     add_block(&sums->lights, some);
-    sums->weight += some_weight;
+    add_vectors(&sums->weight, some_weight);
   }
 }
 
@@ -208,14 +208,14 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
     FieldFactors factors = field_factors(normal, h);
     const RowSums *had = row_sums + i / LANES;
     vec3L of_row = sum_of_blocks(&had->lights);
-    floatL lights[3] = {of_row.x, of_row.y, of_row.z}, albedo[3] = {color.x, color.y, color.z};
+    floatL lights[3] = {of_row.x, of_row.y, of_row.z}, weight[3] = {had->weight.x, had->weight.y, had->weight.z}, albedo[3] = {color.x, color.y, color.z};
     floatL cut[3] = {had->cut.light.x, had->cut.light.y, had->cut.light.z};
     floatL cut_bound[3] = {had->cut.bound.x, had->cut.bound.y, had->cut.bound.z};
     floatL light[3], bound[3];
     for (uint c = 0; c < 3; ++c) {
       light[c] = albedo[c] * (field_value(field.term + c * kFieldTerms, &factors) + cut[c] + lights[c]);
       bound[c] = field.term[kFieldBound] + field.rounding + cut_bound[c] + of_clusters * cut[c] + of_lights * lights[c] +
-                 COSINE_ROUNDING * 0x1p-24f * had->weight;
+                 COSINE_ROUNDING * 0x1p-24f * weight[c];
       // The factor is more than the rounding of sums of so many bounds. Colours, products and the sum of the parts are rounded, too.
       bound[c] = fma_lanes((floatL)(0x1p-21f), light[c], 1.001f * albedo[c] * bound[c]);
       worst = max(worst, greatest_lane(share_of(light[c], bound[c], light_error)));
@@ -244,7 +244,7 @@ INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float ligh
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kTileRows; ++row) {
       row_sums[row].cut.light = row_sums[row].cut.bound = row_sums[row].lights.total = row_sums[row].lights.lost = dark;
-      row_sums[row].weight = 0.0f;
+      row_sums[row].weight = dark;
     }
     start_field(&sums);
     start_cluster_walk(tree, &walk);
@@ -334,9 +334,10 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
     const HighlightSums *of_row = row_sums + (i - first) / LANES;
     vec3L listed = sum_of_blocks(&of_row->light);
     floatL lights[3] = {listed.x, listed.y, listed.z}, specular[3] = {color.x, color.y, color.z};
+    floatL unsure[3] = {of_row->unsure.x, of_row->unsure.y, of_row->unsure.z}, weight[3] = {of_row->weight.x, of_row->weight.y, of_row->weight.z};
     for (uint c = 0; c < 3; ++c) {
       floatL light = specular[c] * (lobes_value(lobes.term + c * kLobeTerms, &factors) + lights[c]);
-      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + of_row->unsure + of_lobes * of_row->weight;
+      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + unsure[c] + of_lobes * weight[c];
       bound = fma_lanes((floatL)(0x1p-21f), light, 1.001f * specular[c] * bound);
       for (uint lane = 0; lane < LANES && i + lane < end; ++lane) {
         uint place = pixels->place[i + lane];
@@ -366,7 +367,7 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kHighlightPixels / LANES; ++row) {
       row_sums[row].light.total = row_sums[row].light.lost = dark;
-      row_sums[row].unsure = row_sums[row].weight = 0.0f;
+      row_sums[row].unsure = row_sums[row].weight = dark;
     }
     start_lobes(&sums);
     start_cluster_walk(tree, &walk);
