@@ -103,14 +103,14 @@ WORK uint list_lights(Tiles tile, uint squares_per_group, __global const float *
   bound_normals(&walk.tiles, facing);
   uint first_squares = (1u << squares_per_group) - 1;  // those of the first group
   uint count = 0;
-  Groups near;
+  GroupMask near;
   for (uint light; (light = next_light(&walk, &near)) != kNoLight;) {
     uint lit = 0;
     for (uint i = 0; i < BOXES; ++i)
       lit |= groups_lit(walk.tiles.boxes + i, facing + i, lights + light, tests) << i * LANES;
-    lit &= near.reached;
+    lit &= near;
     TestedLight tested = tested_light(lights + light);
-    for (uint rest = lit & near.wide; rest; rest &= rest - 1) {
+    for (uint rest = wide_groups(&walk.tiles, tested.place.w, lit); rest; rest &= rest - 1) {
       uint group = lowest_bit(rest);
       if (!lights_group(&walk.tiles, group, &tested, tests)) lit &= ~(1u << group);
     }

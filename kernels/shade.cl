@@ -36,7 +36,7 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight 
   uint square[ROWS];  // of each row, as a bit; none for background
   EACH_ROW(row) {
     uint pixel = first + row * LANES;
-    start_row(rows + row, &frame, pixel, &planes, long_sums);
+    start_row(rows + row, &frame, pixel, &planes, LIT, long_sums);
     square[row] = any_lane(rows[row].covered) ? 1u << SQUARE_OF_PIXEL(pixel) : 0;
   }
   if (first + 2 * ROWS * LANES <= stride) prefetch_rows(first + ROWS * LANES, ROWS, stride, &planes);
@@ -69,7 +69,7 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight 
   }
 
   EACH_ROW(row)
-    finish_row(rows + row, &frame, first + row * LANES, &planes, long_sums, square[row] != 0, image);
+    finish_row(rows + row, &frame, first + row * LANES, &planes, LIT, long_sums, square[row] != 0, image);
 }
 
 // Planes have frame.plane_stride elements each. specular: r, g, b and the shininess; geometric_normal: as packNormal() packs it;

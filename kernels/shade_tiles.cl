@@ -10,8 +10,8 @@
 //
 // Blocks in which more than kCandidates lights reach something are taken tile by tile, in as many pieces of a walk as it takes. The
 // sums of a tile's rows are kept meanwhile. So there is no cap.
-// Cost: reading positions twice and all else once, some 20 instructions for a row and a light in reach of its group, and 100 for those
-// that light the row.
+// Cost: reading positions twice, all else once, and normals and colours only of rows that a light may reach; some 20 instructions for
+// a row and a light in reach of its group, and 100 for those that light the row.
 #define GROUPS 64  // kBlockTiles · kTileGroups
 #include "lanes.clh"
 #include "light_tree.clh"
@@ -53,10 +53,9 @@ INLINE GroupMask groups_in_cone(const Tiles *tiles, __global const ShadeLight *l
 INLINE void find_lights(Walk *walk, __global const ShadeLight *lights, Candidates *candidates) {
   uint count = 0;
   while (count < kCandidates) {
-    Groups near;
-    uint light = next_light(walk, &near);
+    GroupMask groups;
+    uint light = next_light(walk, &groups);
     if (light == kNoLight) break;
-    GroupMask groups = near.reached;
     if (IS_SPOT(lights + light)) groups = groups_in_cone(&walk->tiles, lights + light, groups);
     candidates->light[count] = light;
     candidates->groups[0][count] = (uint)groups;
@@ -94,52 +93,76 @@ typedef struct {
   bool last;   // no candidates follow
 } Task;
 
-// Lights a row of pixels by those of `count` candidates that add anything to it, and returns their number. near: the candidates'
-// numbers. kept: the row's sums between one set of candidates and the next.
-INLINE uint shade_row(const Task *task, uint first, const Candidates *candidates, const uint *near, uint count, LightSums *kept) {
+// Rows of a group whose lights are found before the first of them is lit, so that a light is loaded once for all of them, and a core
+// that lights a row knows long before how many lights come.
+#define ROWS ABREAST
+
+// The lights that add anything to a row of pixels, of those that are near its group.
+typedef struct {
+  uint count;
+  uint light[kCandidates];
+} RowLights;
+
+// Finds the lights of ROWS rows, of `count` candidates. near: the candidates' numbers.
+INLINE void find_row_lights(const Task *task, uint first, const Candidates *candidates, const uint *near, uint count,
+                            RowLights *rows) {
+  EACH_ABREAST(row, ROWS) rows[row].count = 0;
+  if (count == 0) return;
   uint stride = task->frame->plane_stride;
-  uint lit[kCandidates], lights = 0;
-  if (count > 0) {
-    vec3L position = load_vec3(task->planes->position + first, stride);
-    vec3L normal = load_vec3(task->planes->normal + first, stride);
-    for (uint i = 0; i < count; ++i) {
-      lit[lights] = candidates->light[near[i]];
-      lights += any_lane(adds_light(position, normal, candidates->tested + near[i], TESTS)) ? 1 : 0;
+  vec3L position[ROWS], normal[ROWS];
+  EACH_ABREAST(row, ROWS) {
+    position[row] = load_vec3(task->planes->position + first + row * LANES, stride);
+    normal[row] = load_vec3(task->planes->normal + first + row * LANES, stride);
+  }
+  for (uint i = 0; i < count; ++i) {
+    const TestedLight *tested = candidates->tested + near[i];
+    uint light = candidates->light[near[i]];
+    EACH_ABREAST(row, ROWS) {
+      // Written even if it adds nothing: the next light then overwrites it. That saves a branch.
+      rows[row].light[rows[row].count] = light;
+      rows[row].count += any_lane(adds_light(position[row], normal[row], tested, TESTS)) ? 1 : 0;
     }
   }
-  // With fewer lights than that, one block takes them all.
-  bool long_sums = LONG_SUMS && (task->begun || !task->last || lights > kSumBlock);
-  Pixels row;
-  start_row(&row, task->frame, first, task->planes, long_sums);
-  if (LIT && task->begun) row.sums = *kept;
+}
+
+// Adds `abreast` lights, a constant number, to a row of pixels.
+INLINE void add_to_row(const uint abreast, const Task *task, Pixels *row, const uint *light, bool long_sums) {
   Shadows none = {0, 0, 0, 0, 0};
   Pixels *rows[ABREAST];
-  __global const ShadeLight *light[ABREAST];
+  __global const ShadeLight *lights[ABREAST];
   uint entry[ABREAST];
-  EACH_ABREAST(k, ABREAST) {
-    rows[k] = &row;
+  EACH_ABREAST(k, abreast) {
+    rows[k] = row;
+    lights[k] = task->lights + light[k];
     entry[k] = 0;
   }
-  uint i = 0;
-  for (; i + ABREAST <= lights; i += ABREAST) {
-    EACH_ABREAST(k, ABREAST) light[k] = task->lights + lit[i + k];
-    add_lights(ABREAST, rows, light, ABREAST, entry, &none, task->frame->model, long_sums);
+  add_lights(abreast, rows, lights, abreast, entry, &none, task->frame->model, long_sums);
+}
+
+// Lights a row of pixels. kept: the row's sums between one set of candidates and the next.
+INLINE void shade_row(const Task *task, uint first, const RowLights *lights, LightSums *kept) {
+  uint count = lights->count, i = 0;
+  Pixels row;
+  // What only lights need isn't read.
+  if (count == 0 && task->last && !task->begun) {
+    start_row(&row, task->frame, first, task->planes, false, false);
+    finish_row(&row, task->frame, first, task->planes, false, false, any_lane(row.covered), task->image);
+    return;
   }
-  if (ABREAST > 2 && i + 2 <= lights) {
-    EACH_ABREAST(k, 2) light[k] = task->lights + lit[i + k];
-    add_lights(2, rows, light, 2, entry, &none, task->frame->model, long_sums);
-    i += 2;
-  }
-  if (ABREAST > 1 && i < lights) {
-    light[0] = task->lights + lit[i];
-    add_lights(1, rows, light, 1, entry, &none, task->frame->model, long_sums);
-  }
+  // With fewer lights than that, one block takes them all.
+  bool long_sums = LONG_SUMS && (task->begun || !task->last || count > kSumBlock);
+  start_row(&row, task->frame, first, task->planes, LIT, long_sums);
+  if (LIT && task->begun) row.sums = *kept;
+  for (; i + ABREAST <= count; i += ABREAST) add_to_row(ABREAST, task, &row, lights->light + i, long_sums);
+  // One alone takes more than half of the time of ABREAST, so what is left goes at once.
+  if (ABREAST > 3 && count - i == 3) add_to_row(3, task, &row, lights->light + i, long_sums);
+  if (ABREAST > 2 && count - i == 2) add_to_row(2, task, &row, lights->light + i, long_sums);
+  if (ABREAST > 1 && count - i == 1) add_to_row(1, task, &row, lights->light + i, long_sums);
   if (task->last) {
-    finish_row(&row, task->frame, first, task->planes, long_sums, any_lane(row.covered), task->image);
+    finish_row(&row, task->frame, first, task->planes, LIT, long_sums, any_lane(row.covered), task->image);
   } else if (LIT) {
     *kept = row.sums;
   }
-  return lights;
 }
 
 // Lights a tile. first, next: the first pixel of this tile and of one that is lit after it; later: of one whose positions are wanted
@@ -155,14 +178,21 @@ INLINE void shade_tile(const Task *task, uint first, uint next, uint later, uint
   for (uint end = group + kTileGroups; group < end; ++group) {
     uint near[kCandidates];
     uint count = find_candidates(candidates, group, near);
-    for (uint i = 0; i < kGroupPixels; i += LANES) {
-      if (next != first) prefetch_rows(next, 1, stride, task->planes);
-      prefetch_lanes(task->planes->position + later, stride, 3, 1);
-      pairs += shade_row(task, first, candidates, near, count, kept);
-      first += LANES;
-      next += LANES;
-      later += LANES;
-      ++kept;
+    // Where this group has no lights, those beside it often have none either, and read little.
+    bool reads_much = AMBIENT || EMISSION || count > 0;
+    RowLights lights[ROWS];
+    for (uint i = 0; i < kGroupPixels / LANES; i += ROWS) {
+      find_row_lights(task, first, candidates, near, count, lights);
+      for (uint row = 0; row < ROWS; ++row) {
+        if (reads_much) prefetch_rows(next, 1, stride, task->planes);
+        prefetch_lanes(task->planes->position + later, stride, 3, 1);
+        shade_row(task, first, lights + row, kept);
+        pairs += lights[row].count;
+        first += LANES;
+        next += LANES;
+        later += LANES;
+        ++kept;
+      }
     }
   }
   counts[0] = in_reach + (task->begun ? counts[0] : 0);
@@ -181,6 +211,7 @@ WORK void shade_block(ShadeFrame frame, Planes planes, __global const float *tre
   Candidates candidates;
   Task task = {&frame, &planes, lights, image, false, false};
   uint step = tiles;  // tiles that share a walk
+  uint last = frame.plane_stride - kTilePixels;  // the picture's last tile
   for (uint from = 0; from < tiles;) {
     walk.tiles.first_pixel = first_pixel + from;
     walk.tiles.group_count = step * kTileGroups;
@@ -193,9 +224,10 @@ WORK void shade_block(ShadeFrame frame, Planes planes, __global const float *tre
     for (task.begun = false;; task.begun = true) {
       task.last = candidates.count < kCandidates;
       for (uint tile = 0; tile < step; ++tile) {
-        uint first = first_pixel[from + tile], next = first_pixel[min(from + tile + 1, tiles - 1)];
-        // In the block to the right, which follows within a run.
-        uint later = min(first + width * kTilePixels, frame.plane_stride - kTilePixels);
+        uint first = first_pixel[from + tile];
+        // The block to the right follows within a run.
+        uint later = min(first + width * kTilePixels, last), beside = min(first_pixel[0] + width * kTilePixels, last);
+        uint next = from + tile + 1 < tiles ? first_pixel[from + tile + 1] : beside;
         shade_tile(&task, first, next, later, tile * kTileGroups, &candidates, kept, counts + 2 * (first / kTilePixels));
       }
       if (task.last) break;

@@ -12,10 +12,14 @@
 namespace luciole {
 namespace {
 
+ShadeSettings shadeSettings(const GivenGBuffer& given) {
+  return {.model = given.model, .shadows = ShadowMethod::kOff};
+}
+
 Stats shadeGiven(Device& device, const GivenGBuffer& given, bool count_lights) {
   RenderSettings settings;
   settings.count_lights = count_lights;
-  settings.shade.shadows = ShadowMethod::kOff;
+  settings.shade = shadeSettings(given);
   Stats stats;
   shadeGBuffer(device, given.scene, given.gbuffer, settings, stats);
   return stats;
@@ -26,7 +30,7 @@ double planeBytes(const GivenGBuffer& given) {
   const GBuffer& gbuffer = given.gbuffer;
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), false};
   const PlaneSet planes =
-      neededPlanes(neededFeatures(given.scene, gbuffer.camera, surfaces, {.shadows = ShadowMethod::kOff}));
+      neededPlanes(neededFeatures(given.scene, gbuffer.camera, surfaces, shadeSettings(given)));
   const int floats =
       3 + 3 + 3 + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) + (planes.emission ? 3 : 0) + 3;
   return double(gbuffer.pixels()) * floats * sizeof(float);
@@ -56,9 +60,10 @@ SpeedTable measureGivenGBuffer(const SpeedInput& input) {
   roofMilliseconds(input.device, roof);      // compiles
   SpeedTable table{
       .name = "cull and shade",
-      .measured = fmt::format("{} lights on a G-buffer of {} x {} pixels; arithmetic: as many pairs with "
+      .measured = fmt::format("{} lights on a G-buffer of {} x {} pixels, {}; arithmetic: as many pairs with "
                               "nothing to load or to wait for; memory: a copy of as many bytes",
-                              given.scene.lights.size(), given.gbuffer.width, given.gbuffer.height),
+                              given.scene.lights.size(), given.gbuffer.width, given.gbuffer.height,
+                              modelName(given.model)),
       .columns = {{"best_ms", "best, ms", 2},
                   {"median_ms", "median, ms", 2},
                   {"pairs_evaluated", "pairs", 0},

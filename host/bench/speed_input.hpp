@@ -8,14 +8,16 @@
 #include "cl/device.hpp"
 #include "figures/rounds.hpp"
 #include "gbuffer/gbuffer.hpp"
+#include "scene/model.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
 
-/// A G-buffer from a file, and the scene whose lights light it.
+/// A G-buffer from a file, the scene whose lights light it, and how it reflects them.
 struct GivenGBuffer {
   GBuffer gbuffer;
   Scene scene;
+  Model model = Model::kPhong;
 };
 
 /// The input of the measurements of speed.

@@ -22,7 +22,7 @@ namespace luciole {
 namespace {
 
 struct BenchOptions {
-  PictureOptions picture;  ///< of which --size, --device and --quiet are options here
+  PictureOptions picture;  ///< of which --model, --size, --device and --quiet are options here
   std::string scene, gbuffer, lights, json, plot;
   std::vector<std::string> only;
   std::optional<int> shadow_size;
@@ -69,7 +69,8 @@ int bench(const BenchOptions& options) {
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
   if (!options.gbuffer.empty()) {
-    choice.given = {readGBuffer(options.gbuffer), openScene(options.lights, 1, options.picture)};
+    choice.given = {readGBuffer(options.gbuffer), openScene(options.lights, 1, options.picture),
+                    modelOf(options.picture)};
     if (choice.only.empty()) choice.only = {"cull and shade"};
   }
   const BenchResult result = runBench(scene, settings, choice);
@@ -103,6 +104,7 @@ void addBenchCommand(CLI::App& app, CommandContext& context) {
       command->add_option("--scene", options->lights, "the scene whose lights light the G-buffer");
   gbuffer->needs(lights);
   lights->needs(gbuffer);
+  addModelOption(*command, options->picture)->needs(gbuffer);
   command->add_option("--only", options->only, "measure this alone (repeatable): " + joinedNames())
       ->check(oneOf(benchNames()));
   command->add_option("--json", options->json,

@@ -130,6 +130,15 @@ std::vector<int> parseInts(const std::string& text, char separator, std::size_t 
   return numbers;
 }
 
+CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
+  return command
+      .add_option("--model", options.model,
+                  "how surfaces reflect light: with highlights of (R.V)^n, of (N.H)^n, in flat steps, or as "
+                  "rough ones do")
+      ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
+      ->capture_default_str();
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
   const bool is_one_picture = !(groups & kManyPictures);
   if (is_one_picture)
@@ -175,13 +184,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(oneOf({"shared", "all"}))
         ->capture_default_str();
   if (groups & kModelOptions) {
-    command
-        .add_option(
-            "--model", options.model,
-            "how surfaces reflect light: with highlights of (R.V)^n, of (N.H)^n, in flat steps, or as "
-            "rough ones do")
-        ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
-        ->capture_default_str();
+    addModelOption(command, options);
     if (is_one_picture)
       command
           .add_option("--exposure", options.exposure,

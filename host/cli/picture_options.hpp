@@ -68,6 +68,8 @@ enum OptionGroup : unsigned {
 /// Adds the options of these groups (OptionGroup, or'ed) to a command. `options` must outlive it.
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups);
 
+/// Adds the option --model.
+CLI::Option* addModelOption(CLI::App& command, PictureOptions& options);
 /// Adds the option --shadows, whose values depend on the command.
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values);

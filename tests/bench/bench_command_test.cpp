@@ -269,10 +269,11 @@ TEST_F(BenchCommand, CullAndShadeTimesAGBufferFromAFileBesideItsRoofs) {
   ASSERT_EQ(runLine(folder, "luciole gbuffer scene.json --size 80x45 -o g.exr --quiet").status, 0);
   const Outcome outcome = runLine(folder,
                                   "luciole bench --gbuffer g.exr --scene scene.json --only 'cull and shade' "
-                                  "--repeats 3 --quiet --json out.json");
+                                  "--model blinn-phong --repeats 3 --quiet --json out.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(readText(folder / "out.json"));
   ASSERT_EQ(json["speed"].size(), 1u);
+  EXPECT_NE(json["speed"][0]["measured"].get<std::string>().find("blinn-phong"), std::string::npos);
   const auto& rows = json["speed"][0]["rows"];
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0]["name"], "cull and shade");
@@ -291,6 +292,7 @@ TEST_F(BenchCommand, CullAndShadeTimesAGBufferFromAFileBesideItsRoofs) {
 TEST_F(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench --gbuffer g.exr", 2, "--scene");
   refuse("luciole bench --only 'cull and shade'", 2, "needs --gbuffer and --scene");
+  refuse("luciole bench --model toon", 2, "--model requires --gbuffer");
   refuse("luciole bench none.json", 2, "none.json");
   refuse("luciole bench --json none/out.json", 2, "none/out.json: no such folder");
   refuse("luciole bench --plot none/out.svg", 2, "none/out.svg: no such folder");
