@@ -334,10 +334,9 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
     const HighlightSums *of_row = row_sums + (i - first) / LANES;
     vec3L listed = sum_of_blocks(&of_row->light);
     floatL lights[3] = {listed.x, listed.y, listed.z}, specular[3] = {color.x, color.y, color.z};
-    floatL unsure[3] = {of_row->unsure.x, of_row->unsure.y, of_row->unsure.z}, weight[3] = {of_row->weight.x, of_row->weight.y, of_row->weight.z};
     for (uint c = 0; c < 3; ++c) {
       floatL light = specular[c] * (lobes_value(lobes.term + c * kLobeTerms, &factors) + lights[c]);
-      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + unsure[c] + of_lobes * weight[c];
+      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + of_row->unsure + of_lobes * of_row->weight;
       bound = fma_lanes((floatL)(0x1p-21f), light, 1.001f * specular[c] * bound);
       for (uint lane = 0; lane < LANES && i + lane < end; ++lane) {
         uint place = pixels->place[i + lane];
@@ -367,7 +366,7 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kHighlightPixels / LANES; ++row) {
       row_sums[row].light.total = row_sums[row].light.lost = dark;
-      row_sums[row].unsure = row_sums[row].weight = dark;
+      row_sums[row].unsure = row_sums[row].weight = 0.0f;
     }
     start_lobes(&sums);
     start_cluster_walk(tree, &walk);

@@ -202,15 +202,12 @@ void countLights(Device& device, Lighting& lighting, const LightLists* lists, co
   for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
 }
 
-/// Takes from `order` those lights that clusters may stand for, and returns them.
-std::vector<std::uint32_t> takeClustered(const Scene& scene, const LightUse& use,
-                                         std::vector<std::uint32_t>& order) {
-  const auto first = std::stable_partition(order.begin(), order.end(), [&](std::uint32_t light) {
-    return exactReason(scene.lights[light], use) != ExactReason::kNone;
-  });
-  std::vector<std::uint32_t> clustered(first, order.end());
-  order.erase(first, order.end());
-  return clustered;
+/// The lights that clusters may stand for.
+std::vector<std::uint32_t> clusterable(const Scene& scene, const LightUse& use) {
+  std::vector<std::uint32_t> chosen;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (exactReason(scene.lights[i], use) == ExactReason::kNone) chosen.push_back(std::uint32_t(i));
+  return chosen;
 }
 
 /// The clusters of these lights in the camera's view space. color: Light::diffuse or Light::specular.
@@ -226,10 +223,10 @@ LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::ve
   return buildLightClusters(lights);
 }
 
-/// Fills in the clusters that the features need, of lights that it takes from `order`.
+/// Fills in the clusters that the features need.
 void prepareClusters(const Scene& scene, const Camera& camera, const FeatureSet& features,
-                     const ShadeSettings& settings, std::vector<std::uint32_t>& order, Lighting& lighting) {
-  const std::vector<std::uint32_t> chosen = takeClustered(scene, lightUse(settings), order);
+                     const ShadeSettings& settings, Lighting& lighting) {
+  const std::vector<std::uint32_t> chosen = clusterable(scene, lightUse(settings));
   const bool one_color = std::all_of(chosen.begin(), chosen.end(), [&](std::uint32_t light) {
     return scene.lights[light].diffuse == scene.lights[light].specular;
   });
@@ -291,9 +288,14 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
   timed(stats, Stage::kPrepareLights, [&] {
     if (scene.lighting) {
-      std::vector<std::uint32_t> order = spatialOrder(scene.lights);
-      if (features.has(Feature::kClusteredLights))
-        prepareClusters(scene, camera, features, settings, order, lighting);
+      const bool clustered = features.has(Feature::kClusteredLights);
+      if (clustered) prepareClusters(scene, camera, features, settings, lighting);
+      std::vector<std::uint32_t> order;
+      if (lighting.clustered_lights < scene.lights.size()) order = spatialOrder(scene.lights);
+      if (clustered)
+        std::erase_if(order, [&](std::uint32_t light) {
+          return exactReason(scene.lights[light], lightUse(settings)) == ExactReason::kNone;
+        });
       lighting.host_lights = prepareLights(scene, order, camera, lighting.host_shadows);
       if (features.has(Feature::kExact)) lighting.order = std::move(order);
     }
