@@ -52,6 +52,8 @@ void expectBitsOfLists(Device& device, const Scene& scene, const GBuffer& gbuffe
       lightGBuffer(device, scene, lighting, features, gbuffer, {.list_length = true}, stats);
   ASSERT_TRUE(lighting.lists.tiles > 0) << "whoever asks for the length of lists gets lists";
   const TileCounts counts = litByTiles(device, lighting, gbuffer, {4, 4}).counts;
+  // A light in reach of a tile lights no more than its pixels.
+  EXPECT_LE(counts.pairs, counts.entries * kTilePixels);
   for (const TileBlock block :
        {TileBlock{4, 4}, TileBlock{16, 1}, TileBlock{2, 2}, TileBlock{1, 1}, TileBlock{3, 5}}) {
     const LitTiles by_tiles = litByTiles(device, lighting, gbuffer, block);
