@@ -19,16 +19,18 @@ struct Lit {
 };
 
 Lit lightBy(Device& device, const GBuffer& gbuffer, const Lights& lights, float light_error,
-            const Fog& fog = {}) {
+            const Fog& fog = {}, bool highlights = false) {
   const LightClusters clusters = buildLightClusters(lights);
   ShadeFrame frame{};
   frame.plane_stride = uint(gbuffer.pixels());
   frame.eye = {0, 0, 0, 1};
+  frame.model = kPhongModel;
   frame.fog_mode = uint(fog.mode);
   frame.fog_density = {fog.density.x, fog.density.y, fog.density.z, 0};
   FeatureSet features;
   features.set(Feature::kFogExp, fog.mode == FogMode::kExp);
   features.set(Feature::kFogPerChannel);
+  features.set(Feature::kClusteredHighlights, highlights);
   Lit lit;
   lit.light.assign(3 * gbuffer.pixels(), -1.0f);
   lit.bound.assign(3 * gbuffer.pixels(), -1.0f);
@@ -54,24 +56,32 @@ glm::dvec3 vectorAt(const Plane& plane, std::size_t place, std::size_t stride) {
   return {plane[place], plane[place + stride], plane[place + 2 * stride]};
 }
 
-/// The sum over the lights in double precision.
-glm::dvec3 truthAt(const GBuffer& gbuffer, std::size_t place, const Lights& lights) {
+/// The sum over the lights in double precision. highlights: with Phong's lobes of the same lights.
+glm::dvec3 truthAt(const GBuffer& gbuffer, std::size_t place, const Lights& lights, bool highlights = false) {
   const std::size_t n = gbuffer.pixels();
   const glm::dvec3 position = vectorAt(gbuffer.position, place, n);
   const glm::dvec3 normal = glm::normalize(vectorAt(gbuffer.normal, place, n));
-  glm::dvec3 sum(0.0);
+  const glm::dvec3 eye = -glm::normalize(position);
+  const double shininess = highlights ? gbuffer.specular[place + 3 * n] : 0;
+  glm::dvec3 sum(0.0), specular(0.0);
   for (const UnboundedLight& light : lights) {
     const glm::dvec3 way = light.position - position;
     const double d2 = glm::dot(way, way), z = glm::dot(normal, way);
-    if (z > 0) sum += light.diffuse * (z / std::sqrt(d2) / std::max(light.quadratic * d2, 0x1p-100));
+    if (!(z > 0)) continue;
+    const glm::dvec3 light_here = light.diffuse / std::max(light.quadratic * d2, 0x1p-100);
+    sum += light_here * (z / std::sqrt(d2));
+    if (!highlights) continue;
+    const double cosine = glm::dot(2 * glm::dot(normal, eye) * normal - eye, way) / std::sqrt(d2);
+    specular += light_here * std::pow(std::max(cosine, 0.0), shininess);
   }
-  return sum * vectorAt(gbuffer.diffuse, place, n);
+  sum *= vectorAt(gbuffer.diffuse, place, n);
+  return highlights ? sum + specular * vectorAt(gbuffer.specular, place, n) : sum;
 }
 
 /// The light at every pixel is within its bound of the truth, and where `met` the bound within what is
 /// allowed.
 void expectCertified(const GBuffer& gbuffer, const Lights& lights, const Lit& lit, double light_error,
-                     bool met = true) {
+                     bool met = true, bool highlights = false) {
   const std::size_t n = gbuffer.pixels();
   for (std::size_t i = 0; i < n; ++i) {
     if (!(gbuffer.position[i + 2 * n] > -std::numeric_limits<float>::infinity())) {
@@ -79,7 +89,7 @@ void expectCertified(const GBuffer& gbuffer, const Lights& lights, const Lit& li
       ASSERT_EQ(vectorAt(lit.bound, i, n), glm::dvec3(0.0)) << "background " << i;
       continue;
     }
-    const glm::dvec3 truth = truthAt(gbuffer, i, lights), light = vectorAt(lit.light, i, n),
+    const glm::dvec3 truth = truthAt(gbuffer, i, lights, highlights), light = vectorAt(lit.light, i, n),
                      bound = vectorAt(lit.bound, i, n);
     for (int c = 0; c < 3; ++c) {
       ASSERT_LE(std::abs(light[c] - truth[c]), bound[c])
@@ -153,6 +163,22 @@ TEST_P(ClusteredLight, HasTheSameBitsAtEveryWidth) {
   EXPECT_EQ(std::memcmp(lit.bound.data(), widest.bound.data(), widest.bound.size() * sizeof(float)), 0);
   EXPECT_EQ(lit.counts.far, widest.counts.far);
   EXPECT_EQ(lit.counts.lights, widest.counts.lights);
+}
+
+TEST_P(ClusteredLight, OfHighlightsIsCertifiedAndHasTheSameBitsAtEveryWidth) {
+  Random random(9);
+  GBuffer gbuffer = wavySurface(48, 33, 0.2, random);
+  const std::size_t n = gbuffer.pixels();
+  // Rounding alone is more than the smaller error for the largest exponents.
+  for (std::size_t i = 3 * n; i < 4 * n; ++i) gbuffer.specular[i] = std::min(gbuffer.specular[i], 128.0f);
+  const Lights lights = lightsIn({-6, -5, -10}, {6, 5, 4}, 3000, random);
+  for (const float light_error : {1.0f / 16, 1.0f / 256}) {
+    const Lit widest = lightBy(deviceWithLanes(16), gbuffer, lights, light_error, {}, true);
+    const Lit lit = lightBy(deviceWithLanes(GetParam()), gbuffer, lights, light_error, {}, true);
+    ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, lit, light_error, true, true));
+    EXPECT_EQ(std::memcmp(lit.light.data(), widest.light.data(), widest.light.size() * sizeof(float)), 0);
+    EXPECT_EQ(std::memcmp(lit.bound.data(), widest.bound.data(), widest.bound.size() * sizeof(float)), 0);
+  }
 }
 
 TEST(ClusteredLights, StandForMostLightsThatAreFar) {

@@ -44,15 +44,18 @@ inline void lightWithoutRange(Scene& scene, FieldShape placement, std::size_t co
 /// A scene with the light that truly leaves its pixels for the eye, fog included, before exposure.
 struct TrueLight {
   Scene scene;
+  Model model = Model::kPhong;
   GBuffer gbuffer;
   std::vector<glm::ivec2> pixels;
   std::vector<glm::dvec3> radiance;  ///< of each of `pixels`
 };
 
 /// Covered pixels of the scene's picture, spread evenly: all of them, or `most`.
-inline TrueLight trueLight(const Scene& scene, glm::ivec2 size, std::size_t most) {
+inline TrueLight trueLight(const Scene& scene, glm::ivec2 size, std::size_t most,
+                           Model model = Model::kPhong) {
   TrueLight truth;
   truth.scene = scene;
+  truth.model = model;
   RenderSettings settings;
   settings.size = size;
   settings.camera = scene.cameras.front();
@@ -64,7 +67,7 @@ inline TrueLight trueLight(const Scene& scene, glm::ivec2 size, std::size_t most
     if (std::isfinite(depth[truth.gbuffer.index(pixel.x, pixel.y)])) covered.push_back(pixel);
   const std::size_t count = std::min(most, covered.size());
   for (std::size_t i = 0; i < count; ++i) truth.pixels.push_back(covered[i * covered.size() / count]);
-  truth.radiance = referencePixels(scene, truth.gbuffer, truth.pixels, {});
+  truth.radiance = referencePixels(scene, truth.gbuffer, truth.pixels, {.model = model});
   return truth;
 }
 
@@ -85,6 +88,7 @@ struct CertificateCheck {
 inline CertificateCheck checkCertificate(Device& device, const TrueLight& truth, float light_error) {
   RenderSettings settings;
   settings.shade.light_error = light_error;
+  settings.shade.model = truth.model;
   settings.aovs = {Aov::kLightError};
   CertificateCheck check;
   const Image image = shadeGBuffer(device, truth.scene, truth.gbuffer, settings, check.stats);
