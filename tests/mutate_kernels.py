@@ -326,7 +326,7 @@ MUTANTS = {
         Mutant("cut_bound[c] + of_clusters", "of_clusters"),
         Mutant("field.term[kFieldBound] + field.rounding", "field.rounding"),
         Mutant("cosine = max_lanes(dot3(normal, u) * inverse_d, (floatL)(0.0f))", "cosine = dot3(normal, u) * inverse_d"),
-        Mutant("add_vectors(&sums->weight, some_weight)", "sums->weight = some_weight"),
+        Mutant("sums->weight += some_weight", "sums->weight = some_weight"),
         Mutant("middle = 0.5f * low + 0.5f * high", "middle = low",
                same="a middle anywhere is right, as radius, spread and thickness are measured from it; bounds are only larger"),
         Mutant("group.radius = 1.00001f", "group.radius = 0.5f"),
@@ -471,7 +471,7 @@ MUTANTS = {
         Mutant("some_unsure = fma_lanes((floatL)(light.color.w)", "some_unsure = fma_lanes((floatL)(0.0f)"),
         Mutant("HORIZON_SLACK 0x1p-19f", "HORIZON_SLACK 0x1p-26f"),
         Mutant("0x1p-18f * sqrt(exponent)", "0x1p-18f"),
-        Mutant("add_vectors(&sums->weight, some_weight)", "sums->weight = some_weight"),
+        Mutant("sums->weight += some_weight", "sums->weight = some_weight"),
     ],
     "light_clusters.clh": [
         Mutant("k = (radius + group->radius) *", "k = radius *"),
