@@ -13,7 +13,7 @@ namespace luciole {
 /// A point light without range whose attenuation is quadratic·d² alone. View space, metres.
 struct UnboundedLight {
   glm::dvec3 position;
-  glm::dvec3 diffuse;  ///< ≥ 0
+  glm::dvec3 diffuse;  ///< or specular; ≥ 0
   double quadratic;    ///< at least kLeastQuadratic
 };
 
@@ -23,7 +23,7 @@ inline constexpr double kLeastQuadratic = 0x1p-40;
 
 /// A balanced tree over lights that clusters may stand for; its layout is that of kernels/shared.h.
 struct LightClusters {
-  std::size_t lights = 0;
+  std::size_t lights = 0;  ///< how many there are
   /// kLightFields · kClusterSlots floats for each pair of leaves. Slots without a light are 0.
   std::vector<float, RawArrayAllocator<float>> light_rows;
   /// kClusterFields · kClusterSlots floats a row. Slots without a cluster are 0.

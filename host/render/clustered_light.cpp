@@ -58,8 +58,9 @@ ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
 }
 
 double clusteredWork(std::size_t lights, float light_error, bool highlights) {
-  // Fitted to Sponza at 1280 × 720 with 300 to 10⁶ lights in a box, in clusters and on surfaces, and errors of
-  // 1/16 to 1/1024: no row of these is slower with clusters than without. Highlights take 1 to 4 times as much.
+  // Fitted to Sponza at 1280 × 720 with 300 to 10⁶ lights in a box, in clusters and on surfaces, and errors
+  // of 1/16 to 1/1024: no row of these is slower with clusters than without. Highlights take 1 to 4 times as
+  // much.
   return 13 * std::sqrt(double(lights)) * std::pow(double(light_error), -0.125) * (highlights ? 3 : 1);
 }
 

@@ -11,10 +11,10 @@ namespace luciole {
 struct ClusteredLightArguments {
   const ShadeFrame& frame;
   const GBufferBuffers& gbuffer;
-  int tiles_x, tiles_y;  ///< of the G-buffer
+  int tiles_x, tiles_y;             ///< of the G-buffer
   const LightClusters& clusters;    ///< of diffuse light
   const LightClusters& highlights;  ///< the same lights by their specular colours; may be `clusters`
-  float light_error;    ///< E > 0: a channel's bound shall be E·max(1, its light) at most
+  float light_error;                ///< E > 0: a channel's bound shall be E·max(1, its light) at most
   Buffer<float> light;  ///< out: planes r g b of what the lights give a pixel, as it leaves the surface
   Buffer<float> bound;  ///< out: planes r g b, how far each may be from the truth, seen through the fog
 };

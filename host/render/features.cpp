@@ -74,8 +74,7 @@ LightUse lightUse(const ShadeSettings& settings) {
 bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings) {
   if (!scene.lighting || !(settings.light_error > 0)) return false;
   const auto counts = countReasons(scene.lights, lightUse(settings));
-  return clustersPay(counts[std::size_t(ExactReason::kNone)], settings.light_error,
-                     surfaces.specular);
+  return clustersPay(counts[std::size_t(ExactReason::kNone)], settings.light_error, surfaces.specular);
 }
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
@@ -165,9 +164,9 @@ FeatureSet lookupFeatures(const FeatureSet& features) {
 
 FeatureSet clusterFeatures(const FeatureSet& features) {
   FeatureSet kept;
-  for (const Feature feature :
-       {Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
-        Feature::kFogPerChannel, Feature::kFogRadial, Feature::kClusteredLights, Feature::kClusteredHighlights})
+  for (const Feature feature : {Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp,
+                                Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial,
+                                Feature::kClusteredLights, Feature::kClusteredHighlights})
     kept.set(feature, features.has(feature));
   for (const Model model : kAllModels) kept.set(featureOf(model), features.has(featureOf(model)));
   kept.set(Feature::kPointLights);

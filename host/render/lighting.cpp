@@ -247,18 +247,18 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
   {
     const Buffer<float> light_buffer = borrowedForOutput(device, light);
     const Buffer<float> bound_buffer = borrowedForOutput(device, lit.light_error);
-    lit.clustered = clusteredLight(device, featureDefines(clusterFeatures(features)) + lighting.math_defines,
-                                   {.frame = frame,
-                                    .gbuffer = buffers,
-                                    .tiles_x = gbuffer.tiles_x,
-                                    .tiles_y = gbuffer.tiles_y,
-                                    .clusters = lighting.clusters,
-                                    .highlights = lighting.highlight_clusters.rows.empty()
-                                                      ? lighting.clusters
-                                                      : lighting.highlight_clusters,
-                                    .light_error = clusteredError(lighting.light_error, frame, features),
-                                    .light = light_buffer,
-                                    .bound = bound_buffer});
+    lit.clustered =
+        clusteredLight(device, featureDefines(clusterFeatures(features)) + lighting.math_defines,
+                       {.frame = frame,
+                        .gbuffer = buffers,
+                        .tiles_x = gbuffer.tiles_x,
+                        .tiles_y = gbuffer.tiles_y,
+                        .clusters = lighting.clusters,
+                        .highlights = lighting.highlight_clusters.rows.empty() ? lighting.clusters
+                                                                               : lighting.highlight_clusters,
+                        .light_error = clusteredError(lighting.light_error, frame, features),
+                        .light = light_buffer,
+                        .bound = bound_buffer});
     download(device, light_buffer, light);
     download(device, bound_buffer, lit.light_error);
   }

@@ -103,8 +103,9 @@ MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, 
     mean.shadowed += double(each.shadowed) / double(counts.size());
     mean.tile += double(each.tile) / double(counts.size());
   }
-  if (clustered) mean.square += clusteredWork(countReasons(scene.lights, use)[0], settings.light_error,
-                                              features.has(Feature::kClusteredHighlights));
+  if (clustered)
+    mean.square += clusteredWork(countReasons(scene.lights, use)[0], settings.light_error,
+                                 features.has(Feature::kClusteredHighlights));
   return mean;
 }
 

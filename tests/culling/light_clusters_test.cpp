@@ -33,8 +33,7 @@ struct LeafLight {
 LeafLight leafLight(const LightClusters& clusters, std::size_t i) {
   std::size_t leaf = 0;
   while (clusterBegin(clusters.lights, clusters.levels, leaf + 1) <= i) ++leaf;
-  const std::size_t slot =
-      leaf % 2 * kLeafLights + i - clusterBegin(clusters.lights, clusters.levels, leaf);
+  const std::size_t slot = leaf % 2 * kLeafLights + i - clusterBegin(clusters.lights, clusters.levels, leaf);
   const auto field = [&](std::size_t f) {
     return clusters.light_rows[(leaf / 2 * kLightFields + f) * kClusterSlots + slot];
   };

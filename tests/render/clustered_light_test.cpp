@@ -331,8 +331,8 @@ TEST_F(HardClusteredLight, AtOnePixelAndAtNormalsInAllDirections) {
   }
 }
 
-// Each light is less than half the last bit of the sum that it is added to, so sums lose them all. Two pixels, because for a single one a
-// series is exact.
+// Each light is less than half the last bit of the sum that it is added to, so sums lose them all. Two
+// pixels, because for a single one a series is exact.
 TEST_F(HardClusteredLight, OfManyLightsTooDimToCountBesideOne) {
   GBuffer gbuffer = wavySurface(2, 1, 0, random, 0);
   const std::size_t n = gbuffer.pixels(), place = gbuffer.index(0, 0);

@@ -145,8 +145,7 @@ TEST(Memory, OfADeviceHoldsTheClustersOfLights) {
   renderScene(testDevice(), scene, settings, stats);
   // The tree's size is that of any so many lights.
   const LightClusters clusters = buildLightClusters(std::vector<UnboundedLight>(5000, {{}, {}, 1}));
-  const std::size_t bytes =
-      (clusters.light_rows.size() + clusters.rows.size()) * sizeof(float);
+  const std::size_t bytes = (clusters.light_rows.size() + clusters.rows.size()) * sizeof(float);
   EXPECT_GT(stats.device_bytes, bytes);
   EXPECT_LT(stats.device_bytes, bytes + 256 * (kGBufferBytesPerPixel + 100))
       << "more than that and the pixels";
