@@ -24,10 +24,11 @@ class LightError : public ProgramTest {
  protected:
   LightError() {
     std::string lights;
-    for (int i = 0; i < 2500; ++i)
-      lights += fmt::format(
-          R"({{"type": "point", "position": [{}, 1, {}], "intensity": 0.001, "attenuation": [0, 0, 1]}},)",
-          0.1 * (i % 50) - 2.5, 0.1 * (i / 50) - 2.5);
+    for (int row = 0; row < 50; ++row)
+      for (int column = 0; column < 50; ++column)
+        lights += fmt::format(
+            R"({{"type": "point", "position": [{}, 1, {}], "intensity": 0.001, "attenuation": [0, 0, 1]}},)",
+            0.1 * column - 2.5, 0.1 * row - 2.5);
     writeText(folder / "scene.json", R"({"size": [32, 24], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
       "objects": [{"primitive": "plane", "scale": 4}], "lights": [)" +
                                          lights + R"({"type": "directional", "direction": [0, -1, 0]}]})");

@@ -265,8 +265,8 @@ TEST_P(HighlightKernels, ListedLightsAreWithinTheirRoundingOfTheTruth) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       in[std::size_t(c)].push_back(cases[i].position[c]);
-      in[std::size_t(3 + c)].push_back(cases[i].normal[c]);
-      in[std::size_t(6 + c)].push_back(eyes[i][c]);
+      in[3 + std::size_t(c)].push_back(cases[i].normal[c]);
+      in[6 + std::size_t(c)].push_back(eyes[i][c]);
     }
     in[9].push_back(cases[i].exponent);
     in[10].push_back(float(cases[i].model));

@@ -23,10 +23,12 @@ std::string manyLights(
      {"type": "spot", "position": [-2, 4, 2], "target": [0, 0, 0], "cutoff": 40, "intensity": 0.5},
      {"type": "point", "position": [1, 2, 2], "range": 4, "shadow": true})") {
   std::string lights;
-  for (int i = 0; i < 2100; ++i)
+  for (int i = 0; i < 2100; ++i) {
+    const int plane = i / 210;
     lights += fmt::format(
         R"({}{{"type": "point", "position": [{}, {}, {}], "color": [1, 0.5, 0.2], "intensity": 0.002, "attenuation": [0, 0, 1]}})",
-        i ? "," : "", 0.2 * (i % 21) - 2.1, 1.5 + 0.1 * (i / 21 % 10), 0.4 * (i / 210) - 2.1);
+        i ? "," : "", 0.2 * (i % 21) - 2.1, 1.5 + 0.1 * (i / 21 % 10), 0.4 * plane - 2.1);
+  }
   return R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 60}, "background": [0, 0, 0.25], "ambient": 0.05,
   "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0, "shininess": 32)" +
          emission + R"(}},

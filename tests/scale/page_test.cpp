@@ -18,7 +18,6 @@ namespace luciole::test {
 namespace {
 
 using Json = nlohmann::json;
-using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
