@@ -84,6 +84,7 @@ RenderSettings settingsFor(float light_error) {
   RenderSettings settings;
   settings.shade.shadows = ShadowMethod::kOff;
   settings.shade.light_error = light_error;
+  settings.shade.always_clusters = true;
   return settings;
 }
 
@@ -103,7 +104,8 @@ bool takesTooLong(const LitStage& stage, float light_error) {
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), false};
   const double pixels = double(gbuffer.picture_size.x) * gbuffer.picture_size.y;
   return double(stage.scene.lights.size()) * pixels > kMostExactPairs &&
-         !standsForLights(stage.scene, surfaces, settingsFor(light_error).shade);
+         !standsForLights(stage.scene, cameraView(gbuffer.camera, gbuffer.picture_size), surfaces,
+                          settingsFor(light_error).shade);
 }
 
 /// How the picture with this error keeps its bounds; nothing where no light is stood for.

@@ -31,7 +31,7 @@ glm::dvec3 upperHalf(const glm::dvec3& x) {
 void setLight(const UnboundedLight& light, float* out) {
   const auto field = [out](std::size_t number) -> float& { return out[number * kClusterSlots]; };
   const glm::dvec3 upper = upperHalf(light.position);
-  const glm::vec3 place(upper), rest(light.position - upper), color(light.diffuse / light.quadratic);
+  const glm::vec3 place(upper), rest(light.position - upper), color(light.color / light.quadratic);
   for (int axis = 0; axis < 3; ++axis) {
     field(kLightPlace + std::size_t(axis)) = place[axis];
     field(kLightRest + std::size_t(axis)) = rest[axis];

@@ -13,8 +13,8 @@ namespace luciole {
 /// A point light without range whose attenuation is quadratic·d² alone. View space, metres.
 struct UnboundedLight {
   glm::dvec3 position;
-  glm::dvec3 diffuse;  ///< or specular; ≥ 0
-  double quadratic;    ///< at least kLeastQuadratic
+  glm::dvec3 color;  ///< its diffuse or its specular one; ≥ 0
+  double quadratic;  ///< at least kLeastQuadratic
 };
 
 /// Attenuation is held at 2¹⁰⁰ where quadratic·d² is less than 2⁻¹⁰⁰. Clusters, which are farther than 2⁻²⁵ m

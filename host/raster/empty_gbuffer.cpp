@@ -35,12 +35,12 @@ GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer used) {
   return gbuffer;
 }
 
-GBuffer emptyPoints(const View& view, std::size_t count, PlaneSet planes) {
+GBuffer emptyPoints(const View& view, glm::ivec2 tiles, PlaneSet planes) {
   GBuffer gbuffer;
-  gbuffer.tiles_x = int((count + kTilePixels - 1) / kTilePixels);
-  gbuffer.tiles_y = 1;
-  gbuffer.width = gbuffer.tiles_x * kTileSize;
-  gbuffer.height = kTileSize;
+  gbuffer.tiles_x = tiles.x;
+  gbuffer.tiles_y = tiles.y;
+  gbuffer.width = tiles.x * kTileSize;
+  gbuffer.height = tiles.y * kTileSize;
   gbuffer.camera = viewCamera(view);
   gbuffer.picture_size = {gbuffer.width, gbuffer.height};
   allocatePlanes(planes, gbuffer);

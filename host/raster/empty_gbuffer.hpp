@@ -14,8 +14,8 @@ void checkView(const View& view);
 /// Throws as allocateArray does.
 GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer used = {});
 
-/// A G-buffer of single points in whole tiles, point i at index i of every plane, that shows nothing. Throws
-/// as allocateArray does.
-GBuffer emptyPoints(const View& view, std::size_t count, PlaneSet planes);
+/// A G-buffer for single points, in so many columns and rows of tiles, that shows nothing. Throws as
+/// allocateArray does.
+GBuffer emptyPoints(const View& view, glm::ivec2 tiles, PlaneSet planes);
 
 }  // namespace luciole

@@ -58,7 +58,7 @@ GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> object
   const std::vector<PlacedObject> placed = placeObjects(scene, objects, view.world_to_view, true);
   const std::size_t vertices =
       placed.empty() ? 0 : placed.back().first_vertex + placed.back().mesh->positions.size();
-  GBuffer gbuffer = emptyPoints(view, vertices, planes);
+  GBuffer gbuffer = emptyPoints(view, {int((vertices + kTilePixels - 1) / kTilePixels), 1}, planes);
   tbb::parallel_for(std::size_t(0), placed.size(), [&](std::size_t i) {
     const PlacedObject& object = placed[i];
     const std::vector<const Material*> materials = vertexMaterials(scene, object);

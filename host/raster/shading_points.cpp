@@ -311,16 +311,17 @@ void drawRows(const SampledView& sampled, int bin, int row, std::span<std::uint8
 }  // namespace
 
 SampledView setupSamples(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
-                         int samples, Shading shading, PlaneSet planes,
+                         Margin margin, int samples, Shading shading, PlaneSet planes,
                          std::span<const glm::vec3> vertex_colors) {
   checkView(view);
   const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
   planes.emission |= lit_vertices;
   const SamplePattern pattern = samplePattern(samples);
   View sampled = view;
+  const int side = margin == Margin::kTiles ? kTileSize : 1;
   const glm::ivec2 end = view.crop_origin + view.crop_size;
-  sampled.crop_origin = glm::max(view.crop_origin - 1, glm::ivec2(0));
-  sampled.crop_size = glm::min(end + 1, view.size) - sampled.crop_origin;
+  sampled.crop_origin = glm::max(view.crop_origin - 1, glm::ivec2(0)) / side * side;
+  sampled.crop_size = glm::min((end + side) / side * side, view.size) - sampled.crop_origin;
   sampled.sample = pattern.origin;
   sampled.reach = pattern.reach;
   Geometry geometry = transformObjects(scene, objects, sampled, lit_vertices);
@@ -413,19 +414,27 @@ PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
   return joinLists(std::move(points));
 }
 
-GBuffer gatherPoints(const SampledView& sampled, std::span<const ShadingPoint> points) {
-  GBuffer gbuffer = emptyPoints(sampled.view, points.size(), sampled.planes);
+GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::size_t first,
+                     std::size_t end) {
+  struct Tile {
+    std::size_t begin, end;  // points
+  };
+  std::vector<Tile> tiles;
+  for (std::size_t list = first; list < end; ++list)
+    for (std::size_t at = points.starts[list]; at < points.starts[list + 1]; at += kTilePixels)
+      tiles.push_back({at, std::min(at + kTilePixels, points.starts[list + 1])});
+  GBuffer gbuffer = emptyPoints(sampled.view, {1, int(tiles.size())}, sampled.planes);
   const ResolveInput input = resolveInput(sampled);
   const View& view = sampled.view;
-  tbb::parallel_for(0, gbuffer.tiles_x, [&](int tile) {
+  tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t number) {
     SurfaceCache surfaces(input);
-    const std::size_t end = std::min(points.size(), std::size_t(tile + 1) * kTilePixels);
-    for (std::size_t first = std::size_t(tile) * kTilePixels; first < end; first += kSquarePixels) {
+    const Tile tile = tiles[number];
+    for (std::size_t begin = tile.begin; begin < tile.end; begin += kSquarePixels) {
       Lanes<std::uint32_t> triangles;
       SquarePlace at;
       for (int lane = 0; lane < kSquarePixels; ++lane) {
-        const ShadingPoint& point = points[std::min(first + lane, end - 1)];
-        triangles[lane] = first + lane < end ? point.triangle : kNoTriangle;
+        const ShadingPoint& point = points.items[std::min(begin + lane, tile.end - 1)];
+        triangles[lane] = begin + lane < tile.end ? point.triangle : kNoTriangle;
         const std::uint32_t width = std::uint32_t(view.crop_size.x);
         at.x[lane] = view.crop_origin.x + int(point.pixel % width) + double(point.x);
         at.y[lane] = view.crop_origin.y + int(point.pixel / width) + double(point.y);
@@ -433,7 +442,7 @@ GBuffer gatherPoints(const SampledView& sampled, std::span<const ShadingPoint> p
         at.spread_y[lane] = point.spread_y;
       }
       toPlane(input.plane, at);
-      resolveSquare(input, at, triangles, surfaces, first, gbuffer);
+      resolveSquare(input, at, triangles, surfaces, number * kTilePixels + (begin - tile.begin), gbuffer);
     }
   });
   return gbuffer;

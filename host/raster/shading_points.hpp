@@ -29,6 +29,16 @@ struct ShadingPoint {
 struct PointLists {
   std::vector<std::size_t> starts;  ///< where each list starts in `items`, and the end of the last
   std::vector<ShadingPoint> items;
+
+  std::size_t size() const { return starts.size() - 1; }
+  std::span<const ShadingPoint> list(std::size_t number) const {
+    return std::span(items).subspan(starts[number], starts[number + 1] - starts[number]);
+  }
+  /// Tiles that a list's points fill. Lists don't share tiles: what else is lit with them leaves a list's
+  /// tiles, and with them the light of clusters, as they are.
+  std::size_t tiles(std::size_t number) const {
+    return (list(number).size() + kTilePixels - 1) / kTilePixels;
+  }
 };
 
 /// A scene's triangles, ready to be drawn with several samples a pixel. Refers to the scene and to the
@@ -39,8 +49,7 @@ struct SampledView {
   PlaneSet planes;
   std::span<const glm::vec3> vertex_colors;
   SamplePattern pattern;
-  /// With the pattern's origin and reach. Its crop has a margin of a pixel around `inner`, as far as the
-  /// picture goes, so that pixels have their neighbours.
+  /// With the pattern's origin and reach. Its crop has a margin around `inner` (see setupSamples).
   View view;
   PixelRectangle inner;  ///< the pixels that are wanted
   ViewPlane plane;
@@ -50,10 +59,15 @@ struct SampledView {
   Bins bins;
 };
 
+/// What is drawn around the pixels wanted, as far as the picture goes, so that they have their neighbours: a
+/// pixel, or all of the tiles in which the pixels and their neighbours lie, counted from the picture's
+/// corner. Light that pixels of a tile share is with whole tiles the same in every band of the picture.
+enum class Margin : std::uint8_t { kPixel, kTiles };
+
 /// Sets up the given objects for `samples` samples a pixel. The arguments are those of rasterize(), which
 /// see; `view.sample` isn't used. Throws as rasterize does.
 SampledView setupSamples(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
-                         int samples, Shading shading, PlaneSet planes,
+                         Margin margin, int samples, Shading shading, PlaneSet planes,
                          std::span<const glm::vec3> vertex_colors);
 
 /// The triangles that the samples of the pixels wanted see.
@@ -99,7 +113,9 @@ std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<cons
 PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
                        std::span<const std::uint8_t> chosen, int first_bin, int end_bin);
 
-/// A G-buffer of points: point i lies at index i of every plane.
-GBuffer gatherPoints(const SampledView& sampled, std::span<const ShadingPoint> points);
+/// A G-buffer of the points of the lists from `first` up to `end`, one tile below the other. Each list begins
+/// a tile, and the points of a tile follow each other in the planes.
+GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::size_t first,
+                     std::size_t end);
 
 }  // namespace luciole

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "culling/light_clusters.hpp"
+#include "raster/view.hpp"
 #include "render/shade.hpp"
 
 namespace luciole {
@@ -32,12 +33,20 @@ struct ClusteredLightCounts {
 ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments);
 
-/// About the work for a pixel of clusters that stand for so many lights, in lights that are each summed by
-/// themselves. It counts and never times, so no picture depends on the machine. light_error: > 0; highlights:
-/// whether surfaces have them.
-double clusteredWork(std::size_t lights, float light_error, bool highlights);
+/// Lights that clusters could stand for.
+struct ClusterableLights {
+  std::size_t count;
+  float light_error;  ///< > 0
+  bool highlights;    ///< whether surfaces have them
+};
+
+/// About the work for a pixel of clusters, the tree of lights included, in lights that are each summed by
+/// themselves. It counts and never times, so no picture depends on the machine. view: of the picture; only
+/// its size and how wide it sees matter, not the crop. What a parallel view shows is taken to lie as far away
+/// as the picture is high.
+double clusteredWork(const ClusterableLights& lights, const View& view);
 
 /// Whether clusters take less work than the lights.
-bool clustersPay(std::size_t lights, float light_error, bool highlights);
+bool clustersPay(const ClusterableLights& lights, const View& view);
 
 }  // namespace luciole

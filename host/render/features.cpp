@@ -71,14 +71,17 @@ LightUse lightUse(const ShadeSettings& settings) {
   return {settings.model, settings.shadows != ShadowMethod::kOff};
 }
 
-bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings) {
+bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                     const ShadeSettings& settings) {
   if (!scene.lighting || !(settings.light_error > 0)) return false;
   const auto counts = countReasons(scene.lights, lightUse(settings));
-  return clustersPay(counts[std::size_t(ExactReason::kNone)], settings.light_error, surfaces.specular);
+  const std::size_t lights = counts[std::size_t(ExactReason::kNone)];
+  if (settings.always_clusters) return lights > 0;
+  return clustersPay({lights, settings.light_error, surfaces.specular}, view);
 }
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
-                          const ShadeSettings& settings) {
+                          const ShadeSettings& settings, bool clustered) {
   FeatureSet features;
   features.set(Feature::kEmission, surfaces.emission);
   features.set(Feature::kParallelView, camera.orthographic);
@@ -106,8 +109,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     return features;
   }
   bool any_specular = false, clusters_specular = false, any_cone = false, any_exponent = false;
-  const bool clustered = standsForLights(scene, surfaces, settings),
-             shadows = settings.shadows != ShadowMethod::kOff;
+  const bool shadows = settings.shadows != ShadowMethod::kOff;
   std::size_t summed = 0;  // lights that are summed by themselves
   for (const Light& light : scene.lights) {
     const bool in_clusters = clustered && exactReason(light, lightUse(settings)) == ExactReason::kNone;

@@ -108,18 +108,23 @@ struct ShadeSettings {
   /// E, 0 to 1: lights may be stood for by clusters of them as long as each pixel's error stays below
   /// E·max(1, colour) in each channel. 0: each light is summed by itself.
   float light_error = 0;
+  /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
+  bool always_clusters = false;
 };
 
 /// Whether clusters stand for some of the scene's lights in a picture with these settings: where the settings
-/// allow it, for those without an ExactReason, if there are enough of them (clustersPay). O(lights).
-bool standsForLights(const Scene& scene, SurfaceTraits surfaces, const ShadeSettings& settings);
+/// allow it, for those without an ExactReason, if there are enough of them (clustersPay). view: of the
+/// picture. O(lights).
+bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                     const ShadeSettings& settings);
 
 /// Which of a picture's lights others may stand for.
 LightUse lightUse(const ShadeSettings& settings);
 
-/// The features that this scene's lights, fog and surfaces need, seen by this camera.
+/// The features that this scene's lights, fog and surfaces need, seen by this camera. clustered: as
+/// standsForLights() says.
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
-                          const ShadeSettings& settings);
+                          const ShadeSettings& settings, bool clustered = false);
 
 /// The features that decide where shadow maps are looked up. kernels/find_needed.cl and kernels/classify.cl
 /// depend on no others, so scenes that differ only in others share these programs.

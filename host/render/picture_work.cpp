@@ -74,8 +74,8 @@ struct MeanLights {
 };
 
 /// Clusters count as the lights that would be as much work.
-MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, const FeatureSet& features,
-                      const ShadeSettings& settings) {
+MeanLights meanLights(const Scene& scene, const View& view, const std::vector<SeenPoint>& points,
+                      const FeatureSet& features, const ShadeSettings& settings) {
   struct Counts {
     std::size_t square = 0, shadowed = 0, tile = 0;
   };
@@ -104,8 +104,9 @@ MeanLights meanLights(const Scene& scene, const std::vector<SeenPoint>& points, 
     mean.tile += double(each.tile) / double(counts.size());
   }
   if (clustered)
-    mean.square += clusteredWork(countReasons(scene.lights, use)[0], settings.light_error,
-                                 features.has(Feature::kClusteredHighlights));
+    mean.square += clusteredWork({countReasons(scene.lights, use)[0], settings.light_error,
+                                  features.has(Feature::kClusteredHighlights)},
+                                 view);
   return mean;
 }
 
@@ -153,10 +154,11 @@ double litVertices(const Scene& scene) {
 
 PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   const PictureFeatures needs = pictureFeatures(scene, settings);
+  const View view = cameraView(settings.camera, settings.size);
   const SceneInfo info = sceneInfo(scene);
   double grid = 0;
   const std::vector<SeenPoint> points = seenPoints(scene, settings, grid);
-  const MeanLights mean = meanLights(scene, points, needs.all, settings.shade);
+  const MeanLights mean = meanLights(scene, view, points, needs.all, settings.shade);
   const double pixels = double(settings.size.x) * settings.size.y, covered = double(points.size()) / grid;
   const bool gouraud = settings.shading == Shading::kGouraud;
   const bool shared = sharesSamples(settings);
@@ -190,8 +192,7 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   work.pixel_bytes =
       pixel_bytes * settings.size.x * rows + (gouraud ? shaded * double(kGBufferBytesPerPixel) : 0);
   if (!needs.all.shadows()) return work;
-  const ShadowMaps maps = planShadowMaps(scene, cameraView(settings.camera, settings.size),
-                                         settings.shade.shadows, settings.shade.shadow_limits);
+  const ShadowMaps maps = planShadowMaps(scene, view, settings.shade.shadows, settings.shade.shadow_limits);
   work.shadows = settings.shade.shadows;
   work.shadow_pairs = shaded * mean.shadowed;
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <utility>
+#include <vector>
 
 namespace luciole {
 
@@ -27,20 +28,23 @@ PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samp
 
 void addPoints(const GBuffer& layout, const PointLists& points, std::size_t first_list, std::size_t end_list,
                const Plane& lit, const Plane& light_error, std::size_t stride, PixelSums& sums) {
-  const std::size_t n = layout.pixels(), first_point = points.starts[first_list];
+  const std::size_t n = layout.pixels();
+  std::vector<std::size_t> first_places;  // of each list in the planes
+  for (std::size_t list = first_list, tiles = 0; list < end_list; tiles += points.tiles(list++))
+    first_places.push_back(tiles * kTilePixels);
   // All points of a pixel are in one list.
   tbb::parallel_for(first_list, end_list, [&](std::size_t list) {
-    for (std::size_t k = points.starts[list]; k < points.starts[list + 1]; ++k) {
-      const ShadingPoint& point = points.items[k];
+    std::size_t place = first_places[list - first_list];
+    for (const ShadingPoint& point : points.list(list)) {
       const std::uint32_t width = std::uint32_t(layout.width);
       const std::size_t i = layout.index(int(point.pixel % width), int(point.pixel / width));
       const float samples = float(point.samples);
-      for (int c = 0; c < 3; ++c) sums.color[i + c * n] += samples * lit[k - first_point + c * stride];
+      for (int c = 0; c < 3; ++c) sums.color[i + c * n] += samples * lit[place + c * stride];
       if (!sums.light_error.empty())
-        for (int c = 0; c < 3; ++c)
-          sums.light_error[i + c * n] += samples * light_error[k - first_point + c * stride];
+        for (int c = 0; c < 3; ++c) sums.light_error[i + c * n] += samples * light_error[place + c * stride];
       sums.covered[i] += samples;
       sums.shadings[i] += 1.0f;
+      ++place;
     }
   });
 }

@@ -22,8 +22,8 @@ struct PixelSums {
 PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit,
                       Plane light_error);
 
-/// Adds the lit points of the lists from first_list up to end_list. stride: of the planes of `lit` and
-/// `light_error`, in which the first of these points comes first.
+/// Adds the lit points of the lists from first_list up to end_list. lit, light_error: their planes, laid out
+/// as by gatherPoints(), `stride` floats each.
 void addPoints(const GBuffer& layout, const PointLists& points, std::size_t first_list, std::size_t end_list,
                const Plane& lit, const Plane& light_error, std::size_t stride, PixelSums& sums);
 

@@ -289,11 +289,10 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
   return picture;
 }
 
-/// The lists from `first` on that are lit together: as many as have at most so many points, or one.
+/// The lists from `first` on that are lit together: as many as fill at most so many points' tiles, or one.
 std::size_t endOfPass(const PointLists& points, std::size_t first, std::size_t most_points) {
-  const std::size_t lists = points.starts.size() - 1;
-  std::size_t end = first + 1;
-  while (end < lists && points.starts[end + 1] - points.starts[first] <= most_points) ++end;
+  std::size_t end = first + 1, tiles = points.tiles(first);
+  while (end < points.size() && (tiles += points.tiles(end)) * kTilePixels <= most_points) ++end;
   return end;
 }
 
@@ -304,7 +303,7 @@ void leaveOut(const std::vector<std::uint8_t>& pixels, SharedSamples& shared) {
   });
   PointLists& further = shared.further;
   std::size_t kept = 0;
-  for (std::size_t list = 0; list + 1 < further.starts.size(); ++list) {
+  for (std::size_t list = 0; list < further.size(); ++list) {
     const std::size_t first = std::exchange(further.starts[list], kept), end = further.starts[list + 1];
     for (std::size_t k = first; k < end; ++k)
       if (!pixels[further.items[k].pixel]) further.items[kept++] = further.items[k];
@@ -331,13 +330,12 @@ Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
 void addLit(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
             const SampledView& sampled, const GBuffer& layout, const PointLists& points, PixelSums& sums,
             Stats& stats) {
-  const std::size_t most_points = pointsAPass(layout.pixels()), lists = points.starts.size() - 1;
-  for (std::size_t first = 0, end; first < lists; first = end) {
+  const std::size_t most_points = pointsAPass(layout.pixels());
+  for (std::size_t first = 0, end; first < points.size(); first = end) {
     end = endOfPass(points, first, most_points);
-    const std::span<const ShadingPoint> own =
-        std::span(points.items).subspan(points.starts[first], points.starts[end] - points.starts[first]);
-    if (own.empty()) continue;
-    GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] { return gatherPoints(sampled, own); });
+    if (points.starts[first] == points.starts[end]) continue;
+    GBuffer gbuffer =
+        timed(stats, Stage::kRasterize, [&] { return gatherPoints(sampled, points, first, end); });
     gbuffer.camera = settings.camera;
     const LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
                                        wantedCounts(settings, 1), stats);
@@ -378,8 +376,9 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
                           Prepared& prepared, const View& view, RasterCounts& triangles, Progress& progress,
                           Stats& stats) {
   SampledView sampled = timed(stats, Stage::kRasterize, [&] {
-    return setupSamples(scene, prepared.objects, view, settings.samples, settings.shading, prepared.planes,
-                        prepared.vertex_colors);
+    const Margin margin = prepared.features.has(Feature::kClusteredLights) ? Margin::kTiles : Margin::kPixel;
+    return setupSamples(scene, prepared.objects, view, margin, settings.samples, settings.shading,
+                        prepared.planes, prepared.vertex_colors);
   });
   SharedSamples shared = timed(stats, Stage::kRasterize, [&] { return shareSamples(sampled, triangles); });
   sampled.setup = {};
@@ -423,7 +422,10 @@ PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settin
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= settings.shading != Shading::kFlat;
   PictureFeatures result;
-  result.all = neededFeatures(scene, settings.camera, surfaces, shadeSettings(settings));
+  const ShadeSettings shade = shadeSettings(settings);
+  const View view = cameraView(settings.camera, settings.size);
+  result.all =
+      neededFeatures(scene, settings.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));
   result.pixels = settings.shading == Shading::kGouraud ? fogOnly(result.all) : result.all;
   result.planes = neededPlanes(result.pixels);
   // The light of clusters has planes of its own.
@@ -480,13 +482,18 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   requireMemory(double(pixel_bytes) * view.crop_size.x * tallest,
                 fmt::format("a band of {}x{} pixels", view.crop_size.x, tallest));
   const bool shared = sharesSamples(settings);
-  Progress progress{settings.on_pass,
-                    (view.crop_size.y + height - 1) / height * (shared ? 1 : settings.samples)};
+  // The row from which bands are counted. Points of a bin are lit by the same clusters, so there no band may
+  // end within a bin. Bins are counted from the picture's corner, and other pixels' tiles from the crop's.
+  const bool whole_bins = shared && prepared.features.has(Feature::kClusteredLights);
+  const int top = view.crop_origin.y, bottom = top + view.crop_size.y, origin = whole_bins ? 0 : top;
+  const int bands = (bottom - 1 - origin) / height - (top - origin) / height + 1;
+  Progress progress{settings.on_pass, bands * (shared ? 1 : settings.samples)};
   RasterCounts triangles;
   View band = view;
-  for (int y = 0; y < view.crop_size.y; y += height) {
-    band.crop_origin.y = view.crop_origin.y + y;
-    band.crop_size.y = std::min(height, view.crop_size.y - y);
+  for (int y = top; y < bottom; y += band.crop_size.y) {
+    const int end = std::min(origin + ((y - origin) / height + 1) * height, bottom);
+    band.crop_origin.y = y;
+    band.crop_size.y = end - y;
     const TraceSpan of_band("band", {{"first_row", band.crop_origin.y},
                                      {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
     const auto render = shared ? renderSharedSamples : renderAllSamples;
@@ -519,7 +526,9 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
                 fmt::format("a G-buffer of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<std::uint32_t> objects =
       objectsInSight(scene, view, settings.exposure, settings.shade.model);
-  const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
+  const SurfaceTraits surfaces = materialTraits(scene);
+  const FeatureSet features = neededFeatures(scene, settings.camera, surfaces, settings.shade,
+                                             standsForLights(scene, view, surfaces, settings.shade));
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
@@ -551,10 +560,11 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
       {{"width", gbuffer.width}, {"height", gbuffer.height}, {"lights", std::int64_t(scene.lights.size())}});
   const ShadeSettings shade = shadeSettings(settings);
   const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
-  const FeatureSet features = neededFeatures(scene, gbuffer.camera, surfaces, shade);
+  const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
+  const FeatureSet features =
+      neededFeatures(scene, gbuffer.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));
   std::future<double> compiling = startCompiling(device, {features}, shade);
   Lighting lighting;
-  const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   prepareLighting(device, scene, gbuffer.camera, view, features, shade, lighting, stats);
   if (settings.alpha) lighting.frame.background = {};
   awaitKernels(compiling, device, stats);

@@ -57,7 +57,8 @@ struct RenderSettings {
   bool alpha = false;
   /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
   bool count_lights = false;
-  /// Rows that are rendered at a time; 0: as bandHeight() says. The picture's colours don't depend on it.
+  /// Rows that are rendered at a time; 0: as bandHeight() says. The picture's colours don't depend on it,
+  /// with a light error as long as it is a multiple of kBinSize.
   int band_height = 0;
   std::function<void(int done, int passes)> on_pass;  ///< called after each pass over a band, if set
 };

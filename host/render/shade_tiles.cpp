@@ -28,8 +28,10 @@ std::size_t spreadingStride(std::size_t count) {
 
 TileBlock chooseBlock(int tiles_x, int tiles_y, std::size_t threads) {
   for (const int side : {4, 2}) {
-    // A single row of tiles is cut into pieces of a row.
-    const TileBlock block = tiles_y == 1 ? TileBlock{side * side, 1} : TileBlock{side, side};
+    // A single row or column of tiles is cut into pieces of it.
+    const TileBlock block = tiles_y == 1   ? TileBlock{side * side, 1}
+                            : tiles_x == 1 ? TileBlock{1, side * side}
+                                           : TileBlock{side, side};
     if (blockCount(block, tiles_x, tiles_y) >= kBlocksPerThread * threads) return block;
   }
   return {};

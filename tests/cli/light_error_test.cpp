@@ -15,8 +15,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kManyLights = R"({"size": [32, 24],
-  "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "keys": [{"frame": 1, "eye": [0, 3, 5]}, {"frame": 3, "eye": [2, 3, 4]}]},
+// Clusters pay where a picture has enough pixels, and each of them is narrow.
+constexpr const char* kManyLights = R"({"size": [256, 144],
+  "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "fov_y": 15, "keys": [{"frame": 1, "eye": [0, 3, 5]}, {"frame": 3, "eye": [2, 3, 4]}]},
   "objects": [{"primitive": "plane", "scale": 4}],
   "light_fields": [{"count": 40000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "no_range": true}]})";
 
@@ -29,9 +30,15 @@ class LightError : public ProgramTest {
         lights += fmt::format(
             R"({{"type": "point", "position": [{}, 1, {}], "intensity": 0.001, "attenuation": [0, 0, 1]}},)",
             0.1 * column - 2.5, 0.1 * row - 2.5);
-    writeText(folder / "scene.json", R"({"size": [32, 24], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
+    writeText(folder / "scene.json",
+              R"({"size": [160, 90], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "fov_y": 8},
       "objects": [{"primitive": "plane", "scale": 4}], "lights": [)" +
-                                         lights + R"({"type": "directional", "direction": [0, -1, 0]}]})");
+                  lights + R"({"type": "directional", "direction": [0, -1, 0]}]})");
+  }
+
+  /// For how many lights clusters stand in the picture of stats.json.
+  int standIns() const {
+    return nlohmann::json::parse(readText(folder / "stats.json"))["counts"]["lights_stood_for"];
   }
 };
 
@@ -75,9 +82,10 @@ TEST_F(LightError, LayerAndStatsTellTheBoundOfPicturesAndGBuffers) {
 }
 
 TEST_F(LightError, LessThanFloatsCanPromiseIsToldInOneLine) {
-  const Outcome met = run("luciole render scene.json --light-error 1/1024 -o out.exr");
+  const Outcome met = run("luciole render scene.json --light-error 1/1024 -o out.exr --stats stats.json");
   EXPECT_EQ(met.status, 0) << met.err;
   EXPECT_THAT(met.err, Not(HasSubstr("warning")));
+  EXPECT_EQ(standIns(), 2500);
   writeText(folder / "many.json", kManyLights);
   const Outcome outcome = run("luciole render many.json --light-error 1e-5 -o out.exr --stats stats.json");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -108,8 +116,9 @@ TEST_F(LightError, TheLeastThatFloatsCanPromiseIsPromised) {
 TEST_F(LightError, ChangesNoBitWithThreadsLanesOrTiles) {
   writeText(folder / "many.json", kManyLights);
   const std::string render =
-      "luciole render many.json --quiet --size 100x70 --light-error 1/256 --aov light_error ";
-  succeed(render + "-o usual.exr");
+      "luciole render many.json --quiet --size 150x100 --samples 4 --light-error 1/256 --aov light_error ";
+  succeed(render + "-o usual.exr --stats stats.json");
+  EXPECT_EQ(standIns(), 40'000);
   for (const char* other : {"--threads 1", "--threads 2", "--threads 3", "--device ,lanes=1",
                             "--device ,lanes=4", "--device ,lanes=8", "--tile 16", "--culling none"})
     succeed(render + other + " -o other.exr && luciole compare usual.exr other.exr --max-abs 0");
@@ -118,6 +127,8 @@ TEST_F(LightError, ChangesNoBitWithThreadsLanesOrTiles) {
 TEST_F(LightError, FramesAndTheirShardsArePicturesRenderedAlone) {
   writeText(folder / "many.json", kManyLights);
   const std::string render = "luciole render many.json --quiet --light-error 1/256 --aov light_error ";
+  succeed(render + "--frames 1 -o one.exr --stats stats.json");
+  EXPECT_EQ(standIns(), 40'000);
   succeed(render + "--frames 1-3 -o all.#.exr");
   succeed(render + "--frames 1-3 --shard 1/2 -o part.#.exr");
   succeed(render + "--frames 1-3 --shard 2/2 -o part.#.exr");

@@ -114,7 +114,8 @@ TEST_F(Limits, WithLittleMemoryBandsAreSmallerAndThePictureIsTheSame) {
 
 // Their tree and what it is made of take some 300 bytes a light.
 TEST_F(Limits, OfAddressesLetClustersOfLightsWorkOrEndInOneLine) {
-  writeText(folder / "many.json", R"({"size": [16, 9], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0]},
+  writeText(folder / "many.json",
+            R"({"size": [128, 72], "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "fov_y": 15},
     "objects": [{"primitive": "plane", "scale": 4}], "light_fields":
     [{"count": 400000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "attenuation": [0, 0, 1], "intensity": 1e-5}]})");
   const int enough = 1400 + 16 * int(std::thread::hardware_concurrency());

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OwnScene,
 TEST(Lanterns, LightByClustersIsWithinTheBoundThatIsTold) {
   const TemporaryFolder folder;
   const std::string render =
-      "luciole render '" LUCIOLE_SOURCE_DIR "/scenes/lanterns.json' --quiet --size 96x54 ";
+      "luciole render '" LUCIOLE_SOURCE_DIR "/scenes/lanterns.json' --quiet --size 192x108 ";
   ASSERT_EQ(runLine(folder, render + "-o exact.exr").status, 0);
   ASSERT_EQ(runLine(folder, render + "--light-error 1/256 --stats s.json -o clusters.exr").status, 0);
   const auto stats = nlohmann::json::parse(readText(folder / "s.json"));

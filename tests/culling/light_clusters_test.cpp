@@ -100,7 +100,7 @@ TEST_P(LightClustersOf, HoldEachLightInOneLeafAndBoundEveryCluster) {
     const std::size_t i = std::size_t(near - lights.begin());
     EXPECT_FALSE(found[i]) << "twice";
     found[i] = true;
-    const glm::dvec3 color = near->diffuse / near->quadratic;
+    const glm::dvec3 color = near->color / near->quadratic;
     EXPECT_EQ(light.color, glm::vec3(color));
     EXPECT_EQ(light.most, std::max({light.color.x, light.color.y, light.color.z}));
     EXPECT_EQ(light.falloff, float(0x1p100 * near->quadratic));

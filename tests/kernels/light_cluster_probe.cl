@@ -40,7 +40,7 @@ __kernel void probe_far_cluster(__global const float *in, __global float *out, u
     ClusterView view = view_clusters(row, part, &group);
     floatL error;
     RowVerdict verdict = judge_clusters(row, part, &group, 1.0f, 0, &view, &error);
-    floatL weight = series_weight(cluster_field(row, part, kClusterAbsolute), view.inverse_d, view.k);
+    floatL weight = series_weight(row_field(row, part, kClusterAbsolute), view.inverse_d, view.k);
     intL it = LANE_NUMBERS == (int)lane;
     floatL none = 0.0f, one = 1.0f;
     vec3L direction = {it ? view.direction.x : none, it ? view.direction.y : none, it ? view.direction.z : none};
@@ -75,7 +75,7 @@ __kernel void probe_field_sums(__global const float *in, __global float *out, ui
       ClusterView view = view_clusters(row, part, &group);
       floatL error;
       judge_clusters(row, part, &group, 1.0f, 0, &view, &error);
-      add_clusters(&sums, row, part, view.direction, view.inverse_d, (floatL)(1.0f), error, series_weight(cluster_field(row, part, kClusterAbsolute), view.inverse_d, view.k));
+      add_clusters(&sums, row, part, view.direction, view.inverse_d, (floatL)(1.0f), error, series_weight(row_field(row, part, kClusterAbsolute), view.inverse_d, view.k));
     }
     count_field_row(&sums);
   }

@@ -29,7 +29,7 @@ struct PixelPoints {
 struct Shared {
   SharedSamples samples;
   RasterCounts counts;
-  GBuffer further;  ///< of samples.further, in order
+  GBuffer further;  ///< of samples.further
 
   std::vector<PixelPoints> byPixel() const {
     std::vector<PixelPoints> pixels(samples.samples.size());
@@ -42,10 +42,11 @@ struct Shared {
 Shared share(const Scene& scene, const View& view, int samples, Shading shading = Shading::kPhong,
              PlaneSet planes = {}) {
   const std::vector<std::uint32_t> objects = allObjects(scene);
-  const SampledView sampled = setupSamples(scene, objects, view, samples, shading, planes, {});
+  const SampledView sampled =
+      setupSamples(scene, objects, view, Margin::kPixel, samples, shading, planes, {});
   Shared shared;
   shared.samples = shareSamples(sampled, shared.counts);
-  shared.further = gatherPoints(sampled, shared.samples.further.items);
+  shared.further = gatherPoints(sampled, shared.samples.further, 0, shared.samples.further.size());
   return shared;
 }
 
@@ -265,7 +266,7 @@ TEST(ShadingPoints, EverySampleOfAChosenPixelIsAPointWhereItIsAsked) {
   const Scene scene = randomScene(300, 11);
   const View view = cameraView(frontCamera(), {75, 67});
   const std::vector<std::uint32_t> objects = allObjects(scene);
-  const SampledView sampled = setupSamples(scene, objects, view, 16, Shading::kPhong, {}, {});
+  const SampledView sampled = setupSamples(scene, objects, view, Margin::kPixel, 16, Shading::kPhong, {}, {});
   const std::vector<int> covered = samplesCovered(scene, view, 16);
   std::vector<std::uint8_t> chosen(covered.size());
   for (std::size_t i = 0; i < chosen.size(); i += 7) chosen[i] = 1;
@@ -286,13 +287,14 @@ TEST(ShadingPoints, EverySampleOfAChosenPixelIsAPointWhereItIsAsked) {
 /// All that is known of each pixel's points, from the whole picture's numbers.
 using Facts = std::map<std::tuple<int, int, std::uint32_t>, std::vector<float>>;
 
-Facts factsOf(const Scene& scene, const View& view, int samples) {
+Facts factsOf(const Scene& scene, const View& view, int samples, Margin margin = Margin::kPixel) {
   const PlaneSet all{true, true, true, true, true};
   const std::vector<std::uint32_t> objects = allObjects(scene);
-  const SampledView sampled = setupSamples(scene, objects, view, samples, Shading::kPhong, all, {});
+  const SampledView sampled = setupSamples(scene, objects, view, margin, samples, Shading::kPhong, all, {});
   RasterCounts counts;
   const SharedSamples shared = shareSamples(sampled, counts);
-  const GBuffer further = gatherPoints(sampled, shared.further.items);
+  const PointLists& points = shared.further;
+  const GBuffer further = gatherPoints(sampled, points, 0, points.size());
   Facts facts;
   const auto valuesAt = [](const GBuffer& gbuffer, std::size_t place) {
     std::vector<float> values;
@@ -303,7 +305,7 @@ Facts factsOf(const Scene& scene, const View& view, int samples) {
     values.push_back(float(gbuffer.geometric_normal[place] >> 16));
     return values;
   };
-  // A margin of a pixel is drawn, too.
+  // A margin is drawn, too.
   const glm::ivec2 drawn = sampled.view.crop_origin;
   const int width = sampled.view.crop_size.x;
   for (int y = view.crop_origin.y; y < view.crop_origin.y + view.crop_size.y; ++y)
@@ -314,12 +316,15 @@ Facts factsOf(const Scene& scene, const View& view, int samples) {
       values.push_back(float(shared.objects[number]));
       facts[{x, y, kNoTriangle}] = values;
     }
-  for (std::size_t i = 0; i < shared.further.items.size(); ++i) {
-    const ShadingPoint& point = shared.further.items[i];
-    std::vector<float> values = valuesAt(further, i);
-    values.push_back(float(point.samples));
-    facts[{drawn.x + int(point.pixel) % width, drawn.y + int(point.pixel) / width, point.triangle}] = values;
-  }
+  std::size_t tiles = 0;
+  for (std::size_t list = 0; list < points.size(); tiles += points.tiles(list++))
+    for (std::size_t i = 0; i < points.list(list).size(); ++i) {
+      const ShadingPoint& point = points.list(list)[i];
+      std::vector<float> values = valuesAt(further, tiles * kTilePixels + i);
+      values.push_back(float(point.samples));
+      facts[{drawn.x + int(point.pixel) % width, drawn.y + int(point.pixel) / width, point.triangle}] =
+          values;
+    }
   return facts;
 }
 
@@ -338,9 +343,28 @@ TEST(ShadingPoints, ACropHasThePointsOfTheWholeBitForBit) {
         const auto& [x, y, triangle] = where;
         if (x >= crop.x && y >= crop.y && x < crop.x + crop.z && y < crop.y + crop.w) wanted[where] = values;
       }
-      EXPECT_TRUE(factsOf(scene, part, samples) == wanted) << samples << " samples, crop at " << crop.x;
+      for (const Margin margin : {Margin::kPixel, Margin::kTiles})
+        EXPECT_TRUE(factsOf(scene, part, samples, margin) == wanted)
+            << samples << " samples, crop at " << crop.x << ", margin " << int(margin);
     }
   }
+}
+
+// Pixels are lit in groups of those of a tile.
+TEST(ShadingPoints, MarginsOfTilesAreThePicturesTilesAroundThePixels) {
+  const Scene scene = randomScene(10, 7);
+  const std::vector<std::uint32_t> objects = allObjects(scene);
+  View view = cameraView(frontCamera(), {150, 137});
+  const auto drawn = [&](const glm::ivec2& origin, const glm::ivec2& size) {
+    view.crop_origin = origin;
+    view.crop_size = size;
+    const View& of = setupSamples(scene, objects, view, Margin::kTiles, 4, Shading::kPhong, {}, {}).view;
+    return glm::ivec4(of.crop_origin, of.crop_origin + of.crop_size);
+  };
+  EXPECT_EQ(drawn({0, 0}, {150, 137}), glm::ivec4(0, 0, 150, 137));
+  EXPECT_EQ(drawn({17, 33}, {14, 14}), glm::ivec4(16, 32, 32, 48));
+  EXPECT_EQ(drawn({16, 32}, {16, 16}), glm::ivec4(0, 16, 48, 64));
+  EXPECT_EQ(drawn({149, 136}, {1, 1}), glm::ivec4(144, 128, 150, 137));
 }
 
 TEST(ShadingPoints, TheNumberOfThreadsChangesNothing) {

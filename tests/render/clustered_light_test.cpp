@@ -68,7 +68,7 @@ glm::dvec3 truthAt(const GBuffer& gbuffer, std::size_t place, const Lights& ligh
     const glm::dvec3 way = light.position - position;
     const double d2 = glm::dot(way, way), z = glm::dot(normal, way);
     if (!(z > 0)) continue;
-    const glm::dvec3 light_here = light.diffuse / std::max(light.quadratic * d2, 0x1p-100);
+    const glm::dvec3 light_here = light.color / std::max(light.quadratic * d2, 0x1p-100);
     sum += light_here * (z / std::sqrt(d2));
     if (!highlights) continue;
     const double cosine = glm::dot(2 * glm::dot(normal, eye) * normal - eye, way) / std::sqrt(d2);
@@ -282,7 +282,7 @@ TEST_F(HardClusteredLight, OfFewLightsOfOneAndOfNone) {
 TEST_F(HardClusteredLight, OfIntensitiesFortyOrdersApart) {
   Lights lights = lightsIn({-60, -50, -4}, {60, 50, 100}, 3000, random);
   for (UnboundedLight& light : lights) {
-    light.diffuse *= std::pow(10.0, random.between(-20, 20));
+    light.color *= std::pow(10.0, random.between(-20, 20));
     light.quadratic = 1;
   }
   expectCertifiedOf(lights);
@@ -292,7 +292,7 @@ TEST_F(HardClusteredLight, OfColouredLights) {
   Lights lights = lightsIn({-6, -5, -10}, {6, 5, 4}, 3000, random);
   for (UnboundedLight& light : lights) {
     const int channel = random.below(3);
-    for (int c = 0; c < 3; ++c) light.diffuse[c] *= c == channel;
+    for (int c = 0; c < 3; ++c) light.color[c] *= c == channel;
   }
   expectCertifiedOf(lights);
 }

@@ -88,6 +88,7 @@ struct CertificateCheck {
 inline CertificateCheck checkCertificate(Device& device, const TrueLight& truth, float light_error) {
   RenderSettings settings;
   settings.shade.light_error = light_error;
+  settings.shade.always_clusters = true;
   settings.shade.model = truth.model;
   settings.aovs = {Aov::kLightError};
   CertificateCheck check;

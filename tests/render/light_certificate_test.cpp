@@ -53,7 +53,6 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST_P(HighlightCertificate, HoldsAtEveryPixelForEachPlacementAndError) {
-  // Of fewer lights clusters wouldn't pay at the smallest error.
   const auto& [scene, model] = GetParam();
   ASSERT_NO_FATAL_FAILURE(expectCertified(scene, model, true, 10000, {48, 27}));
 }

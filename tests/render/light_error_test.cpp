@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "raster/bins.hpp"
@@ -47,10 +48,11 @@ struct Both {
   Stats stats;
 };
 
-Both renderBoth(const Scene& scene, RenderSettings settings) {
+Both renderBoth(const Scene& scene, RenderSettings settings, bool always_clusters = true) {
   Both both;
   both.exact = picture(scene, settings);
   settings.shade.light_error = 1.0f / 256;
+  settings.shade.always_clusters = always_clusters;
   settings.aovs.push_back(Aov::kLightError);
   settings.count_lights = true;
   both.clustered = renderScene(testDevice(), scene, settings, both.stats);
@@ -124,17 +126,30 @@ TEST(LightError, WithoutOtherLightsNoneIsLeftToTheShadingKernels) {
 
 TEST(LightError, BandsAreThePictureBitForBit) {
   const Scene scene = sceneFromJson(manyLights(kEmits, kThickFog));
-  for (const int samples : {1, 4}) {
-    RenderSettings settings = settingsFor(scene, {40, 150});
-    settings.samples = samples;
-    settings.sample_shading = SampleShading::kAll;
-    settings.shade.light_error = 1.0f / 256;
-    settings.aovs = {Aov::kLightError};
-    settings.band_height = 1 << 20;
-    const Image whole = picture(scene, settings);
-    settings.band_height = kBinSize;
-    EXPECT_EQ(picture(scene, settings).pixels, whole.pixels) << samples;
-  }
+  const struct {
+    int samples;
+    SampleShading shading;
+  } cases[] = {{1, SampleShading::kAll},
+               {4, SampleShading::kAll},
+               {4, SampleShading::kShared},
+               {33, SampleShading::kShared}};
+  for (const auto& [samples, shading] : cases)
+    for (const std::optional<Crop>& crop : {std::optional<Crop>(), std::optional(Crop{7, 70, 140, 200})}) {
+      SCOPED_TRACE(fmt::format("{} samples, {}, {}", samples, int(shading), crop ? "crop" : "whole"));
+      RenderSettings settings = settingsFor(scene, {160, 290});
+      settings.crop = crop;
+      settings.samples = samples;
+      settings.sample_shading = shading;
+      settings.shade.light_error = 1.0f / 256;
+      settings.shade.always_clusters = true;
+      settings.aovs = {Aov::kLightError, Aov::kShadingCount};
+      settings.band_height = 1 << 20;
+      const Image whole = picture(scene, settings);
+      for (const int height : {kBinSize, 2 * kBinSize, 3 * kBinSize}) {
+        settings.band_height = height;
+        EXPECT_EQ(picture(scene, settings).pixels, whole.pixels) << height;
+      }
+    }
 }
 
 // A crop has other groups of pixels, so other clusters.
@@ -148,10 +163,11 @@ TEST(LightError, CropsAreWithinTheirBounds) {
 TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
   Scene scene = sceneFromJson(manyLights(kEmits));
   RenderSettings settings = settingsFor(scene, {40, 30});
-  EXPECT_FALSE(standsForLights(scene, materialTraits(scene), settings.shade));
+  const View view = cameraView(settings.camera, settings.size);
+  EXPECT_FALSE(standsForLights(scene, view, materialTraits(scene), settings.shade));
   scene.lights.resize(100);
-  ASSERT_FALSE(clustersPay(100, 1.0f / 256, false));
-  const Both both = renderBoth(scene, settings);
+  ASSERT_FALSE(clustersPay({100, 1.0f / 256, false}, view));
+  const Both both = renderBoth(scene, settings, false);
   for (std::size_t i = 0; i < both.clustered.pixels.size(); ++i) {
     if (i % 6 < 3)
       ASSERT_EQ(both.clustered.pixels[i], both.exact.pixels[i / 6 * 3 + i % 6]);
@@ -160,6 +176,43 @@ TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
   }
   EXPECT_EQ(countOf(both.stats, "lights_stood_for"), 0u);
   EXPECT_EQ(countOf(both.stats, "lights_exact_as_few"), 100u);
+}
+
+/// Whether clusters pay for so many lights on matte surfaces.
+bool pays(std::size_t lights, const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop = {}) {
+  return clustersPay({lights, 1.0f / 256, false}, cameraView(camera, size, crop));
+}
+
+// A group of pixels shares a walk through the tree, and holds fewer pixels the wider each of them is.
+TEST(LightError, ClustersPayFromMoreLightsOnWhereAPixelIsWider) {
+  Camera camera;
+  camera.fov_y = glm::radians(60.0);
+  EXPECT_FALSE(pays(100, camera, {1280, 720}));
+  EXPECT_TRUE(pays(2000, camera, {1280, 720}));
+  EXPECT_FALSE(pays(2000, camera, {320, 180}));
+  EXPECT_TRUE(pays(2000, camera, {320, 180}, Crop{0, 0, 8, 8}) == pays(2000, camera, {320, 180}))
+      << "a crop has groups as large as its picture";
+  EXPECT_TRUE(pays(20'000, camera, {320, 180}));
+  camera.fov_y = glm::radians(15.0);
+  EXPECT_TRUE(pays(2000, camera, {320, 180}));
+  // Of a parallel view as of one that is as high as it is far away.
+  Camera parallel;
+  parallel.orthographic = true;
+  camera.fov_y = 2 * std::atan(0.5);
+  for (const double half_height : {0.1, 100.0}) {
+    parallel.half_height = half_height;
+    for (const glm::ivec2& size : {glm::ivec2(1280, 720), glm::ivec2(320, 180)})
+      for (std::size_t lights = 100; lights < 100'000; lights += lights / 10)
+        EXPECT_EQ(pays(lights, parallel, size), pays(lights, camera, size)) << lights;
+  }
+}
+
+// Each light is put into the tree, which takes as long as to sum it at some thousands of pixels.
+TEST(LightError, ClustersNeverPayForAHandfulOfPixels) {
+  Camera camera;
+  camera.fov_y = glm::radians(1.0);
+  EXPECT_FALSE(pays(10'000'000, camera, {64, 36}));
+  EXPECT_TRUE(pays(10'000'000, camera, {640, 360}));
 }
 
 TEST(LightError, StatsSayWhyLightsAreExact) {
@@ -186,6 +239,7 @@ TEST(LightError, GBuffersAreLitAsTheSceneIs) {
   Stats stats;
   const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
   settings.shade.light_error = 1.0f / 256;
+  settings.shade.always_clusters = true;
   settings.aovs = {Aov::kLightError};
   EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels,
             picture(scene, settings).pixels);

@@ -141,6 +141,7 @@ TEST(Memory, OfADeviceHoldsTheClustersOfLights) {
   settings.size = {16, 16};
   settings.camera = scene.cameras.front();
   settings.shade.light_error = 1.0f / 64;
+  settings.shade.always_clusters = true;
   Stats stats;
   renderScene(testDevice(), scene, settings, stats);
   // The tree's size is that of any so many lights.

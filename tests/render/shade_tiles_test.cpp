@@ -186,10 +186,11 @@ INSTANTIATE_TEST_SUITE_P(Lanes, ShadeTiles, testing::ValuesIn(kAllLanes), testin
 
 TEST(ShadeTiles, BlocksAreAsLargeAsThereAreEnoughOf) {
   for (const std::size_t threads : {1, 2, 64}) {
-    for (const glm::ivec2& tiles : {glm::ivec2(1, 1), {1000, 1}, {120, 68}, {1250, 1250}}) {
+    for (const glm::ivec2& tiles : {glm::ivec2(1, 1), {1000, 1}, {1, 1000}, {120, 68}, {1250, 1250}}) {
       const TileBlock block = chooseBlock(tiles.x, tiles.y, threads);
       EXPECT_LE(block.width * block.height, kBlockTiles);
       EXPECT_TRUE(tiles.y > 1 || block.height == 1) << "a row of tiles is cut into pieces of a row";
+      EXPECT_TRUE(tiles.x > 1 || block.width == 1) << "and a column into pieces of a column";
       const auto blocks = [tiles](int width, int height) {
         return std::size_t((tiles.x + width - 1) / width) * std::size_t((tiles.y + height - 1) / height);
       };
