@@ -63,7 +63,7 @@ __kernel void probe_lobes(__global const float *in, __global float *out, uint st
 }
 
 // in: a pixel's position, normal and eye, the exponent and the model. light_rows: a light for each case. out: its light, by channel; what is
-// unsure of it, its weight, and the exponent's lobe_rounding().
+// unsure of it, the rounding of its lobe, and the exponent's lobe_rounding().
 __kernel void probe_listed_highlights(__global const float *in, __global float *out, uint stride, __global const float *light_rows) {
   uint first = get_global_id(0) * LANES;
   ClusterTree tree = {light_rows, light_rows, stride, 0};
@@ -82,9 +82,10 @@ __kernel void probe_listed_highlights(__global const float *in, __global float *
     vec3L dark = {none, none, none};
     HighlightSums sums = {{dark, dark}, none, none};
     float exponent = in[i + 9 * stride];
-    add_listed_highlights(&walk, &tree, &pixels, exponent, (uint)in[i + 10 * stride], &sums);
+    uint model = (uint)in[i + 10 * stride];
+    add_listed_highlights(&walk, &tree, &pixels, exponent, model, &sums);
     vec3L light = sum_of_blocks(&sums.light);
-    floatL values[6] = {light.x, light.y, light.z, sums.unsure, sums.weight, (floatL)(lobe_rounding(exponent))};
+    floatL values[6] = {light.x, light.y, light.z, sums.unsure, sums.rounding, (floatL)(lobe_rounding(exponent, model))};
     for (uint v = 0; v < 6; ++v) out[i + v * stride] = ((const float *)&values[v])[lane];
   }
 }
