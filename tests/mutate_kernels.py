@@ -491,6 +491,7 @@ MUTANTS = {
         Mutant("rsqrt_lanes(max_lanes(sum2,", "0.5f * rsqrt_lanes(max_lanes(sum2,"),
         Mutant("n_dot_l > -HORIZON_SLACK ? error", "n_dot_l > 0.0f ? error"),
         Mutant("sums->rounding += some_rounding", "sums->rounding = some_rounding"),
+        Mutant("sums->unsure += some_unsure", "sums->unsure = some_unsure"),
     ],
     "light_clusters.clh": [
         Mutant("k = (radius + group->radius) *", "k = radius *"),
