@@ -21,25 +21,12 @@ struct LobeCase {
   glm::vec3 position{}, of_pixel{0, 0, 1}, normal{0, 0, 1};  ///< of_pixel: its axis
 };
 
-/// A row of lights for each kClusterSlots cases, of their first lights.
-std::vector<float> lightRows(const std::vector<LobeCase>& cases) {
-  const std::size_t rows = (cases.size() + kClusterSlots - 1) / kClusterSlots;
-  std::vector<float> out(rows * kLightFields * kClusterSlots);
-  for (std::size_t i = 0; i < rows * kClusterSlots; ++i) {
-    const LobeCase& each = cases[std::min(i, cases.size() - 1)];
-    const glm::dvec3 place = glm::dvec3(each.centre) + each.lights[0].offset, color = each.lights[0].color;
-    const auto set = [&](std::size_t field, double value) {
-      out[(i / kClusterSlots * kLightFields + field) * kClusterSlots + i % kClusterSlots] = float(value);
-    };
-    for (int c = 0; c < 3; ++c) {
-      set(kLightPlace + std::size_t(c), place[c]);
-      set(kLightRest + std::size_t(c), place[c] - double(float(place[c])));
-      set(kLightColor + std::size_t(c), color[c]);
-    }
-    set(kLightFalloff, 0x1p100);
-    set(kLightMost, std::max({color.x, color.y, color.z}));
-  }
-  return out;
+/// The first light of each case.
+std::vector<float> firstLightRows(const std::vector<LobeCase>& cases) {
+  std::vector<ClusterLight> lights;
+  for (const LobeCase& each : cases)
+    lights.push_back({glm::dvec3(each.centre) + each.lights[0].offset, each.lights[0].color});
+  return lightRows(lights);
 }
 
 std::vector<float> lobeClusterRows(const std::vector<LobeCase>& cases) {
@@ -62,7 +49,7 @@ LobesOut probeLobes(int lanes, const std::vector<LobeCase>& cases, bool of_light
     add(each.radius), add(each.spread), add(each.turn), add(each.exponent), add(float(each.model));
     addVector(each.position), addVector(each.of_pixel);
   }
-  const std::vector<float> rows = of_lights ? lightRows(cases) : lobeClusterRows(cases);
+  const std::vector<float> rows = of_lights ? firstLightRows(cases) : lobeClusterRows(cases);
   const std::vector<uint> lights{of_lights ? 1u : 0u};
   std::vector<Column> out = probe(deviceWithLanes(lanes), "highlight_probe.cl", "probe_lobes", in, 9,
                                   {{"rows", rows}, {"of_lights", lights}});
@@ -326,7 +313,7 @@ constexpr double kOfLights = (32 + 128 + 4) * 0x1p-24;
 /// The light of each case, listed `times` times, as probe_listed_highlights gives it.
 std::vector<Column> probeListed(int lanes, const std::vector<Column>& in, const std::vector<LobeCase>& cases,
                                 uint times) {
-  const std::vector<float> rows = lightRows(cases);
+  const std::vector<float> rows = firstLightRows(cases);
   const std::vector<uint> listed{times};
   return probe(deviceWithLanes(lanes), "highlight_probe.cl", "probe_listed_highlights", in, 6,
                {{"light_rows", rows}, {"times", listed}});
