@@ -523,6 +523,7 @@ MUTANTS = {
         Mutant("error[part] = light_series_error(q, group->radius", "error[part] = light_series_error(q, 0.5f * group->radius"),
         Mutant("dark |= lane_bits((view[part].height < -view[part].margin)", "dark |= lane_bits((view[part].height < view[part].margin)"),
         Mutant("(view[part].height > view[part].margin) &", "(view[part].height > -view[part].margin) &"),
+        Mutant("(group->gain * error[part] < LIGHT_SHARE * share)", "(error[part] >= 0.0f)"),
         Mutant("far &= slots;", ""),
         Mutant("slots & ~far, walk)", "slots, walk)"),
     ],
