@@ -323,7 +323,7 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
                                float had[6][kTilePixels], float result[6][kHighlightPixels]) {
   Lobes lobes;
   finish_lobes(sums, group->exponent, &lobes);
-  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4), of_lobes = lobe_rounding(group->exponent);
+  float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4);
   float worst = 0.0f;
   for (uint i = first; i < end; i += LANES) {
     HighlightPixels row = highlight_pixels(pixels, i, frame);
@@ -336,7 +336,7 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
     floatL lights[3] = {listed.x, listed.y, listed.z}, specular[3] = {color.x, color.y, color.z};
     for (uint c = 0; c < 3; ++c) {
       floatL light = specular[c] * (lobes_value(lobes.term + c * kLobeTerms, &factors) + lights[c]);
-      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + of_row->unsure + of_lobes * of_row->weight;
+      floatL bound = lobes.term[kLobeBound] + lobes.rounding + of_lights * lights[c] + of_row->unsure + of_row->rounding;
       bound = fma_lanes((floatL)(0x1p-21f), light, 1.001f * specular[c] * bound);
       for (uint lane = 0; lane < LANES && i + lane < end; ++lane) {
         uint place = pixels->place[i + lane];
@@ -366,7 +366,7 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kHighlightPixels / LANES; ++row) {
       row_sums[row].light.total = row_sums[row].light.lost = dark;
-      row_sums[row].unsure = row_sums[row].weight = 0.0f;
+      row_sums[row].unsure = row_sums[row].rounding = 0.0f;
     }
     start_lobes(&sums);
     start_cluster_walk(tree, &walk);

@@ -91,4 +91,24 @@ inline std::vector<float> clusterRows(const std::vector<ClusterMoments>& cluster
   return out;
 }
 
+/// Rows of kClusterSlots lights each, at their offsets from the origin, filled up with the last one.
+inline std::vector<float> lightRows(const std::vector<ClusterLight>& lights) {
+  const std::size_t rows = (lights.size() + kClusterSlots - 1) / kClusterSlots;
+  std::vector<float> out(rows * kLightFields * kClusterSlots);
+  for (std::size_t i = 0; i < rows * kClusterSlots; ++i) {
+    const auto& [place, color] = lights[std::min(i, lights.size() - 1)];
+    const auto set = [&](std::size_t field, double value) {
+      out[(i / kClusterSlots * kLightFields + field) * kClusterSlots + i % kClusterSlots] = float(value);
+    };
+    for (int c = 0; c < 3; ++c) {
+      set(kLightPlace + std::size_t(c), place[c]);
+      set(kLightRest + std::size_t(c), place[c] - double(float(place[c])));
+      set(kLightColor + std::size_t(c), color[c]);
+    }
+    set(kLightFalloff, 0x1p100);
+    set(kLightMost, std::max({color.x, color.y, color.z}));
+  }
+  return out;
+}
+
 }  // namespace luciole::test

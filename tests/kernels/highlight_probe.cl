@@ -27,7 +27,8 @@ INLINE HighlightGroup group_of(__global const float *in, uint stride, uint i) {
 }
 
 // in: a group's middle, axis, normal, radius, spread, turn, exponent and model; a pixel's position and axis. rows: a cluster for each case,
-// or with of_lights a light. out: the series at the pixel, by channel; its bound and rounding; the largest cosine; the brightest lobe; k.
+// or with of_lights a light. out: the series at the pixel, by channel; its bound and rounding; the largest cosine; the brightest lobe; k; 1 if
+// all is below all horizons, 2 if it may join the series.
 __kernel void probe_lobes(__global const float *in, __global float *out, uint stride, __global const float *rows,
                           __global const uint *of_lights) {
   uint first = get_global_id(0) * LANES, part = first % kClusterSlots / LANES;
@@ -39,7 +40,7 @@ __kernel void probe_lobes(__global const float *in, __global float *out, uint st
     ClusterView view;
     LobeView lobe;
     floatL brightest, error;
-    judge_lobes(row, part, lights, &group, (floatL)(INFINITY), &view, &lobe, &brightest, &error);
+    LobeVerdict verdict = judge_lobes(row, part, lights, &group, (floatL)(INFINITY), &view, &lobe, &brightest, &error);
     LobeSums sums;
     start_lobes(&sums);
     if (has_lobe_series(&group)) add_lobe_series(&sums, row, part, lights, &group, &view, &lobe, error, LANE_NUMBERS == (int)lane);
@@ -59,12 +60,15 @@ __kernel void probe_lobes(__global const float *in, __global float *out, uint st
     out[i + 5 * stride] = ((const float *)&lobe.cosine)[lane];
     out[i + 6 * stride] = ((const float *)&brightest)[lane];
     out[i + 7 * stride] = ((const float *)&view.k)[lane];
+    out[i + 8 * stride] = (verdict.below >> lane & 1 ? 1.0f : 0.0f) + (verdict.series >> lane & 1 ? 2.0f : 0.0f);
   }
 }
 
-// in: a pixel's position, normal and eye, the exponent and the model. light_rows: a light for each case. out: its light, by channel; what is
-// unsure of it, its weight, and the exponent's lobe_rounding().
-__kernel void probe_listed_highlights(__global const float *in, __global float *out, uint stride, __global const float *light_rows) {
+// in: a pixel's position, normal and eye, the exponent and the model. light_rows: a light for each case, which is
+// listed so many times. out: its light, by channel; what is
+// unsure of it, the rounding of its lobe, and the exponent's lobe_rounding().
+__kernel void probe_listed_highlights(__global const float *in, __global float *out, uint stride, __global const float *light_rows,
+                                      __global const uint *times) {
   uint first = get_global_id(0) * LANES;
   ClusterTree tree = {light_rows, light_rows, stride, 0};
   for (uint lane = 0; lane < LANES; ++lane) {
@@ -76,15 +80,16 @@ __kernel void probe_listed_highlights(__global const float *in, __global float *
     pixels.mirrored_eye = mirror(pixels.eye, pixels.normal);
     pixels.n_dot_v = dot3(pixels.normal, pixels.eye);
     ClusterWalk walk;
-    walk.lights = 1;
-    walk.light[0] = i;
+    walk.lights = *times;
+    for (uint light = 0; light < walk.lights; ++light) walk.light[light] = i;
     floatL none = 0.0f;
     vec3L dark = {none, none, none};
     HighlightSums sums = {{dark, dark}, none, none};
     float exponent = in[i + 9 * stride];
-    add_listed_highlights(&walk, &tree, &pixels, exponent, (uint)in[i + 10 * stride], &sums);
+    uint model = (uint)in[i + 10 * stride];
+    add_listed_highlights(&walk, &tree, &pixels, exponent, model, &sums);
     vec3L light = sum_of_blocks(&sums.light);
-    floatL values[6] = {light.x, light.y, light.z, sums.unsure, sums.weight, (floatL)(lobe_rounding(exponent))};
+    floatL values[6] = {light.x, light.y, light.z, sums.unsure, sums.rounding, (floatL)(lobe_rounding(exponent, model))};
     for (uint v = 0; v < 6; ++v) out[i + v * stride] = ((const float *)&values[v])[lane];
   }
 }

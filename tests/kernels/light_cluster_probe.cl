@@ -62,6 +62,33 @@ __kernel void probe_far_cluster(__global const float *in, __global float *out, u
   }
 }
 
+// The same of lights: of an open leaf the one that is `light_rows`'. The last is 0 where it is listed.
+__kernel void probe_far_light(__global const float *in, __global float *out, uint stride, __global const float *light_rows) {
+  uint first = get_global_id(0) * LANES;
+  ClusterTree tree = {light_rows, light_rows, stride, 0};
+  for (uint lane = 0; lane < LANES; ++lane) {
+    uint i = first + lane;
+    PixelGroup group = group_of(in, stride, i);
+    ClusterWalk walk;
+    walk.lights = 0;
+    FieldSums sums;
+    start_field(&sums);
+    visit_lights(&tree, i / kClusterSlots, 1u << i % kClusterSlots, &group, 1.0f, &walk, &sums);
+    bool joined = sums.open > 0;
+    Field field;
+    finish_field(&sums, &field);
+    FieldFactors factors = field_factors(vector_of(in + 12 * stride, stride, i), from_middle(vector_of(in + 9 * stride, stride, i), &group));
+    for (uint c = 0; c < 3; ++c) {
+      floatL value = field_value(field.term + c * kFieldTerms, &factors);
+      out[i + c * stride] = ((const float *)&value)[lane];
+    }
+    out[i + 3 * stride] = field.term[kFieldBound];
+    out[i + 4 * stride] = field.rounding;
+    out[i + 5 * stride] = field.term[kFieldWeight];
+    out[i + 6 * stride] = joined ? 2.0f : walk.lights > 0 ? 0.0f : 1.0f;
+  }
+}
+
 // out: the same but for the last, of the sum of all clusters of `row_count` rows.
 __kernel void probe_field_sums(__global const float *in, __global float *out, uint stride, __global const float *rows,
                                __global const uint *row_count) {

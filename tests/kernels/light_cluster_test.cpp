@@ -48,6 +48,16 @@ std::vector<Column> probeFar(int lanes, const std::vector<Case>& cases) {
                {{"rows", columns.rows}});
 }
 
+/// Of the first light of each case.
+std::vector<Column> probeFarLight(int lanes, const std::vector<Case>& cases) {
+  std::vector<ClusterLight> lights;
+  for (const Case& each : cases)
+    lights.push_back({glm::dvec3(each.centre) + each.lights[0].offset, each.lights[0].color});
+  const std::vector<float> rows = lightRows(lights);
+  return probe(deviceWithLanes(lanes), "light_cluster_probe.cl", "probe_far_light", columnsOf(cases).in, 7,
+               {{"light_rows", rows}});
+}
+
 std::vector<Column> probeCut(int lanes, const std::vector<Case>& cases) {
   const Columns columns = columnsOf(cases);
   return probe(deviceWithLanes(lanes), "light_cluster_probe.cl", "probe_cut_cluster", columns.in, 6,
@@ -82,12 +92,15 @@ glm::dvec3 cutTruth(const Case& each) {
 constexpr double kBoundRounding = 1.001;
 
 /// The series of each case is within its bound of the truth. tight: and the error of a channel is at least
-/// 0.99 of its bound, but for rounding.
-void expectFarCertified(const std::vector<Case>& cases, bool tight) {
+/// 0.99 of its bound, but for rounding. of_light: the series of its first light as a light, which joins it.
+void expectFarCertified(const std::vector<Case>& cases, bool tight, bool of_light = false) {
   for (const int lanes : kAllLanes) {
-    const std::vector<Column> out = probeFar(lanes, cases);
+    const std::vector<Column> out = of_light ? probeFarLight(lanes, cases) : probeFar(lanes, cases);
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const glm::dvec3 truth = farTruth(cases[i]);
+      if (of_light) {
+        ASSERT_EQ(out[6][i], 2) << "case " << i << " is listed, or dark";
+      }
       for (std::size_t c = 0; c < 3; ++c) {
         const double error = std::abs(out[c][i] - truth[int(c)]);
         ASSERT_LE(error, kBoundRounding * out[3][i] + out[4][i])
@@ -119,6 +132,31 @@ TEST(FarFieldKernels, LeaveOutAsMuchAsTheBoundSaysWhereLightAndPixelLeanTowardsE
         cases.push_back(each);
       }
   ASSERT_NO_FATAL_FAILURE(expectFarCertified(cases, true));
+}
+
+// The same of a light, which has no extent. Half of them are 1000 m from the origin, where a float's last bit
+// is 60 µm.
+TEST(FarFieldKernels, LeaveOutOfALightAsMuchAsTheBoundSays) {
+  Random random(17);
+  std::vector<Case> cases;
+  for (const double k : {0.02, 0.1, 0.3, 0.5, 0.69})
+    for (const double distance : {0.5, 1.0, 30.0})
+      for (const double origin : {0.0, 1000.0})
+        for (int i = 0; i < 4; ++i) {
+          Case each;
+          each.middle = origin * glm::dvec3(1, -1, 1) + random.direction();
+          const glm::dvec3 n = random.direction(), place = glm::dvec3(each.middle) + distance * n;
+          each.centre = place;
+          each.lights = {{place - glm::dvec3(each.centre), glm::dvec3(random.between(0.5, 2))}};
+          each.position = glm::dvec3(each.middle) + k * distance * n;
+          each.radius = std::nextafter(
+              float(glm::distance(glm::dvec3(each.position), glm::dvec3(each.middle))), INFINITY);
+          each.thickness = each.radius;
+          each.normal = each.facing = n;
+          // A pixel's place is a float: of a near one it isn't on the line at all.
+          if (origin == 0 || k * distance > 0.05) cases.push_back(each);
+        }
+  ASSERT_NO_FATAL_FAILURE(expectFarCertified(cases, true, true));
 }
 
 TEST(FarFieldKernels, AreWithinTheirBoundOfTheTruth) {
@@ -154,10 +192,14 @@ TEST(FarFieldKernels, CountTheRoundingOfAllTermsOfTheSeries) {
       cases.push_back({.centre = {0, 0, 1},
                        .lights = {{{0, 0, -of_light * k}, glm::dvec3(1)}},
                        .radius = float((1 - of_light) * k)});
-  for (const int lanes : kAllLanes) {
-    const std::vector<Column> out = probeFar(lanes, cases);
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      const double k = double(cases[i].radius) - cases[i].lights[0].offset.z,
+  for (const auto& [lanes, of_light] : {std::pair(16, false), std::pair(8, false), std::pair(4, false),
+                                        std::pair(1, false), std::pair(16, true), std::pair(1, true)}) {
+    std::vector<Case> tried = cases;
+    // A light's extent is none.
+    if (of_light) std::erase_if(tried, [](const Case& each) { return each.lights[0].offset.z != 0; });
+    const std::vector<Column> out = of_light ? probeFarLight(lanes, tried) : probeFar(lanes, tried);
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      const double k = double(tried[i].radius) - tried[i].lights[0].offset.z,
                    magnitudes = 1 + 4 * k + 12 * k * k;
       // k is taken 10⁻⁵ larger, and its polynomial rounds.
       EXPECT_GE(out[5][i], magnitudes * (1 - 8 * 0x1p-24)) << k;

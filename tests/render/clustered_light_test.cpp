@@ -31,6 +31,7 @@ Lit lightBy(Device& device, const GBuffer& gbuffer, const Lights& lights, float 
   features.set(Feature::kFogExp, fog.mode == FogMode::kExp);
   features.set(Feature::kFogPerChannel);
   features.set(Feature::kClusteredHighlights, highlights);
+  features.set(Feature::kPhong);
   Lit lit;
   lit.light.assign(3 * gbuffer.pixels(), -1.0f);
   lit.bound.assign(3 * gbuffer.pixels(), -1.0f);
@@ -352,7 +353,7 @@ TEST_F(HardClusteredLight, OfManyLightsTooDimToCountBesideOne) {
 TEST_F(HardClusteredLight, OfLightsThatGraze) {
   const glm::dvec3 place(0.3, 0.2, -3);
   for (const auto& [before, after] : {std::pair(0, 0), std::pair(0, 300), std::pair(300, 0)}) {
-    SCOPED_TRACE(std::to_string(before) + " black lights before, " + std::to_string(after) + " after");
+    SCOPED_TRACE(std::to_string(before) + " dim lights before, " + std::to_string(after) + " after");
     GBuffer gbuffer = wavySurface(40, 24, 0.2, random, 0);
     const std::size_t n = gbuffer.pixels();
     for (int y = 0; y < gbuffer.height; ++y)
@@ -363,12 +364,95 @@ TEST_F(HardClusteredLight, OfLightsThatGraze) {
         const glm::dvec3 normal = glm::normalize(glm::cross(way, random.direction())) + height * way;
         for (int c = 0; c < 3; ++c) gbuffer.normal[i + c * n] = float(normal[c]);
       }
-    Lights lights(before, {place, glm::dvec3(0), 1});
+    Lights lights(before, {place, glm::dvec3(1e-30), 1});
     lights.insert(lights.end(), 8, {place, glm::dvec3(1), 1});
-    lights.insert(lights.end(), after, {place, glm::dvec3(0), 1});
+    lights.insert(lights.end(), after, {place, glm::dvec3(1e-30), 1});
     ASSERT_NO_FATAL_FAILURE(
         expectCertified(gbuffer, lights, lightBy(deviceWithLanes(16), gbuffer, lights, 1e-7f), 1e-7, false));
+    // A lobe of exponent 0 is 1 up to the horizon.
+    for (std::size_t c = 0; c < 4; ++c)
+      std::fill_n(gbuffer.specular.begin() + std::ptrdiff_t(c * n), n, c < 3 ? 1.0f : 0.0f);
+    const Lit shiny = lightBy(deviceWithLanes(16), gbuffer, lights, 1e-7f, {}, true);
+    ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, shiny, 1e-7, false, true));
   }
+}
+
+/// A flat surface 6 m ahead that shines and has no colour of its own. size: its side.
+GBuffer shinySurface(double size, float exponent, Random& random) {
+  GBuffer gbuffer = wavySurface(16, 16, 0, random, 0);
+  const std::size_t n = gbuffer.pixels();
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const std::size_t place = gbuffer.index(x, y);
+      gbuffer.position[place] = float(size / 16 * x);
+      gbuffer.position[place + n] = float(size / 16 * y);
+      for (std::size_t c = 0; c < 3; ++c) gbuffer.diffuse[place + c * n] = 0;
+      for (std::size_t c = 0; c < 3; ++c) gbuffer.specular[place + c * n] = 1;
+      gbuffer.specular[place + 3 * n] = exponent;
+    }
+  return gbuffer;
+}
+
+// What is counted of lights that are listed: 164 roundings of their highlights, and what each lobe's may be.
+TEST_F(HardClusteredLight, OfHighlightsCountsTheRoundingOfEachLight) {
+  for (const float exponent : {4.0f, 32.0f, 1000.0f}) {
+    const GBuffer gbuffer = shinySurface(0.5, exponent, random);
+    const std::size_t n = gbuffer.pixels();
+    const Lights lights = lightsIn({-2, -2, -5}, {2, 2, 4}, 300, random);
+    const Lit lit = lightBy(deviceWithLanes(16), gbuffer, lights, 1e-8f, {}, true);
+    const double p = exponent, e = 0x1p-24 * (13.1 * std::sqrt(p) + 36 + 141 / p);
+    for (std::size_t i = 0; i < n; ++i) {
+      const glm::dvec3 position = vectorAt(gbuffer.position, i, n), eye = -glm::normalize(position);
+      const glm::dvec3 mirrored(-eye.x, -eye.y, eye.z);
+      glm::dvec3 of_light(0.0);
+      double of_lobes = 0;
+      for (const UnboundedLight& light : lights) {
+        const glm::dvec3 way = light.position - position, q = light.diffuse / light.quadratic;
+        const double d2 = glm::dot(way, way), cosine = glm::dot(mirrored, way) / std::sqrt(d2);
+        const double lobe = std::pow(std::max(cosine, 0.0), p);
+        of_light += q * (lobe / d2);
+        of_lobes += std::max({q.x, q.y, q.z}) / d2 * e * std::sqrt(lobe);
+      }
+      for (int c = 0; c < 3; ++c)
+        ASSERT_GE(vectorAt(lit.bound, i, n)[c], 0.999 * (164 * 0x1p-24 * of_light[c] + of_lobes))
+            << "exponent " << exponent << ", pixel " << i << ", channel " << c;
+    }
+  }
+}
+
+/// Lights so far away, in a direction, that each pixel sees them at the same place.
+Lights farLights(const glm::dvec3& direction, double exposure, Random& random) {
+  const double distance = 1e4;
+  Lights lights;
+  for (int i = 0; i < 2000; ++i)
+    lights.push_back(
+        {distance * direction + random.direction(), glm::dvec3(exposure * distance * distance / 2000), 1});
+  return lights;
+}
+
+TEST_F(HardClusteredLight, OfHighlightsCountsTheRoundingOfTheSeries) {
+  const GBuffer gbuffer = shinySurface(1e-3, 32, random);
+  const std::size_t n = gbuffer.pixels();
+  const Lit lit = lightBy(deviceWithLanes(16), gbuffer, farLights({0, 0, 1}, 1, random), 1.0f / 16, {}, true);
+  EXPECT_EQ(lit.counts.lights, 0u) << "all join the series";
+  for (std::size_t i = 0; i < n; ++i)
+    ASSERT_GE(vectorAt(lit.bound, i, n).x,
+              0.999 * (32 * 32 + 128 + 16) * 0x1p-24 * vectorAt(lit.light, i, n).x);
+}
+
+// Normals that turn the mirrored eye by 0.02 to both sides, towards the lights and from them.
+TEST_F(HardClusteredLight, OfAxesThatTurnWithinAGroup) {
+  GBuffer gbuffer = shinySurface(1e-3, 64, random);
+  const std::size_t n = gbuffer.pixels();
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const glm::dvec3 normal = glm::normalize(glm::dvec3(x % 2 == 0 ? 0.01 : -0.01, 0, 1));
+      for (int c = 0; c < 3; ++c) gbuffer.normal[gbuffer.index(x, y) + std::size_t(c) * n] = float(normal[c]);
+    }
+  const Lights lights = farLights({0.3, 0, std::sqrt(1 - 0.09)}, 5, random);
+  const Lit lit = lightBy(deviceWithLanes(16), gbuffer, lights, 1.0f / 16, {}, true);
+  EXPECT_EQ(lit.counts.lights, 0u) << "all join the series";
+  ASSERT_NO_FATAL_FAILURE(expectCertified(gbuffer, lights, lit, 1.0 / 16, true, true));
 }
 
 // Steps that one group of pixels holds both of: the lights between them light the lower one alone.
