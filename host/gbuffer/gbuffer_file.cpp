@@ -32,8 +32,9 @@ void store(Plane& group, std::size_t at, std::size_t stride, glm::vec3 value) {
   for (int c = 0; c < 3; ++c) group[at + c * stride] = value[c];
 }
 
-/// How far from 1 the length may be of a vector that was normalized and rounded in float.
-constexpr double kUnitError = 1e-6;
+/// How far from 1 a normal's length may be. The raster's are rounded once, and off by 2⁻²⁴ at most; what
+/// bounds a picture's error allows for this (LIGHT_ROUNDING in kernels/clustered_light.cl).
+constexpr double kUnitError = 3 * 0x1p-24;
 
 bool isFinite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -166,8 +167,7 @@ class Surface {
     position = isThere(position_) ? channels_.three(pixel, position_) : unproject(pixel);
     if (!isFinite(position)) return false;
     if (in_view_space_) {
-      // Normals that this program wrote are unit and must keep their bits; another program may have changed
-      // them.
+      // Normals that this program wrote must keep their bits; another program may have changed them.
       const double length = glm::length(glm::dvec3(normal));
       if (std::abs(length - 1) > kUnitError) normal = glm::vec3(glm::dvec3(normal) / length);
       return true;

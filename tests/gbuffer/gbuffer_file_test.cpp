@@ -79,7 +79,7 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
       const double half = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2) * depth;
       const glm::dvec2 screen{((x + 0.5) / width * 2 - 1) * width / height, 1 - (y + 0.5) / height * 2};
       setThree(g.position, at, stride, glm::vec3(screen.x * half, screen.y * half, -depth));
-      setThree(g.normal, at, stride, glm::normalize(glm::vec3(0.1f * float(i % 7), 0.3f, 1.0f)));
+      setThree(g.normal, at, stride, glm::vec3(glm::normalize(glm::dvec3(0.1 * (i % 7), 0.3, 1.0))));
       g.geometric_normal[at] = packNormal(glm::dvec3(i % 5 - 2, i % 3 - 0.3, 0.1 * (i % 101)));
       g.lift[at] = i % 4 == 0 ? 0.0f : 1e-3f * float(i % 97);
       setThree(g.diffuse, at, stride, glm::vec3(0.1f, 0.01f * float(i % 90), 0.7f));
@@ -152,6 +152,26 @@ TEST(GBufferFile, EveryPlaneSurvivesBitForBit) {
     EXPECT_TRUE(sameBits(read.emission, written.emission));
     EXPECT_EQ(read.geometric_normal, written.geometric_normal);
     EXPECT_TRUE(sameBits(read.lift, written.lift));
+  }
+}
+
+TEST(GBufferFile, NormalsThatAreNotUnitAreNormalized) {
+  const TemporaryFolder folder;
+  GBuffer written = somePicture(16, 16, someCamera());
+  const Plane unit = written.normal;
+  for (float& component : written.normal) component = float(component * (1 + 9e-7));
+  writeGBuffer(written, folder / "g.exr", {});
+  const GBuffer read = readGBuffer(folder / "g.exr");
+  const std::size_t stride = read.pixels();
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      const std::size_t at = read.index(x, y);
+      if (unit[at + 2 * stride] == 0) continue;
+      const glm::dvec3 normal(read.normal[at], read.normal[at + stride], read.normal[at + 2 * stride]);
+      EXPECT_NEAR(glm::length(normal), 1, 1.001 * 0x1p-24) << "each component rounds once";
+      // Both round once, and the written one once more.
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(normal[c], unit[at + c * stride], 3 * 0x1p-24);
+    }
   }
 }
 

@@ -1,6 +1,9 @@
 #include "highlights.clh"
 #include "lanes.clh"
 #include "light_clusters.clh"
+#include "listed_highlights.clh"
+#include "lobe_series.clh"
+#include "lobes.clh"
 #include "phong.clh"
 #include "shared.h"
 

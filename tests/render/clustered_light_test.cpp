@@ -407,7 +407,7 @@ TEST_F(HardClusteredLight, OfHighlightsCountsTheRoundingOfEachLight) {
       glm::dvec3 of_light(0.0);
       double of_lobes = 0;
       for (const UnboundedLight& light : lights) {
-        const glm::dvec3 way = light.position - position, q = light.diffuse / light.quadratic;
+        const glm::dvec3 way = light.position - position, q = light.color / light.quadratic;
         const double d2 = glm::dot(way, way), cosine = glm::dot(mirrored, way) / std::sqrt(d2);
         const double lobe = std::pow(std::max(cosine, 0.0), p);
         of_light += q * (lobe / d2);
