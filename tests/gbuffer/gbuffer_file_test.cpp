@@ -434,7 +434,7 @@ TEST(GBufferFile, WindowsOfAnImpossiblePictureAreRefused) {
   for (const auto& [first, side] : {std::pair(-(1 << 30) + 2, 2147483645), {-1, 32769}}) {
     writeForeign(
         path, 1, 1, {"P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z"}, [](int, int, int) { return 1.0f; },
-        [&](OIIO::ImageSpec& spec) {
+        [&, first = first, side = side](OIIO::ImageSpec& spec) {
           spec.full_x = spec.full_y = first;
           spec.full_width = spec.full_height = side;
         });
