@@ -164,6 +164,30 @@ TEST_P(ShadeTiles, FindNoLightInAGapBetweenNeighbouringPixels) {
   EXPECT_EQ(lighting.lists.entries, 0u);
 }
 
+// Whether a surface faces a directional light doesn't depend on where it is: in a parallel view it may face
+// away from the eye.
+TEST_P(ShadeTiles, FindDirectionalLightsWhereSurfacesFaceAwayFromTheEye) {
+  Camera camera;
+  camera.orthographic = true;
+  camera.half_height = 20;
+  Random random(6);
+  GBuffer gbuffer = randomGBuffer(camera, 40, 40, 0, random);
+  const std::size_t n = gbuffer.pixels();
+  const glm::vec3 normal(0.8f, 0, 0.6f);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t place = gbuffer.index(x, y);
+        gbuffer.position[place + c * n] = (c == 0 ? 15.0f : c == 1 ? 0.0f : -5.0f) + 0.01f * float(x - y);
+        gbuffer.normal[place + c * n] = normal[c];
+      }
+  Scene scene = lightsInGap();
+  scene.lights[7].position = {15, 0, -4};
+  scene.lights[8].kind = LightKind::kDirectional;
+  scene.lights[8].direction = -glm::normalize(glm::dvec3(normal));
+  expectBitsOfLists(deviceWithLanes(GetParam()), scene, gbuffer, Model::kPhong);
+}
+
 // Each pixel meets more lights than are found at once, and more than a block of a sum takes.
 TEST_P(ShadeTiles, GiveTheBitsOfListsForAHundredThousandLights) {
   Device& device = deviceWithLanes(GetParam());
