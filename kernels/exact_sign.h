@@ -66,12 +66,12 @@ INLINE double magnitude(double x) { return x > -x ? x : -x; }
 // The sign of det(a − l, b − l, c − m).
 INLINE int determinant_sign(float4 a, float4 b, float4 l, float4 c, float4 m) {
 #ifdef DOUBLES
-  // u = 2⁻⁵³. A difference d̂ is rounded once, and a device that takes denormals for 0 is wrong by below 2⁻¹²⁶ in each of both floats: it is within
-  // u·|d̂| + 2⁻¹²⁵ ≤ u·m of the real one, m = |d̂| + 2⁻⁷². A term of the determinant is a product of three: 3 such errors, and 5 roundings: two
-  // products, the difference of two of them and two sums. Together these are at most ((1 + u)⁸ − 1)·P, P being the sum of the six products of m.
-  // P itself is rounded 8 times on each way from m, the product with the constant once: 9·u·P is more than the error by u·P, and higher powers of
-  // u are nothing. It holds as well where a product and a sum are contracted, which only rounds less. Nothing overflows, below 6·2³⁸⁷, and nothing
-  // underflows: all numbers are multiples of 2⁻⁴⁴⁷.
+  // u = 2⁻⁵³. A difference d is rounded once, and a device that takes denormals for 0 is wrong by less than 2⁻¹²⁶ in each of its floats: d is within
+  // u·|d| + 2⁻¹²⁵ = u·m of the real one, m = |d| + 2⁻⁷². Each of the determinant's six products of three has 3 such errors and up to 5 roundings:
+  // those of two products, of the difference of two of them, and of two sums. So the error is at most ((1 + u)⁸ − 1)·P < 8u·(1 + 4u)·P, P being
+  // the sum of the six products of m. P and its product with the constant are rounded up to 9 times themselves, and 1 + 2⁻¹⁶ makes up for that.
+  // Where a compiler contracts a product and a sum there is less rounding. Nothing overflows, being below 6·2³⁸⁷; nothing underflows, being
+  // multiples of 2⁻⁴⁴⁷.
   double ax = (double)a.x - l.x, ay = (double)a.y - l.y, az = (double)a.z - l.z;
   double bx = (double)b.x - l.x, by = (double)b.y - l.y, bz = (double)b.z - l.z;
   double cx = (double)c.x - m.x, cy = (double)c.y - m.y, cz = (double)c.z - m.z;
@@ -80,7 +80,7 @@ INLINE int determinant_sign(float4 a, float4 b, float4 l, float4 c, float4 m) {
   double Ax = magnitude(ax) + flushed, Ay = magnitude(ay) + flushed, Az = magnitude(az) + flushed;
   double Bx = magnitude(bx) + flushed, By = magnitude(by) + flushed, Bz = magnitude(bz) + flushed;
   double Cx = magnitude(cx) + flushed, Cy = magnitude(cy) + flushed, Cz = magnitude(cz) + flushed;
-  double bound = 0x1.2p-50 * (Ax * (By * Cz + Bz * Cy) + Ay * (Bz * Cx + Bx * Cz) + Az * (Bx * Cy + By * Cx));
+  double bound = 0x1.0001p-50 * (Ax * (By * Cz + Bz * Cy) + Ay * (Bz * Cx + Bx * Cz) + Az * (Bx * Cy + By * Cx));
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
 #endif
