@@ -37,6 +37,7 @@ PHONG = ("kernels", "PhongKernels.*")
 COOK_TORRANCE = ("kernels", "CookTorranceKernel.*")
 TOON = ("kernels", "ToonKernels.*")
 DISC = ("kernels", "DiscKernels.*")
+EXACT_SIGN = ("kernels", "ExactSignKernels.*")
 SHADOW = ("kernels", "ShadowKernels.*")
 CULL = ("kernels", "*CullKernels.*")
 SHADE = ("kernels", "*ShadeKernel.*/16")
@@ -68,6 +69,7 @@ TESTS = {
     "cull.cl": [CULL, EXACT, PICTURES],
     "cut_clusters.clh": [CUT_CLUSTERS, CLUSTERED],
     "disc.clh": [DISC],
+    "exact_sign.h": [EXACT_SIGN],
     "falloff.clh": [FALLOFF, HARD_SPOTS, CLOSED_FORM, SHADE],
     "far_field.clh": [FAR_FIELD, CLUSTERED],
     "find_needed.cl": [NEEDED, MAPS],
@@ -88,6 +90,7 @@ TESTS = {
     "shading.clh": [CLOSED_FORM, SHADE, PICTURES, SUMS, EXACT, EXACT_SHADOWS],
     "shadow.clh": [SHADOW, NEEDED, MAPS, SOFT, TERMINATOR],
     "toon.clh": [TOON],
+    "wide_integer.h": [EXACT_SIGN],
 }
 
 
@@ -127,6 +130,27 @@ MUTANTS = {
         Mutant("c <= -3.4028235e38f", "c >= -3.4028235e38f"),
         Mutant("y < 0.0f ? y - fold : y + fold", "y < 0.0f ? y + fold : y - fold"),
         Mutant("packed << 16 >> 16", "packed & 0xffff"),
+    ],
+    "exact_sign.h": [
+        Mutant("0x1.0001p-50 *", "0x1.0001p-51 *"),
+        Mutant("0x1.0001p-50 *", "0.0 *"),
+        Mutant("flushed = 0x1p-72", "flushed = 0.0"),
+        Mutant("Ay * (Bz * Cx + Bx * Cz)", "Ay * (Bz * Cx - Bx * Cz)"),
+        Mutant("return x > -x ? x : -x", "return x"),
+        Mutant("return determinant_sign_by_integers(a, b, l, c, m)", "return 0"),
+        Mutant("determinant < -bound", "determinant < bound"),
+        Mutant("3 * ((bits) + 1) + 3 + 1", "3 * (bits) + 3 + 1"),
+        Mutant("((bits) + 31) / 32", "((bits) + 31) / 32 - 1"),
+        Mutant("greatest - least + 24", "greatest - least + 8"),
+        Mutant("if (bits << 1 != 0 && exponent < least)", "if (exponent < least)",
+               "zeros make the common unit smaller, and the integers longer"),
+        Mutant("if (bits << 1 != 0 && exponent > greatest)", "if (exponent > greatest + 1)"),
+        Mutant("if (greatest < least) return 0;", "", "without any bit the sum is 0 as well, in 26 words fewer"),
+        Mutant("odd && row == 0", "odd && row == 3"),
+        Mutant("odd ? 3 - row : row", "row"),
+        Mutant("^ flip ^ 0x80000000", "^ flip"),
+        Mutant("determinant_sign(a, b, l, c, l)", "determinant_sign(a, b, l, l, c)"),
+        Mutant("return -determinant_sign(p, q, r, d, none)", "return determinant_sign(p, q, r, d, none)"),
     ],
     "falloff.clh": [
         Mutant("fma_lanes(dz, dz, fma_lanes(dx, dx, (dy) * (dy)))", "fma_lanes(dx, dx, (dy) * (dy))"),
@@ -534,6 +558,18 @@ MUTANTS = {
         Mutant("(group->gain * error[part] < LIGHT_SHARE * share)", "(error[part] >= 0.0f)"),
         Mutant("far &= slots;", ""),
         Mutant("slots & ~far, walk)", "slots, walk)"),
+    ],
+    "wide_integer.h": [
+        Mutant("exponent != 0 ? exponent : 1", "exponent"),
+        Mutant("? 0x800000 : 0", "? 0x800000 : 0x800000"),
+        Mutant("digits <<= shift % 32", "digits <<= shift % 31"),
+        Mutant("carry = flip & 1", "carry = 0"),
+        Mutant("carry += (ulong)sum[i] +", "carry += sum[i] +"),
+        Mutant("digits >>= 32", "digits = 0"),
+        Mutant("sum[i + j] + (ulong)a[i] * b[j]", "(ulong)a[i] * b[j]"),
+        Mutant("sum[i + j] + (ulong)a[i] * b[j]", "sum[i + j] + a[i] * b[j]"),
+        Mutant("if (integer[words - 1] >> 31 != 0) return -1;", ""),
+        Mutant("any |= integer[i]", "any = integer[i]"),
     ],
 }
 
