@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <string>
-
-#include "base/machine_memory.hpp"
+#include <tuple>
 
 namespace luciole {
 namespace {

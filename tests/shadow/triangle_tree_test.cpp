@@ -165,6 +165,13 @@ TEST(TriangleTree, BlocksAreMostlyFull) {
   EXPECT_LT(tree.children.size() / kTreeWidth, tree.block_bits.size() / 4);
 }
 
+TEST(TriangleTree, EqualTrianglesFillTheirBlocks) {
+  const Scene scene = looseScene(std::vector<Triangle>(5003, {glm::vec3(1, 2, 3), glm::vec3(2), glm::vec3(1)}));
+  const TriangleTree tree = buildTriangleTree(scene, glm::dvec3(0));
+  EXPECT_EQ(tree.block_bits.size(), (5003 + 15) / 16);
+  EXPECT_EQ(expectTreeOver(scene, tree), 3) << "313 blocks by 16, rounded up";
+}
+
 TEST(TriangleTree, OneBlockIsTheRootAndAnEmptySceneHasAnEmptyNode) {
   const Scene few = looseScene(randomTriangles(16, 1, 3));
   const TriangleTree block = buildTriangleTree(few, glm::dvec3(0));
