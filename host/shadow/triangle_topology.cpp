@@ -31,10 +31,12 @@ struct Branch {
   std::array<Child, kTreeWidth> children;
 };
 
-/// Which set is divided next: the one whose box is met most often; in halves, the largest. Blocks never are.
-float urgency(const TriangleSet& set, bool halving) {
-  if (set.size() <= kTreeWidth) return -1;
-  return halving ? float(blocksFor(set.size())) : halfArea(set.box);
+/// Whether b rather than a is divided next: the one whose box is met more often; in halves, the larger.
+/// Blocks never are.
+bool comesBefore(const TriangleSet& a, const TriangleSet& b, bool halving) {
+  if (a.size() <= kTreeWidth || b.size() <= kTreeWidth || halving) return a.size() < b.size();
+  const float area_a = halfArea(a.box), area_b = halfArea(b.box);
+  return area_a != area_b ? area_a < area_b : a.size() < b.size();
 }
 
 std::unique_ptr<Branch> grow(const TriangleSet& all, int depth, TriangleBoxes (&arrays)[2]) {
@@ -42,14 +44,17 @@ std::unique_ptr<Branch> grow(const TriangleSet& all, int depth, TriangleBoxes (&
   std::array<TriangleSet, kTreeWidth> sets{all};
   int count = 1;
   while (count < kTreeWidth) {
-    const auto largest = std::max_element(
-        sets.begin(), sets.begin() + count,
-        [&](const auto& a, const auto& b) { return urgency(a, halving) < urgency(b, halving); });
+    const auto largest =
+        std::max_element(sets.begin(), sets.begin() + count,
+                         [&](const auto& a, const auto& b) { return comesBefore(a, b, halving); });
     if (largest->size() <= kTreeWidth) break;
     std::tie(*largest, sets[count]) =
         halving ? splitInHalves(*largest, arrays) : splitByArea(*largest, arrays);
     ++count;
   }
+  // A walk takes the last child first: blocks before nodes, as they may settle at once what it asks.
+  std::stable_sort(sets.begin(), sets.begin() + count,
+                   [](const TriangleSet& a, const TriangleSet& b) { return a.size() > b.size(); });
   auto branch = std::make_unique<Branch>();
   branch->count = count;
   const auto growChild = [&](int i) {

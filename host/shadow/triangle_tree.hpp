@@ -21,7 +21,8 @@ using AlignedArray = std::vector<T, RawArrayAllocator<T>>;
 ///     children    1 │~0 │ 2 │ …           16 a node: a node's index, or ~(a block's index), or 0 where there
 ///     is none blocks         └ corners and planes of 16 triangles
 ///
-/// A node comes before its children. Coordinates are float((world − origin) · scale).
+/// A node comes before its children, and of these those with more triangles come first. Coordinates are
+/// float((world − origin) · scale).
 struct TriangleTree {
   glm::dvec3 origin{0.0};  ///< world
   /// A power of two: 1 unless a coordinate may be beyond 2⁴⁰, else such that those of triangles and lights

@@ -64,10 +64,14 @@ Expected expectedCorners(const Scene& scene, const TriangleTree& tree) {
 }
 
 /// Normal and offset are right to some roundings of floats where the triangle isn't too thin for doubles.
-void expectPlane(const std::array<glm::dvec3, 3>& exact, const glm::vec4& plane) {
+void expectPlane(const std::array<glm::dvec3, 3>& exact, const std::array<glm::vec3, 3>& rounded,
+                 const glm::vec4& plane) {
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(std::isfinite(plane[i]));
   if (plane == glm::vec4(0)) return;
   ASSERT_NEAR(glm::length(glm::dvec3(plane)), 1, 0x1p-22);
+  const glm::dvec3 a = rounded[0],
+                   turned = glm::cross(glm::dvec3(rounded[1]) - a, glm::dvec3(rounded[2]) - a);
+  ASSERT_GT(glm::dot(glm::dvec3(plane), turned), 0) << "the orientation of the rounded corners";
   for (const glm::dvec3& corner : exact) {
     // Each of four numbers is rounded by 2⁻²⁴ of itself, and the corners of thin triangles move a double's
     // cross product.
@@ -108,7 +112,7 @@ int expectTreeOver(const Scene& scene, const TriangleTree& tree) {
           EXPECT_TRUE(glm::all(glm::lessThanEqual(glm::abs(corner), glm::vec3(0x1p40f))));
           add({corner, corner});
         }
-        expectPlane(expected.exact[triangle],
+        expectPlane(expected.exact[triangle], expected.rounded[triangle],
                     {at(tree, block, kPlaneRows, slot), at(tree, block, kPlaneRows + 1, slot),
                      at(tree, block, kPlaneRows + 2, slot), at(tree, block, kPlaneRows + 3, slot)});
       }
@@ -166,7 +170,8 @@ TEST(TriangleTree, BlocksAreMostlyFull) {
 }
 
 TEST(TriangleTree, EqualTrianglesFillTheirBlocks) {
-  const Scene scene = looseScene(std::vector<Triangle>(5003, {glm::vec3(1, 2, 3), glm::vec3(2), glm::vec3(1)}));
+  const Scene scene =
+      looseScene(std::vector<Triangle>(5003, {glm::vec3(1, 2, 3), glm::vec3(2), glm::vec3(1)}));
   const TriangleTree tree = buildTriangleTree(scene, glm::dvec3(0));
   EXPECT_EQ(tree.block_bits.size(), (5003 + 15) / 16);
   EXPECT_EQ(expectTreeOver(scene, tree), 3) << "313 blocks by 16, rounded up";
