@@ -276,14 +276,14 @@ TEST(TriangleTree, ALightFarAwayScalesToo) {
 }
 
 TEST(TriangleTree, PlanesAreRightFarFromTheOriginAndZeroWithoutArea) {
-  // Corners 1000 km away are rounded by centimetres, their plane isn't.
-  const Scene large =
-      looseScene({{glm::vec3(-1e6f, 0.1f, -1e6f), glm::vec3(1e6f, 0.3f, -1e6f), glm::vec3(0, -0.7f, 1e6f)}});
-  const TriangleTree tree = buildTriangleTree(large, {0.123456, 1.234567, 2.345678});
-  const glm::dvec4 plane(at(tree, 0, kPlaneRows, 0), at(tree, 0, kPlaneRows + 1, 0),
-                         at(tree, 0, kPlaneRows + 2, 0), at(tree, 0, kPlaneRows + 3, 0));
-  const double height = (0.1 + 0.3) / 4 - 0.7 / 2;  // of the triangle above the world's origin
-  EXPECT_NEAR(std::abs(plane.w), 1.234567 - height, 2e-6);
+  // Corners 1000 km away are rounded by centimetres. Their plane passes through the world's origin, and is
+  // right there.
+  const Scene large = looseScene({{glm::vec3(-1e6f), glm::vec3(1e6f, 1e6f, -1e6f), glm::vec3(0, 0, 1e6f)}});
+  const glm::dvec3 origin(0.123456, 1.234567, 2.345678);
+  const TriangleTree tree = buildTriangleTree(large, origin);
+  const glm::dvec3 normal(at(tree, 0, kPlaneRows, 0), at(tree, 0, kPlaneRows + 1, 0),
+                          at(tree, 0, kPlaneRows + 2, 0));
+  EXPECT_NEAR(glm::dot(normal, -origin), at(tree, 0, kPlaneRows + 3, 0), 1e-6);
 
   const glm::vec3 a(1, 2, 3), b(4, 5, 6);
   const Scene thin = looseScene({{a, a, a}, {a, b, a}, {a, b, 2.0f * b - a}});
@@ -292,11 +292,21 @@ TEST(TriangleTree, PlanesAreRightFarFromTheOriginAndZeroWithoutArea) {
     for (int row = kPlaneRows; row < kBlockRows; ++row) EXPECT_EQ(at(none, 0, row, slot), 0);
 }
 
+TEST(TriangleTree, PlanesTurnAsTheRoundedCornersDo) {
+  // Corners are rounded by up to half of a triangle.
+  Scene scene = looseScene(randomTriangles(500, 1e-5f, 9));
+  scene.objects[0].object_to_world[3] = {50, 60, 70, 1};
+  expectTreeOver(scene, buildTriangleTree(scene, glm::dvec3(0)));
+}
+
 TEST(TriangleTree, CornersThatAreNoNumbersLeaveNoNumbersThatAreNone) {
   std::vector<Triangle> triangles = randomTriangles(100, 1, 8);
   triangles[7][1].y = std::numeric_limits<float>::quiet_NaN();
   triangles[50][2].x = kInfinity;
-  const TriangleTree tree = buildTriangleTree(looseScene(triangles), glm::dvec3(0));
+  Scene scene = looseScene(triangles);
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].object_to_world[0] *= 1e100;
+  const TriangleTree tree = buildTriangleTree(scene, glm::dvec3(0));
   for (const float value : tree.blocks) ASSERT_TRUE(std::isfinite(value));
 }
 
