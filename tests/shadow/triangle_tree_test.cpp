@@ -92,7 +92,7 @@ int expectTreeOver(const Scene& scene, const TriangleTree& tree) {
       all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     };
     if (reference < 0) {
-      const std::size_t block = std::size_t(~reference);
+      const std::size_t block = ~reference;
       EXPECT_EQ(block, blocks++);
       const std::uint32_t used = tree.block_bits[block] & 0xffff;
       EXPECT_TRUE(used != 0 && (used & (used + 1)) == 0) << "slots are used from the first on";
