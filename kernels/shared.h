@@ -53,6 +53,27 @@ enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
 // Children of a node in the tree over the lights.
 enum { kTreeArity = 16 };
 
+// The tree over a scene's triangles (host/shadow/triangle_tree.hpp): children of a node, and triangles of a block, which is a leaf.
+enum { kTreeWidth = 16 };
+
+// Rows of kTreeWidth floats of a node: low x, high x, low y, high y, low z, high z of each child's box. A child that isn't there has
+// low = +∞ and high = −∞.
+enum { kNodeRows = 6 };
+
+// Rows of kTreeWidth floats of a block: coordinate a of corner v of its triangles is row kCornerRows + 3·v + a. Of the planes there are
+// unit normal x y z and the offset n·p of their points p; all 0 for a triangle without area.
+enum { kCornerRows = 0, kPlaneRows = 9, kBlockRows = 13 };
+
+// Nodes on any way from that tree's root, at most. A walk that takes a reference from its stack and puts up to kTreeWidth there needs
+// kMaxTreeDepth·(kTreeWidth − 1) + 1 places.
+enum { kMaxTreeDepth = 40 };
+
+// Where shadow rays end, in that tree's space.
+typedef struct {
+  float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
+} BeamLight;
+SHARED_SIZE(BeamLight, 16);
+
 enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
 #define kNoShadow 0xffffffffu

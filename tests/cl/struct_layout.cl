@@ -26,6 +26,12 @@ __kernel void report_list_entry(__global uint *out) {
   *out++ = OFFSET(squares);
 }
 
+__kernel void report_beam_light(__global uint *out) {
+  BeamLight value;
+  *out++ = sizeof(BeamLight);
+  *out++ = OFFSET(place);
+}
+
 __kernel void report_shadow_map(__global uint *out) {
   ShadowMap value;
   *out++ = sizeof(ShadowMap);

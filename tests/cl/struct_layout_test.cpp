@@ -49,6 +49,10 @@ TEST(StructLayout, ListEntry) {
                {sizeof(ListEntry), offsetof(ListEntry, light), offsetof(ListEntry, squares)});
 }
 
+TEST(StructLayout, BeamLight) {
+  expectLayout("report_beam_light", {sizeof(BeamLight), offsetof(BeamLight, place)});
+}
+
 TEST(StructLayout, ShadowMap) {
   expectLayout(
       "report_shadow_map",
