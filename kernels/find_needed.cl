@@ -48,7 +48,7 @@ WORK void note_tile(uint tile, uint plane_stride, __global const float *position
     uint index = LIGHT_LISTS ? list[entry].light : entry;
     uint squares = LIGHT_LISTS ? list[entry].squares : 0xffffffff;
     __global const ShadeLight *light = lights + index;
-    if (light->shadow == kNoShadow) continue;
+    if (light->shadow >= kExactShadow) continue;
     __global const ShadowMap *map = shadow_maps + light->shadow;
     LastNoted last_noted = {kNotNeeded, 0};
     for (uint row = 0; row < kTilePixels; row += LANES) {
@@ -75,7 +75,7 @@ __kernel void find_needed(uint plane_stride, __global const float *position, __g
                           __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
                           __global const ListEntry *list, __global const ShadowMap *shadow_maps,
                           __global const ShadowFace *shadow_faces, __global uint *needed) {
-  if (!SHADOWS) return;
+  if (!SHADOW_MAPS) return;
   note_tile(get_global_id(0), plane_stride, position, normal, lift, lights, light_count, list_starts, list, shadow_maps, shadow_faces,
             needed);
 }

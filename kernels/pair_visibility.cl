@@ -15,7 +15,7 @@ __kernel void pair_visibility(uint stride, __global const float *position, __glo
                               __global const uint *geometric_normal, __global const float *lift, __global const uint *map_of_row, __global const ShadowMap *maps,
                               __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,
                               __global float *visibility) {
-  if (!SHADOWS) return;
+  if (!SHADOW_MAPS) return;
   uint row = get_global_id(0), first = row * LANES;
   MapPoint point = receiver_point(maps + map_of_row[row], faces, load_vec3(position + first, stride),
                                   load_vec3(normal + first, stride), unpack_normal(*(__global const intL *)(geometric_normal + first)),

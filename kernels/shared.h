@@ -61,22 +61,53 @@ enum { kTreeWidth = 16 };
 enum { kNodeRows = 6 };
 
 // Rows of kTreeWidth floats of a block: coordinate a of corner v of its triangles is row kCornerRows + 3·v + a. Of the planes there are
-// unit normal x y z and the offset n·p of their points p; all 0 for a triangle without area.
-enum { kCornerRows = 0, kPlaneRows = 9, kBlockRows = 13 };
+// unit normal x y z and the offset n·p of their points p; all 0 for a triangle without area. Then CORNER_ROUNDING·(|x| + |y| + |z|) of the
+// corner for which that is largest: what is nearer to the plane may be on either side of it.
+enum { kCornerRows = 0, kPlaneRows = 9, kRoundingRow = 13, kBlockRows = 14 };
+#define CORNER_ROUNDING 0x1p-21f
 
 // Nodes on any way from that tree's root, at most. A walk that takes a reference from its stack and puts up to kTreeWidth there needs
 // kMaxTreeDepth·(kTreeWidth − 1) + 1 places.
 enum { kMaxTreeDepth = 40 };
 
-// Where shadow rays end, in that tree's space.
+// Tiles that a work-item of beam_shadows.cl takes, one after another.
+enum { kBeamRun = 8 };
+
+// A light whose rays the tree's triangles may block, in the tree's space.
 typedef struct {
   float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
+  float reach;   // its range; +∞: everywhere
+  uint casts;    // 1: it casts shadows
+  uint pad0, pad1;
 } BeamLight;
-SHARED_SIZE(BeamLight, 16);
+SHARED_SIZE(BeamLight, 32);
+
+// What a texture says where a ray meets a triangle with holes (hole_masks.clh): that it must be looked up, that the surface is there, or that it isn't.
+enum { kMixed = 0, kSolid = 1, kHole = 2 };
+
+enum { kWrapRepeat = 0, kWrapMirrored = 1, kWrapClamped = 2 };
+
+// Where the corners of a triangle with holes lie on its material's mask, in texels, and what the mask means.
+typedef struct {
+  float a_x, a_y;       // corner a
+  float ab_x, ab_y;     // from there to b
+  float ac_x, ac_y;     // and to c
+  float extent;         // the largest magnitude of these four, or 1
+  float slack;          // how far rounding moves a place
+  float solid_from;     // the surface is there from this value on
+  float hole_to;        // and isn't up to this one
+  uint first_texel;     // of the mask
+  uint width, height;   // of the mask; 0: there is none
+  uint wrap_u, wrap_v;  // kWrapRepeat …
+  uint pad;
+} HoleTriangle;
+SHARED_SIZE(HoleTriangle, 64);
 
 enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
+// Values of ShadeLight.shadow that aren't a map's index: the light casts no shadow, or beam_shadows.cl decides its shadows.
 #define kNoShadow 0xffffffffu
+#define kExactShadow 0xfffffffeu
 
 // How many lights' contributions to a pixel are added one by one at most, see long_sum.clh.
 enum { kSumBlock = 128 };
@@ -92,7 +123,7 @@ typedef struct {
   uint kind;           // kPointLight …
   uint khr_window;     // 1: the range window is 1 − (d/r)⁴; 0: its square
   uint cone;           // 1: spot falls off as a cone ramp; 0: as cos^exponent
-  uint shadow;         // index of the light's shadow map, or kNoShadow
+  uint shadow;         // index of the light's shadow map, kNoShadow or kExactShadow
 } ShadeLight;
 SHARED_SIZE(ShadeLight, 112);
 
@@ -177,25 +208,12 @@ typedef struct {
 } ShadowTexel;
 SHARED_SIZE(ShadowTexel, 8);
 
-// Bounds of what is seen anywhere in a texel's square, grown by kBoundGrowth on each side. Depths are reversed: larger is nearer
-// to the light.
-// - The plane is that of a solid triangle which covers the whole square: what lies behind it is dark. Of several such triangles
-//   it is the one whose least depth in the square is the largest. kPlaneError bounds its error (host/raster/bound_depth.hpp).
-// - `others` is the largest depth in the square of any other triangle, without what lies certainly behind the plane. A point that
-//   is nearer to the light than both is lit.
-typedef struct {
-  float depth;           // of the plane at the texel's centre; −∞: no triangle covers the square
-  float step_x, step_y;  // of the plane a texel right and down
-  float others;          // 0: none; +∞: anything may be there
-} BoundTexel;
-SHARED_SIZE(BoundTexel, 16);
-
-// Words of classify.cl's result for an entry of a light list: two bits for each pixel of the tile.
-enum { kPairWords = 2 * kTilePixels / 32 };
+// Words of beam_shadows.cl's result for an entry of a light list: a bit for each pixel of the tile.
+enum { kPairWords = kTilePixels / 32 };
 
 // How far a point may lie off its surface, as a share of its distance from the eye. A float position is rounded in view space, and
 // again relative to the eye, by 2⁻²⁴ each. Thirty-two times that leaves room for G-buffers of other programs, which have rounded
-// in world space, and for the rounding of classify.cl on the way to the light's axes.
+// in world space, and for turning it to the axes of the tree over the triangles.
 #define POINT_ERROR 0x1p-18f
 
 // find_needed.cl's result for a bin that no lookup reads. As a float's bits it would be NaN, so no depth has it.

@@ -52,7 +52,7 @@ NEEDED = ("render", "FindNeeded.*")
 MAPS = ("shadow", "ShadowMaps.*:*HoveringSquare*")
 SOFT = ("shadow", "*SoftEdge*")
 EXACT_SHADOWS = ("render", "*ShadowMethods.PictureIsTheSame*/Exact")
-VERDICTS = ("render", "Classify.*")
+BEAMS = ("render", "BeamShadows.*")
 FAR_FIELD = ("kernels", "FarFieldKernels.*")
 HORIZON = ("kernels", "HorizonKernels.*")
 CUT_CLUSTERS = ("kernels", "CutClusterKernels.*")
@@ -62,7 +62,10 @@ CLUSTERED = ("render", "ClusteredLights.*:HardClusteredLight.*-*AllNearTheHorizo
 TERMINATOR = ("render", "*Terminator*")
 
 TESTS = {
-    "classify.cl": [VERDICTS, EXACT_SHADOWS, TERMINATOR],
+    "beam.clh": [BEAMS, EXACT_SHADOWS],
+    "beam_points.clh": [BEAMS, EXACT_SHADOWS, TERMINATOR],
+    "beam_shadows.cl": [BEAMS, EXACT_SHADOWS],
+    "blockers.clh": [BEAMS, EXACT_SHADOWS],
     "clustered_light.cl": [SHINY, CLUSTERED],
     "cook_torrance.clh": [COOK_TORRANCE, PICTURES],
     "count_in_range.cl": [PICTURES, EXACT],
@@ -75,6 +78,7 @@ TESTS = {
     "find_needed.cl": [NEEDED, MAPS],
     "fog.clh": [FOG, CLOSED_FORM, PICTURES],
     "highlights.clh": [HIGHLIGHTS, SHINY],
+    "hole_masks.clh": [("render", "HoleMasks.*")],
     "lanes.clh": [MATH, FALLOFF, PHONG, SHADE, NEEDED],
     "light_clusters.clh": [HORIZON, FAR_FIELD, CLUSTERED],
     "light_tree.clh": [CULL, EXACT, PICTURES, SHADE_TILES],
@@ -318,15 +322,58 @@ MUTANTS = {
         Mutant("&& cosine > 0.0f)", "&& cosine > -1.0f)"),
         Mutant("tested.placed = 0.0f", "tested.placed = 1.0f"),
     ],
-    "classify.cl": [
-        Mutant("above > lost) |", "above > -lost) |",
-               same="in what render draws, a point's own triangle is the plane, and lights the point rightly, or is among the others, which the point must be before"),
-        Mutant("tolerance * 1.001f", "-tolerance"),
-        Mutant("tolerance * 0.999f", "tolerance * 1e6f"),
-        Mutant("(receives & verdict.lit) << row % 32", "(receives & verdict.lit) << row % 16"),
-        Mutant("metres = point.w * per_depth", "metres = per_depth"),
-        Mutant("- a * point.u + b * point.v", "+ a * point.u + b * point.v"),
-        Mutant("texel.depth : (floatL)(0.0f)", "texel.others : (floatL)(0.0f)"),
+    "beam_points.clh": [
+        Mutant("cluster->whole = whole", "cluster->whole = true"),
+        Mutant("tile->pixel[to] = (uchar)(first_pixel + next)", "tile->pixel[to] = (uchar)(first_pixel + some)"),
+        Mutant("s = scale3(turned(to, p), (floatL)(to->scale))", "s = turned(to, p)"),
+        Mutant("p.y = fma_lanes(up, n.y, p.y)", "p.y = p.y"),
+        Mutant("POINT_ERROR * ((abs_lanes(s.x) + abs_lanes(s.y)) + abs_lanes(s.z))", "0.0f * s.x"),
+        Mutant("POINT_ERROR * (1.0f - 0x1p-20f) * least", "POINT_ERROR * (1.0f - 0x1p-20f) * most"),
+        Mutant("POINT_ERROR * (1.0f + 0x1p-20f) * most", "0.0f"),
+        Mutant("return lower & points;", "return lower;"),
+    ],
+    "beam.clh": [
+        Mutant("over > under ? 1.0f : -1.0f", "1.0f"),
+        Mutant("narrow = best * STEEPEST > largest", "narrow = true"),
+        Mutant("d < 0.0f ? -INFINITY : box->low[axis]", "box->low[axis]"),
+        Mutant("d > 0.0f ? INFINITY : box->high[axis]", "box->high[axis]"),
+        Mutant("lesser(box->low[axis], d)", "box->low[axis]"),
+        Mutant("greater(box->high[axis], d)", "box->high[axis]"),
+        Mutant("*u = right - ahead * outlook->slope[0]", "*u = right"),
+        Mutant("r->u_low -= du", "r->u_low += du + 1e-2f * (r->u_high - r->u_low)"),
+        Mutant("sign * away)", "0.0f)"),
+        Mutant("k >= 0.0f ? 1 : 0", "k < 0.0f ? 1 : 0"),
+        Mutant("beam->weight_across[i] = outlook->parallel ? d : beam->across[i]", "beam->weight_across[i] = 0.0f",
+               same="across is a margin of the rectangle's tests, and what passes them is tested again; what covers by less is rounding's"),
+    ],
+    "blockers.clh": [
+        Mutant("EDGE_ROUNDING (23.0f * 0x1p-24f)", "EDGE_ROUNDING 0.0f"),
+        Mutant("SIDE_ROUNDING (18.0f * 0x1p-24f)", "SIDE_ROUNDING 0.0f"),
+        Mutant("#define CLEAR 0x1p-21f", "#define CLEAR -1.0f"),
+        Mutant("orientation(a, b, c, start) * side_of_light(blocks, reference, light) <= 0", "true"),
+        Mutant("if (sign == -side) return false", "if (sign != side) return false"),
+        Mutant("flip = as_intL(height) & (int)0x80000000", "flip = 0"),
+        Mutant("shift = -dot3(m, d)", "shift = dot3(m, d)"),
+        Mutant("meets &= height != 0.0f", "meets &= height > 0.0f"),
+        Mutant("*in = most >= 0.0f", "*in = least >= 0.0f"),
+        Mutant("*covers = least > 0.0f", "*covers = most > 0.0f"),
+        Mutant("max_lanes(own, (floatL)(bounds->most_tolerance))", "(floatL)(-1e30f)"),
+        Mutant("covers &= clear", "covers &= covers"),
+    ],
+    "beam_shadows.cl": [
+        Mutant("sure |= lane_bits(least > rounding) << i", "sure |= lane_bits(least >= -rounding) << i"),
+        Mutant("inside |= lane_bits(least >= -rounding) << i", "inside |= lane_bits(least > rounding) << i"),
+        Mutant("height > max_lanes(part_of(tile->tolerance, point), (floatL)(c->own[at]))", "height > part_of(tile->tolerance, point)"),
+        Mutant("height > max_lanes((floatL)(tile->tolerance[point]), part_of(c->own, first))", "height > part_of(c->own, first)"),
+        Mutant("inside & sure & clear", "inside & sure"),
+        Mutant("clear ? inside & ~sure : inside", "inside & ~sure"),
+        Mutant("light->reach + tile->most_lift", "0.9f * light->reach"),
+        Mutant("-1e-5f * length - tile->most_lift", "1e-2f * length"),
+        Mutant("~holes & c->clear[at / kTreeWidth]", "~holes"),
+        Mutant("receives &= tile->used[row]", "receives &= 0xffff",
+               same="places without a point repeat one, and are no pixel's"),
+        Mutant("rest.stack[j] = walk.stack[j]", "rest.stack[j] = walk.stack[0]"),
+        Mutant("masked[row] ^ keep", "masked[row]"),
     ],
     "find_needed.cl": [
         Mutant("smallest_lane(mask ? y : none)", "smallest_lane(mask ? x : none)"),
@@ -448,6 +495,17 @@ MUTANTS = {
         Mutant("(floatL)(4.0f)) + series_tail(k))", "(floatL)(4.0f)))"),
         Mutant("term[kFieldBound] += error", "term[kFieldBound] += 0.5f * error"),
         Mutant("term[kFieldWeight] += weight", "term[kFieldWeight] += 0.0f * weight"),
+    ],
+    "hole_masks.clh": [
+        Mutant("float b = edges[2] / sum, c = edges[0] / sum;", "float b = edges[1] / sum, c = edges[0] / sum;"),
+        Mutant("popcount(holes & ((1u << slot) - 1))", "popcount(holes & ((2u << slot) - 1))"),
+        Mutant("if (wrap == kWrapClamped) return (uint)(texel < 0 ? 0 : last);", "if (wrap == kWrapClamped) return (uint)(texel < 0 ? last : 0);"),
+        Mutant("texel > last ? period - 1 - texel : texel", "texel > last ? texel - (int)size : texel"),
+        Mutant("wrap == kWrapMirrored ? 2 * (int)size : (int)size", "(int)size"),
+        Mutant("float low = place - error - 0.5f, high = place + error - 0.5f;", "float low = place - error, high = place + error;"),
+        Mutant("return low >= t->solid_from ? kSolid : high <= t->hole_to ? kHole : kMixed;",
+               "return high >= t->solid_from ? kSolid : low <= t->hole_to ? kHole : kMixed;"),
+        Mutant("if (texel < 0) texel += period;", "if (texel < 0) texel = 0;"),
     ],
     "lobes.clh": [
         Mutant("swing = view->k + group->turn;", "swing = view->k;"),

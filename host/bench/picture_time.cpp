@@ -41,7 +41,8 @@ const std::vector<StageGroup> kGroups{
     {"lights_milliseconds", "lights", {Stage::kPrepareLights, Stage::kCull}},
     {"shadow_milliseconds",
      "shadows",
-     {Stage::kRayTree, Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kClassify, Stage::kTraceUnsure}},
+     {Stage::kTriangleTree, Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kBeamShadows,
+      Stage::kHoleRays}},
     {"shade_milliseconds", "shade", {Stage::kShade, Stage::kReadBack, Stage::kResolve}},
     {"write_milliseconds", "write", {Stage::kWrite}}};
 

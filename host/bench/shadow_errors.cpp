@@ -87,8 +87,9 @@ std::vector<float> exactVisibility(Device& device, const Judged& judged, const L
   std::vector<ListEntry> list(lighting.lists.entries);
   download(device, lighting.lists.starts, starts);
   download(device, lighting.lists.list, list);
-  std::vector<std::uint32_t> device_light(lighting.order.size());
-  for (std::uint32_t i = 0; i < lighting.order.size(); ++i) device_light[lighting.order[i]] = i;
+  const std::vector<std::uint32_t>& order = lighting.beams.order;
+  std::vector<std::uint32_t> device_light(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) device_light[order[i]] = i;
   std::vector<float> visibility;
   for (std::size_t i = 0; i < judged.pairs.size(); ++i) {
     const LightPair& pair = judged.pairs[i];
@@ -121,20 +122,24 @@ Verdict judgeMaps(Device& device, const Judged& judged, const ShadeSettings& set
   prepareLighting(device, scene, camera, cameraView(camera, judged.gbuffer.picture_size), features, settings,
                   lighting, stats);
   const LitPlanes lit = lightGBuffer(device, scene, lighting, features, judged.gbuffer, {}, stats);
-  const ShadowMaps& shadows = lighting.host_shadows;
+  const bool exact = settings.shadows == ShadowMethod::kExact;
+  // Where there are no maps, edges are as wide as a hard map's texels.
+  const ShadowMaps unused = exact ? planShadowMaps(scene, cameraView(camera, judged.gbuffer.picture_size),
+                                                   ShadowMethod::kHard, settings.shadow_limits)
+                                  : ShadowMaps{};
+  const ShadowMaps& shadows = exact ? unused : lighting.host_shadows;
   std::vector<MapPair> map_pairs;
   for (const LightPair& pair : judged.pairs)
     map_pairs.push_back({pair.pixel, shadows.map_of_light[pair.light]});
   const std::vector<float> visibility =
-      settings.shadows == ShadowMethod::kExact
-          ? exactVisibility(device, judged, lighting, lit)
-          : pairVisibility(device, featureDefines(features) + mathDefines(settings), judged.gbuffer, shadows,
-                           map_pairs);
+      exact ? exactVisibility(device, judged, lighting, lit)
+            : pairVisibility(device, featureDefines(features) + mathDefines(settings), judged.gbuffer,
+                             shadows, map_pairs);
   const std::vector<std::uint8_t> edges =
       nearEdges(scene, judged.rays, judged.gbuffer, judged.flat, judged.pairs, judged.truth.lit,
                 texelSides(scene, shadows));
   Verdict verdict{.errors = judge(judged.truth.lit, edges, visibility),
-                  .texels = shadows.texels.size() + shadows.bounds.size(),
+                  .texels = shadows.texels.size(),
                   .traced = lit.traced};
   for (const PlannedFace& face : shadows.planned) verdict.faces += face.count.x > 0;
   return verdict;
@@ -191,7 +196,7 @@ std::vector<double> timeMaps(Device& device, const MethodRow& row) {
   settings.shade.shadows = ShadowMethod::kOff;
   shadeGBuffer(device, row.judged->scene, row.judged->gbuffer, settings, without);
   const double draw = stageTime(with, Stage::kFindShadowTexels) + stageTime(with, Stage::kShadowMaps);
-  const double look_up = stageTime(with, Stage::kClassify) + stageTime(with, Stage::kTraceUnsure) +
+  const double look_up = stageTime(with, Stage::kBeamShadows) + stageTime(with, Stage::kHoleRays) +
                          stageTime(with, Stage::kShade) - stageTime(without, Stage::kShade);
   const double rays = rayMilliseconds(*row.judged, buildRayScene(row.judged->scene, row.judged->rays.origin));
   return {draw, look_up, draw + look_up, rays};

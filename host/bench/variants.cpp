@@ -74,8 +74,8 @@ VariantGroup shadowGroup(const std::string& name, const std::string& truth, Trut
           .chosen_by = "shadows",
           .measured = "shadow maps, culling and shading, against " + truth +
                       " from the same G-buffer in double precision",
-          .stages = {Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kRayTree, Stage::kCull,
-                     Stage::kClassify, Stage::kTraceUnsure, Stage::kShade},
+          .stages = {Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kTriangleTree, Stage::kCull,
+                     Stage::kBeamShadows, Stage::kHoleRays, Stage::kShade},
           .shadows = shadows};
 }
 

@@ -26,6 +26,10 @@ constexpr std::string_view kernelTypeName<uint>() {
   return "uint";
 }
 template <>
+constexpr std::string_view kernelTypeName<unsigned char>() {
+  return "uchar";
+}
+template <>
 constexpr std::string_view kernelTypeName<float>() {
   return "float";
 }
@@ -54,8 +58,12 @@ constexpr std::string_view kernelTypeName<ShadowTexel>() {
   return "ShadowTexel";
 }
 template <>
-constexpr std::string_view kernelTypeName<BoundTexel>() {
-  return "BoundTexel";
+constexpr std::string_view kernelTypeName<BeamLight>() {
+  return "BeamLight";
+}
+template <>
+constexpr std::string_view kernelTypeName<HoleTriangle>() {
+  return "HoleTriangle";
 }
 template <>
 constexpr std::string_view kernelTypeName<ShadeFrame>() {

@@ -232,12 +232,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "pixels a side of the squares that share a light list; never changes the picture")
         ->check(CLI::IsMember({4, 8, 16}))
         ->capture_default_str();
-    addShadowsOption(
-        command, options,
-        "how shadow maps are looked up: hard (the texel that the point falls into), pcf (the "
-        "nearest texels, weighted), soft (edges as wide as the light's size makes them) or exact "
-        "(as rays to the light's middle)",
-        {"off", "hard", "pcf", "soft", "exact"});
+    addShadowsOption(command, options,
+                     "by shadow maps hard (the texel that the point falls into), pcf (the nearest texels, "
+                     "weighted) or soft (edges as wide as the light's size makes them); or exact (whether a "
+                     "triangle is between the point and the light's middle)",
+                     {"off", "hard", "pcf", "soft", "exact"});
     command.add_option("--pcf-width", options.pcf_width, "texels a side that pcf weighs: 2 is the sharpest")
         ->check(CLI::Range(2, 6))
         ->capture_default_str();

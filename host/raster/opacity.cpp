@@ -142,6 +142,18 @@ float opacityAt(const Scene& scene, const Surface& surface, const Weights& weigh
   return opacity;
 }
 
+bool isHoleAt(const Scene& scene, const PlacedObject& object, std::uint32_t triangle,
+              const Weights& weights) {
+  Surface surface;
+  surface.object = &object;
+  surface.material = &materialOf(scene, object, triangle);
+  surface.corners = object.mesh->triangles[triangle];
+  if (surface.material->alpha_cutoff <= 0) return false;
+  TexturePlace place{};
+  if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
+  return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
+}
+
 bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y) {
   const Material& material = *surface.material;
   const Weights weights = weightsInside(surface, plane.at(x, y));

@@ -10,6 +10,10 @@ namespace luciole {
 float opacityAt(const Scene& scene, const Surface& surface, const Weights& weights,
                 const TexturePlace& place);
 
+/// Whether a triangle of an object (counted in its mesh) has a hole at a place given by barycentric weights:
+/// its opacity there, with maps looked up at their finest level, is below its material's alpha_cutoff.
+bool isHoleAt(const Scene& scene, const PlacedObject& object, std::uint32_t triangle, const Weights& weights);
+
 /// Whether the surface has a hole at (x, y), as in ViewPlane::at: its opacity is below its material's
 /// alpha_cutoff, which must be > 0.
 bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y);

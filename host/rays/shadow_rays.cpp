@@ -20,7 +20,9 @@ struct Blockers {
     const PlacedObject& object = objectOfTriangle(objects, candidate.triangle);
     const std::uint32_t in_mesh = candidate.triangle - object.first_triangle;
     const glm::uvec3 corners = object.mesh->triangles[in_mesh];
-    return liesInPlane(object, corners, candidate.from) || isHoleAt(object, in_mesh, corners, candidate);
+    return liesInPlane(object, corners, candidate.from) ||
+           isHoleAt(scene, object, in_mesh,
+                    {1 - candidate.second - candidate.third, candidate.second, candidate.third});
   }
 
   /// Whether a ray's start lies in a triangle's plane, to within its rounding. `from`: relative to the eye.
@@ -29,20 +31,8 @@ struct Blockers {
       return glm::dvec3(object.object_to_view * glm::dvec4(object.mesh->positions[corners[i]], 1)) - eye;
     };
     const glm::dvec3 a = corner(0), normal = glm::cross(corner(1) - a, corner(2) - a);
-    return std::abs(glm::dot(normal, from - a)) <= POINT_ERROR * glm::length(from) * glm::length(normal);
-  }
-
-  bool isHoleAt(const PlacedObject& object, std::uint32_t in_mesh, const glm::uvec3& corners,
-                const CandidateHit& candidate) const {
-    Surface surface;
-    surface.object = &object;
-    surface.material = &materialOf(scene, object, in_mesh);
-    surface.corners = corners;
-    if (surface.material->alpha_cutoff <= 0) return false;
-    const Weights weights(1 - candidate.second - candidate.third, candidate.second, candidate.third);
-    TexturePlace place{};
-    if (!object.mesh->uvs.empty()) place.uv = interpolateUv(surface, weights);
-    return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
+    const double size = std::abs(from.x) + std::abs(from.y) + std::abs(from.z);
+    return std::abs(glm::dot(normal, from - a)) <= POINT_ERROR * size * glm::length(normal);
   }
 };
 

@@ -10,36 +10,35 @@ namespace luciole {
 // Of each sum the parts are in the order of their stages. Costs are milliseconds a pixel, triangle, light …
 double estimatedMilliseconds(const PictureWork& work) {
   const bool exact = work.shadows == ShadowMethod::kExact;
-  const double start = 80, rays = work.frames_scene || exact ? 25 : 0;
+  const double start = 80, rays = work.frames_scene ? 25 : 0, tree = exact ? 2.5e-4 * work.triangles : 0;
   const double load = 4e-4 * work.mesh_triangles + 9e-6 * work.texels + 17e-5 * work.lights;
   const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.bands * work.triangles;
   const double cull = 3e-5 * work.list_entries +
                       work.shadings * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
   const double of_shadow_pair = work.shadows == ShadowMethod::kSoft  ? 50e-6
                                 : work.shadows == ShadowMethod::kPcf ? 10e-6
-                                : exact                              ? 15e-6
+                                : exact                              ? 8e-6
                                                                      : 7e-6;
   const double shade =
       work.shadings * 3e-6 * work.pixels + 6e-7 * work.pairs + of_shadow_pair * work.shadow_pairs;
-  const double of_texel = exact ? 80e-6 : 3e-6, of_caster = exact ? 4e-4 : 1e-4;
-  const double shadow_maps = of_texel * work.shadow_texels + 0.1 * work.shadow_faces +
-                             (work.shadow_texels > 0 ? of_caster * work.bands * work.triangles : 0);
+  const double shadow_maps = 3e-6 * work.shadow_texels + 0.1 * work.shadow_faces +
+                             (work.shadow_texels > 0 ? 1e-4 * work.bands * work.triangles : 0);
   const double write = (17e-6 + 2e-6 * (work.passes - 1)) * work.pixels;
   // A pass over several samples draws them all, but sets up and resolves once, and looks for those that
   // share.
   const int together = work.samples - work.passes;
   const double drawings = work.passes + (together > 0 ? 1.5 + 0.08 * together : 0);
-  return start + rays + load + drawings * raster + cull + shade + shadow_maps + write;
+  return start + rays + tree + load + drawings * raster + cull + shade + shadow_maps + write;
 }
 
 double estimatedBytes(const PictureWork& work) {
   const double loaded = 95e6 + work.scene_bytes + double(kBytesPerLight) * work.lights;
-  const double ray_tree = work.shadows == ShadowMethod::kExact ? 300 * work.triangles : 0;
+  const double tree = work.shadows == ShadowMethod::kExact ? 200 * work.triangles : 0;
   // What is freed between passes is not all used again.
   const double raster = (100 + 120 * std::log2(work.passes)) * work.triangles;
   const double picture = raster + work.pixel_bytes +
                          double(sizeof(ListEntry)) * work.list_entries / work.shadings +
-                         work.shadow_map_bytes + ray_tree;
+                         work.shadow_map_bytes + tree;
   return loaded + std::max(picture, 30 * work.decoded_texels);
 }
 

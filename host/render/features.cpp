@@ -34,6 +34,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"PCF", "PCF", "filtered shadow lookups"},
     {"SOFT", "soft shadows", "shadow lookups as wide as the light's size makes them"},
     {"EXACT", "exact shadows", "shadows known for each pixel and light beforehand"},
+    {"HOLES", "holes", "textures with holes, through which light shines"},
     {"LIFT", "lifted shadows", "shadow tests that start on the smooth surface above a facet"},
     {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
     {"FOG_EXP", "exp fog", "exp(-density z)"},
@@ -130,16 +131,20 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     }
     if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
     if (light.shadow && shadows) {
-      features.set(usesCubeMap(light)                      ? Feature::kCubeShadows
-                   : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
-                                                           : Feature::kPerspectiveShadows);
+      features.set(settings.shadows == ShadowMethod::kExact ? Feature::kExact
+                   : usesCubeMap(light)                     ? Feature::kCubeShadows
+                   : light.kind == LightKind::kDirectional  ? Feature::kParallelShadows
+                                                            : Feature::kPerspectiveShadows);
       features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
       features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
-      features.set(Feature::kExact, settings.shadows == ShadowMethod::kExact);
       features.set(Feature::kOutputShadow, settings.shadow_layer);
     }
   }
   features.set(Feature::kLift, surfaces.smooth && features.shadows());
+  features.set(Feature::kHoles,
+               features.has(Feature::kExact) &&
+                   std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const Material& material) { return material.alpha_cutoff > 0; }));
   features.set(Feature::kSpotCone, any_cone);
   // A spot with an exponent of 0 needs no code of its own, unless cones are compiled: then the kernel has to
   // tell it from a cone at run time.
@@ -164,6 +169,13 @@ FeatureSet lookupFeatures(const FeatureSet& features) {
   return lookups;
 }
 
+FeatureSet beamFeatures(const FeatureSet& features) {
+  FeatureSet beams;
+  for (const Feature feature : {Feature::kExact, Feature::kHoles, Feature::kLift, Feature::kLightLists})
+    beams.set(feature, features.has(feature));
+  return beams;
+}
+
 FeatureSet clusterFeatures(const FeatureSet& features) {
   FeatureSet kept;
   for (const Feature feature : {Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp,
@@ -180,7 +192,7 @@ PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights),
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
-          .geometric_normal = features.shadows(),
+          .geometric_normal = features.shadowMaps(),
           .lift = features.has(Feature::kLift)};
 }
 

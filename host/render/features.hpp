@@ -36,6 +36,7 @@ enum class Feature : unsigned {
   kPcf,
   kSoft,
   kExact,
+  kHoles,
   kLift,
   kFogLinear,
   kFogExp,
@@ -65,9 +66,10 @@ class FeatureSet {
   bool has(Feature feature) const { return bits_[static_cast<std::size_t>(feature)]; }
   void set(Feature feature, bool on = true) { bits_[static_cast<std::size_t>(feature)] = on; }
   bool operator==(const FeatureSet&) const = default;
-  bool shadows() const {
+  bool shadowMaps() const {
     return has(Feature::kParallelShadows) || has(Feature::kPerspectiveShadows) || has(Feature::kCubeShadows);
   }
+  bool shadows() const { return shadowMaps() || has(Feature::kExact); }
 
  private:
   std::bitset<kFeatureCount> bits_;
@@ -126,9 +128,12 @@ LightUse lightUse(const ShadeSettings& settings);
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings, bool clustered = false);
 
-/// The features that decide where shadow maps are looked up. kernels/find_needed.cl and kernels/classify.cl
-/// depend on no others, so scenes that differ only in others share these programs.
+/// The features that decide where shadow maps are looked up. kernels/find_needed.cl depends on no others, so
+/// scenes that differ only in others share these programs.
 FeatureSet lookupFeatures(const FeatureSet& features);
+
+/// The features that kernels/beam_shadows.cl depends on.
+FeatureSet beamFeatures(const FeatureSet& features);
 
 /// What of a program's features kernels need that light pixels by clusters.
 FeatureSet clusterFeatures(const FeatureSet& features);

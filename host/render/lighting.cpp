@@ -10,10 +10,9 @@
 #include "culling/cull.hpp"
 #include "culling/exact_reason.hpp"
 #include "gbuffer/packed_normal.hpp"
-#include "rays/shadow_rays.hpp"
 #include "render/count_in_range.hpp"
-#include "render/exact_shadows.hpp"
 #include "render/find_needed.hpp"
+#include "render/hole_rays.hpp"
 #include "render/seen_rounding.hpp"
 #include "render/shade.hpp"
 #include "render/shade_tiles.hpp"
@@ -113,7 +112,6 @@ void uploadLighting(Device& device, Lighting& lighting) {
   lighting.shadow_maps = borrowed(device, lighting.host_shadows.maps);
   lighting.shadow_faces = borrowed(device, lighting.host_shadows.faces);
   lighting.shadow_texels = borrowed(device, lighting.host_shadows.texels);
-  lighting.shadow_bounds = borrowed(device, lighting.host_shadows.bounds);
 }
 
 Lookups lookupsOf(const Lighting& lighting, const GBufferBuffers& buffers, const LightLists& lists,
@@ -140,29 +138,31 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
   timed(stats, Stage::kShadowMaps, [&] {
     giveBack(lighting.shadow_faces);
     giveBack(lighting.shadow_texels);
-    giveBack(lighting.shadow_bounds);
     const std::vector<IndexRange> drawn = drawNeeded(scene, needed, shadows);
     const std::vector<IndexRange> faces(drawn.empty() ? 0 : 1, {0, shadows.faces.size()});
     refresh(device, shadows.faces, faces, lighting.shadow_faces);
-    if (shadows.method == ShadowMethod::kExact)
-      refresh(device, shadows.bounds, drawn, lighting.shadow_bounds);
-    else
-      refresh(device, shadows.texels, drawn, lighting.shadow_texels);
+    refresh(device, shadows.texels, drawn, lighting.shadow_texels);
   });
 }
 
 /// The exact shadows of all entries of the lists. Sets `traced` to the number of pairs that took a ray.
 PairBits decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
-                       const std::string& defines, const GBuffer& gbuffer, const GBufferBuffers& buffers,
+                       const FeatureSet& features, const GBuffer& gbuffer, const GBufferBuffers& buffers,
                        const LightLists& lists, std::uint64_t& traced, Stats& stats) {
-  PairBits bits = timed(stats, Stage::kClassify, [&] {
-    return classify(device, defines, lookupsOf(lighting, buffers, lists, gbuffer.pixels()),
-                    lighting.shadow_bounds, std::max<std::size_t>(lighting.host_shadows.bounds.size(), 1));
+  PairShadows shadows = timed(stats, Stage::kBeamShadows, [&] {
+    return beamShadows(device, featureDefines(beamFeatures(features)),
+                       {.plane_stride = gbuffer.pixels(),
+                        .position = buffers.position,
+                        .normal = buffers.normal,
+                        .lift = buffers.lift,
+                        .lists = lists,
+                        .beams = lighting.beams,
+                        .holes = features.has(Feature::kHoles)});
   });
-  traced = timed(stats, Stage::kTraceUnsure, [&] {
-    return traceUnsure(device, scene, lighting.shadow_rays, gbuffer, lighting.order, lists, bits);
-  });
-  return bits;
+  if (!shadows.unsure.empty())
+    traced = timed(stats, Stage::kHoleRays,
+                   [&] { return traceHoles(device, scene, lighting.beams, gbuffer, lists, shadows); });
+  return std::move(shadows.lit);
 }
 
 /// How many lights have each pixel in their range.
@@ -277,13 +277,18 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   lighting.unlit = !scene.lighting;
   lighting.frame = makeFrame(scene, camera, settings);
   lighting.group_log2 = groupLog2(settings.tile_size);
-  if (features.shadows())
+  if (features.shadowMaps())
     lighting.host_shadows = timed(stats, Stage::kShadowMaps, [&] {
       return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits);
     });
+  std::shared_ptr<const TriangleTree> tree;
+  std::shared_ptr<const HoleMasks> masks;
   if (features.has(Feature::kExact))
-    lighting.shadow_rays = timed(stats, Stage::kRayTree, [&] {
-      return buildShadowRays(scene, glm::dvec3(camera.camera_to_world[3]));
+    timed(stats, Stage::kTriangleTree, [&] {
+      tree = std::make_shared<const TriangleTree>(
+          buildTriangleTree(scene, glm::dvec3(camera.camera_to_world[3])));
+      if (features.has(Feature::kHoles))
+        masks = std::make_shared<const HoleMasks>(makeHoleMasks(scene, *tree));
     });
   timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
   timed(stats, Stage::kPrepareLights, [&] {
@@ -297,7 +302,9 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
           return exactReason(scene.lights[light], lightUse(settings)) == ExactReason::kNone;
         });
       lighting.host_lights = prepareLights(scene, order, camera, lighting.host_shadows);
-      if (features.has(Feature::kExact)) lighting.order = std::move(order);
+      if (tree)
+        prepareBeams(device, scene, camera, std::move(tree), std::move(masks), order, lighting.host_lights,
+                     lighting.beams);
     }
     lighting.frame.light_count = static_cast<uint>(lighting.host_lights.size());
     lighting.host_tree = buildLightTree(lighting.host_lights);
@@ -315,7 +322,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   const std::string defines = featureDefines(features) + lighting.math_defines;
   const std::string lookup_defines = featureDefines(lookupFeatures(features));
   PackedNormals packed;
-  if (features.shadows() && gbuffer.geometric_normal.empty()) packed = packNormals(gbuffer);
+  if (features.shadowMaps() && gbuffer.geometric_normal.empty()) packed = packNormals(gbuffer);
   const PackedNormals& geometric_normal = packed.empty() ? gbuffer.geometric_normal : packed;
   Plane level;  // lifts of 0, for a G-buffer without lifts
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
@@ -333,12 +340,12 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
     timed(stats, Stage::kCull, [&] { cullLights(device, lighting, buffers, pixels, tests, lighting.lists); });
     lit.list_entries = lists.entries;
   }
-  if (features.shadows() && !lighting.host_shadows.maps.empty())
+  if (features.shadowMaps() && !lighting.host_shadows.maps.empty())
     drawShadowMaps(device, scene, lighting, lookup_defines, buffers, lists, pixels, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   if (features.has(Feature::kExact))
     lit.pair_bits =
-        decideShadows(device, scene, lighting, lookup_defines, gbuffer, buffers, lists, lit.traced, stats);
+        decideShadows(device, scene, lighting, features, gbuffer, buffers, lists, lit.traced, stats);
   const Buffer<const uint> pair_bits = borrowed(device, lit.pair_bits);
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);
@@ -394,7 +401,6 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
                              lit.light_error.size() + lit.color.size();
   stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
                                                         shadows.texels.size() * sizeof(ShadowTexel) +
-                                                        shadows.bounds.size() * sizeof(BoundTexel) +
                                                         lit.pair_bits.size() * sizeof(uint));
   return lit;
 }
@@ -411,10 +417,15 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   lighting.math_defines = mathDefines(settings);
   lighting.group_log2 = groupLog2(settings.tile_size);
   // An empty map, so that find_needed.cl is launched, and compiled, too.
-  if (features.shadows()) {
+  if (features.shadowMaps()) {
     lighting.host_shadows.maps.emplace_back();
     lighting.host_shadows.faces.emplace_back();
     lighting.host_shadows.bin_count = 1;
+  }
+  if (features.has(Feature::kExact)) {
+    const Scene nothing;
+    prepareBeams(device, nothing, {}, std::make_shared<const TriangleTree>(buildTriangleTree(nothing, {})),
+                 nullptr, {}, {}, lighting.beams);
   }
   uploadLighting(device, lighting);
   Stats ignored;

@@ -9,9 +9,8 @@
 #include "culling/shade_lights.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "raster/view.hpp"
-#include "rays/ray_cast.hpp"
+#include "render/beam_shadows.hpp"
 #include "render/clustered_light.hpp"
-#include "render/exact_shadows.hpp"
 #include "render/features.hpp"
 #include "render/stats.hpp"
 #include "scene/scene.hpp"
@@ -30,14 +29,12 @@ struct Lighting {
   LightArray host_lights;  ///< those that are summed by themselves
   LightTree host_tree;
   ShadowMaps host_shadows;
-  RayScene shadow_rays;              ///< with Feature::kExact only
-  std::vector<std::uint32_t> order;  ///< with Feature::kExact only: the scene's index of each of host_lights
+  BeamScene beams;  ///< with Feature::kExact only
   Buffer<const ShadeLight> lights;
   Buffer<const float> tree;
   Buffer<const ShadowMap> shadow_maps;
   Buffer<const ShadowFace> shadow_faces;
-  Buffer<const ShadowTexel> shadow_texels;  ///< those drawn so far, without Feature::kExact
-  Buffer<const BoundTexel> shadow_bounds;   ///< those drawn so far, with Feature::kExact
+  Buffer<const ShadowTexel> shadow_texels;  ///< those drawn so far
   LightLists lists;                         ///< of the last G-buffer that was shaded by lists
   LightLists lists_in_range;                ///< lists by range alone, to count lights in range
   LightClusters clusters;                   ///< of diffuse light, with Feature::kClusteredLights only
@@ -72,9 +69,9 @@ struct LitPlanes {
   Plane
       list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists
   std::uint64_t list_entries =
-      0;                        ///< of Lighting::lists, or where none were made, of those that shading found
-  PairBits pair_bits;           ///< with Feature::kExact: which pixels each entry of Lighting::lists lights
-  std::uint64_t traced = 0;     ///< pixel-light pairs whose exact shadow took a ray
+      0;                     ///< of Lighting::lists, or where none were made, of those that shading found
+  PairBits pair_bits;        ///< with Feature::kExact: which pixels each entry of Lighting::lists lights
+  std::uint64_t traced = 0;  ///< pixel-light pairs whose exact shadow took a ray, because a texture decides
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
 };
 

@@ -8,8 +8,7 @@
 
 namespace luciole {
 
-/// The points of a G-buffer and the lights whose shadow maps they look up: the arguments that classify.cl and
-/// find_needed.cl share.
+/// The points of a G-buffer and the lights whose shadow maps they look up, for find_needed.cl.
 struct Lookups {
   std::size_t plane_stride;      ///< floats in a plane
   Buffer<const float> position;  ///< G-buffer planes x, y, z; view space, metres
@@ -22,7 +21,7 @@ struct Lookups {
   Buffer<const ShadowFace> shadow_faces;
 };
 
-/// These as arguments for launch(), by the names that both kernels give them.
+/// These as arguments for launch(), by the names that the kernel gives them.
 std::vector<KernelArgument> lookupArguments(const Lookups& lookups);
 
 }  // namespace luciole

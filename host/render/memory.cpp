@@ -44,8 +44,10 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
                                 : 0;
-  // Counting lights in range needs lists of its own.
-  const std::size_t all_lists = lists * (1 + counted);
+  // Counting lights in range needs lists of its own. Exact shadows are words for each entry.
+  const std::size_t words = (features.has(Feature::kExact) ? 1 : 0) + (features.has(Feature::kHoles) ? 1 : 0);
+  const std::size_t all_lists =
+      lists * (1 + counted) + lists * words * (kPairWords * sizeof(uint) / sizeof(ListEntry));
   if (!shared) return sizeof(float) * std::max(lighting, assembling) + all_lists;
   // Two sums beside colours, and a pass of points with as many planes as pixels have.
   const std::size_t first = std::max(gbuffer + 2 * lit + 2 * counted + channels, assembling + 2);

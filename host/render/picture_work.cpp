@@ -192,14 +192,13 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   work.pixel_bytes =
       pixel_bytes * settings.size.x * rows + (gouraud ? shaded * double(kGBufferBytesPerPixel) : 0);
   if (!needs.all.shadows()) return work;
-  const ShadowMaps maps = planShadowMaps(scene, view, settings.shade.shadows, settings.shade.shadow_limits);
   work.shadows = settings.shade.shadows;
   work.shadow_pairs = shaded * mean.shadowed;
+  if (!needs.all.shadowMaps()) return work;
+  const ShadowMaps maps = planShadowMaps(scene, view, settings.shade.shadows, settings.shade.shadow_limits);
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do
   work.shadow_faces = double(maps.planned.size());
-  work.shadow_map_bytes =
-      work.shadow_texels *
-      double(work.shadows == ShadowMethod::kExact ? sizeof(BoundTexel) : sizeof(ShadowTexel));
+  work.shadow_map_bytes = work.shadow_texels * double(sizeof(ShadowTexel));
   return work;
 }
 

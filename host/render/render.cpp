@@ -166,15 +166,21 @@ void countTriangles(const RasterCounts& counts, Stats& stats) {
   addCount(stats, "triangles_outside", counts.outside);
 }
 
-void countShadows(const ShadowMaps& shadows, Stats& stats) {
+/// Says how many lights cast shadows, and by what.
+void countShadows(const Lighting& lighting, Stats& stats) {
+  const ShadowMaps& shadows = lighting.host_shadows;
+  const std::vector<BeamLight>& lights = lighting.beams.lights;
+  const std::size_t exact =
+      std::count_if(lights.begin(), lights.end(), [](const BeamLight& light) { return light.casts != 0; });
+  if (shadows.maps.size() + exact == 0) return;
+  addCount(stats, "shadow_lights", shadows.maps.size() + exact);
+  if (exact > 0) addCount(stats, "shadow_lights_exact", exact);
   if (shadows.maps.empty()) return;
-  addCount(stats, "shadow_lights", shadows.maps.size());
   addCount(stats, "shadow_lights_reduced", shadows.reduced_lights);
   std::uint64_t drawn = 0;
   for (const PlannedFace& face : shadows.planned) drawn += face.count.x > 0;
   addCount(stats, "shadow_faces_drawn", drawn);
-  addCount(stats, "shadow_bytes",
-           shadows.texels.size() * sizeof(ShadowTexel) + shadows.bounds.size() * sizeof(BoundTexel));
+  addCount(stats, "shadow_bytes", shadows.texels.size() * sizeof(ShadowTexel));
 }
 
 /// Compiles the kernels of these passes in a thread of its own, once the device is open. The future's value
@@ -501,7 +507,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     take(prepared.used.picture);
   }
   countLightUses(scene, shade, prepared.lighting, stats);
-  countShadows(prepared.lighting.host_shadows, stats);
+  countShadows(prepared.lighting, stats);
   countTriangles(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - prepared.objects.size());
 }
@@ -574,7 +580,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, wantedCounts(settings, 0), stats);
   countPass(gbuffer, lit, settings.count_lights, stats);
   countLightUses(scene, shade, lighting, stats);
-  countShadows(lighting.host_shadows, stats);
+  countShadows(lighting, stats);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
   return timed(stats, Stage::kResolve, [&] {

@@ -28,7 +28,7 @@ struct ShadeArguments {
   Buffer<const ShadowMap> shadow_maps;
   Buffer<const ShadowFace> shadow_faces;
   Buffer<const ShadowTexel> shadow_texels;  ///< frame.texel_count
-  Buffer<const uint> pair_bits;             ///< see classify.cl, with Feature::kExact only
+  Buffer<const uint> pair_bits;             ///< see beam_shadows.cl, with Feature::kExact only
   Buffer<float> image;  ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
 };
 

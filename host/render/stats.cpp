@@ -15,10 +15,10 @@ const char* stageName(Stage stage) {
   static constexpr const char* kNames[]{
       "load scene",         "read G-buffer",   "open device",
       "compile kernels",    "wait for device", "wait for kernels",
-      "measure exposure",   "ray tree",        "prepare lights",
+      "measure exposure",   "triangle tree",   "prepare lights",
       "gather vertices",    "rasterize",       "cull",
-      "find shadow texels", "shadow maps",     "classify",
-      "trace unsure",       "clustered light", "shade",
+      "find shadow texels", "shadow maps",     "beam shadows",
+      "hole rays",          "clustered light", "shade",
       "read back",          "resolve",         "count lights",
       "check G-buffer",     "write",
   };

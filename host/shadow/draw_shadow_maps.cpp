@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "raster/bound_depth.hpp"
 #include "raster/rasterize.hpp"
 #include "shadow/meshlets_seen.hpp"
 
@@ -73,13 +72,12 @@ std::size_t area(const glm::ivec2& size) { return std::size_t(size.x) * size.y; 
 
 /// Copies the old rectangle of a face that moves. old_place, place: the indices of the first texels of the
 /// old rectangle and of the new one.
-template <class Texels>
 void copyKept(const Task& task, const PlannedFace& face, std::size_t old_place, std::size_t place,
-              Texels& texels) {
+              ShadowMaps& maps) {
   const glm::ivec2 from = task.kept_first - face.first;
   for (int y = 0; y < task.kept_count.y; ++y)
-    std::copy_n(texels.data() + old_place + std::size_t(y) * task.kept_count.x, task.kept_count.x,
-                texels.data() + place + std::size_t(from.y + y) * face.count.x + from.x);
+    std::copy_n(maps.texels.data() + old_place + std::size_t(y) * task.kept_count.x, task.kept_count.x,
+                maps.texels.data() + place + std::size_t(from.y + y) * face.count.x + from.x);
 }
 
 /// Appends the texels that a face's task draws or moves. `place`: as in drawFace.
@@ -114,12 +112,8 @@ void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std
     }
   }
   const std::vector<std::uint32_t> seen = meshletsSeen(maps.meshlets, view, bins, scene.lights[face.light]);
-  if (maps.method == ShadowMethod::kExact)
-    rasterizeBounds(scene, maps.meshlets, seen, view, bins.farthest,
-                    std::span(maps.bounds).subspan(place, area(face.count)));
-  else
-    rasterizeDepth(scene, maps.meshlets, seen, view, bins.farthest,
-                   std::span(maps.texels).subspan(place, area(face.count)));
+  rasterizeDepth(scene, maps.meshlets, seen, view, bins.farthest,
+                 std::span(maps.texels).subspan(place, area(face.count)));
 }
 
 }  // namespace
@@ -127,8 +121,7 @@ void drawFace(const Scene& scene, const Task& task, const PlannedFace& face, std
 std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed,
                                    ShadowMaps& maps) {
   std::vector<Task> tasks;
-  const bool exact = maps.method == ShadowMethod::kExact;
-  std::size_t held = exact ? maps.bounds.size() : maps.texels.size(), total = held;
+  std::size_t held = maps.texels.size(), total = held;
   for (std::size_t i = 0; i < maps.planned.size(); ++i) {
     if (auto task = taskOf(i, maps.faces[i], needed, maps.expects_more, maps.planned[i])) {
       if (task->moves) total += area(maps.planned[i].count);
@@ -157,10 +150,7 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
     lookup.first = uint(total) - uint(face.first.y) * lookup.width - uint(face.first.x);
     total += area(face.count);
   }
-  if (exact)
-    maps.bounds.resize(total);
-  else
-    maps.texels.resize(total);
+  maps.texels.resize(total);
   std::vector<std::size_t> places;
   std::vector<IndexRange> drawn;
   for (const Task& task : tasks) {
@@ -171,8 +161,7 @@ std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint
   tbb::parallel_for(std::size_t(0), tasks.size(), [&](std::size_t i) {
     const Task& task = tasks[i];
     const PlannedFace& face = maps.planned[task.face];
-    if (task.moves && exact) copyKept(task, face, old_places[i], places[i], maps.bounds);
-    if (task.moves && !exact) copyKept(task, face, old_places[i], places[i], maps.texels);
+    if (task.moves) copyKept(task, face, old_places[i], places[i], maps);
     drawFace(scene, task, face, places[i], maps);
   });
   return drawn;

@@ -14,8 +14,8 @@ namespace luciole {
 /// there within the light's range. `needed`: one a bin of all faces, the bits of the smallest reversed depth
 /// that matters there, or kNotNeeded (see findNeeded); what is farther away may be left out. Updates `faces`
 /// and `planned`. A face whose rectangle grows gets a new place, to which what was drawn is copied, or where
-/// memory is short is drawn again, with the same texels. Returns the ranges that it drew of maps.texels, or
-/// for ShadowMethod::kExact of maps.bounds. Faces are drawn in parallel. Throws as rasterizeDepth does.
+/// memory is short is drawn again, with the same texels. Returns the ranges that it drew of maps.texels.
+/// Faces are drawn in parallel. Throws as rasterizeDepth does.
 std::vector<IndexRange> drawNeeded(const Scene& scene, std::span<const std::uint32_t> needed,
                                    ShadowMaps& maps);
 

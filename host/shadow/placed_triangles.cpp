@@ -39,13 +39,16 @@ std::array<glm::dvec3, 3> cornersOf(const PlacedTriangles& placed, std::uint32_t
   return inside ? corners : std::array<glm::dvec3, 3>{};
 }
 
-bool hasHoles(const PlacedTriangles& placed, std::uint32_t object, std::uint32_t triangle) {
+std::uint32_t materialOfTriangle(const PlacedTriangles& placed, std::uint32_t object,
+                                 std::uint32_t triangle) {
   const Object& placing = placed.scene.objects[object];
-  const std::uint32_t material =
-      placing.material >= 0
-          ? std::uint32_t(placing.material)
-          : placed.scene.meshes[placing.mesh].triangle_materials[triangle - placed.first[object]];
-  return placed.scene.materials[material].alpha_cutoff > 0;
+  return placing.material >= 0
+             ? std::uint32_t(placing.material)
+             : placed.scene.meshes[placing.mesh].triangle_materials[triangle - placed.first[object]];
+}
+
+bool hasHoles(const PlacedTriangles& placed, std::uint32_t object, std::uint32_t triangle) {
+  return placed.scene.materials[materialOfTriangle(placed, object, triangle)].alpha_cutoff > 0;
 }
 
 }  // namespace luciole

@@ -34,6 +34,9 @@ inline constexpr double kLargestPlaced = 0x1p40;
 std::array<glm::dvec3, 3> cornersOf(const PlacedTriangles& placed, std::uint32_t object,
                                     std::uint32_t triangle);
 
+/// The index of its material.
+std::uint32_t materialOfTriangle(const PlacedTriangles& placed, std::uint32_t object, std::uint32_t triangle);
+
 /// Whether its material has holes.
 bool hasHoles(const PlacedTriangles& placed, std::uint32_t object, std::uint32_t triangle);
 

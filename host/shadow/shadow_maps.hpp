@@ -28,15 +28,13 @@ struct PlannedFace {
 ///     map_of_light    light ─► map, or kNoShadow
 ///     maps            how lookups get from a view-space point to a face   80 bytes a light
 ///     faces, planned  a face as lookups and as drawing see it             6 a cube, 1 a cone, 1 a cascade
-///     texels, bounds  drawn rectangles of faces, one after another        8 or 16 bytes a texel
+///     texels          drawn rectangles of faces, one after another        8 bytes a texel
 struct ShadowMaps {
   std::vector<ShadowMap> maps;
   std::vector<std::uint32_t> map_of_light;
   std::vector<ShadowFace> faces;
   std::vector<PlannedFace> planned;
   std::vector<ShadowTexel, RawArrayAllocator<ShadowTexel>> texels;
-  /// Instead of `texels` for ShadowMethod::kExact.
-  std::vector<BoundTexel, RawArrayAllocator<BoundTexel>> bounds;
   /// Lookups follow that reach a little farther than those before. So bins are drawn down to half of the
   /// reversed depth that is needed, and rectangles have a bin to spare on each side.
   bool expects_more = false;

@@ -4,13 +4,13 @@
 
 namespace luciole {
 
-/// How a lookup tells from its maps whether a point is in shadow.
+/// How it is told whether a point is in a light's shadow.
 enum class ShadowMethod : std::uint8_t {
   kOff,
-  kHard,   ///< the texel that the point falls into
-  kPcf,    ///< the nearest texels, weighted (percentage-closer filtering)
-  kSoft,   ///< a disc as wide as the penumbra that the light's size gives
-  kExact,  ///< as rays to the light's centre: by bounds of depth, and by rays where these don't decide
+  kHard,   ///< by a map: the texel that the point falls into
+  kPcf,    ///< by a map: the nearest texels, weighted (percentage-closer filtering)
+  kSoft,   ///< by a map: a disc as wide as the penumbra that the light's size gives
+  kExact,  ///< by the triangles themselves: whether one is between the point and the light's centre
 };
 
 }  // namespace luciole

@@ -38,10 +38,6 @@ int withBorder(double wanted, ShadowMethod method, int largest) {
   return std::clamp(int(size) + 2 * borderOf(int(size), method), kSmallestFace, largest);
 }
 
-/// A factor for texels a side. Exact maps leave some lookups to rays. Half as many texels a side leave twice
-/// as many to rays, but cost a quarter, which is less in all.
-double sizeShare(ShadowMethod method) { return method == ShadowMethod::kExact ? 0.5 : 1.0; }
-
 }  // namespace
 
 ShadowSizes chooseSizes(const Scene& scene, const PlanInput& input, const ShadowLimits& limits) {
@@ -50,18 +46,17 @@ ShadowSizes chooseSizes(const Scene& scene, const PlanInput& input, const Shadow
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     if (!light.shadow) continue;
-    const double share = sizeShare(input.method);
-    const int largest = std::max(int(share * largestSize(light, limits)), kSmallestFace);
+    const int largest = largestSize(light, limits);
     wanted[i] = light.kind == LightKind::kDirectional
                     ? largest
-                    : withBorder(share * wantedSize(light, input), input.method, largest);
+                    : withBorder(wantedSize(light, input), input.method, largest);
   }
   const auto scaled = [](int size, double scale) { return std::max(int(size * scale), kSmallestFace); };
   const auto bytesAt = [&](double scale) {
     double texels = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (wanted[i] > 0) texels += facesOf(scene.lights[i]) * std::pow(double(scaled(wanted[i], scale)), 2);
-    return texels * (input.method == ShadowMethod::kExact ? sizeof(BoundTexel) : sizeof(ShadowTexel));
+    return texels * sizeof(ShadowTexel);
   };
   double scale = 1;
   while (bytesAt(scale) > double(limits.bytes)) {

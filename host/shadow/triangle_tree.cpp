@@ -96,11 +96,15 @@ FloatBox fillBlock(const PlacedTriangles& placed, std::size_t block, TriangleTre
     const std::array<glm::dvec3, 3> exact = cornersOf(placed, object, triangle);
     const std::array<glm::vec3, 3> rounded{exact[0], exact[1], exact[2]};
     const glm::vec4 plane = planeOf(exact, rounded);
+    float farthest = 0;
     for (int corner = 0; corner < 3; ++corner) {
       box.add(rounded[corner]);
+      const glm::vec3 size = glm::abs(rounded[corner]);
+      farthest = std::max(farthest, size.x + size.y + size.z);
       for (int axis = 0; axis < 3; ++axis) set(kCornerRows + 3 * corner + axis, rounded[corner][axis]);
     }
     for (int i = 0; i < 4; ++i) set(kPlaneRows + i, plane[i]);
+    set(kRoundingRow, CORNER_ROUNDING * farthest);
     holes |= std::uint32_t(hasHoles(placed, object, triangle)) << slot;
   }
   tree.block_bits[block] = used | holes << 16;

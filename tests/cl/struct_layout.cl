@@ -26,12 +26,6 @@ __kernel void report_list_entry(__global uint *out) {
   *out++ = OFFSET(squares);
 }
 
-__kernel void report_beam_light(__global uint *out) {
-  BeamLight value;
-  *out++ = sizeof(BeamLight);
-  *out++ = OFFSET(place);
-}
-
 __kernel void report_shadow_map(__global uint *out) {
   ShadowMap value;
   *out++ = sizeof(ShadowMap);
@@ -72,13 +66,35 @@ __kernel void report_shadow_texel(__global uint *out) {
   *out++ = OFFSET(slopes);
 }
 
-__kernel void report_bound_texel(__global uint *out) {
-  BoundTexel value;
-  *out++ = sizeof(BoundTexel);
-  *out++ = OFFSET(depth);
-  *out++ = OFFSET(step_x);
-  *out++ = OFFSET(step_y);
-  *out++ = OFFSET(others);
+__kernel void report_beam_light(__global uint *out) {
+  BeamLight value;
+  *out++ = sizeof(BeamLight);
+  *out++ = OFFSET(place);
+  *out++ = OFFSET(reach);
+  *out++ = OFFSET(casts);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+}
+
+__kernel void report_hole_triangle(__global uint *out) {
+  HoleTriangle value;
+  *out++ = sizeof(HoleTriangle);
+  *out++ = OFFSET(a_x);
+  *out++ = OFFSET(a_y);
+  *out++ = OFFSET(ab_x);
+  *out++ = OFFSET(ab_y);
+  *out++ = OFFSET(ac_x);
+  *out++ = OFFSET(ac_y);
+  *out++ = OFFSET(extent);
+  *out++ = OFFSET(slack);
+  *out++ = OFFSET(solid_from);
+  *out++ = OFFSET(hole_to);
+  *out++ = OFFSET(first_texel);
+  *out++ = OFFSET(width);
+  *out++ = OFFSET(height);
+  *out++ = OFFSET(wrap_u);
+  *out++ = OFFSET(wrap_v);
+  *out++ = OFFSET(pad);
 }
 
 __kernel void report_shade_frame(__global uint *out) {

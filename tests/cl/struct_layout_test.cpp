@@ -49,10 +49,6 @@ TEST(StructLayout, ListEntry) {
                {sizeof(ListEntry), offsetof(ListEntry, light), offsetof(ListEntry, squares)});
 }
 
-TEST(StructLayout, BeamLight) {
-  expectLayout("report_beam_light", {sizeof(BeamLight), offsetof(BeamLight, place)});
-}
-
 TEST(StructLayout, ShadowMap) {
   expectLayout(
       "report_shadow_map",
@@ -76,10 +72,21 @@ TEST(StructLayout, ShadowTexel) {
                {sizeof(ShadowTexel), offsetof(ShadowTexel, depth), offsetof(ShadowTexel, slopes)});
 }
 
-TEST(StructLayout, BoundTexel) {
-  expectLayout("report_bound_texel",
-               {sizeof(BoundTexel), offsetof(BoundTexel, depth), offsetof(BoundTexel, step_x),
-                offsetof(BoundTexel, step_y), offsetof(BoundTexel, others)});
+TEST(StructLayout, BeamLight) {
+  expectLayout("report_beam_light",
+               {sizeof(BeamLight), offsetof(BeamLight, place), offsetof(BeamLight, reach),
+                offsetof(BeamLight, casts), offsetof(BeamLight, pad0), offsetof(BeamLight, pad1)});
+}
+
+TEST(StructLayout, HoleTriangle) {
+  expectLayout(
+      "report_hole_triangle",
+      {sizeof(HoleTriangle), offsetof(HoleTriangle, a_x), offsetof(HoleTriangle, a_y),
+       offsetof(HoleTriangle, ab_x), offsetof(HoleTriangle, ab_y), offsetof(HoleTriangle, ac_x),
+       offsetof(HoleTriangle, ac_y), offsetof(HoleTriangle, extent), offsetof(HoleTriangle, slack),
+       offsetof(HoleTriangle, solid_from), offsetof(HoleTriangle, hole_to),
+       offsetof(HoleTriangle, first_texel), offsetof(HoleTriangle, width), offsetof(HoleTriangle, height),
+       offsetof(HoleTriangle, wrap_u), offsetof(HoleTriangle, wrap_v), offsetof(HoleTriangle, pad)});
 }
 
 TEST(StructLayout, ShadeFrame) {

@@ -3,6 +3,7 @@
 //   checked_pictures NUMBER    one of the pictures, any number
 //   checked_pictures clustersL a picture by clusters of lights, L pixels side by side
 //   checked_pictures MISTAKE   a kernel of mistake_probe.cl
+#include <algorithm>
 #include <charconv>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string_view>
@@ -85,7 +86,8 @@ void lightPicture(unsigned number) {
   pairVisibility(device, featureDefines(features) + mathDefines(settings), with_facets, shadows, pairs);
 }
 
-void lightByClusters(int lanes) {
+/// Returns whether it gives any light.
+bool lightByClusters(int lanes) {
   Device device;
   openChecked(lanes, device);
   Random random(static_cast<unsigned>(lanes));
@@ -98,6 +100,7 @@ void lightByClusters(int lanes) {
   frame.plane_stride = uint(gbuffer.pixels());
   frame.eye = {0, 0, 0, 1};
   Plane light(3 * gbuffer.pixels()), bound(3 * gbuffer.pixels());
+  const Buffer<float> light_buffer = borrowedForOutput(device, light);
   clusteredLight(device, mathDefines({}),
                  {.frame = frame,
                   .gbuffer = borrowedGBuffer(device, gbuffer, {}, {}, false),
@@ -106,8 +109,10 @@ void lightByClusters(int lanes) {
                   .clusters = clusters,
                   .highlights = clusters,
                   .light_error = 1.0f / 16,
-                  .light = borrowedForOutput(device, light),
+                  .light = light_buffer,
                   .bound = borrowedForOutput(device, bound)});
+  download(device, light_buffer, light);
+  return std::any_of(light.begin(), light.end(), [](float value) { return value > 0; });
 }
 
 void makeMistake(const char* mistake) {
@@ -129,7 +134,7 @@ int main(int, char** words) {
     luciole::test::lightPicture(number);
   } else if (constexpr std::string_view kClusters = "clusters";
              word.substr(0, kClusters.size()) == kClusters) {
-    luciole::test::lightByClusters(word.back() - '0');
+    return luciole::test::lightByClusters(word.back() - '0') ? 0 : 1;
   } else {
     luciole::test::makeMistake(words[1]);
   }

@@ -25,14 +25,14 @@ struct Checked {
 /// Runs tests/kernels/checked_pictures.cpp under Oclgrind. Left to the compiler's passes, as PoCL's are,
 /// kernels hold vectors of which some elements are never written nor used, and Oclgrind 21.10 with LLVM 14
 /// doesn't know those; nor does it know the compiler's own reductions.
-/// By several threads its counts of instructions damage its memory, and it aborts when the program ends.
-Checked runChecked(const std::string& argument) {
+/// counted: also find out which kernels ran, by its counts of instructions. These damage its memory where a
+/// kernel calls many functions.
+Checked runChecked(const std::string& argument, bool counted = true) {
   const TemporaryFolder folder;
-  const Outcome outcome =
-      runLine(folder,
-              "oclgrind --num-threads 1 --data-races --uninitialized --check-api --inst-counts --max-errors "
-              "3 --log reports"
-              " --build-options '-disable-llvm-passes -DSTANDARD_ONLY' '" LUCIOLE_CHECKED_PICTURES "' " +
+  const Outcome outcome = runLine(
+      folder, std::string("oclgrind --data-races --uninitialized --check-api --max-errors 3 --log reports") +
+                  (counted ? " --inst-counts" : "") +
+                  " --build-options '-disable-llvm-passes -DSTANDARD_ONLY' '" LUCIOLE_CHECKED_PICTURES "' " +
                   argument);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   Checked checked{readText(folder / "reports"), {}};
@@ -69,7 +69,12 @@ std::set<std::string> kernelsToRun(int picture) {
     names = allKernels();
     names.erase("shade_tiles");
     names.erase("clustered_light");
-    names.erase(picture == 3 ? "pair_visibility" : "classify");
+    if (picture == 3) {
+      names.erase("pair_visibility");
+      names.erase("find_needed");
+    } else {
+      names.erase("beam_shadows");
+    }
   }
   return names;
 }
@@ -87,9 +92,8 @@ class CheckedClusters : public testing::TestWithParam<int> {};
 
 TEST_P(CheckedClusters, HaveNoReports) {
   LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
-  const Checked checked = runChecked("clusters" + std::to_string(GetParam()));
-  EXPECT_EQ(checked.reports, "");
-  EXPECT_THAT(checked.kernels, IsSupersetOf({"clustered_light"}));
+  // The program fails where the kernel gives no light.
+  EXPECT_EQ(runChecked("clusters" + std::to_string(GetParam()), false).reports, "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Lanes, CheckedClusters, testing::Values(1, 4, 8), testing::PrintToStringParamName());

@@ -61,6 +61,11 @@ TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
   Stats stats;
   renderScene(testDevice(), scene, settings, stats);
   EXPECT_EQ(countOf(stats, "shadow_lights"), 1003u);
+  if (GetParam() == ShadowMethod::kExact) {
+    EXPECT_EQ(countOf(stats, "shadow_lights_exact"), 1003u);
+    EXPECT_EQ(countOf(stats, "shadow_bytes"), 0u) << "it needs no maps";
+    return;
+  }
   EXPECT_GT(countOf(stats, "shadow_lights_reduced"), 0u);
   EXPECT_GT(countOf(stats, "shadow_bytes"), 0u);
   EXPECT_LE(countOf(stats, "shadow_bytes"), std::uint64_t(64) << 20);

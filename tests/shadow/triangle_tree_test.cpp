@@ -289,7 +289,7 @@ TEST(TriangleTree, PlanesAreRightFarFromTheOriginAndZeroWithoutArea) {
   const Scene thin = looseScene({{a, a, a}, {a, b, a}, {a, b, 2.0f * b - a}});
   const TriangleTree none = buildTriangleTree(thin, glm::dvec3(0));
   for (int slot = 0; slot < kTreeWidth; ++slot)
-    for (int row = kPlaneRows; row < kBlockRows; ++row) EXPECT_EQ(at(none, 0, row, slot), 0);
+    for (int row = kPlaneRows; row < kRoundingRow; ++row) EXPECT_EQ(at(none, 0, row, slot), 0);
 }
 
 TEST(TriangleTree, PlanesTurnAsTheRoundedCornersDo) {

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/array_memory.hpp"
+#include "cl/buffer.hpp"
+#include "culling/cull.hpp"
+#include "kernels/shared.h"
+#include "scene/scene.hpp"
+#include "shadow/hole_masks.hpp"
+#include "shadow/triangle_tree.hpp"
+
+namespace luciole {
+
+/// Words of kernels/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel of
+/// its tile.
+using PairBits = std::vector<uint, ArrayAllocator<uint>>;
+
+/// What exact shadows need of a picture's scene and lights, on the host and on the device. Buffers are
+/// borrowed from the members before them, so it can't be copied.
+struct BeamScene {
+  std::shared_ptr<const TriangleTree> tree;
+  std::shared_ptr<const HoleMasks> masks;  ///< null where no triangle has holes
+  glm::mat3 view_to_tree{1.0f};            ///< a rotation
+  float4 tree_most{};                      ///< the largest |x|, |y|, |z| in the tree
+  std::vector<BeamLight> lights;           ///< one a light on the device
+  std::vector<std::uint32_t> order;        ///< the scene's index of each
+  Buffer<const float> nodes, blocks;
+  Buffer<const int> children;
+  Buffer<const uint> block_bits;
+  Buffer<const unsigned char> hole_texels;
+  Buffer<const HoleTriangle> hole_triangles;
+  Buffer<const uint> first_hole_triangle;
+  Buffer<const BeamLight> light_buffer;
+
+  BeamScene() = default;
+  BeamScene(const BeamScene&) = delete;
+  BeamScene& operator=(const BeamScene&) = delete;
+};
+
+/// Fills `beams` for the lights `order` (indices into Scene::lights), and sets ShadeLight::shadow of those
+/// with a shadow, in the same order. tree: of the scene, its origin the camera's eye. masks:
+/// of the tree, or null where no triangle has holes. Throws MachineError.
+void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
+                  std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
+                  std::span<const std::uint32_t> order, std::span<ShadeLight> lights, BeamScene& beams);
+
+struct BeamArguments {
+  std::size_t plane_stride;      ///< floats in a plane
+  Buffer<const float> position;  ///< G-buffer planes x, y, z; view space, metres
+  Buffer<const float> normal;    ///< G-buffer planes x, y, z; view space, unit
+  Buffer<const float> lift;      ///< a plane, metres, with Feature::kLift only
+  const LightLists& lists;       ///< with Feature::kLightLists only
+  const BeamScene& beams;
+  bool holes;  ///< with Feature::kHoles
+};
+
+/// The exact shadows of all entries of the lists; without lists of each tile and light, tile by tile.
+struct PairShadows {
+  PairBits lit;
+  PairBits unsure;  ///< a texture decides: not set in `lit`, and lit unless a triangle with holes hides it.
+                    ///< Empty where no triangle has holes
+};
+
+/// Launches kernels/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
+/// if the words don't fit into memory or there are 2²⁹ entries or more.
+PairShadows beamShadows(Device& device, const std::string& defines, const BeamArguments& arguments);
+
+}  // namespace luciole

@@ -1,0 +1,250 @@
+#include "render/beam_shadows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "kernels/probe.hpp"
+#include "kernels/random_scene.hpp"
+#include "kernels/shared.h"
+#include "render/brute_shadows.hpp"
+#include "render/lighting.hpp"
+#include "scene/pose.hpp"
+
+namespace luciole::test {
+namespace {
+
+constexpr glm::ivec2 kSheetsSize{120, 90};
+constexpr int kSheets = 40;
+
+/// Adds the parallelogram with these sides at the corner, wound so that its normal is cross(u, v).
+void addSheet(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v, Mesh& mesh) {
+  const auto first = std::uint32_t(mesh.positions.size());
+  for (const glm::dvec3& place : {corner, corner + u, corner + u + v, corner + v}) {
+    mesh.positions.push_back(glm::vec3(place));
+    mesh.normals.push_back(glm::vec3(glm::normalize(glm::cross(u, v))));
+  }
+  for (const glm::uvec3& corners : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)}) {
+    mesh.triangles.push_back(corners + first);
+    mesh.triangle_materials.push_back(0);
+  }
+}
+
+/// Sheets that the eye, at the origin, sees, and covers that only the lights know. A cover lies over a half
+/// of its sheet, at a distance that is 0.2 to 30 times the one up to which shadow rays ignore it.
+struct Sheets {
+  Mesh seen, covers;
+  /// Whether the shadow maps hold what is seen, too. Surfaces of another program's G-buffer needn't be there.
+  bool cast = true;
+};
+
+Sheets coveredSheets(Random& random) {
+  Sheets sheets;
+  for (int i = 0; i < kSheets; ++i) {
+    const glm::dvec3 way =
+        glm::normalize(glm::dvec3(random.between(-0.6, 0.6), random.between(-0.45, 0.45), -1));
+    const glm::dvec3 center = random.between(2, 12) * way;
+    const glm::dvec3 normal = glm::normalize(random.direction() * 0.7 - way);
+    const double side = 0.2 * glm::length(center);
+    const glm::dvec3 u = side * glm::normalize(glm::cross(normal, random.direction()));
+    const glm::dvec3 v = glm::cross(normal, u);
+    addSheet(center - 0.5 * (u + v), u, v, sheets.seen);
+    const double times =
+        random.chance(0.3) ? random.between(0.8, 1.2) : std::exp(random.between(std::log(0.2), std::log(30)));
+    const double gap = times * double(POINT_ERROR) * glm::length(center);
+    addSheet(center - 0.5 * (u + v) + gap * normal, 0.5 * u, v, sheets.covers);
+  }
+  return sheets;
+}
+
+std::vector<Light> lightsOverSheets(Random& random) {
+  std::vector<Light> lights;
+  for (const LightKind kind : {LightKind::kDirectional, LightKind::kPoint, LightKind::kSpot})
+    for (int i = 0; i < 4; ++i) {
+      Light light;
+      light.kind = kind;
+      light.shadow = true;
+      light.position = glm::dvec3(random.between(-6, 6), random.between(-6, 6), random.between(-2, 3));
+      light.direction = glm::normalize(glm::dvec3(random.between(-3, 3), random.between(-3, 3), -7) -
+                                       glm::dvec3(light.position));
+      light.cutoff = glm::radians(60.0);
+      lights.push_back(light);
+    }
+  return lights;
+}
+
+struct Verdicts {
+  std::uint64_t pairs = 0;  ///< of a pixel and a light that may brighten it
+  std::uint64_t lit = 0;
+  std::uint64_t wrong = 0;  ///< of which brute force says the opposite
+};
+
+/// Adds up the verdicts on what a camera sees: the G-buffer shows `seen`, and what casts shadows is `scene`.
+void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, glm::ivec2 size, int lanes,
+                 Culling culling, Verdicts& verdicts) {
+  const View view = cameraView(camera, size);
+  ShadeSettings settings;
+  settings.culling = culling;
+  settings.shadows = ShadowMethod::kExact;
+  const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
+  GBuffer gbuffer = rasterize(seen, allObjects(seen), view, Shading::kPhong, neededPlanes(features));
+  Device& device = deviceWithLanes(lanes);
+  Lighting lighting;
+  Stats stats;
+  prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats);
+
+  const std::size_t stride = gbuffer.pixels(), tiles = stride / kTilePixels,
+                    light_count = lighting.beams.lights.size();
+  std::vector<uint> starts(tiles + 1);
+  std::vector<ListEntry> list(lighting.lists.entries);
+  if (culling == Culling::kTiles) {
+    download(device, lighting.lists.starts, starts);
+    download(device, lighting.lists.list, list);
+  }
+  const glm::dmat4 view_to_world = camera.camera_to_world;
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    const bool listed = culling == Culling::kTiles;
+    const std::size_t first = listed ? starts[tile] : tile * light_count,
+                      end = listed ? starts[tile + 1] : first + light_count;
+    for (std::size_t entry = first; entry < end; ++entry) {
+      const BeamLight& beam = lighting.beams.lights[listed ? list[entry].light : entry - first];
+      if (!beam.casts) continue;
+      for (std::size_t pixel = 0; pixel < kTilePixels; ++pixel) {
+        const std::size_t place = tile * kTilePixels + pixel;
+        if (!std::isfinite(gbuffer.position[place + 2 * stride])) continue;
+        const glm::dvec3 normal(gbuffer.normal[place], gbuffer.normal[place + stride],
+                                gbuffer.normal[place + 2 * stride]);
+        const glm::vec3 start = startInTree(lighting.beams, gbuffer, place);
+        const glm::dvec3 at(beam.place.x, beam.place.y, beam.place.z);
+        const glm::dvec3 way = beam.place.w == 0 ? at : at - glm::dvec3(start);
+        if (glm::length(way) > beam.reach || glm::dot(glm::dmat3(view_to_world) * normal, way) <= 0) continue;
+        const bool is_lit = (lit.pair_bits[entry * kPairWords + pixel / 32] >> pixel % 32 & 1) != 0;
+        ++verdicts.pairs;
+        verdicts.lit += is_lit;
+        verdicts.wrong += is_lit == isHidden(*lighting.beams.tree, start, beam);
+      }
+    }
+  }
+}
+
+/// A camera at the origin, and the sheets as it sees them.
+void addVerdictsOnSheets(const Sheets& sheets, const std::vector<Light>& lights, int lanes,
+                         Verdicts& verdicts) {
+  Scene seen;
+  seen.materials.resize(1);
+  seen.meshes = {sheets.seen};
+  seen.objects = {{0, glm::dmat4(1), -1}};
+  seen.lights = lights;
+  Camera camera;
+  camera.camera_to_world = glm::dmat4(1);
+  seen.cameras = {camera};
+  Scene scene = seen;
+  scene.meshes.push_back(sheets.covers);
+  if (!sheets.cast) scene.objects.clear();
+  scene.objects.push_back({1, glm::dmat4(1), -1});
+  addVerdicts(scene, seen, camera, kSheetsSize, lanes, Culling::kNone, verdicts);
+}
+
+// Hardest is a surface as close behind another as the points on it are uncertain: whether that is a shadow
+// depends on the last bit of the distance.
+TEST(BeamShadows, AgreeWithBruteForceOnSheetsThatNearlyTouch) {
+  Random random(21);
+  Verdicts verdicts;
+  for (const int lanes : {1, 4, 8, 16}) {
+    Sheets sheets = coveredSheets(random);
+    sheets.cast = lanes != 8;
+    addVerdictsOnSheets(sheets, lightsOverSheets(random), lanes, verdicts);
+  }
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
+  EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+/// Triangles of very different sizes and shapes before a camera that looks at them from z = 8, and lights of
+/// each kind: among them, on a corner, in a plane, behind the camera, and far away.
+Scene soup(Random& random, int count, double scale) {
+  Scene scene;
+  scene.materials.resize(1);
+  Mesh& mesh = scene.meshes.emplace_back();
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 middle(random.between(-4, 4), random.between(-3, 3), random.between(-4, 4));
+    const double size = std::exp(random.between(std::log(1e-3), std::log(i % 10 == 0 ? 6 : 1)));
+    const bool thin = random.chance(0.2);
+    const glm::dvec3 u = size * random.direction(), v = (thin ? 1e-4 : 1.0) * size * random.direction();
+    for (const glm::dvec3& corner : {middle, middle + u, middle + v}) {
+      mesh.positions.push_back(glm::vec3(scale * corner));
+      mesh.normals.push_back(glm::vec3(glm::normalize(glm::cross(u, v))));
+    }
+    const auto first = std::uint32_t(3 * i);
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+    mesh.triangle_materials.push_back(0);
+  }
+  scene.materials[0].double_sided = true;
+  scene.objects = {{0, glm::dmat4(1), -1}};
+  const auto add = [&](LightKind kind, const glm::dvec3& position) {
+    Light light;
+    light.kind = kind;
+    light.shadow = true;
+    light.position = position;
+    light.direction = glm::normalize(-position + 0.1 * random.direction());
+    light.cutoff = glm::radians(70.0);
+    scene.lights.push_back(light);
+  };
+  for (int i = 0; i < 3; ++i)
+    add(i == 2 ? LightKind::kSpot : LightKind::kPoint,
+        scale * glm::dvec3(random.between(-3, 3), random.between(-2, 2), random.between(-3, 3)));
+  add(LightKind::kPoint, glm::dvec3(mesh.positions[30]));
+  add(LightKind::kPoint,
+      (glm::dvec3(mesh.positions[0]) + glm::dvec3(mesh.positions[1]) + glm::dvec3(mesh.positions[2])) / 3.0);
+  add(LightKind::kPoint, scale * glm::dvec3(0, 1, 9));
+  add(LightKind::kPoint, scale * glm::dvec3(3e5, 1e6, 2e5));
+  add(LightKind::kDirectional, scale * glm::dvec3(1, 2, 3));
+  add(LightKind::kDirectional, scale * glm::dvec3(-1, 0, 0));
+  Camera camera;
+  camera.camera_to_world = cameraToWorld(scale * glm::dvec3(0.3, 0.2, 8), glm::dvec3(0), {0, 1, 0});
+  camera.near *= scale;
+  camera.far *= scale;
+  scene.cameras = {camera};
+  return scene;
+}
+
+TEST(BeamShadows, AgreeWithBruteForceInASoupOfTriangles) {
+  Random random(22);
+  Verdicts verdicts;
+  for (const double scale : {1.0, 1e-3, 1e16}) {
+    const Scene scene = soup(random, 700, scale);
+    const int lanes = scale == 1 ? 16 : 8;
+    addVerdicts(scene, scene, scene.cameras[0], {72, 54}, lanes,
+                scale == 1 ? Culling::kTiles : Culling::kNone, verdicts);
+    EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs, scale " << scale;
+  }
+  EXPECT_GT(verdicts.pairs, 20000u);
+  EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
+  EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+// Corners are rounded by so much that triangles turn, and rays run along them.
+TEST(BeamShadows, AgreeWithBruteForceAmongLeavesThatRoundingTurns) {
+  Random random(23);
+  Scene scene = soup(random, 700, 1.0);
+  for (glm::vec3& position : scene.meshes[0].positions) position *= 1e-3f;
+  const glm::dvec3 away(50, 60, 70);
+  scene.objects[0].object_to_world[3] = glm::dvec4(away, 1);
+  for (Light& light : scene.lights) light.position = away + 1e-3 * light.position;
+  // Far away from them, and with so narrow a view that they fill the picture.
+  Camera camera = scene.cameras[0];
+  camera.camera_to_world = cameraToWorld(glm::dvec3(0), away, {0, 1, 0});
+  camera.fov_y = 8e-5;
+  camera.near = 1;
+  camera.far = 1000;
+  Verdicts verdicts;
+  addVerdicts(scene, scene, camera, {72, 54}, 16, Culling::kNone, verdicts);
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.pairs, 2000u);
+  EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+}  // namespace
+}  // namespace luciole::test
