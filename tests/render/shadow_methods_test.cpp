@@ -47,7 +47,8 @@ TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
   Scene scene = sceneFromJson(kShadowMethodsScene);
   for (int i = 0; i < 1000; ++i) {
     Light light;
-    light.position = {0.37 * (i % 32) - 6, 0.5 + 0.01 * (i % 7), 0.37 * (i / 32) - 6};
+    const int column = i % 32, row = i / 32;
+    light.position = {0.37 * column - 6, 0.5 + 0.01 * (i % 7), 0.37 * row - 6};
     light.range = 1.5f;
     light.diffuse = glm::vec3(0.1f);
     light.shadow = true;

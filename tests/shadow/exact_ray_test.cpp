@@ -157,14 +157,16 @@ TEST(ExactRay, NoBoxHidesATriangleThatBlocks) {
     // Walls along the axes are boxes without a thickness, and some lights and starts lie in them.
     for (int axis = 0; axis < 3; ++axis)
       for (int i = 0; i < 100; ++i)
-        for (glm::vec3& corner : triangles[std::size_t(200 * axis + i)]) corner[axis] = 0.125f * float(axis);
+        for (glm::vec3& corner : triangles[200 * std::size_t(axis) + std::size_t(i)])
+          corner[axis] = 0.125f * float(axis);
     for (Triangle& triangle : triangles)
       for (glm::vec3& corner : triangle) corner *= reach;
     const TriangleTree tree = treeOver(triangles);
     const std::vector<Slot> slots = slotsOf(tree);
     for (int i = 0; i < 300; ++i) {
       glm::vec3 start = vector(), light = vector();
-      if (i % 3 == 0) start[i % 9 / 3] = light[i % 9 / 3] = 0.125f * float(i % 9 / 3);
+      const int axis = i % 9 / 3;
+      if (i % 3 == 0) start[axis] = light[axis] = 0.125f * float(axis);
       if (i % 5 == 0) light[i % 2] = start[i % 2];
       if (i % 7 == 0) light *= 1e3f;
       for (const BeamLight& beam : {pointAt(light * reach), towards(glm::normalize(light - start))}) {

@@ -107,7 +107,8 @@ TEST(HoleMasks, ValuesBeyondTheThresholdsAreJudgedAsALookupIs) {
         const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
         int judged = 0, wrong = 0;
         for (int code = 0; code < 65536; ++code) {
-          const double u = (code % 256 + 0.5) / 512, v = (code / 256 + 0.5) / 512;
+          const int column = code % 256, row = code / 256;
+          const double u = (column + 0.5) / 512, v = (row + 0.5) / 512;
           const bool is_hole = isHoleAt(scene, objects[0], 0, {1 - u - v, u, v});
           const float value = masks.texels[std::size_t(code)];
           judged += value >= triangle.solid_from || value <= triangle.hole_to;
