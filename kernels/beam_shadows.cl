@@ -12,8 +12,8 @@
 //        a walk with the beam of the bundle (beam.clh) until kBatch candidates are found
 //        └─ for each cluster: its candidates (blockers.clh), and alone the rest of the walk
 //
-// A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a walk of some 10 nodes and blocks of 16 triangles for each bundle and light; 30 instructions for each candidate and
-// row of points.
+// A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a walk of some 10 nodes and blocks of 16
+// triangles for each bundle and light; 30 instructions for each candidate and row of points.
 #include "beam.clh"
 #include "beam_points.clh"
 #include "blockers.clh"
@@ -374,7 +374,7 @@ WORK bool find_candidates(const Scene *scene, const Outlook *outlook, const Beam
 INLINE bool recall(const Scene *scene, const Outlook *outlook, const Beam *beam, Candidates *candidates) {
   candidates->count = 0;
   for (uint i = 0; i < kTreeWidth; i += LANES) {
-    uint references[LANES], used = 0, hollow = 0;
+    uint references[LANES], used = 0;
     for (uint lane = 0; lane < LANES; ++lane) {
       uint reference = scene->memory->reference[scene->place][i + lane];
       bool is_one = reference != NO_TRIANGLE;
@@ -384,7 +384,8 @@ INLINE bool recall(const Scene *scene, const Outlook *outlook, const Beam *beam,
     if (!used) continue;
     Blockers blockers;
     gather_blockers(outlook, scene->blocks, references, used, &blockers);
-    if (take_blockers(scene, outlook, beam, &blockers, hollow, candidates)) return true;
+    // None of them has holes.
+    if (take_blockers(scene, outlook, beam, &blockers, 0, candidates)) return true;
   }
   return false;
 }
