@@ -56,7 +56,7 @@ picture scenes/lesson/shadows_exact.jpg render scenes/lesson/shadows.json --shad
 picture scenes/colonnade_rays.jpg reference scenes/colonnade.json --size 960x540 -o
 if wanted scenes/colonnade_error.png; then
   ./luciole reference scenes/colonnade.json --size 960x540 -o rays.exr
-  ./luciole render scenes/colonnade.json --size 960x540 -o maps.exr
+  ./luciole render scenes/colonnade.json --size 960x540 --shadows hard -o maps.exr
 fi
 picture scenes/colonnade_error.png compare rays.exr maps.exr --error-map
 picture scenes/speed_against_error.svg bench --json bench.json --plot

@@ -1,9 +1,9 @@
 #include "bench/shadow_errors.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 #include "bench/shadow_scenes.hpp"
@@ -20,20 +20,33 @@ namespace luciole {
 namespace {
 
 constexpr glm::ivec2 kJudgedSize(1280, 720);
+constexpr int kMoreSamples = 16;
+
+/// Pictures of halls, beside makeShadowScenes().
+struct Hall {
+  int lamps;
+  glm::ivec2 size;
+};
+constexpr int kSampledLamps = 30;  ///< of the halls that are timed with kMoreSamples, too
+const Hall kHalls[] = {
+    {1, kJudgedSize}, {30, {320, 180}}, {30, kJudgedSize}, {30, {1920, 1080}}, {1000, kJudgedSize}};
 
 struct Method {
   const char* name;
   ShadowMethod method;
 };
-constexpr Method kMethods[] = {
-    {"hard", ShadowMethod::kHard}, {"pcf", ShadowMethod::kPcf}, {"exact", ShadowMethod::kExact}};
+constexpr Method kMethods[] = {{"hard", ShadowMethod::kHard},
+                               {"pcf", ShadowMethod::kPcf},
+                               {"exact", ShadowMethod::kExact},
+                               {"auto", ShadowMethod::kAuto}};
 
 /// A scene as its first camera sees it, and the truth about its shadows by rays. The rays refer to the scene,
 /// so this may not be moved.
 struct Judged {
   Scene scene;
   GBuffer gbuffer, flat;
-  RayScene rays;
+  RayScene rays;   ///< of the truth
+  RayScene solid;  ///< without holes, for Embree's own row
   std::vector<LightPair> pairs;
   TracedShadows truth;
 };
@@ -53,6 +66,7 @@ std::unique_ptr<const Judged> judgeScene(const Scene& scene, glm::ivec2 size) {
   judged->gbuffer = drawn(scene, size, Shading::kPhong);
   judged->flat = drawn(scene, size, Shading::kFlat);
   judged->rays = buildShadowRays(judged->scene, glm::dvec3(judged->gbuffer.camera.camera_to_world[3]));
+  judged->solid = buildRayScene(judged->scene, judged->rays.origin);
   judged->pairs = facingPairs(scene, judged->gbuffer);
   judged->truth = traceTruth(scene, judged->rays, judged->gbuffer, judged->pairs);
   return judged;
@@ -79,10 +93,10 @@ TexelSide texelSides(const Scene& scene, const ShadowMaps& shadows) {
   };
 }
 
-/// The exact shadows of the pairs. A pair that culling left out gets the truth, because the light adds
-/// nothing there.
-std::vector<float> exactVisibility(Device& device, const Judged& judged, const Lighting& lighting,
-                                   const LitPlanes& lit) {
+/// Sets the visibility of the pairs with lights whose shadows are exact. A pair that culling left out gets
+/// the truth, because the light adds nothing there.
+void addExactVisibility(Device& device, const Judged& judged, const Lighting& lighting, const LitPlanes& lit,
+                        std::vector<float>& visibility) {
   std::vector<uint> starts(lighting.lists.tiles + 1);
   std::vector<ListEntry> list(lighting.lists.entries);
   download(device, lighting.lists.starts, starts);
@@ -90,9 +104,9 @@ std::vector<float> exactVisibility(Device& device, const Judged& judged, const L
   const std::vector<std::uint32_t>& order = lighting.beams.order;
   std::vector<std::uint32_t> device_light(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) device_light[order[i]] = i;
-  std::vector<float> visibility;
   for (std::size_t i = 0; i < judged.pairs.size(); ++i) {
     const LightPair& pair = judged.pairs[i];
+    if (!lighting.beams.lights[device_light[pair.light]].casts) continue;
     const std::size_t tile = pair.pixel / kTilePixels, place = pair.pixel % kTilePixels;
     const auto end = list.begin() + starts[tile + 1];
     const auto entry =
@@ -101,63 +115,93 @@ std::vector<float> exactVisibility(Device& device, const Judged& judged, const L
     const bool listed = entry != end && entry->light == device_light[pair.light] &&
                         (entry->squares >> SQUARE_OF_PIXEL(place) & 1) != 0;
     const uint* bits = lit.pair_bits.data() + std::size_t(entry - list.begin()) * kPairWords;
-    visibility.push_back(listed ? float(bits[place / 32] >> place % 32 & 1) : float(judged.truth.lit[i]));
+    visibility[i] = listed ? float(bits[place / 32] >> place % 32 & 1) : float(judged.truth.lit[i]);
   }
-  return visibility;
+}
+
+/// Sets the visibility of the pairs with lights that have maps.
+void addMapVisibility(Device& device, const Judged& judged, const Lighting& lighting,
+                      const ShadeSettings& settings, std::vector<float>& visibility) {
+  std::vector<MapPair> map_pairs;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < judged.pairs.size(); ++i) {
+    const LightPair& pair = judged.pairs[i];
+    const std::uint32_t map = lighting.host_shadows.map_of_light[pair.light];
+    if (map == kNoShadow) continue;
+    map_pairs.push_back({pair.pixel, map});
+    indices.push_back(i);
+  }
+  const std::vector<float> seen =
+      pairVisibility(device, featureDefines(lighting.features) + mathDefines(settings), judged.gbuffer,
+                     lighting.host_shadows, map_pairs);
+  for (std::size_t i = 0; i < indices.size(); ++i) visibility[indices[i]] = seen[i];
 }
 
 struct Verdict {
   ShadowErrors errors;
-  std::size_t faces = 0;     ///< that were drawn to
-  std::size_t texels = 0;    ///< that were drawn
-  std::uint64_t traced = 0;  ///< pairs that took a ray
+  std::size_t faces = 0;         ///< that were drawn to
+  std::size_t texels = 0;        ///< that were drawn
+  std::uint64_t traced = 0;      ///< pairs that took a ray
+  std::size_t exact_lights = 0;  ///< whose shadows beams told
 };
 
-Verdict judgeMaps(Device& device, const Judged& judged, const ShadeSettings& settings) {
+/// Whether each pair is near an edge, for maps of this size. Edges are as wide as a hard map's texels, also
+/// where there are no maps.
+std::vector<std::uint8_t> edgesOf(const Judged& judged, const ShadowLimits& limits) {
+  const ShadowMaps maps =
+      planShadowMaps(judged.scene, cameraView(judged.gbuffer.camera, judged.gbuffer.picture_size),
+                     ShadowMethod::kHard, limits);
+  return nearEdges(judged.scene, judged.rays, judged.gbuffer, judged.flat, judged.pairs, judged.truth.lit,
+                   texelSides(judged.scene, maps));
+}
+
+RenderSettings pictureOf(const Judged& judged, const ShadeSettings& shade, int samples) {
+  RenderSettings settings;
+  settings.size = judged.gbuffer.picture_size;
+  settings.camera = judged.gbuffer.camera;
+  settings.samples = samples;
+  settings.shade = shade;
+  return settings;
+}
+
+Verdict judgeShadows(Device& device, const Judged& judged, const std::vector<std::uint8_t>& edges,
+                     const ShadeSettings& given) {
   const Scene& scene = judged.scene;
   const Camera& camera = judged.gbuffer.camera;
+  const ShadeSettings settings = pictureShading(scene, pictureOf(judged, given, 1));
   const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, cameraView(camera, judged.gbuffer.picture_size), features, settings,
                   lighting, stats);
   const LitPlanes lit = lightGBuffer(device, scene, lighting, features, judged.gbuffer, {}, stats);
-  const bool exact = settings.shadows == ShadowMethod::kExact;
-  // Where there are no maps, edges are as wide as a hard map's texels.
-  const ShadowMaps unused = exact ? planShadowMaps(scene, cameraView(camera, judged.gbuffer.picture_size),
-                                                   ShadowMethod::kHard, settings.shadow_limits)
-                                  : ShadowMaps{};
-  const ShadowMaps& shadows = exact ? unused : lighting.host_shadows;
-  std::vector<MapPair> map_pairs;
-  for (const LightPair& pair : judged.pairs)
-    map_pairs.push_back({pair.pixel, shadows.map_of_light[pair.light]});
-  const std::vector<float> visibility =
-      exact ? exactVisibility(device, judged, lighting, lit)
-            : pairVisibility(device, featureDefines(features) + mathDefines(settings), judged.gbuffer,
-                             shadows, map_pairs);
-  const std::vector<std::uint8_t> edges =
-      nearEdges(scene, judged.rays, judged.gbuffer, judged.flat, judged.pairs, judged.truth.lit,
-                texelSides(scene, shadows));
-  Verdict verdict{.errors = judge(judged.truth.lit, edges, visibility),
-                  .texels = shadows.texels.size(),
-                  .traced = lit.traced};
-  for (const PlannedFace& face : shadows.planned) verdict.faces += face.count.x > 0;
+  std::vector<float> visibility(judged.pairs.size());
+  if (features.shadowMaps()) addMapVisibility(device, judged, lighting, settings, visibility);
+  if (features.has(Feature::kExact)) addExactVisibility(device, judged, lighting, lit, visibility);
+  Verdict verdict{.errors = judge(judged.truth.lit, edges, visibility), .traced = lit.traced};
+  verdict.texels = lighting.host_shadows.texels.size();
+  for (const PlannedFace& face : lighting.host_shadows.planned) verdict.faces += face.count.x > 0;
+  for (const BeamLight& light : lighting.beams.lights) verdict.exact_lights += light.casts;
   return verdict;
 }
 
-/// Milliseconds that Embree takes for the pairs in the usual way: rays start a little off the surface, so
-/// that no filter needs to recognize their own triangle, and holes in masks are ignored. Making the rays
-/// isn't counted.
-double rayMilliseconds(const Judged& judged, const RayScene& solid) {
+/// What Embree says of the pairs, and the milliseconds that it takes, in the usual way: rays start a little
+/// off the surface, so that no filter needs to recognize their own triangle, and holes in masks are ignored.
+/// Sixteen rays of a packet start in 4 × 4 pixels and go to one light. Making them isn't counted.
+struct BareRays {
+  std::vector<float> visibility;
+  double milliseconds = 0;
+};
+BareRays bareRays(const Judged& judged) {
   constexpr double kLift = 1e-3;           // of the distance to the eye
   constexpr std::size_t kBlock = 1 << 20;  // pairs
   const GBuffer& gbuffer = judged.gbuffer;
   const glm::dmat4 view_to_world = gbuffer.camera.camera_to_world;
   const std::size_t stride = gbuffer.pixels();
-  double milliseconds = 0;
+  BareRays result{std::vector<float>(judged.pairs.size())};
   for (std::size_t first = 0; first < judged.pairs.size(); first += kBlock) {
     std::vector<ShadowRay> rays(std::min(kBlock, judged.pairs.size() - first));
-    for (std::size_t i = 0; i < rays.size(); ++i) {
+    tbb::parallel_for(std::size_t(0), rays.size(), [&](std::size_t i) {
       const LightPair& pair = judged.pairs[first + i];
       const auto at = [&](const Plane& plane) {
         return glm::dvec3(plane[pair.pixel], plane[stride + pair.pixel], plane[2 * stride + pair.pixel]);
@@ -170,36 +214,35 @@ double rayMilliseconds(const Judged& judged, const RayScene& solid) {
       const glm::dvec3 way = directional ? -light.direction : light.position - from;
       rays[i] = {from, glm::normalize(way),
                  directional ? std::numeric_limits<double>::infinity() : glm::length(way)};
-    }
+    });
     std::vector<std::uint8_t> blocked(rays.size());
-    const auto start = std::chrono::steady_clock::now();
-    areBlocked(solid, rays, blocked);
-    milliseconds +=
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.milliseconds += millisecondsOf([&] { areBlocked(judged.solid, rays, blocked); });
+    for (std::size_t i = 0; i < rays.size(); ++i) result.visibility[first + i] = blocked[i] ? 0.0f : 1.0f;
   }
-  return milliseconds;
+  return result;
 }
 
 /// What a row of the table is measured with.
-struct MethodRow {
+struct ShadowRow {
   const Judged* judged;
   ShadeSettings settings;
+  int samples = 1;
+  bool embree = false;  ///< bareRays instead of a picture
 };
 
-/// Milliseconds of drawing (with planning, and finding what to draw), of lookups (shading less shading
-/// without shadows), of both together, and of Embree's rays.
-std::vector<double> timeMaps(Device& device, const MethodRow& row) {
-  RenderSettings settings;
-  settings.shade = row.settings;
-  Stats with, without;
-  shadeGBuffer(device, row.judged->scene, row.judged->gbuffer, settings, with);
-  settings.shade.shadows = ShadowMethod::kOff;
-  shadeGBuffer(device, row.judged->scene, row.judged->gbuffer, settings, without);
-  const double draw = stageTime(with, Stage::kFindShadowTexels) + stageTime(with, Stage::kShadowMaps);
-  const double look_up = stageTime(with, Stage::kBeamShadows) + stageTime(with, Stage::kHoleRays) +
-                         stageTime(with, Stage::kShade) - stageTime(without, Stage::kShade);
-  const double rays = rayMilliseconds(*row.judged, buildRayScene(row.judged->scene, row.judged->rays.origin));
-  return {draw, look_up, draw + look_up, rays};
+/// Milliseconds of getting ready (planning and drawing maps, and building the tree of triangles), and of
+/// telling each pair's shadow (finding what maps must show, beams, rays through holes, and shading).
+std::vector<double> timeShadows(Device& device, const ShadowRow& row) {
+  if (row.embree) {
+    const double ready = millisecondsOf([&] { buildRayScene(row.judged->scene, row.judged->rays.origin); });
+    const double tell = bareRays(*row.judged).milliseconds;
+    return {ready, tell};
+  }
+  Stats stats;
+  renderScene(device, row.judged->scene, pictureOf(*row.judged, row.settings, row.samples), stats);
+  return {stageTime(stats, Stage::kTriangleTree) + stageTime(stats, Stage::kShadowMaps),
+          stageTime(stats, Stage::kFindShadowTexels) + stageTime(stats, Stage::kBeamShadows) +
+              stageTime(stats, Stage::kHoleRays) + stageTime(stats, Stage::kShade)};
 }
 
 /// The sizes of maps to try: all for a scene of the user's, only the default for makeShadowScenes().
@@ -209,88 +252,151 @@ std::vector<int> sizesFor(const SpeedInput& input) {
   return {std::begin(kShadowSizes), std::end(kShadowSizes)};
 }
 
-SpeedCell percent(std::uint64_t part, std::uint64_t whole, const std::string& why_none) {
-  return quotient(100.0 * double(part), double(whole), why_none);
-}
-
 /// A row's cells, with empty ones for the times.
 std::vector<SpeedCell> countedCells(const Judged& judged, const Verdict& verdict) {
   const ShadowErrors& errors = verdict.errors;
   const std::string none =
       fmt::format("{}: no surface in the picture faces a light that casts shadows", judged.scene.name);
-  const auto ofPairs = [&](std::uint64_t part) { return percent(part, judged.pairs.size(), none); };
+  const auto ofPairs = [&](double part) { return quotient(100 * part, double(judged.pairs.size()), none); };
   const auto ofSome = [&](std::uint64_t part, std::uint64_t whole, const char* kind) {
-    return percent(part, whole,
-                   judged.pairs.empty() ? none : fmt::format("{}: no pair is {}", judged.scene.name, kind));
+    return quotient(100.0 * double(part), double(whole),
+                    judged.pairs.empty() ? none : fmt::format("{}: no pair is {}", judged.scene.name, kind));
   };
   return {double(judged.pairs.size()),
+          double(verdict.exact_lights),
           double(verdict.faces),
           1e-6 * double(verdict.texels),
           {},
           {},
           {},
-          {},
           NoValue{none},
-          ofPairs(verdict.traced),
+          ofPairs(double(verdict.traced)),
           ofSome(errors.wrongly_dark, errors.lit, "lit away from edges"),
           ofSome(errors.wrongly_lit, errors.dark, "dark away from edges"),
-          ofPairs(errors.edges),
-          ofSome(errors.wrong_edges, errors.edges, "near an edge")};
+          ofPairs(double(errors.edges)),
+          ofSome(errors.wrong_edges, errors.edges, "near an edge"),
+          ofPairs(errors.brighter)};
+}
+
+/// Adds the scene's rows: each method with each size of maps that matters to it, then Embree.
+void addRows(const SpeedInput& input, const Judged& judged, const std::vector<int>& sizes, SpeedTable& table,
+             std::vector<ShadowRow>& rows) {
+  const std::string picture =
+      fmt::format("{}, {}x{}", judged.scene.name, judged.gbuffer.width, judged.gbuffer.height);
+  std::vector<std::uint8_t> edges;
+  for (const int size : sizes) {
+    const ShadowLimits limits{.size = size};
+    edges = edgesOf(judged, limits);
+    for (const Method& method : kMethods) {
+      if (method.method == ShadowMethod::kExact && size != sizes.back()) continue;
+      ShadowRow row{.judged = &judged, .settings = {}};
+      row.settings.shadows = method.method;
+      row.settings.shadow_limits = limits;
+      table.rows.push_back({fmt::format("{}, {} {}", picture, method.name, size),
+                            countedCells(judged, judgeShadows(input.device, judged, edges, row.settings))});
+      rows.push_back(row);
+    }
+  }
+  Verdict embree{.errors = judge(judged.truth.lit, edges, bareRays(judged).visibility)};
+  table.rows.push_back({picture + ", Embree", countedCells(judged, embree)});
+  rows.push_back({.judged = &judged, .settings = {}, .embree = true});
+}
+
+/// Adds rows of kMoreSamples for those from `first` on.
+void addSampledRows(std::size_t first, SpeedTable& table, std::vector<ShadowRow>& rows) {
+  const std::size_t end = rows.size();
+  for (std::size_t i = first; i < end; ++i) {
+    if (rows[i].embree) continue;
+    rows.push_back(rows[i]);
+    rows.back().samples = kMoreSamples;
+    table.rows.push_back(
+        {fmt::format("{}, {} samples", table.rows[i].name, kMoreSamples),
+         std::vector<SpeedCell>(table.columns.size(), NoValue{"errors are counted with one sample"})});
+  }
+}
+
+/// The first row like this one, but with Embree or without shadows.
+std::size_t rivalOf(const std::vector<ShadowRow>& rows, const ShadowRow& row, bool embree) {
+  const auto is_rival = [&](const ShadowRow& other) {
+    return other.judged == row.judged && other.embree == embree &&
+           (embree || (other.samples == row.samples && other.settings.shadows == ShadowMethod::kOff));
+  };
+  return std::size_t(std::find_if(rows.begin(), rows.end(), is_rival) - rows.begin());
+}
+
+/// Times all rows, with pictures without shadows beside them, and fills in the table's cells.
+void timeRows(const SpeedInput& input, std::vector<ShadowRow> rows, SpeedTable& table) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    ShadowRow off = rows[i];
+    off.settings.shadows = ShadowMethod::kOff;
+    if (!off.embree && rivalOf(rows, off, false) == rows.size()) rows.push_back(off);
+  }
+  const auto rounds = runInRounds(rows.size(), input.repeats, table.name, input.on_progress,
+                                  [&](std::size_t row) { return timeShadows(input.device, rows[row]); });
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const std::vector<double>& ready = rounds[i].figures[0];
+    std::vector<double> tell = rounds[i].figures[1], both = ready;
+    for (std::size_t k = 0; k < tell.size(); ++k) {
+      if (!rows[i].embree) tell[k] -= rounds[rivalOf(rows, rows[i], false)].figures[1][k];
+      both[k] += tell[k];
+    }
+    std::vector<SpeedCell>& cells = table.rows[i].cells;
+    cells[4] = summarize(ready);
+    cells[5] = summarize(tell);
+    cells[6] = summarize(both);
+    if (rows[i].samples > 1) {
+      cells[7] = NoValue{"Embree's row is for one sample"};
+    } else if (!rows[i].judged->pairs.empty()) {
+      cells[7] = ratio(rows[i].embree ? tell : both, rounds[rivalOf(rows, rows[i], true)].figures[1]);
+    }
+  }
 }
 
 }  // namespace
 
 ShadowErrors shadowErrors(Device& device, const Scene& scene, glm::ivec2 size,
                           const ShadeSettings& settings) {
-  return judgeMaps(device, *judgeScene(scene, size), settings).errors;
+  const auto judged = judgeScene(scene, size);
+  return judgeShadows(device, *judged, edgesOf(*judged, settings.shadow_limits), settings).errors;
 }
 
 SpeedTable measureShadowErrors(const SpeedInput& input) {
   const glm::ivec2 size = input.size.value_or(kJudgedSize);
-  std::vector<std::unique_ptr<const Judged>> judged;
-  if (input.scene) {
-    judged.push_back(judgeScene(*input.scene, size));
-  } else {
-    for (const Scene& scene : makeShadowScenes()) judged.push_back(judgeScene(scene, size));
-  }
   SpeedTable table{.name = "shadow errors",
-                   .measured = fmt::format(
-                       "pairs of a pixel and a light that faces it, {} x {} pixels, against rays by Embree; "
-                       "its time is for rays without holes, the tree not counted",
-                       size.x, size.y),
+                   .measured =
+                       "pairs of a pixel and a light that faces it, against rays by Embree; Embree's own "
+                       "row is for rays without holes, and times Embree doesn't count its tree",
                    .columns = {{"pairs", "pairs", 0},
+                               {"exact_lights", "exact lights", 0},
                                {"faces", "faces drawn", 0},
                                {"million_texels", "million texels", 2},
-                               {"draw_milliseconds", "draw, ms", 1},
-                               {"look_up_milliseconds", "look up, ms", 1},
+                               {"draw_milliseconds", "tree or maps, ms", 1},
+                               {"look_up_milliseconds", "beams or lookups, ms", 1},
                                {"milliseconds", "both, ms", 1},
-                               {"ray_milliseconds", "Embree, ms", 1},
                                {"times_rays", "times Embree", 2},
                                {"traced_percent", "rays, % of pairs", 2},
                                {"wrongly_dark_percent", "wrongly dark, % of lit", 4},
                                {"wrongly_lit_percent", "wrongly lit, % of dark", 4},
                                {"edge_percent", "edges, %", 2},
-                               {"wrong_edge_percent", "wrong there, %", 2}}};
-  std::vector<MethodRow> rows;
-  for (const auto& one : judged) {
-    for (const Method& method : kMethods) {
-      for (const int map_size : sizesFor(input)) {
-        MethodRow row{one.get(), {}};
-        row.settings.shadows = method.method;
-        row.settings.shadow_limits.size = map_size;
-        table.rows.push_back({fmt::format("{}, {} {}", one->scene.name, method.name, map_size),
-                              countedCells(*one, judgeMaps(input.device, *one, row.settings))});
-        rows.push_back(row);
-      }
-    }
+                               {"wrong_edge_percent", "wrong there, %", 2},
+                               {"brighter_percent", "brighter by, % of pairs", 4}}};
+  std::vector<std::unique_ptr<const Judged>> judged;
+  std::vector<ShadowRow> rows;
+  const auto add = [&](const Scene& scene, glm::ivec2 of_scene, bool sampled) {
+    const std::size_t first = rows.size();
+    judged.push_back(judgeScene(scene, of_scene));
+    addRows(input, *judged.back(), sizesFor(input), table, rows);
+    if (sampled) addSampledRows(first, table, rows);
+  };
+  if (input.scene) {
+    add(*input.scene, size, true);
+  } else {
+    for (const Scene& scene : makeShadowScenes()) add(scene, size, false);
+    for (const Hall& hall : kHalls)
+      add(makeLampHall(hall.lamps), input.size.value_or(hall.size),
+          hall.lamps == kSampledLamps && hall.size == kJudgedSize);
   }
-  const auto rounds = runInRounds(rows.size(), input.repeats, table.name, input.on_progress,
-                                  [&](std::size_t row) { return timeMaps(input.device, rows[row]); });
-  for (std::size_t row = 0; row < rounds.size(); ++row) {
-    for (std::size_t i = 0; i < 4; ++i) table.rows[row].cells[3 + i] = rounds[row].summary(i);
-    if (!rows[row].judged->pairs.empty())
-      table.rows[row].cells[7] = ratio(rounds[row].figures[2], rounds[row].figures[3]);
-  }
+  timeRows(input, std::move(rows), table);
   return table;
 }
 

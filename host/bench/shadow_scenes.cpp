@@ -1,5 +1,8 @@
 #include "bench/shadow_scenes.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
@@ -106,6 +109,26 @@ Scene contact() {
 
 std::vector<Scene> makeShadowScenes() {
   return {grazingPlane(), thinWall(), picketFence(), cubeSeam(), contact()};
+}
+
+Scene makeLampHall(int lamps) {
+  constexpr double kWidth = 16, kLength = 40;
+  Scene scene = startScene(fmt::format("hall, {}", lamps == 1 ? "1 lamp" : fmt::format("{} lamps", lamps)),
+                           {0.4, 2.2, 21}, {0, 1.4, 0});
+  add(scene, {PrimitiveKind::kBox}, {0, 2.5, 0}, {kWidth, 5, kLength + 4});
+  for (int i = 0; i < 30; ++i) {
+    const double x = (i % 3 - 1) * 4.5, z = (i / 3 - 4.5) * 4;
+    add(scene, {PrimitiveKind::kCylinder, 96}, {x, 0, z}, {0.25, 2, 0.25});
+    add(scene, {PrimitiveKind::kSphere, 48}, {x, 2.3, z}, glm::dvec3(0.35));
+  }
+  const int columns = std::max(int(std::lround(std::sqrt(lamps * kWidth / kLength))), 1);
+  const int rows = (lamps + columns - 1) / columns;
+  const auto range = float(1.5 * std::sqrt(kWidth * kLength / lamps));
+  for (int i = 0; i < lamps; ++i) {
+    const double x = (i % columns + 0.5) / columns - 0.5, z = (double(i) / columns + 0.5) / rows - 0.5;
+    addLamp(scene, {x * (kWidth - 1), 3.2 + i % 7 * 0.1, z * kLength}, std::max(range, 3.0f));
+  }
+  return scene;
 }
 
 }  // namespace luciole

@@ -14,4 +14,8 @@ namespace luciole {
 /// - contact: a smooth sphere that touches a plane, a light at its side
 std::vector<Scene> makeShadowScenes();
 
+/// A hall of 60 columns and balls, 80,000 triangles, under `lamps` point lights in rows, whose ranges add up
+/// to the same floor whatever their number. All cast shadows.
+Scene makeLampHall(int lamps);
+
 }  // namespace luciole

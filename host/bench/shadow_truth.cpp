@@ -214,6 +214,7 @@ ShadowErrors judge(std::span<const std::uint8_t> lit, std::span<const std::uint8
                    std::span<const float> visibility) {
   ShadowErrors errors;
   for (std::size_t i = 0; i < lit.size(); ++i) {
+    errors.brighter += double(visibility[i]) - lit[i];
     const bool is_lit = lit[i] != 0, wrong = (visibility[i] >= 0.5f) != is_lit;
     if (edge[i]) {
       ++errors.edges;

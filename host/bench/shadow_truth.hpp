@@ -61,6 +61,7 @@ struct ShadowErrors {
   std::uint64_t wrongly_dark = 0;   ///< of `lit`
   std::uint64_t wrongly_lit = 0;    ///< of `dark`
   std::uint64_t edges = 0, wrong_edges = 0;
+  double brighter = 0;  ///< the sum of visibility less truth over all pairs
   bool operator==(const ShadowErrors&) const = default;
 };
 

@@ -232,11 +232,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "pixels a side of the squares that share a light list; never changes the picture")
         ->check(CLI::IsMember({4, 8, 16}))
         ->capture_default_str();
-    addShadowsOption(command, options,
-                     "by shadow maps hard (the texel that the point falls into), pcf (the nearest texels, "
-                     "weighted) or soft (edges as wide as the light's size makes them); or exact (whether a "
-                     "triangle is between the point and the light's middle)",
-                     {"off", "hard", "pcf", "soft", "exact"});
+    addShadowsOption(
+        command, options,
+        "exact (as rays to the light's middle), by shadow maps: hard (the texel that the point falls into), "
+        "pcf (the nearest texels, weighted) or soft (edges as wide as the light's size makes them), or auto: "
+        "for each light exact, but hard where that is at least twice as fast",
+        {"auto", "off", "hard", "pcf", "soft", "exact"});
     command.add_option("--pcf-width", options.pcf_width, "texels a side that pcf weighs: 2 is the sharpest")
         ->check(CLI::Range(2, 6))
         ->capture_default_str();
@@ -402,7 +403,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                            : options.shadows == "hard" ? ShadowMethod::kHard
                            : options.shadows == "pcf"  ? ShadowMethod::kPcf
                            : options.shadows == "soft" ? ShadowMethod::kSoft
-                                                       : ShadowMethod::kExact;
+                           : options.shadows == "exact" ? ShadowMethod::kExact
+                                                        : ShadowMethod::kAuto;
   settings.shade.light_error = options.light_error;
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;

@@ -27,7 +27,7 @@ struct PictureOptions {
   std::string model = "phong";
   std::string culling = "auto";
   int tile = ShadeSettings{}.tile_size;
-  std::string shadows = "hard";
+  std::string shadows = "auto";
   float light_error = ShadeSettings{}.light_error;
   bool shadows_given = false;  ///< --shadows was typed
   std::string cast_shadows;    ///< empty: see openScene()

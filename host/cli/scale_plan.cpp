@@ -21,7 +21,7 @@ namespace {
 const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"tile", {"4", "8", "16"}},
                                    {"samples", {"1", "4", "16"}},
-                                   {"shadows", {"off", "hard", "pcf", "exact"}},
+                                   {"shadows", {"off", "auto", "hard", "pcf", "exact"}},
                                    {"model", {kModelNames.begin(), kModelNames.end()}},
                                    {"shading", {"flat", "gouraud", "phong"}},
                                    {"field", {"box", "surface", "clusters"}},

@@ -23,7 +23,6 @@ BeamLight beamLight(const Light& light, const TriangleTree& tree) {
   const glm::dvec3 at = has_place ? place : glm::normalize(towards);
   result.place = {float(at.x), float(at.y), float(at.z), has_place ? 1.0f : 0.0f};
   result.reach = has_place ? light.range * tree.scale : std::numeric_limits<float>::infinity();
-  result.casts = light.shadow;
   return result;
 }
 
@@ -50,16 +49,17 @@ float4 rowOf(const glm::mat3& matrix, int row, float w) {
 
 void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
                   std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
-                  std::span<const std::uint32_t> order, std::span<ShadeLight> lights, BeamScene& beams) {
+                  std::span<const std::uint32_t> order, std::span<const std::uint8_t> casts,
+                  std::span<ShadeLight> lights, BeamScene& beams) {
   beams.tree = std::move(tree);
   beams.masks = std::move(masks);
   beams.view_to_tree = glm::mat3(glm::dmat3(camera.camera_to_world));
   beams.tree_most = mostOf(*beams.tree);
   beams.order.assign(order.begin(), order.end());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Light& light = scene.lights[order[i]];
-    beams.lights.push_back(beamLight(light, *beams.tree));
-    if (light.shadow) lights[i].shadow = kExactShadow;
+    beams.lights.push_back(beamLight(scene.lights[order[i]], *beams.tree));
+    beams.lights.back().casts = casts[i];
+    if (casts[i]) lights[i].shadow = kExactShadow;
   }
   beams.nodes = borrowed(device, beams.tree->nodes);
   beams.children = borrowed(device, beams.tree->children);

@@ -42,11 +42,12 @@ struct BeamScene {
 };
 
 /// Fills `beams` for the lights `order` (indices into Scene::lights), and sets ShadeLight::shadow of those
-/// with a shadow, in the same order. tree: of the scene, its origin the camera's eye. masks:
-/// of the tree, or null where no triangle has holes. Throws MachineError.
+/// that `casts` says, in the same order. tree: of the scene, its origin the camera's eye. masks: of the tree,
+/// or null where no triangle has holes. Throws MachineError.
 void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
                   std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
-                  std::span<const std::uint32_t> order, std::span<ShadeLight> lights, BeamScene& beams);
+                  std::span<const std::uint32_t> order, std::span<const std::uint8_t> casts,
+                  std::span<ShadeLight> lights, BeamScene& beams);
 
 struct BeamArguments {
   std::size_t plane_stride;      ///< floats in a plane

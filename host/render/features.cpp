@@ -68,6 +68,13 @@ SurfaceTraits materialTraits(const Scene& scene) {
   return traits;
 }
 
+ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings) {
+  if (!scene.lights[light].shadow || settings.shadows == ShadowMethod::kOff) return ShadowWay::kNone;
+  if (settings.shadows == ShadowMethod::kExact) return ShadowWay::kBeams;
+  if (settings.shadows != ShadowMethod::kAuto) return ShadowWay::kMap;
+  return settings.shadow_ways.empty() ? ShadowWay::kBeams : settings.shadow_ways[light];
+}
+
 LightUse lightUse(const ShadeSettings& settings) {
   return {settings.model, settings.shadows != ShadowMethod::kOff};
 }
@@ -110,9 +117,9 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     return features;
   }
   bool any_specular = false, clusters_specular = false, any_cone = false, any_exponent = false;
-  const bool shadows = settings.shadows != ShadowMethod::kOff;
   std::size_t summed = 0;  // lights that are summed by themselves
-  for (const Light& light : scene.lights) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
     const bool in_clusters = clustered && exactReason(light, lightUse(settings)) == ExactReason::kNone;
     (in_clusters ? clusters_specular : any_specular) |= light.specular != glm::vec3(0.0f);
     if (in_clusters) continue;
@@ -130,15 +137,15 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
         features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);
     }
     if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
-    if (light.shadow && shadows) {
-      features.set(settings.shadows == ShadowMethod::kExact ? Feature::kExact
-                   : usesCubeMap(light)                     ? Feature::kCubeShadows
-                   : light.kind == LightKind::kDirectional  ? Feature::kParallelShadows
-                                                            : Feature::kPerspectiveShadows);
-      features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
-      features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
-      features.set(Feature::kOutputShadow, settings.shadow_layer);
-    }
+    const ShadowWay way = shadowWay(scene, i, settings);
+    if (way == ShadowWay::kNone) continue;
+    features.set(way == ShadowWay::kBeams                  ? Feature::kExact
+                 : usesCubeMap(light)                      ? Feature::kCubeShadows
+                 : light.kind == LightKind::kDirectional   ? Feature::kParallelShadows
+                                                           : Feature::kPerspectiveShadows);
+    features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
+    features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
+    features.set(Feature::kOutputShadow, settings.shadow_layer);
   }
   features.set(Feature::kLift, surfaces.smooth && features.shadows());
   features.set(Feature::kHoles,

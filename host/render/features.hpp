@@ -103,6 +103,9 @@ struct ShadeSettings {
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;
   bool shadow_layer = false;  ///< also write how visible, on average, lights with shadows are
+  /// With ShadowMethod::kAuto the way of each light. Empty: a picture's are chosen by shadowWays, and where
+  /// no picture is known, all are exact.
+  std::vector<ShadowWay> shadow_ways{};
   int pcf_width = 2;          ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
   ShadowLimits shadow_limits{};
   int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
@@ -113,6 +116,9 @@ struct ShadeSettings {
   /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
   bool always_clusters = false;
 };
+
+/// Who tells of a light's shadows in a picture with these settings. light: its index in the scene.
+ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings);
 
 /// Whether clusters stand for some of the scene's lights in a picture with these settings: where the settings
 /// allow it, for those without an ExactReason, if there are enough of them (clustersPay). view: of the

@@ -48,10 +48,14 @@ std::size_t squareOf(std::size_t place) {
   return place / kTilePixels * kSquaresPerTile + SQUARE_OF_PIXEL(place);
 }
 
-/// How many lights the pixels of each square are shaded with: those in its list, or without lists all.
+/// How many of the lights that `counts` says the pixels of each square are shaded with: those in its list, or
+/// without lists all.
+template <class Predicate>
 std::vector<std::uint32_t> squareLengths(Device& device, const LightLists* lists, std::size_t tiles,
-                                         std::size_t light_count) {
-  if (!lists) return std::vector<std::uint32_t>(tiles * kSquaresPerTile, std::uint32_t(light_count));
+                                         const LightArray& lights, Predicate&& counts) {
+  if (!lists)
+    return std::vector<std::uint32_t>(tiles * kSquaresPerTile,
+                                      std::uint32_t(std::count_if(lights.begin(), lights.end(), counts)));
   std::vector<std::uint32_t> lengths(tiles * kSquaresPerTile);
   std::vector<uint> starts(lists->tiles + 1);
   std::vector<ListEntry> entries(lists->entries);
@@ -59,7 +63,7 @@ std::vector<std::uint32_t> squareLengths(Device& device, const LightLists* lists
   download(device, lists->list, entries);
   for (std::size_t tile = 0; tile < tiles; ++tile)
     for (std::size_t entry = starts[tile]; entry < starts[tile + 1]; ++entry)
-      for (int square = 0; square < kSquaresPerTile; ++square)
+      for (int square = 0; square < kSquaresPerTile && counts(lights[entries[entry].light]); ++square)
         lengths[tile * kSquaresPerTile + square] += entries[entry].squares >> square & 1;
   return lengths;
 }
@@ -194,9 +198,20 @@ void countLights(Device& device, Lighting& lighting, const LightLists* lists, co
   const std::size_t pixels = gbuffer.pixels();
   if (counts.in_range) lit.light_count = lightsInRange(device, lighting, buffers, pixels);
   if (!counts.evaluated && !counts.list_length) return;
-  const std::vector<std::uint32_t> square_lengths =
-      squareLengths(device, lists, pixels / kTilePixels, lighting.frame.light_count);
-  if (counts.evaluated) lit.evaluated = evaluatedPairs(gbuffer, square_lengths, device.description.lanes);
+  const auto lengthsOf = [&](auto&& counted) {
+    return squareLengths(device, lists, pixels / kTilePixels, lighting.host_lights, counted);
+  };
+  const std::vector<std::uint32_t> square_lengths = lengthsOf([](const ShadeLight&) { return true; });
+  if (counts.evaluated) {
+    const int lanes = device.description.lanes;
+    lit.evaluated = evaluatedPairs(gbuffer, square_lengths, lanes);
+    if (lighting.features.has(Feature::kExact))
+      lit.by_beams = evaluatedPairs(
+          gbuffer, lengthsOf([](const ShadeLight& light) { return light.shadow == kExactShadow; }), lanes);
+    if (lighting.features.shadowMaps())
+      lit.by_maps = evaluatedPairs(
+          gbuffer, lengthsOf([](const ShadeLight& light) { return light.shadow < kExactShadow; }), lanes);
+  }
   if (!counts.list_length) return;
   lit.list_length.resize(pixels);
   for (std::size_t i = 0; i < pixels; ++i) lit.list_length[i] = float(square_lengths[squareOf(i)]);
@@ -279,7 +294,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
   lighting.group_log2 = groupLog2(settings.tile_size);
   if (features.shadowMaps())
     lighting.host_shadows = timed(stats, Stage::kShadowMaps, [&] {
-      return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits);
+      return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits, settings.shadow_ways);
     });
   std::shared_ptr<const TriangleTree> tree;
   std::shared_ptr<const HoleMasks> masks;
@@ -302,9 +317,13 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
           return exactReason(scene.lights[light], lightUse(settings)) == ExactReason::kNone;
         });
       lighting.host_lights = prepareLights(scene, order, camera, lighting.host_shadows);
-      if (tree)
-        prepareBeams(device, scene, camera, std::move(tree), std::move(masks), order, lighting.host_lights,
-                     lighting.beams);
+      if (tree) {
+        std::vector<std::uint8_t> casts;
+        for (const std::uint32_t light : order)
+          casts.push_back(shadowWay(scene, light, settings) == ShadowWay::kBeams);
+        prepareBeams(device, scene, camera, std::move(tree), std::move(masks), order, casts,
+                     lighting.host_lights, lighting.beams);
+      }
     }
     lighting.frame.light_count = static_cast<uint>(lighting.host_lights.size());
     lighting.host_tree = buildLightTree(lighting.host_lights);
@@ -425,7 +444,7 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   if (features.has(Feature::kExact)) {
     const Scene nothing;
     prepareBeams(device, nothing, {}, std::make_shared<const TriangleTree>(buildTriangleTree(nothing, {})),
-                 nullptr, {}, {}, lighting.beams);
+                 nullptr, {}, {}, {}, lighting.beams);
   }
   uploadLighting(device, lighting);
   Stats ignored;

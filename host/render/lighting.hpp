@@ -73,6 +73,8 @@ struct LitPlanes {
   PairBits pair_bits;        ///< with Feature::kExact: which pixels each entry of Lighting::lists lights
   std::uint64_t traced = 0;  ///< pixel-light pairs whose exact shadow took a ray, because a texture decides
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
+  std::uint64_t by_beams = 0;   ///< of these, with lights whose shadows are exact
+  std::uint64_t by_maps = 0;    ///< and with lights that have shadow maps
 };
 
 /// What lightGBuffer() shall count in addition. Each costs time.

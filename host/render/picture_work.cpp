@@ -10,6 +10,7 @@
 #include "render/clustered_light.hpp"
 #include "render/memory.hpp"
 #include "render/scene_info.hpp"
+#include "render/shadow_ways.hpp"
 
 namespace luciole {
 namespace {
@@ -69,15 +70,16 @@ std::vector<SeenPoint> seenPoints(const Scene& scene, const RenderSettings& sett
 
 /// How many lights there are on average for a point that is seen.
 struct MeanLights {
-  double square = 0, shadowed = 0;  ///< in the list of its square; of these, those that cast shadows
-  double tile = 0;                  ///< in that of its tile
+  double square = 0;                 ///< in the list of its square
+  double by_maps = 0, by_beams = 0;  ///< of these, those with shadows of either kind
+  double tile = 0;                   ///< in that of its tile
 };
 
 /// Clusters count as the lights that would be as much work.
 MeanLights meanLights(const Scene& scene, const View& view, const std::vector<SeenPoint>& points,
                       const FeatureSet& features, const ShadeSettings& settings) {
   struct Counts {
-    std::size_t square = 0, shadowed = 0, tile = 0;
+    std::size_t square = 0, by_maps = 0, by_beams = 0, tile = 0;
   };
   if (points.empty() || !scene.lighting) return {};
   const bool culled = features.has(Feature::kLightLists), by_facing = !features.has(Feature::kLightAmbient);
@@ -88,19 +90,23 @@ MeanLights meanLights(const Scene& scene, const View& view, const std::vector<Se
   std::vector<Counts> counts((points.size() + step - 1) / step);
   tbb::parallel_for(std::size_t(0), counts.size(), [&](std::size_t i) {
     const SeenPoint& point = points[i * step];
-    for (const Light& light : scene.lights) {
+    for (std::size_t k = 0; k < scene.lights.size(); ++k) {
+      const Light& light = scene.lights[k];
       if (clustered && exactReason(light, use) == ExactReason::kNone) continue;
       if (culled && !reaches(light, point, point.tile, by_facing)) continue;
       ++counts[i].tile;
       if (culled && !reaches(light, point, point.square, by_facing)) continue;
       ++counts[i].square;
-      counts[i].shadowed += light.shadow;
+      const ShadowWay way = shadowWay(scene, k, settings);
+      counts[i].by_maps += way == ShadowWay::kMap;
+      counts[i].by_beams += way == ShadowWay::kBeams;
     }
   });
   MeanLights mean;
   for (const Counts& each : counts) {
     mean.square += double(each.square) / double(counts.size());
-    mean.shadowed += double(each.shadowed) / double(counts.size());
+    mean.by_maps += double(each.by_maps) / double(counts.size());
+    mean.by_beams += double(each.by_beams) / double(counts.size());
     mean.tile += double(each.tile) / double(counts.size());
   }
   if (clustered)
@@ -158,16 +164,13 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   const SceneInfo info = sceneInfo(scene);
   double grid = 0;
   const std::vector<SeenPoint> points = seenPoints(scene, settings, grid);
-  const MeanLights mean = meanLights(scene, view, points, needs.all, settings.shade);
+  const ShadeSettings shade = pictureShading(scene, settings);
+  const MeanLights mean = meanLights(scene, view, points, needs.all, shade);
   const double pixels = double(settings.size.x) * settings.size.y, covered = double(points.size()) / grid;
   const bool gouraud = settings.shading == Shading::kGouraud;
   const bool shared = sharesSamples(settings);
   const int passes = shared ? 1 : settings.samples;
-  // Of samples that share points there are more a pixel the more triangles it sees, and uneven pixels take
-  // all.
-  const double shadings = shared
-                              ? std::min(double(settings.samples), 1.3 + 4 * double(info.triangles) / pixels)
-                              : settings.samples;
+  const double shadings = shadedPoints(scene, settings.size, settings.samples, shared);
   const double shaded = gouraud ? litVertices(scene) : pixels * covered * shadings;
   PictureWork work{.pixels = pixels,
                    .samples = settings.samples,
@@ -193,9 +196,11 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
       pixel_bytes * settings.size.x * rows + (gouraud ? shaded * double(kGBufferBytesPerPixel) : 0);
   if (!needs.all.shadows()) return work;
   work.shadows = settings.shade.shadows;
-  work.shadow_pairs = shaded * mean.shadowed;
+  work.shadow_pairs = shaded * mean.by_maps;
+  work.beam_pairs = shaded * mean.by_beams;
   if (!needs.all.shadowMaps()) return work;
-  const ShadowMaps maps = planShadowMaps(scene, view, settings.shade.shadows, settings.shade.shadow_limits);
+  const ShadowMaps maps =
+      planShadowMaps(scene, view, shade.shadows, shade.shadow_limits, shade.shadow_ways);
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do
   work.shadow_faces = double(maps.planned.size());
   work.shadow_map_bytes = work.shadow_texels * double(sizeof(ShadowTexel));

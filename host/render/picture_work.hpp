@@ -22,7 +22,8 @@ struct PictureWork {
   double list_entries = 0;   ///< of all tiles' light lists
   double tree_levels = 0;    ///< of the tree over the lights that every tile walks; 0 without lists
   double pairs = 0;          ///< points that are shaded, times the lights that they are shaded with
-  double shadow_pairs = 0;   ///< of these, with lights that cast shadows
+  double shadow_pairs = 0;   ///< of these, with lights that have shadow maps
+  double beam_pairs = 0;     ///< and with those whose shadows are exact
   double shadow_texels = 0;  ///< drawn
   double shadow_faces = 0;
   ShadowMethod shadows = ShadowMethod::kOff;

@@ -23,16 +23,11 @@
 #include "render/lighting.hpp"
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
+#include "render/shadow_ways.hpp"
 #include "render/uneven_pixels.hpp"
 
 namespace luciole {
 namespace {
-
-ShadeSettings shadeSettings(const RenderSettings& settings) {
-  ShadeSettings shade = settings.shade;
-  shade.shadow_layer = wants(settings, Aov::kShadow);
-  return shade;
-}
 
 constexpr Feature kFogFeatures[] = {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
                                     Feature::kFogPerChannel, Feature::kFogRadial};
@@ -148,6 +143,8 @@ std::uint64_t coveredPixels(const GBuffer& gbuffer) {
 void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   if (counted) addCount(stats, "pixel_lights_evaluated", lit.evaluated);
+  if (lit.by_beams > 0) addCount(stats, "shadow_pairs_exact", lit.by_beams);
+  if (lit.by_maps > 0) addCount(stats, "shadow_pairs_by_maps", lit.by_maps);
   addCount(stats, "list_entries", lit.list_entries);
   if (!lit.light_error.empty()) {
     countClusters(lit.clustered, stats);
@@ -176,6 +173,7 @@ void countShadows(const Lighting& lighting, Stats& stats) {
   addCount(stats, "shadow_lights", shadows.maps.size() + exact);
   if (exact > 0) addCount(stats, "shadow_lights_exact", exact);
   if (shadows.maps.empty()) return;
+  addCount(stats, "shadow_lights_by_maps", shadows.maps.size());
   addCount(stats, "shadow_lights_reduced", shadows.reduced_lights);
   std::uint64_t drawn = 0;
   for (const PlannedFace& face : shadows.planned) drawn += face.count.x > 0;
@@ -424,11 +422,21 @@ bool anyShines(const GBuffer& gbuffer) {
 
 }  // namespace
 
+ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings) {
+  ShadeSettings shade = settings.shade;
+  shade.shadow_layer = wants(settings, Aov::kShadow);
+  if (shade.shadows != ShadowMethod::kAuto || !shade.shadow_ways.empty() || !scene.lighting) return shade;
+  const double points = shadedPoints(scene, settings.size, settings.samples, sharesSamples(settings));
+  shade.shadow_ways =
+      shadowWays(scene, cameraView(settings.camera, settings.size), points, shade.shadow_limits);
+  return shade;
+}
+
 PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings) {
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= settings.shading != Shading::kFlat;
   PictureFeatures result;
-  const ShadeSettings shade = shadeSettings(settings);
+  const ShadeSettings shade = pictureShading(scene, settings);
   const View view = cameraView(settings.camera, settings.size);
   result.all =
       neededFeatures(scene, settings.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));
@@ -459,7 +467,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
                                    {"samples", settings.samples},
                                    {"objects", std::int64_t(scene.objects.size())},
                                    {"lights", std::int64_t(scene.lights.size())}});
-  const ShadeSettings shade = shadeSettings(settings);
+  const ShadeSettings shade = pictureShading(scene, settings);
   const auto [features, pixel_features, planes] = pictureFeatures(scene, settings);
   const bool gouraud = settings.shading == Shading::kGouraud;
   Prepared prepared;
@@ -532,9 +540,10 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
                 fmt::format("a G-buffer of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<std::uint32_t> objects =
       objectsInSight(scene, view, settings.exposure, settings.shade.model);
+  const ShadeSettings shade = pictureShading(scene, settings);
   const SurfaceTraits surfaces = materialTraits(scene);
-  const FeatureSet features = neededFeatures(scene, settings.camera, surfaces, settings.shade,
-                                             standsForLights(scene, view, surfaces, settings.shade));
+  const FeatureSet features = neededFeatures(scene, settings.camera, surfaces, shade,
+                                             standsForLights(scene, view, surfaces, shade));
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
@@ -542,7 +551,7 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   if (settings.shading == Shading::kGouraud) {
     const TrafficMeter meter{*device, stats};
     Lighting lighting;
-    prepareLighting(*device, scene, settings.camera, view, features, settings.shade, lighting, stats);
+    prepareLighting(*device, scene, settings.camera, view, features, shade, lighting, stats);
     vertex_colors = lightVertices(*device, scene, objects, view, lighting, stats);
   }
   RasterCounts triangles;
@@ -564,7 +573,11 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   const TraceSpan span(
       "picture",
       {{"width", gbuffer.width}, {"height", gbuffer.height}, {"lights", std::int64_t(scene.lights.size())}});
-  const ShadeSettings shade = shadeSettings(settings);
+  RenderSettings one_sample = settings;
+  one_sample.samples = 1;
+  one_sample.camera = gbuffer.camera;
+  one_sample.size = gbuffer.picture_size;
+  const ShadeSettings shade = pictureShading(scene, one_sample);
   const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   const FeatureSet features =
@@ -581,8 +594,6 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   countPass(gbuffer, lit, settings.count_lights, stats);
   countLightUses(scene, shade, lighting, stats);
   countShadows(lighting, stats);
-  RenderSettings one_sample = settings;
-  one_sample.samples = 1;
   return timed(stats, Stage::kResolve, [&] {
     Image picture = startPicture(gbuffer, lit, one_sample);
     PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error)};

@@ -63,6 +63,10 @@ struct RenderSettings {
   std::function<void(int done, int passes)> on_pass;  ///< called after each pass over a band, if set
 };
 
+/// How to light the scene's whole picture: the settings' `shade`, and what follows for it from the layers, the
+/// scene, the picture's size and its samples. O(vertices + lights).
+ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings);
+
 /// What a picture of a scene needs.
 struct PictureFeatures {
   FeatureSet all;     ///< of the passes together

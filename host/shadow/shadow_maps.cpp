@@ -6,11 +6,12 @@
 namespace luciole {
 
 ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMethod method,
-                          const ShadowLimits& limits) {
+                          const ShadowLimits& limits, std::span<const ShadowWay> ways) {
   ShadowMaps result;
   result.method = method;
   result.map_of_light.assign(scene.lights.size(), kNoShadow);
-  const PlanInput input{camera_view, method, glm::inverse(camera_view.world_to_view), sceneBounds(scene)};
+  const PlanInput input{camera_view, method, glm::inverse(camera_view.world_to_view), sceneBounds(scene),
+                        ways};
   if (input.bounds.low.x > input.bounds.high.x) return result;
 
   const ShadowSizes chosen = chooseSizes(scene, input, limits);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "base/array_memory.hpp"
@@ -45,10 +46,11 @@ struct ShadowMaps {
   std::uint64_t reduced_lights = 0;  ///< lights whose maps are coarser than wanted, for lack of memory
 };
 
-/// Plans the maps of all lights with a shadow; draws nothing. The plan is for the camera's whole picture,
+/// Plans the maps of all lights with a shadow, or if `ways` aren't empty, of those whose way is kMap; draws
+/// nothing. The plan is for the camera's whole picture,
 /// whatever the crop. See cascadeSpheres for what maps cover and chooseSizes for how fine they are. Throws
 /// MachineError where even the coarsest maps exceed limits.bytes.
 ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMethod method,
-                          const ShadowLimits& limits);
+                          const ShadowLimits& limits, std::span<const ShadowWay> ways = {});
 
 }  // namespace luciole

@@ -11,6 +11,14 @@ enum class ShadowMethod : std::uint8_t {
   kPcf,    ///< by a map: the nearest texels, weighted (percentage-closer filtering)
   kSoft,   ///< by a map: a disc as wide as the penumbra that the light's size gives
   kExact,  ///< by the triangles themselves: whether one is between the point and the light's centre
+  kAuto,   ///< for each light kExact or kHard: see shadowWays
+};
+
+/// Who tells whether points are in a light's shadow.
+enum class ShadowWay : std::uint8_t {
+  kNone,   ///< nobody: it casts none
+  kMap,    ///< its shadow map
+  kBeams,  ///< kernels/beam_shadows.cl: exact
 };
 
 }  // namespace luciole

@@ -45,7 +45,7 @@ ShadowSizes chooseSizes(const Scene& scene, const PlanInput& input, const Shadow
   std::vector<int>& wanted = result.sizes;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    if (!light.shadow) continue;
+    if (!light.shadow || (!input.ways.empty() && input.ways[i] != ShadowWay::kMap)) continue;
     const int largest = largestSize(light, limits);
     wanted[i] = light.kind == LightKind::kDirectional
                     ? largest

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "kernels/shared.h"
@@ -15,8 +16,9 @@ namespace luciole {
 struct PlanInput {
   const View& camera;
   ShadowMethod method;
-  glm::dmat4 view_to_world;  ///< the camera's
-  Bounds bounds;             ///< of the scene, world space
+  glm::dmat4 view_to_world;              ///< the camera's
+  Bounds bounds;                         ///< of the scene, world space
+  std::span<const ShadowWay> ways = {};  ///< of each light; empty: all lights with a shadow have maps
 };
 
 /// What a light's map shows: a cascade a face of a directional light, a cone, or the six sides of a cube.

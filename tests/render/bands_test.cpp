@@ -50,7 +50,7 @@ TEST(Bands, TheirHeightChangesNoShadowOrLayerByAnyMethod) {
   RenderSettings settings = settingsFor(scene, {100, 150});
   settings.aovs = kAllLayers;
   for (const auto method :
-       {ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft, ShadowMethod::kExact}) {
+       {ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft, ShadowMethod::kExact, ShadowMethod::kAuto}) {
     settings.shade.shadows = method;
     expectSameInBands(scene, settings);
   }
