@@ -52,7 +52,7 @@ class CastShadows : public ProgramTest {
 TEST_F(CastShadows, AskedForAllCastWhereNoneIsMarked) {
   render("lamp.gltf", "plain.exr");
   render("lamp.gltf --shadows off", "off.exr");
-  render("lamp.gltf --shadows hard", "asked.exr");
+  render("lamp.gltf --shadows auto", "asked.exr");
   render("lamp.gltf --cast-shadows all", "all.exr");
   render("lamp.gltf --shadows hard --cast-shadows none", "none.exr");
   EXPECT_TRUE(areEqual("plain.exr", "off.exr")) << "nobody asked";
@@ -63,7 +63,7 @@ TEST_F(CastShadows, AskedForAllCastWhereNoneIsMarked) {
 
 TEST_F(CastShadows, WhereSomeAreMarkedOnlyTheyCastUnlessAllAreToldTo) {
   render("marked.json", "plain.exr");
-  render("marked.json --shadows hard", "asked.exr");
+  render("marked.json --shadows auto", "asked.exr");
   render("marked.json --cast-shadows marked", "marked.exr");
   render("marked.json --cast-shadows all", "all.exr");
   EXPECT_TRUE(areEqual("plain.exr", "asked.exr"));

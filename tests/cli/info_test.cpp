@@ -182,7 +182,7 @@ TEST_F(Info, SceneThatNeedsTooMuchIsStillToldOf) {
   writeText(folder / "many.json", R"({"camera": {"eye": [3, 2, 5], "target": [0, 0, 0]},
       "objects": [{"primitive": "box"}], "lights": [)" +
                                       lights + "]}");
-  const json info = infoOf("many.json --shadow-memory 1");
+  const json info = infoOf("many.json --shadows hard --shadow-memory 1");
   EXPECT_EQ(info["lights"]["casting"], 1000);
   EXPECT_EQ(info["render"]["milliseconds"], nullptr);
   ASSERT_EQ(info["warnings"].size(), 1u);
