@@ -146,8 +146,10 @@ TEST_F(BenchCommand, ShadowSizeIsTheOnlyOneTried) {
   std::vector<std::string> names;
   for (const auto& row : json["groups"][0]["rows"]) names.push_back(row["name"]);
   EXPECT_EQ(names, (std::vector<std::string>{"hard 96", "pcf 96", "exact 96", "soft 96", "no shadows"}));
-  for (const auto& row : json["speed"][0]["rows"])
-    EXPECT_TRUE(row["name"].get<std::string>().ends_with(" 96"));
+  for (const auto& row : json["speed"][0]["rows"]) {
+    const std::string name = row["name"];
+    EXPECT_TRUE(name.find(" 96") != std::string::npos || name.ends_with(", Embree")) << name;
+  }
 }
 
 /// No table or JSON holds a number that is none, and every null has its reason.
@@ -168,17 +170,18 @@ TEST_F(BenchCommand, WhatHasNoValueSaysWhy) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
     EXPECT_NE(
-        outcome.out.find("\n–: scene.json: no surface in the picture faces a light that casts shadows.\n"),
+        outcome.out.find("\n–: scene.json: no surface in the picture faces a light that casts shadows; "),
         std::string::npos)
         << outcome.out;
     const std::string text = readText(folder / "out.json");
     const auto json = nlohmann::json::parse(text);
-    ASSERT_EQ(json["speed"][0]["rows"].size(), 3u);
+    ASSERT_EQ(json["speed"][0]["rows"].size(), 9u);
     for (const auto& row : json["speed"][0]["rows"]) {
+      expectReasons(row);
+      if (row["name"].get<std::string>().ends_with("16 samples")) continue;
       for (const char* key : {"times_rays", "wrongly_dark_percent", "wrongly_lit_percent", "edge_percent"})
         EXPECT_TRUE(row.contains(key) && row[key].is_null()) << key;
       EXPECT_EQ(row["pairs"], 0);
-      expectReasons(row);
     }
   }
 }

@@ -321,13 +321,13 @@ TEST_F(CommandLine, CompareSaysWhyAFigureIsNull) {
 }
 
 TEST_F(CommandLine, ShadowSizeBoundsTheMaps) {
-  succeed(
-      "luciole render scene.json -o usual.exr && luciole render scene.json --shadow-size 2048 -o same.exr");
+  succeed("luciole render scene.json --shadows hard -o usual.exr");
+  succeed("luciole render scene.json --shadows hard --shadow-size 2048 -o same.exr");
   succeed("luciole compare usual.exr same.exr --max-abs 0");
   succeed("luciole render scene.json --shadow-size 16 -o coarse.exr --shadows hard");
   EXPECT_EQ(runLine(folder, "luciole compare usual.exr coarse.exr --max-abs 0.01").status, 1);
   succeed("luciole gbuffer scene.json -o g.exr");
-  succeed("luciole shade g.exr --scene scene.json --shadow-size 16 -o shaded.exr");
+  succeed("luciole shade g.exr --scene scene.json --shadow-size 16 -o shaded.exr --shadows hard");
   succeed("luciole compare coarse.exr shaded.exr --max-abs 0");
   for (const char* size : {"15", "16385", "many"})
     refuse(std::string("luciole render scene.json -o out.png --shadow-size ") + size, 2, "--shadow-size");

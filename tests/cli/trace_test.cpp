@@ -79,7 +79,7 @@ void expectNested(std::vector<Span> spans) {
 const std::map<std::string, std::set<std::string>> kStagesOfKernels{{"find_lights", {"cull", "count lights"}},
                                                                     {"scan_lists", {"cull", "count lights"}},
                                                                     {"count_in_range", {"count lights"}},
-                                                                    {"find_needed", {"find shadow texels"}},
+                                                                    {"beam_shadows", {"beam shadows"}},
                                                                     {"shade", {"shade"}}};
 
 /// Expects each kernel within one of its stages, and commands between their queueing and their end.
@@ -160,7 +160,7 @@ class TraceOption : public ProgramTest {
   }
 };
 
-const std::set<std::string> kAllKernels{"find_lights", "scan_lists", "count_in_range", "find_needed",
+const std::set<std::string> kAllKernels{"find_lights", "scan_lists", "count_in_range", "beam_shadows",
                                         "shade"};
 
 std::size_t countOf(const std::vector<Span>& spans, const std::string& name, const std::string& track) {
@@ -202,7 +202,7 @@ TEST_F(TraceOption, OfFramesHasEachOnTheSameTracks) {
 TEST_F(TraceOption, OfGBufferShadeAndReferenceHasTheirStages) {
   traceOf("gbuffer scene.json --quiet -o g.exr --stats s.json", {"s.json"}, {});
   traceOf("gbuffer scene.json --shading gouraud --quiet -o v.exr --stats s.json", {"s.json"},
-          {"find_lights", "scan_lists", "find_needed", "shade"});
+          {"find_lights", "scan_lists", "beam_shadows", "shade"});
   traceOf("shade g.exr --scene scene.json --quiet -o a.png --stats s.json", {"s.json"}, kAllKernels);
   traceOf("reference scene.json --size 24x16 --quiet -o r.exr --stats s.json", {"s.json"}, {});
 }
