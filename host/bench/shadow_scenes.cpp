@@ -117,7 +117,8 @@ Scene makeLampHall(int lamps) {
                            {0.4, 2.2, 21}, {0, 1.4, 0});
   add(scene, {PrimitiveKind::kBox}, {0, 2.5, 0}, {kWidth, 5, kLength + 4});
   for (int i = 0; i < 30; ++i) {
-    const double x = (i % 3 - 1) * 4.5, z = (i / 3 - 4.5) * 4;
+    const int row = i / 3;
+    const double x = (i % 3 - 1) * 4.5, z = (row - 4.5) * 4;
     add(scene, {PrimitiveKind::kCylinder, 96}, {x, 0, z}, {0.25, 2, 0.25});
     add(scene, {PrimitiveKind::kSphere, 48}, {x, 2.3, z}, glm::dvec3(0.35));
   }
