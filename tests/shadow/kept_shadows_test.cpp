@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
 #include "shadow/draw_shadow_maps.hpp"
