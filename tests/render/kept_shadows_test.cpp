@@ -45,27 +45,46 @@ void moveSomething(Scene& scene, Camera& camera, Random& random) {
   }
 }
 
+/// Makes pictures one after another, and each by itself.
+void expectSamePictures(Device& device, const RenderSettings& given, int frames) {
+  Random random(17);
+  Scene scene = sceneFromJson(kKeptScene);
+  RenderSettings settings = given;
+  settings.camera = scene.cameras.front();
+  KeptShadows kept;
+  for (int frame = 0; frame < frames; ++frame) {
+    Stats stats;
+    std::vector<float> pixels;
+    const auto take = [&](const Image& rows) {
+      pixels.insert(pixels.end(), rows.pixels.begin(), rows.pixels.end());
+    };
+    renderBands(device, scene, settings, take, stats, &kept);
+    ASSERT_EQ(pixels, picture(scene, settings).pixels)
+        << "frame " << frame << ", samples " << settings.samples;
+    moveSomething(scene, settings.camera, random);
+  }
+}
+
+RenderSettings keptSettings(ShadowMethod method, int samples) {
+  RenderSettings settings;
+  settings.size = {80, 60};
+  settings.shade.shadow_limits.size = 256;
+  settings.shade.shadows = method;
+  settings.samples = samples;
+  return settings;
+}
+
 class KeptPictures : public testing::TestWithParam<ShadowMethod> {};
 
 TEST_P(KeptPictures, AreThoseThatAreMadeByThemselves) {
-  for (const int samples : {1, 4}) {
-    Random random(17);
-    Scene scene = sceneFromJson(kKeptScene);
-    RenderSettings settings = settingsFor(scene, {80, 60});
-    settings.shade.shadows = GetParam();
-    settings.samples = samples;
-    KeptShadows kept;
-    for (int frame = 0; frame < 14; ++frame) {
-      Stats stats;
-      std::vector<float> pixels;
-      const auto take = [&](const Image& rows) {
-        pixels.insert(pixels.end(), rows.pixels.begin(), rows.pixels.end());
-      };
-      renderBands(testDevice(), scene, settings, take, stats, &kept);
-      ASSERT_EQ(pixels, picture(scene, settings).pixels) << "frame " << frame << ", samples " << samples;
-      moveSomething(scene, settings.camera, random);
-    }
-  }
+  for (const int samples : {1, 4}) expectSamePictures(testDevice(), keptSettings(GetParam(), samples), 14);
+}
+
+TEST_P(KeptPictures, AreSoOnADeviceWithMemoryOfItsOwn) {
+  Device device;
+  openDevice("", device);
+  device.shares_host_memory = false;
+  expectSamePictures(device, keptSettings(GetParam(), 1), 8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, KeptPictures,
