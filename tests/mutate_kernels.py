@@ -378,7 +378,7 @@ MUTANTS = {
     "find_needed.cl": [
         Mutant("smallest_lane(mask ? y : none)", "smallest_lane(mask ? x : none)"),
         Mutant("y * (last + 1) + x", "y * last + x"),
-        Mutant("depth >= last_noted->depth", "depth <= last_noted->depth"),
+        Mutant("needed[bin] > depth", "needed[bin] < depth"),
         Mutant("(int)face->bins - 1", "(int)face->bins - 2"),
         Mutant("receives &= point.inside", "receives |= point.inside",
                same="more texels are drawn than anybody looks at; this costs time alone"),

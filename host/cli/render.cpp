@@ -57,9 +57,9 @@ std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene,
 }
 
 /// Renders the scene at its frame, with the exposure that was measured or that the options say, and writes
-/// the picture, to the film unless that is null.
+/// the picture, to the film unless that is null. kept: see renderBands.
 void renderPicture(Device& device, const Scene& scene, const PictureOptions& options, Film* film,
-                   const std::function<void(int, int)>& on_pass, Stats& stats) {
+                   const std::function<void(int, int)>& on_pass, KeptShadows* kept, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
   if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
@@ -75,7 +75,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
       writer->write(rows);
     });
   };
-  renderBands(device, scene, settings, write, stats);
+  renderBands(device, scene, settings, write, stats, kept);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
   reportHalves(options, limited, stats);
   reportLightError(options, stats);
@@ -123,6 +123,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
   const std::string command = started.command;
   int status = kDone;
   std::vector<int> failed;
+  KeptShadows kept;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (claims) claims->claim(frames[i]);
     const auto showPass = [&](int done, int passes) {
@@ -147,7 +148,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
-        renderPicture(device, scene, picture, film, showPass, stats);
+        renderPicture(device, scene, picture, film, showPass, &kept, stats);
         progress.clear();
         reportStats(picture, stats, frames[i]);
       }
@@ -310,7 +311,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                       std::size_t(passes));
       };
       stats.measured_exposure = exposures[i];
-      renderPicture(device, scene, pictures[i], nullptr, showPass, stats);
+      renderPicture(device, scene, pictures[i], nullptr, showPass, nullptr, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);

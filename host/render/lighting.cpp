@@ -286,24 +286,23 @@ Plane lightByClusters(Device& device, const Lighting& lighting, const FeatureSet
 
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
-                     Stats& stats) {
+                     Stats& stats, KeptShadows* kept) {
+  KeptShadows none;
+  if (!kept) kept = &none;
   lighting.features = features;
   lighting.math_defines = mathDefines(settings);
   lighting.unlit = !scene.lighting;
   lighting.frame = makeFrame(scene, camera, settings);
   lighting.group_log2 = groupLog2(settings.tile_size);
   if (features.shadowMaps())
-    lighting.host_shadows = timed(stats, Stage::kShadowMaps, [&] {
-      return planShadowMaps(scene, view, settings.shadows, settings.shadow_limits, settings.shadow_ways);
+    timed(stats, Stage::kShadowMaps, [&] {
+      lighting.host_shadows =
+          planShadowMaps(scene, view, settings.shadows, settings.shadow_limits, settings.shadow_ways);
+      takeMaps(scene, *kept, lighting.host_shadows);
     });
-  std::shared_ptr<const TriangleTree> tree;
-  std::shared_ptr<const HoleMasks> masks;
   if (features.has(Feature::kExact))
     timed(stats, Stage::kTriangleTree, [&] {
-      tree = std::make_shared<const TriangleTree>(
-          buildTriangleTree(scene, glm::dvec3(camera.camera_to_world[3])));
-      if (features.has(Feature::kHoles))
-        masks = std::make_shared<const HoleMasks>(makeHoleMasks(scene, *tree));
+      updateTree(scene, glm::dvec3(camera.camera_to_world[3]), features.has(Feature::kHoles), *kept);
     });
   timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
   timed(stats, Stage::kPrepareLights, [&] {
@@ -317,12 +316,12 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
           return exactReason(scene.lights[light], lightUse(settings)) == ExactReason::kNone;
         });
       lighting.host_lights = prepareLights(scene, order, camera, lighting.host_shadows);
-      if (tree) {
+      if (features.has(Feature::kExact)) {
         std::vector<std::uint8_t> casts;
         for (const std::uint32_t light : order)
           casts.push_back(shadowWay(scene, light, settings) == ShadowWay::kBeams);
-        prepareBeams(device, scene, camera, std::move(tree), std::move(masks), order, casts,
-                     lighting.host_lights, lighting.beams);
+        prepareBeams(device, scene, camera, kept->tree, features.has(Feature::kHoles) ? kept->masks : nullptr,
+                     order, casts, lighting.host_lights, lighting.beams);
       }
     }
     lighting.frame.light_count = static_cast<uint>(lighting.host_lights.size());

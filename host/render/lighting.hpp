@@ -14,6 +14,7 @@
 #include "render/features.hpp"
 #include "render/stats.hpp"
 #include "scene/scene.hpp"
+#include "shadow/kept_shadows.hpp"
 
 namespace luciole {
 
@@ -52,11 +53,12 @@ struct Lighting {
 };
 
 /// Fills `lighting` for a scene seen by a view of `camera`, and plans the shadow maps that the features need;
-/// none is drawn yet. The device may still be opening: this waits for it as late as possible. Adds the times
-/// of its stages to `stats`. Throws MachineError, and what opening the device throws.
+/// none is drawn yet. kept: of the picture before this one, or null: see KeptShadows. The device may still be
+/// opening: this waits for it as late as possible. Adds the times of its stages to `stats`. Throws
+/// MachineError, and what opening the device throws.
 void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
-                     Stats& stats);
+                     Stats& stats, KeptShadows* kept = nullptr);
 
 /// A lit G-buffer: planes of pixels() floats.
 struct LitPlanes {

@@ -459,7 +459,7 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 }
 
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
-                 Stats& stats) {
+                 Stats& stats, KeptShadows* kept) {
   const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const TraceSpan span("picture", {{"width", view.crop_size.x},
@@ -478,7 +478,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   std::future<double> compiling = startCompiling(device, passes, shade);
   prepared.objects = settings.alpha ? allObjects(scene)
                                     : objectsInSight(scene, view, settings.exposure, settings.shade.model);
-  prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats);
+  prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats, kept);
   prepared.lighting.host_shadows.expects_more = settings.samples > 1;
   if (settings.alpha) prepared.lighting.frame.background = {};
   awaitKernels(compiling, device, stats);
@@ -518,6 +518,10 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   countShadows(prepared.lighting, stats);
   countTriangles(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - prepared.objects.size());
+  if (!kept) return;
+  giveBack(prepared.lighting.shadow_faces);
+  giveBack(prepared.lighting.shadow_texels);
+  keepMaps(scene, std::move(prepared.lighting.host_shadows), *kept);
 }
 
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
@@ -542,8 +546,8 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
       objectsInSight(scene, view, settings.exposure, settings.shade.model);
   const ShadeSettings shade = pictureShading(scene, settings);
   const SurfaceTraits surfaces = materialTraits(scene);
-  const FeatureSet features = neededFeatures(scene, settings.camera, surfaces, shade,
-                                             standsForLights(scene, view, surfaces, shade));
+  const FeatureSet features =
+      neededFeatures(scene, settings.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));
   describeScene(scene, features, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;

@@ -12,6 +12,7 @@
 #include "render/features.hpp"
 #include "render/stats.hpp"
 #include "scene/scene.hpp"
+#include "shadow/kept_shadows.hpp"
 
 namespace luciole {
 
@@ -63,8 +64,8 @@ struct RenderSettings {
   std::function<void(int done, int passes)> on_pass;  ///< called after each pass over a band, if set
 };
 
-/// How to light the scene's whole picture: the settings' `shade`, and what follows for it from the layers, the
-/// scene, the picture's size and its samples. O(vertices + lights).
+/// How to light the scene's whole picture: the settings' `shade`, and what follows for it from the layers,
+/// the scene, the picture's size and its samples. O(vertices + lights).
 ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings);
 
 /// What a picture of a scene needs.
@@ -82,10 +83,11 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 using RowSink = std::function<void(const Image& rows)>;
 
 /// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
-/// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. Throws InputError
-/// for a crop outside the picture, MachineError, and what `take` throws.
+/// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. kept: for pictures
+/// of one scene at several poses, one after another; they are the same bits as without it, sooner. Throws
+/// InputError for a crop outside the picture, MachineError, and what `take` throws.
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
-                 Stats& stats);
+                 Stats& stats, KeptShadows* kept = nullptr);
 
 /// The same, but returns the whole picture.
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats);

@@ -144,6 +144,23 @@ TriangleTree buildTriangleTree(const Scene& scene, const glm::dvec3& origin) {
   return tree;
 }
 
+bool isPlacedFor(const Scene& scene, const glm::dvec3& origin, const TriangleTree& tree) {
+  return tree.origin == origin && tree.scale == scaleFor(scene, origin);
+}
+
+double areaOfBoxes(const TriangleTree& tree) {
+  double area = 0;
+  for (std::size_t i = 0; i < tree.children.size(); ++i) {
+    if (tree.children[i] == 0) continue;
+    const float* rows = &tree.nodes[i / kTreeWidth * kNodeRows * kTreeWidth] + i % kTreeWidth;
+    const auto side = [&](int axis) {
+      return double(rows[(2 * axis + 1) * kTreeWidth]) - double(rows[2 * axis * kTreeWidth]);
+    };
+    area += side(0) * side(1) + side(1) * side(2) + side(2) * side(0);
+  }
+  return area;
+}
+
 void refitTriangleTree(const Scene& scene, const glm::dvec3& origin, TriangleTree& tree) {
   tree.origin = origin;
   tree.scale = scaleFor(scene, origin);

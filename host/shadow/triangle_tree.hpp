@@ -43,6 +43,13 @@ struct TriangleTree {
 /// number. Throws MachineError where memory doesn't suffice, and for more than 2²⁷ triangles.
 TriangleTree buildTriangleTree(const Scene& scene, const glm::dvec3& origin);
 
+/// Whether coordinates relative to this origin, scaled as the scene's lights and objects ask for, are the
+/// tree's. O(vertices).
+bool isPlacedFor(const Scene& scene, const glm::dvec3& origin, const TriangleTree& tree);
+
+/// The sum of the areas of all children's boxes, in the tree's space: about how much a walk meets.
+double areaOfBoxes(const TriangleTree& tree);
+
 /// Moves the tree to another pose of the same scene and another origin: what boxes are of and what blocks
 /// hold stays. O(n), on all cores.
 void refitTriangleTree(const Scene& scene, const glm::dvec3& origin, TriangleTree& tree);

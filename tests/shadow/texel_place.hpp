@@ -37,7 +37,7 @@ inline std::optional<TexelPlace> placeOf(const ShadowMaps& maps, const ShadowMap
     const PlannedFace& face = maps.planned[i];
     const auto texel = texelOn(face, point);
     if (!texel) continue;
-    const double limit = face.view.size.x - int(map.filter_radius);
+    const double limit = maps.faces[i].high;
     const double inside =
         std::min(std::min(texel->x, texel->y) - int(map.filter_radius), limit - std::max(texel->x, texel->y));
     if (inside < 0) continue;
