@@ -75,7 +75,7 @@ VariantGroup shadowGroup(const std::string& name, const std::string& truth, Trut
           .measured = "shadow maps, culling and shading, against " + truth +
                       " from the same G-buffer in double precision",
           .stages = {Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kTriangleTree, Stage::kCull,
-                     Stage::kBeamShadows, Stage::kHoleRays, Stage::kShade},
+                     Stage::kBeamShadows, Stage::kShadowRays, Stage::kShade},
           .shadows = shadows};
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t kChunk = 1 << 14;
 
 using QuadInt = std::int32_t __attribute__((vector_size(16)));
 
-struct Bins {
+struct TriangleBins {
   std::array<std::array<QuadBox, kMostBins>, 3> box;
   std::array<std::array<std::uint32_t, kMostBins>, 3> count{};
 };
@@ -30,10 +30,10 @@ Quad centreOf(const TriangleBox& box) { return box.low - box.minus_high; }
 /// Which bin a centre c falls into: the whole part of (c − low) · scale, on each axis. That is less than
 /// `count`, as the three roundings on the way add less than what 1 − 2⁻²⁰ leaves free. Axes on which centres
 /// lie too close have one bin.
-struct BinGrid {
+struct TriangleGrid {
   std::uint32_t count;
   Quad low, scale;
-  explicit BinGrid(const TriangleSet& set)
+  explicit TriangleGrid(const TriangleSet& set)
       : count(std::min(4 + set.size() / 8, kMostBins)), low(set.centres.low), scale{} {
     for (int axis = 0; axis < 3; ++axis) {
       const float step =
@@ -46,7 +46,7 @@ struct BinGrid {
   }
 };
 
-void addToBins(const BinGrid& grid, const TriangleBox* box, const TriangleBox* end, Bins& bins) {
+void addToBins(const TriangleGrid& grid, const TriangleBox* box, const TriangleBox* end, TriangleBins& bins) {
   for (; box < end; ++box) {
     const QuadInt place = __builtin_convertvector((centreOf(*box) - grid.low) * grid.scale, QuadInt);
     for (int axis = 0; axis < 3; ++axis) {
@@ -56,7 +56,7 @@ void addToBins(const BinGrid& grid, const TriangleBox* box, const TriangleBox* e
   }
 }
 
-void joinBins(const BinGrid& grid, const Bins& other, Bins& bins) {
+void joinBins(const TriangleGrid& grid, const TriangleBins& other, TriangleBins& bins) {
   for (int axis = 0; axis < 3; ++axis)
     for (std::uint32_t i = 0; i < grid.count; ++i) {
       bins.box[axis][i].add(other.box[axis][i]);
@@ -64,19 +64,19 @@ void joinBins(const BinGrid& grid, const Bins& other, Bins& bins) {
     }
 }
 
-Bins fillBins(const BinGrid& grid, const TriangleSet& set, const TriangleBox* boxes) {
-  Bins bins;
+TriangleBins fillBins(const TriangleGrid& grid, const TriangleSet& set, const TriangleBox* boxes) {
+  TriangleBins bins;
   if (set.size() < 2 * kChunk) {
     addToBins(grid, boxes + set.begin, boxes + set.end, bins);
     return bins;
   }
   return tbb::parallel_reduce(
       tbb::blocked_range<std::uint32_t>(set.begin, set.end, kChunk), bins,
-      [&](const auto& range, Bins some) {
+      [&](const auto& range, TriangleBins some) {
         addToBins(grid, boxes + range.begin(), boxes + range.end(), some);
         return some;
       },
-      [&](Bins some, const Bins& others) {
+      [&](TriangleBins some, const TriangleBins& others) {
         joinBins(grid, others, some);
         return some;
       });
@@ -91,7 +91,7 @@ struct Split {
   QuadBox before, behind;
 };
 
-void findSplit(const BinGrid& grid, const Bins& bins, int axis, Split& best) {
+void findSplit(const TriangleGrid& grid, const TriangleBins& bins, int axis, Split& best) {
   const auto& box = bins.box[axis];
   const auto& count = bins.count[axis];
   std::array<QuadBox, kMostBins> behind;
@@ -116,7 +116,7 @@ void findSplit(const BinGrid& grid, const Bins& bins, int axis, Split& best) {
 }
 
 /// Copies the boxes from `begin` to `end` to where `next` says for each side, and moves `next` on.
-void scatter(const BinGrid& grid, const Split& split, const TriangleBox* begin, const TriangleBox* end,
+void scatter(const TriangleGrid& grid, const Split& split, const TriangleBox* begin, const TriangleBox* end,
              std::array<TriangleBox*, 2> next, std::array<QuadBox, 2>& centres) {
   for (; begin < end; ++begin) {
     const int side = grid.binOf(*begin, split.axis) > split.last;
@@ -127,7 +127,7 @@ void scatter(const BinGrid& grid, const Split& split, const TriangleBox* begin, 
 }
 
 /// The two parts in the other array, whose order is that of the set.
-std::array<QuadBox, 2> divide(const BinGrid& grid, const Split& split, const TriangleSet& set,
+std::array<QuadBox, 2> divide(const TriangleGrid& grid, const Split& split, const TriangleSet& set,
                               const TriangleBox* from, TriangleBox* to) {
   std::array<QuadBox, 2> centres;
   const std::uint32_t middle = set.begin + split.left;
@@ -192,8 +192,8 @@ TriangleSet wholeSet(const TriangleBoxes& boxes) {
 }
 
 std::pair<TriangleSet, TriangleSet> splitByArea(const TriangleSet& set, TriangleBoxes (&arrays)[2]) {
-  const BinGrid grid(set);
-  const Bins bins = fillBins(grid, set, arrays[set.array].data());
+  const TriangleGrid grid(set);
+  const TriangleBins bins = fillBins(grid, set, arrays[set.array].data());
   Split split;
   for (int axis = 0; axis < 3; ++axis) findSplit(grid, bins, axis, split);
   if (split.axis < 0) return splitInHalves(set, arrays);

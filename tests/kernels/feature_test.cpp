@@ -310,7 +310,7 @@ TEST(Features, RealScenesLookAsWithAll) {
     for (std::uint32_t i = 0; i < objects.size(); ++i) objects[i] = i;
     GBuffer gbuffer = rasterize(scene, objects, view, Shading::kPhong, {true, true, true});
     gbuffer.camera = scene.cameras[0];
-    for (const ShadeSettings settings :
+    for (const ShadeSettings& settings :
          {ShadeSettings{}, ShadeSettings{.model = Model::kBlinnPhong, .culling = Culling::kNone},
           ShadeSettings{.model = Model::kToon}, ShadeSettings{.model = Model::kCookTorrance}})
       expectSamePicture(scene, gbuffer,

@@ -133,7 +133,7 @@ Shadows shadowsOn(const GBuffer& seen, const Scene& scene, const View& view, con
     beams.first_hole_triangle = borrowed(device, beams.masks->first_triangle);
   }
   LitPlanes lit = lightGBuffer(device, scene, lighting, features, seen, {}, stats);
-  return {std::move(lit.pair_bits), lit.traced};
+  return {std::move(lit.pairs.lit), lit.traced.pairs};
 }
 
 TEST(HoleMasks, ChangeNoBitOfWhatTheHostDecides) {
