@@ -101,6 +101,13 @@ std::vector<VariantGroup> shadowVariants(const Scene& scene, int lanes, std::opt
   }
   for (const int size : sizes)
     groups.back().variants.push_back(shadowVariant(lanes, ShadowMethod::kSoft, "soft", size));
+  for (const int samples : kSoftSamples) {
+    if (!soft) break;
+    Variant variant = shadowVariant(lanes, ShadowMethod::kSoftExact, "soft-exact", usual_size);
+    variant.name = fmt::format("soft-exact, {} samples", samples);
+    variant.shade.soft_samples = samples;
+    groups.back().variants.push_back(variant);
+  }
   groups.back().variants.push_back(off);
   return groups;
 }

@@ -86,15 +86,15 @@ PairShadows beamShadows(Device& device, const std::string& defines, const BeamAr
   const std::size_t tiles = arguments.plane_stride / kTilePixels;
   const std::size_t entries =
       arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * beams.lights.size();
-  const bool soft = beams.soft_samples > 0;
-  const double words = kPairWords * (arguments.unsure ? soft ? 3 : 2 : 1) + (soft ? 1 : 0);
+  const bool soft = arguments.soft, unsure_pairs = arguments.holes || soft;
+  const double words = kPairWords * (soft ? 3 : unsure_pairs ? 2 : 1) + (soft ? 1 : 0);
   requireMemory(double(entries) * words * sizeof(uint), "the exact shadows of all pixels");
   if (entries > 0xffffffffu / kPairWords)
     throw MachineError(
         "exact shadows of 2^29 or more pairs of a tile and a light: use fewer lights or a smaller picture");
   PairShadows result;
   result.lit.resize(std::max<std::size_t>(entries, 1) * kPairWords);
-  if (arguments.unsure) result.unsure.resize(result.lit.size());
+  if (unsure_pairs) result.unsure.resize(result.lit.size());
   PairBits receivers(soft ? std::max<std::size_t>(entries, 1) : 0);
   const Buffer<uint> lit = borrowedForOutput(device, result.lit),
                      unsure = borrowedForOutput(device, result.unsure),
@@ -127,7 +127,7 @@ PairShadows beamShadows(Device& device, const std::string& defines, const BeamAr
           {"receivers", received}},
          {.items = (tiles + kBeamRun - 1) / kBeamRun});
   download(device, lit, result.lit);
-  if (arguments.unsure) download(device, unsure, result.unsure);
+  if (unsure_pairs) download(device, unsure, result.unsure);
   if (!soft) return result;
   download(device, received, receivers);
   for (std::size_t entry = 0; entry < entries; ++entry) {

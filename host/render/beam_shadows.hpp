@@ -60,7 +60,8 @@ struct BeamArguments {
   Buffer<const float> lift;      ///< a plane, metres, with Feature::kLift only
   const LightLists& lists;       ///< with Feature::kLightLists only
   const BeamScene& beams;
-  bool unsure;  ///< with Feature::kHoles or kSoftExact
+  bool holes;  ///< with Feature::kHoles
+  bool soft;   ///< with Feature::kSoftExact
 };
 
 /// The exact shadows of all entries of the lists; without lists of each tile and light, tile by tile.

@@ -160,11 +160,14 @@ PairShadows decideShadows(Device& device, const Scene& scene, const Lighting& li
                         .lift = buffers.lift,
                         .lists = lists,
                         .beams = lighting.beams,
-                        .unsure = features.has(Feature::kHoles) || features.has(Feature::kSoftExact)});
+                        .holes = features.has(Feature::kHoles),
+                        .soft = features.has(Feature::kSoftExact)});
   });
   if (!shadows.unsure.empty())
-    traced = timed(stats, Stage::kShadowRays,
-                   [&] { return tracePairs(device, scene, lighting.beams, gbuffer, lists, shadows); });
+    traced = timed(stats, Stage::kShadowRays, [&] {
+      return tracePairs(device, scene, lighting.beams, gbuffer, lists, features.has(Feature::kSoftExact),
+                        shadows);
+    });
   return shadows;
 }
 

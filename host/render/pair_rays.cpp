@@ -122,10 +122,9 @@ struct Tracer {
 }  // namespace
 
 TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const GBuffer& gbuffer,
-                       const LightLists& lists, PairShadows& shadows) {
+                       const LightLists& lists, bool soft, PairShadows& shadows) {
   const std::size_t tiles = gbuffer.pixels() / kTilePixels;
   const HostLists host_lists = downloadLists(device, lists, beams.lights.size());
-  const bool soft = beams.soft_samples > 0;
   if (soft) shadows.shares.resize(placeShares(host_lists, tiles, shadows));
   const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
   const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {

@@ -15,10 +15,10 @@ struct TracedPairs {
 };
 
 /// Decides the pairs that beamShadows() left unsure, by rays that look textures up: one to a light's place,
-/// and `soft_samples` to a light of a size. Without `shares` it sets the bits of those that are lit; with
-/// them, PairShadows::first_share and shares. lists: those that beamShadows() had. Works on all cores. Throws
+/// and BeamScene::soft_samples to a light of a size. It sets the bits of those that are lit, or with `soft`
+/// PairShadows::first_share and shares. lists, soft: those that beamShadows() had. Works on all cores. Throws
 /// MachineError if the device fails or memory doesn't suffice.
 TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const GBuffer& gbuffer,
-                       const LightLists& lists, PairShadows& shadows);
+                       const LightLists& lists, bool soft, PairShadows& shadows);
 
 }  // namespace luciole
