@@ -367,9 +367,10 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   const ShadowMaps& shadows = lighting.host_shadows;
   if (features.has(Feature::kExact))
     lit.pairs = decideShadows(device, scene, lighting, features, gbuffer, buffers, lists, lit.traced, stats);
-  const bool soft = features.has(Feature::kSoftExact);
+  // Without lights of a size tracePairs() has set the bits of those that were unsure.
+  if (!features.has(Feature::kSoftExact)) lit.pairs.unsure = {};
   const Buffer<const uint> pair_bits = borrowed(device, lit.pairs.lit),
-                           ray_bits = soft ? borrowed(device, lit.pairs.unsure) : Buffer<const uint>(),
+                           ray_bits = borrowed(device, lit.pairs.unsure),
                            first_share = borrowed(device, lit.pairs.first_share);
   const Buffer<const float> shares = borrowed(device, lit.pairs.shares);
   ShadeFrame frame = lighting.frame;
