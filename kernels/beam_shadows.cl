@@ -4,7 +4,8 @@
 // finds what lies in the beam between them: most beams hold nothing, or a triangle that hides all of the points.
 //
 // In: planes of a G-buffer, light lists, lights and the tree. Out: for each entry of the lists kPairWords words, a bit for each pixel of the tile: the
-// light reaches it. Where the scene has materials with holes also as many words of the pixels for which a texture decides.
+// light reaches it. Where the scene has materials with holes, or lights of a size, also as many words of the pixels for which rays decide: those
+// from which a texture is between, and those for which no single triangle, or the absence of any, decides about all of a light.
 //
 //   the tile's points in clusters, clusters in bundles (beam_points.clh)
 //   └─ for each light of the tile's list, for each bundle
@@ -49,6 +50,10 @@ typedef struct {
   float rounding[kRoom] ALIGNED;
   float across[kRoom] ALIGNED;
   float own[kRoom] ALIGNED;
+#if SOFT_EXACT
+  float blur[3][kRoom] ALIGNED;
+  uint straddles[kRoom / kTreeWidth];  // bits
+#endif
   uint reference[kRoom];
   uint holes[kRoom / kTreeWidth];  // bits: a texture decides
   uint clear[kRoom / kTreeWidth];  // bits: the light is clear of the plane
@@ -73,7 +78,7 @@ typedef struct {
 // What is left of a tile's points for a light.
 typedef struct {
   ushort left[kMaxRows];    // bits of the points that nothing is known to hide
-  ushort unsure[kMaxRows];  // of those for which a texture decides
+  ushort unsure[kMaxRows];  // of those for which rays decide
 } Remaining;
 
 INLINE uint count_points(const ushort *left, uint first_row, uint end_row) {
@@ -104,11 +109,17 @@ INLINE void append(Candidates *to, const Triangles *t, const uint *references, u
   store_chosen(to->rounding + at, t->rounding, bits);
   store_chosen(to->across + at, t->across, bits);
   store_chosen(to->own + at, t->own, bits);
+#if SOFT_EXACT
+  UNROLLED(i, 3) store_chosen(to->blur[i] + at, t->blur[i], bits);
+#endif
   for (; bits; bits &= bits - 1, ++at) {
     uint lane = lowest_bit(bits), word = at / kTreeWidth, bit = 1u << at % kTreeWidth;
     to->reference[at] = references[lane];
     to->clear[word] = (to->clear[word] & ~bit) | (t->clear >> lane & 1 ? bit : 0);
     if (HOLES) to->holes[word] = (to->holes[word] & ~bit) | (hollow >> lane & 1 ? bit : 0);
+#if SOFT_EXACT
+    to->straddles[word] = (to->straddles[word] & ~bit) | (t->straddles >> lane & 1 ? bit : 0);
+#endif
   }
   to->count = at;
 }
@@ -164,6 +175,73 @@ INLINE uint hidden_inside(const Scene *scene, const Outlook *outlook, const Cand
     if (!hides_exactly(scene, outlook->place, c->reference[at], row * kTreeWidth + bit, !(sure >> bit & 1), clear)) inside &= ~(1u << bit);
   }
   return inside;
+}
+
+#if SOFT_EXACT
+// The points of a row that a candidate hides from all of a light of a size; in *some those that it may hide from a part of it.
+INLINE uint hidden_from_all(const Scene *scene, const Outlook *outlook, const float *const *places, const Candidates *c, uint at, uint row,
+                            uint *some) {
+  const TilePoints *tile = scene->tile;
+  bool straddles = c->straddles[at / kTreeWidth] >> at % kTreeWidth & 1, clear = c->clear[at / kTreeWidth] >> at % kTreeWidth & 1;
+  floatL rounding = c->rounding[at];
+  uint all = 0;
+  *some = 0;
+  for (uint i = 0; i < kTreeWidth; i += LANES) {
+    uint point = row * kTreeWidth + i;
+    floatL right = part_of(places[0], point) - outlook->from[outlook->axis[0]];
+    floatL up = part_of(places[1], point) - outlook->from[outlook->axis[1]];
+    floatL ahead = part_of(places[2], point) - outlook->from[outlook->axis[2]];
+    floatL most = INFINITY, least = INFINITY, reversed = -INFINITY;
+    UNROLLED(e, 3) {
+      floatL value = fma_lanes((floatL)(c->edge[e][0][at]), right,
+                               fma_lanes((floatL)(c->edge[e][1][at]), up,
+                                         fma_lanes((floatL)(c->edge[e][2][at]), ahead, (floatL)(c->shift[e][at]))));
+      floatL blur = c->blur[e][at] + rounding;
+      most = min_lanes(most, value + blur);
+      least = min_lanes(least, value - blur);
+      reversed = max_lanes(reversed, value - blur);
+    }
+    floatL height = fma_lanes((floatL)(c->normal[0][at]), part_of(tile->place[0], point),
+                              fma_lanes((floatL)(c->normal[1][at]), part_of(tile->place[1], point),
+                                        fma_lanes((floatL)(c->normal[2][at]), part_of(tile->place[2], point), (floatL)(-c->offset[at]))));
+    floatL nearest = max_lanes(part_of(tile->tolerance, point), (floatL)(c->own[at]));
+    intL beyond = height > nearest, part = beyond & (most >= 0.0f);
+    if (straddles) part |= (abs_lanes(height) > nearest) & ((most >= 0.0f) | (reversed <= 0.0f));
+    *some |= lane_bits(part) << i;
+    if (clear && !straddles) all |= lane_bits(beyond & (least > 0.0f)) << i;
+  }
+  return all;
+}
+
+// Of a light of a size: takes from what is left of a cluster's points those that one of some candidates hides from all of it, and marks those that
+// one may hide from a part. bits, holes: of candidates [at, at + kTreeWidth). Returns how many are hidden.
+INLINE uint test_from_all(const Scene *scene, const Outlook *outlook, const float *const *places, const Candidates *c, uint at, uint bits, uint holes,
+                          const Cluster *cluster, Remaining *remaining, uint all) {
+  uint hits = 0;
+  for (; bits; bits &= bits - 1) {
+    uint bit = lowest_bit(bits), hidden = 0;
+    bool hollow = holes >> bit & 1;
+    for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
+      uint left = remaining->left[row];
+      if (!left) continue;
+      uint some, points = hidden_from_all(scene, outlook, places, c, at + bit, row, &some) & left;
+      remaining->unsure[row] |= (ushort)(some & left);
+      if (hollow) continue;
+      remaining->left[row] &= (ushort)~points;
+      hidden += popcount(points);
+    }
+    if (hidden * kMuch >= all && !hollow) remember(scene, c->reference[at + bit]);
+    hits += hidden;
+  }
+  return hits;
+}
+#endif
+
+// Whether nothing is left of a cluster's points but such as rays decide about.
+INLINE bool rays_decide(const Cluster *cluster, const Remaining *remaining) {
+  uint left = 0;
+  for (uint row = cluster->first_row; row < cluster->end_row; ++row) left |= remaining->left[row] & ~remaining->unsure[row];
+  return !left;
 }
 
 // kSolid, kHole or kMixed where a candidate with holes meets the ray to a point that it hides.
@@ -251,7 +329,13 @@ INLINE uint choose_candidates(const Outlook *outlook, const Target *target, cons
   *covers = 0;
   for (uint i = 0; i < kTreeWidth; i += LANES) {
     vec3L edge[3];
-    floatL shift[3], normal[3];
+    floatL shift[3], normal[3], blur[3];
+    intL straddles = 0;
+    UNROLLED(e, 3) blur[e] = 0.0f;
+#if SOFT_EXACT
+    straddles = lanes_of_bits(c->straddles[at / kTreeWidth] >> i);
+    UNROLLED(e, 3) blur[e] = part_of(c->blur[e], at + i);
+#endif
     UNROLLED(e, 3) {
       edge[e].x = part_of(c->edge[e][0], at + i);
       edge[e].y = part_of(c->edge[e][1], at + i);
@@ -261,8 +345,12 @@ INLINE uint choose_candidates(const Outlook *outlook, const Target *target, cons
     }
     intL in, covered, beyond, all_beyond;
     test_planes(normal, part_of(c->offset, at + i), part_of(c->own, at + i), &target->bounds, &beyond, &all_beyond);
+    if (has_size(outlook)) {
+      beyond |= straddles;
+      all_beyond &= ~straddles;
+    }
     if (target->narrow) {
-      test_rectangle(edge, shift, part_of(c->across, at + i), &target->sides, outlook->side, &in, &covered);
+      test_rectangle(edge, shift, part_of(c->across, at + i), blur, straddles, &target->sides, outlook, &in, &covered);
       beyond &= in;
       all_beyond &= covered;
       *covers |= lane_bits(all_beyond) << i;
@@ -291,6 +379,13 @@ WORK bool test_candidates(const Scene *scene, const Outlook *outlook, const Targ
       }
       if (!bits) continue;
     }
+#if SOFT_EXACT
+    if (has_size(outlook)) {
+      left -= test_from_all(scene, outlook, places, c, at, bits, holes, cluster, remaining, all);
+      if (!left) return false;
+      continue;
+    }
+#endif
     uint rows = 0;
     for (uint row = cluster->first_row; row < cluster->end_row; ++row) rows += remaining->left[row] ? 1 : 0;
     // One point against kTreeWidth triangles takes twice as long as one triangle against a row of points.
@@ -404,6 +499,7 @@ WORK void finish_cluster(const Scene *scene, const Outlook *outlook, bool narrow
   Beam beam;
   uint left = 0;
   while (walk->height) {
+    if (has_size(outlook) && rays_decide(cluster, remaining)) return;
     // A beam to half of the points meets less.
     uint now = count_points(remaining->left, cluster->first_row, cluster->end_row);
     if (left == 0 || 2 * now <= left) {
@@ -447,7 +543,7 @@ INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidate
 }
 
 // Takes from what is left of a bundle's points those that a light doesn't reach.
-WORK void shade_bundle(const Scene *scene, float4 place, const PointBounds *bounds, uint first, uint end, Remaining *remaining) {
+WORK void shade_bundle(const Scene *scene, float4 place, float size, const PointBounds *bounds, uint first, uint end, Remaining *remaining) {
   TilePoints *tile = scene->tile;
   Active active;
   active.count = 0;
@@ -461,11 +557,11 @@ WORK void shade_bundle(const Scene *scene, float4 place, const PointBounds *boun
   for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
   Candidates *candidates = scene->candidates;
   BeamWalk walk;
-  if (!look(place, &bounds->box, &outlook)) {
+  if (!look(place, size, &bounds->box, &outlook)) {
     // The light is amid the points or near them. It may still be beside each cluster.
     for (uint i = 0; i < active.count; ++i) {
       const Cluster *cluster = active.cluster[i];
-      bool narrow = look(place, &cluster->bounds.box, &outlook);
+      bool narrow = look(place, size, &cluster->bounds.box, &outlook);
       walk.height = 1;
       walk.stack[0] = scene->root;
       finish_cluster(scene, &outlook, narrow, cluster, &walk, candidates, remaining);
@@ -503,9 +599,9 @@ WORK void shade_bundle(const Scene *scene, float4 place, const PointBounds *boun
 }
 
 // Sets `remaining` to the points that a light may shine on: those in its range that face it. Margins make up for rounding and for the lift, so that
-// this misses none that shading lights. Returns whether there are any.
-INLINE bool find_receivers(const TilePoints *tile, const BeamLight *light, Remaining *remaining) {
-  uint rows = tile->cluster_count ? tile->cluster[0].end_row : 0, any = 0;
+// this misses none that shading lights. Returns how many there are.
+INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remaining *remaining) {
+  uint rows = tile->cluster_count ? tile->cluster[0].end_row : 0, count = 0;
   for (uint i = 1; i < tile->cluster_count; ++i) rows = max(rows, tile->cluster[i].end_row);
   bool parallel = light->place.w == 0.0f;
   float reach = light->reach + tile->most_lift, reach2 = 1.00001f * reach * reach;
@@ -529,9 +625,9 @@ INLINE bool find_receivers(const TilePoints *tile, const BeamLight *light, Remai
     receives &= tile->used[row];
     remaining->left[row] = (ushort)receives;
     remaining->unsure[row] = 0;
-    any |= receives;
+    count += popcount(receives);
   }
-  return any != 0;
+  return count;
 }
 
 // Writes bits of points to those of their pixels.
@@ -567,7 +663,7 @@ INLINE void recall_light(Scene *scene, uint light) {
 // Decides the pairs of a tile. All but `number`: see beam_shadows().
 WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const float *position, __global const float *normal, __global const float *lift,
                      uint plane_stride, __global const BeamLight *lights, uint light_count, __global const uint *list_starts,
-                     __global const ListEntry *list, __global uint *lit, __global uint *unsure) {
+                     __global const ListEntry *list, __global uint *lit, __global uint *unsure, __global uint *receivers) {
   uint entry = LIGHT_LISTS ? list_starts[number] : number * light_count;
   uint end = LIGHT_LISTS ? list_starts[number + 1] : entry + light_count;
   if (entry == end) return;
@@ -579,31 +675,36 @@ WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const fl
     uint index = LIGHT_LISTS ? list[entry].light : entry - number * light_count;
     BeamLight light = lights[index];
     Remaining remaining;
-    if (light.casts && find_receivers(&tile, &light, &remaining)) {
+    uint received = light.casts ? find_receivers(&tile, &light, &remaining) : 0;
+    if (received) {
       recall_light(&scene, index);
       uint first = 0;
       for (uint i = 0; i < tile.bundle_count; ++i) {
-        shade_bundle(&scene, light.place, tile.bundle + i, first, tile.bundle_end[i], &remaining);
+        shade_bundle(&scene, light.place, light.size, tile.bundle + i, first, tile.bundle_end[i], &remaining);
         first = tile.bundle_end[i];
       }
       write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit + entry * kPairWords);
-      if (HOLES) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure + entry * kPairWords);
+      if (UNSURE_PAIRS) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure + entry * kPairWords);
+      if (SOFT_EXACT) receivers[entry] = light.size > 0.0f ? received : 0;
     } else {
       for (uint i = 0; i < kPairWords; ++i) lit[entry * kPairWords + i] = 0;
-      for (uint i = 0; HOLES && i < kPairWords; ++i) unsure[entry * kPairWords + i] = 0;
+      for (uint i = 0; UNSURE_PAIRS && i < kPairWords; ++i) unsure[entry * kPairWords + i] = 0;
+      if (SOFT_EXACT) receivers[entry] = 0;
     }
   }
 }
 
 // position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only. nodes, children, blocks, block_bits,
 // root: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the rotation from view space to the tree's axes; w of the first: the tree's scale. tree_most: the
-// largest |x|, |y|, |z| in the tree. tiles: of the G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no shadow. unsure: as many, with HOLES only: not set in
-// `lit`, and lit unless one of the triangles with holes hides it.
+// largest |x|, |y|, |z| in the tree. tiles: of the G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each
+// pixel of the tile; 0 for lights that cast no shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers:
+// a number for each entry, with SOFT_EXACT only: of pixels that a light of a size may reach; 0 for other lights.
 __kernel void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
                            float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
                            __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
                            __global const int *children, __global const float *blocks, __global const uint *block_bits, __global const uchar *hole_texels,
-                           __global const HoleTriangle *hole_triangles, __global const uint *first_hole_triangle, int root, float4 tree_most, uint tiles, __global uint *lit, __global uint *unsure) {
+                           __global const HoleTriangle *hole_triangles, __global const uint *first_hole_triangle, int root, float4 tree_most, uint tiles, __global uint *lit, __global uint *unsure,
+                           __global uint *receivers) {
   Memory memory;
   for (uint i = 0; i < kLightsRemembered; ++i) memory.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.
@@ -613,5 +714,5 @@ __kernel void beam_shadows(uint plane_stride, __global const float *position, __
   ToTree to_tree = {to_tree_x, to_tree_y, to_tree_z, to_tree_x.w};
   uint first = get_global_id(0) * kBeamRun;
   for (uint tile = first; tile < tiles && tile < first + kBeamRun; ++tile)
-    shade_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts, list, lit, unsure);
+    shade_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts, list, lit, unsure, receivers);
 }

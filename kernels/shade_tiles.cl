@@ -127,7 +127,7 @@ INLINE void find_row_lights(const Task *task, uint first, const Candidates *cand
 
 // Adds `abreast` lights, a constant number, to a row of pixels.
 INLINE void add_to_row(const uint abreast, const Task *task, Pixels *row, const uint *light, bool long_sums) {
-  Shadows none = {0, 0, 0, 0, 0};
+  Shadows none = {0, 0, 0, 0, 0, 0, 0, 0};
   Pixels *rows[ABREAST];
   __global const ShadeLight *lights[ABREAST];
   uint entry[ABREAST];

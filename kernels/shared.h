@@ -78,7 +78,8 @@ typedef struct {
   float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
   float reach;   // its range; +∞: everywhere
   uint casts;    // 1: it casts shadows
-  uint pad0, pad1;
+  float size;    // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards them are off; 0: it has none
+  uint pad;
 } BeamLight;
 SHARED_SIZE(BeamLight, 32);
 

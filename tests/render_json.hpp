@@ -54,7 +54,7 @@ Image renderJson(const std::string& json, glm::ivec2 size, Adjust adjust) {
 
 /// Names the tests of a suite with a method as its parameter.
 inline std::string shadowMethodName(const testing::TestParamInfo<ShadowMethod>& test) {
-  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact", "Auto"};
+  constexpr const char* kNames[] = {"Off", "Hard", "Pcf", "Soft", "Exact", "SoftExact", "Auto"};
   return kNames[int(test.param)];
 }
 

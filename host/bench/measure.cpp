@@ -68,6 +68,8 @@ Scene withoutLightSizes(Scene scene) {
 
 Truth makeTruth(const Bench& bench, const VariantGroup& group, Model model) {
   ReferenceSettings settings{.model = model};
+  // Finer than any row's samples of a light.
+  if (group.shadows == TruthShadows::kSoft) settings.shadow_samples = 4 * kSoftSamples.back();
   const Scene sharp = group.shadows == TruthShadows::kSharp ? withoutLightSizes(bench.scene) : Scene();
   const Scene& scene = group.shadows == TruthShadows::kSharp ? sharp : bench.scene;
   std::optional<RayScene> rays;

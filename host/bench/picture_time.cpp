@@ -42,7 +42,7 @@ const std::vector<StageGroup> kGroups{
     {"shadow_milliseconds",
      "shadows",
      {Stage::kTriangleTree, Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kBeamShadows,
-      Stage::kHoleRays}},
+      Stage::kShadowRays}},
     {"shade_milliseconds", "shade", {Stage::kShade, Stage::kReadBack, Stage::kResolve}},
     {"write_milliseconds", "write", {Stage::kWrite}}};
 

@@ -89,7 +89,7 @@ std::string speedTable(const SpeedTable& table) {
 
 Json settingsJson(const Variant& variant) {
   static constexpr const char* kCulling[] = {"none", "tiles"};
-  static constexpr const char* kShadows[] = {"off", "hard", "pcf", "soft", "exact", "auto"};
+  static constexpr const char* kShadows[] = {"off", "hard", "pcf", "soft", "exact", "soft-exact", "auto"};
   const ShadeSettings& shade = variant.shade;
   return {{"lanes", variant.lanes},
           {"model", modelName(shade.model)},

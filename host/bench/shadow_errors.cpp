@@ -114,7 +114,7 @@ void addExactVisibility(Device& device, const Judged& judged, const Lighting& li
                          [](const ListEntry& e, std::uint32_t light) { return e.light < light; });
     const bool listed = entry != end && entry->light == device_light[pair.light] &&
                         (entry->squares >> SQUARE_OF_PIXEL(place) & 1) != 0;
-    const uint* bits = lit.pair_bits.data() + std::size_t(entry - list.begin()) * kPairWords;
+    const uint* bits = lit.pairs.lit.data() + std::size_t(entry - list.begin()) * kPairWords;
     visibility[i] = listed ? float(bits[place / 32] >> place % 32 & 1) : float(judged.truth.lit[i]);
   }
 }
@@ -178,7 +178,7 @@ Verdict judgeShadows(Device& device, const Judged& judged, const std::vector<std
   std::vector<float> visibility(judged.pairs.size());
   if (features.shadowMaps()) addMapVisibility(device, judged, lighting, settings, visibility);
   if (features.has(Feature::kExact)) addExactVisibility(device, judged, lighting, lit, visibility);
-  Verdict verdict{.errors = judge(judged.truth.lit, edges, visibility), .traced = lit.traced};
+  Verdict verdict{.errors = judge(judged.truth.lit, edges, visibility), .traced = lit.traced.pairs};
   verdict.texels = lighting.host_shadows.texels.size();
   for (const PlannedFace& face : lighting.host_shadows.planned) verdict.faces += face.count.x > 0;
   for (const BeamLight& light : lighting.beams.lights) verdict.exact_lights += light.casts;
@@ -242,7 +242,7 @@ std::vector<double> timeShadows(Device& device, const ShadowRow& row) {
   renderScene(device, row.judged->scene, pictureOf(*row.judged, row.settings, row.samples), stats);
   return {stageTime(stats, Stage::kTriangleTree) + stageTime(stats, Stage::kShadowMaps),
           stageTime(stats, Stage::kFindShadowTexels) + stageTime(stats, Stage::kBeamShadows) +
-              stageTime(stats, Stage::kHoleRays) + stageTime(stats, Stage::kShade)};
+              stageTime(stats, Stage::kShadowRays) + stageTime(stats, Stage::kShade)};
 }
 
 /// The sizes of maps to try: all for a scene of the user's, only the default for makeShadowScenes().

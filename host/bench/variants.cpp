@@ -75,7 +75,7 @@ VariantGroup shadowGroup(const std::string& name, const std::string& truth, Trut
           .measured = "shadow maps, culling and shading, against " + truth +
                       " from the same G-buffer in double precision",
           .stages = {Stage::kFindShadowTexels, Stage::kShadowMaps, Stage::kTriangleTree, Stage::kCull,
-                     Stage::kBeamShadows, Stage::kHoleRays, Stage::kShade},
+                     Stage::kBeamShadows, Stage::kShadowRays, Stage::kShade},
           .shadows = shadows};
 }
 
@@ -101,6 +101,13 @@ std::vector<VariantGroup> shadowVariants(const Scene& scene, int lanes, std::opt
   }
   for (const int size : sizes)
     groups.back().variants.push_back(shadowVariant(lanes, ShadowMethod::kSoft, "soft", size));
+  for (const int samples : kSoftSamples) {
+    if (!soft) break;
+    Variant variant = shadowVariant(lanes, ShadowMethod::kSoftExact, "soft-exact", usual_size);
+    variant.name = fmt::format("soft-exact, {} samples", samples);
+    variant.shade.soft_samples = samples;
+    groups.back().variants.push_back(variant);
+  }
   groups.back().variants.push_back(off);
   return groups;
 }

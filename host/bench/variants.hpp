@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,6 +45,9 @@ bool haveOneTruth(const VariantGroup& group);
 
 /// Texels a side that shadow maps are tried with.
 inline constexpr int kShadowSizes[] = {512, 1024, 2048, 4096};
+
+/// Samples of a light of a size that soft exact shadows are tried with.
+inline constexpr std::array kSoftSamples{1, 4, 16, 64, 256};
 
 /// All groups of variants that a scene allows to measure, for a device of `lanes`; the defaults are the first
 /// in their group. A scene without shadows has no group for them. A scene whose lights have a size has two,

@@ -23,6 +23,7 @@
 #include "render/coarse_triangles.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
+#include "shadow/light_samples.hpp"
 #include "shadow/shadow_sizes.hpp"
 
 namespace luciole {
@@ -234,10 +235,16 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->capture_default_str();
     addShadowsOption(
         command, options,
-        "exact (as rays to the light's middle), by shadow maps: hard (the texel that the point falls into), "
-        "pcf (the nearest texels, weighted) or soft (edges as wide as the light's size makes them), or auto: "
-        "for each light exact, but hard where that is at least twice as fast",
-        {"auto", "off", "hard", "pcf", "soft", "exact"});
+        "exact (as rays to the light's middle), soft-exact (as rays to places on a light of a size), by "
+        "shadow maps: hard (the texel that the point falls into), pcf (the nearest texels, weighted) or soft "
+        "(edges as wide as the light's size makes them), or auto: for each light exact, but hard where that "
+        "is at least twice as fast",
+        {"auto", "off", "hard", "pcf", "soft", "exact", "soft-exact"});
+    command
+        .add_option("--soft-samples", options.soft_samples,
+                    "places on a light of a size that soft-exact looks at from each point")
+        ->check(CLI::Range(1, kMostSoftSamples))
+        ->capture_default_str();
     command.add_option("--pcf-width", options.pcf_width, "texels a side that pcf weighs: 2 is the sharpest")
         ->check(CLI::Range(2, 6))
         ->capture_default_str();
@@ -399,12 +406,14 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.model = modelOf(options);
   settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
   settings.shade.tile_size = options.tile;
-  settings.shade.shadows = options.shadows == "off"    ? ShadowMethod::kOff
-                           : options.shadows == "hard" ? ShadowMethod::kHard
-                           : options.shadows == "pcf"  ? ShadowMethod::kPcf
-                           : options.shadows == "soft" ? ShadowMethod::kSoft
-                           : options.shadows == "exact" ? ShadowMethod::kExact
-                                                        : ShadowMethod::kAuto;
+  settings.shade.shadows = options.shadows == "off"          ? ShadowMethod::kOff
+                           : options.shadows == "hard"       ? ShadowMethod::kHard
+                           : options.shadows == "pcf"        ? ShadowMethod::kPcf
+                           : options.shadows == "soft"       ? ShadowMethod::kSoft
+                           : options.shadows == "exact"      ? ShadowMethod::kExact
+                           : options.shadows == "soft-exact" ? ShadowMethod::kSoftExact
+                                                             : ShadowMethod::kAuto;
+  settings.shade.soft_samples = options.soft_samples;
   settings.shade.light_error = options.light_error;
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;

@@ -31,6 +31,7 @@ struct PictureOptions {
   float light_error = ShadeSettings{}.light_error;
   bool shadows_given = false;  ///< --shadows was typed
   std::string cast_shadows;    ///< empty: see openScene()
+  int soft_samples = ShadeSettings{}.soft_samples;
   int pcf_width = ShadeSettings{}.pcf_width;
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   int shadow_size = ShadowLimits{}.size;
@@ -53,12 +54,13 @@ struct PictureOptions {
 /// Groups of options that a command takes, in addition to -o, --format, --compression, --stats, --trace and
 /// --quiet.
 enum OptionGroup : unsigned {
-  kViewOptions = 1,    ///< --size, --camera, --crop, --shading
-  kSampleOption = 2,   ///< --samples
-  kModelOptions = 4,   ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
-  kShadeOptions = 8,   ///< --culling, --tile, --shadows, --pcf-width, --shadow-memory, --shadow-size,
-                       ///< --light-error, --aov;
-                       ///< with kSampleOption also --samples-shading
+  kViewOptions = 1,   ///< --size, --camera, --crop, --shading
+  kSampleOption = 2,  ///< --samples
+  kModelOptions = 4,  ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
+  kShadeOptions =
+      8,  ///< --culling, --tile, --shadows, --soft-samples, --pcf-width, --shadow-memory, --shadow-size,
+          ///< --light-error, --aov;
+          ///< with kSampleOption also --samples-shading
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows

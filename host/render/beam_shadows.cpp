@@ -1,6 +1,7 @@
 #include "render/beam_shadows.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,8 @@ namespace luciole {
 namespace {
 
 /// A light in the tree's space. One so far away that a beam's numbers would overflow shines from a direction.
-BeamLight beamLight(const Light& light, const TriangleTree& tree) {
+/// One larger than any distance between places that beams know is as large as that: they are inside it.
+BeamLight beamLight(const Light& light, const TriangleTree& tree, bool soft) {
   constexpr double kFarthest = 0x1p40;
   BeamLight result{};
   const bool directional = light.kind == LightKind::kDirectional;
@@ -23,6 +25,10 @@ BeamLight beamLight(const Light& light, const TriangleTree& tree) {
   const glm::dvec3 at = has_place ? place : glm::normalize(towards);
   result.place = {float(at.x), float(at.y), float(at.z), has_place ? 1.0f : 0.0f};
   result.reach = has_place ? light.range * tree.scale : std::numeric_limits<float>::infinity();
+  if (!soft) return result;
+  const double radius = light.radius * double(tree.scale),
+               half_angle = directional ? light.half_angle : std::asin(std::min(radius / largest, 0.7));
+  result.size = float(has_place ? std::min(radius, 4 * kFarthest) : 2 * std::sin(half_angle / 2));
   return result;
 }
 
@@ -50,14 +56,16 @@ float4 rowOf(const glm::mat3& matrix, int row, float w) {
 void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
                   std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
                   std::span<const std::uint32_t> order, std::span<const std::uint8_t> casts,
-                  std::span<ShadeLight> lights, BeamScene& beams) {
+                  std::span<ShadeLight> lights, int soft_samples, BeamScene& beams) {
   beams.tree = std::move(tree);
   beams.masks = std::move(masks);
   beams.view_to_tree = glm::mat3(glm::dmat3(camera.camera_to_world));
   beams.tree_most = mostOf(*beams.tree);
   beams.order.assign(order.begin(), order.end());
+  beams.soft_samples = soft_samples;
+  if (soft_samples > 0) beams.samples = makeLightSamples();
   for (std::size_t i = 0; i < order.size(); ++i) {
-    beams.lights.push_back(beamLight(scene.lights[order[i]], *beams.tree));
+    beams.lights.push_back(beamLight(scene.lights[order[i]], *beams.tree, soft_samples > 0));
     beams.lights.back().casts = casts[i];
     if (casts[i]) lights[i].shadow = kExactShadow;
   }
@@ -78,16 +86,19 @@ PairShadows beamShadows(Device& device, const std::string& defines, const BeamAr
   const std::size_t tiles = arguments.plane_stride / kTilePixels;
   const std::size_t entries =
       arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * beams.lights.size();
-  requireMemory(double(entries) * (kPairWords * sizeof(uint)) * (arguments.holes ? 2 : 1),
-                "the exact shadows of all pixels");
+  const bool soft = arguments.soft, unsure_pairs = arguments.holes || soft;
+  const double words = kPairWords * (soft ? 3 : unsure_pairs ? 2 : 1) + (soft ? 1 : 0);
+  requireMemory(double(entries) * words * sizeof(uint), "the exact shadows of all pixels");
   if (entries > 0xffffffffu / kPairWords)
     throw MachineError(
         "exact shadows of 2^29 or more pairs of a tile and a light: use fewer lights or a smaller picture");
   PairShadows result;
   result.lit.resize(std::max<std::size_t>(entries, 1) * kPairWords);
-  if (arguments.holes) result.unsure.resize(result.lit.size());
+  if (unsure_pairs) result.unsure.resize(result.lit.size());
+  PairBits receivers(soft ? std::max<std::size_t>(entries, 1) : 0);
   const Buffer<uint> lit = borrowedForOutput(device, result.lit),
-                     unsure = borrowedForOutput(device, result.unsure);
+                     unsure = borrowedForOutput(device, result.unsure),
+                     received = borrowedForOutput(device, receivers);
   Kernel kernel = makeKernel(device, "beam_shadows.cl", "beam_shadows", defines);
   launch(device, kernel,
          {{"plane_stride", uint(arguments.plane_stride)},
@@ -112,10 +123,23 @@ PairShadows beamShadows(Device& device, const std::string& defines, const BeamAr
           {"tree_most", beams.tree_most},
           {"tiles", uint(tiles)},
           {"lit", lit},
-          {"unsure", unsure}},
+          {"unsure", unsure},
+          {"receivers", received}},
          {.items = (tiles + kBeamRun - 1) / kBeamRun});
   download(device, lit, result.lit);
-  if (arguments.holes) download(device, unsure, result.unsure);
+  if (unsure_pairs) download(device, unsure, result.unsure);
+  if (!soft) return result;
+  download(device, received, receivers);
+  for (std::size_t entry = 0; entry < entries; ++entry) {
+    if (receivers[entry] == 0) continue;
+    std::uint64_t bits = 0, by_rays = 0;
+    for (std::size_t i = entry * kPairWords; i < (entry + 1) * kPairWords; ++i) {
+      bits += std::uint64_t(std::popcount(result.lit[i]));
+      by_rays += std::uint64_t(std::popcount(result.unsure[i]));
+    }
+    result.soft_lit += bits;
+    result.soft_dark += receivers[entry] - bits - by_rays;
+  }
   return result;
 }
 

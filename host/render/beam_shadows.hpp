@@ -11,6 +11,7 @@
 #include "kernels/shared.h"
 #include "scene/scene.hpp"
 #include "shadow/hole_masks.hpp"
+#include "shadow/light_samples.hpp"
 #include "shadow/triangle_tree.hpp"
 
 namespace luciole {
@@ -28,6 +29,8 @@ struct BeamScene {
   float4 tree_most{};                      ///< the largest |x|, |y|, |z| in the tree
   std::vector<BeamLight> lights;           ///< one a light on the device
   std::vector<std::uint32_t> order;        ///< the scene's index of each
+  int soft_samples = 0;                    ///< of each light of a size; 0: none has one
+  std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
   Buffer<const float> nodes, blocks;
   Buffer<const int> children;
   Buffer<const uint> block_bits;
@@ -43,11 +46,12 @@ struct BeamScene {
 
 /// Fills `beams` for the lights `order` (indices into Scene::lights), and sets ShadeLight::shadow of those
 /// that `casts` says, in the same order. tree: of the scene, its origin the camera's eye. masks: of the tree,
-/// or null where no triangle has holes. Throws MachineError.
+/// or null where no triangle has holes. soft_samples: of lights of a size; 0: they count as points, or for
+/// directional lights as single directions. Throws MachineError.
 void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
                   std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
                   std::span<const std::uint32_t> order, std::span<const std::uint8_t> casts,
-                  std::span<ShadeLight> lights, BeamScene& beams);
+                  std::span<ShadeLight> lights, int soft_samples, BeamScene& beams);
 
 struct BeamArguments {
   std::size_t plane_stride;      ///< floats in a plane
@@ -57,13 +61,19 @@ struct BeamArguments {
   const LightLists& lists;       ///< with Feature::kLightLists only
   const BeamScene& beams;
   bool holes;  ///< with Feature::kHoles
+  bool soft;   ///< with Feature::kSoftExact
 };
 
 /// The exact shadows of all entries of the lists; without lists of each tile and light, tile by tile.
 struct PairShadows {
   PairBits lit;
-  PairBits unsure;  ///< a texture decides: not set in `lit`, and lit unless a triangle with holes hides it.
-                    ///< Empty where no triangle has holes
+  PairBits unsure;  ///< rays decide (tracePairs). Empty where no triangle has holes and no light a size
+  /// With lights of a size only, by tracePairs(): for each word of `unsure` the index of its first bit's
+  /// share; and the share of the light, in [0, 1], that reaches each unsure pair.
+  PairBits first_share;
+  std::vector<float, ArrayAllocator<float>> shares;
+  /// Pairs of pixels and lights of a size that no ray decides: all of the light reaches them, or nothing.
+  std::uint64_t soft_lit = 0, soft_dark = 0;
 };
 
 /// Launches kernels/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also

@@ -18,8 +18,10 @@ double estimatedMilliseconds(const PictureWork& work) {
   const double of_shadow_pair = work.shadows == ShadowMethod::kSoft  ? 50e-6
                                 : work.shadows == ShadowMethod::kPcf ? 10e-6
                                                                      : 7e-6;
+  // A walk for a third of the pairs, and its samples.
+  const double of_beam_pair = 12e-6 + (work.soft_samples > 0 ? 2e-4 + 2e-6 * work.soft_samples : 0);
   const double shade = work.shadings * 3e-6 * work.pixels + 6e-7 * work.pairs +
-                       of_shadow_pair * work.shadow_pairs + 12e-6 * work.beam_pairs;
+                       of_shadow_pair * work.shadow_pairs + of_beam_pair * work.beam_pairs;
   const double shadow_maps = 3e-6 * work.shadow_texels + 0.1 * work.shadow_faces +
                              (work.shadow_texels > 0 ? 1e-4 * work.bands * work.triangles : 0);
   const double write = (17e-6 + 2e-6 * (work.passes - 1)) * work.pixels;

@@ -34,6 +34,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"PCF", "PCF", "filtered shadow lookups"},
     {"SOFT", "soft shadows", "shadow lookups as wide as the light's size makes them"},
     {"EXACT", "exact shadows", "shadows known for each pixel and light beforehand"},
+    {"SOFT_EXACT", "soft exact shadows", "exact shadows of samples of lights of a size"},
     {"HOLES", "holes", "textures with holes, through which light shines"},
     {"LIFT", "lifted shadows", "shadow tests that start on the smooth surface above a facet"},
     {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
@@ -70,7 +71,8 @@ SurfaceTraits materialTraits(const Scene& scene) {
 
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings) {
   if (!scene.lights[light].shadow || settings.shadows == ShadowMethod::kOff) return ShadowWay::kNone;
-  if (settings.shadows == ShadowMethod::kExact) return ShadowWay::kBeams;
+  if (settings.shadows == ShadowMethod::kExact || settings.shadows == ShadowMethod::kSoftExact)
+    return ShadowWay::kBeams;
   if (settings.shadows != ShadowMethod::kAuto) return ShadowWay::kMap;
   return settings.shadow_ways.empty() ? ShadowWay::kBeams : settings.shadow_ways[light];
 }
@@ -139,12 +141,15 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
     const ShadowWay way = shadowWay(scene, i, settings);
     if (way == ShadowWay::kNone) continue;
-    features.set(way == ShadowWay::kBeams                  ? Feature::kExact
-                 : usesCubeMap(light)                      ? Feature::kCubeShadows
-                 : light.kind == LightKind::kDirectional   ? Feature::kParallelShadows
-                                                           : Feature::kPerspectiveShadows);
+    features.set(way == ShadowWay::kBeams                ? Feature::kExact
+                 : usesCubeMap(light)                    ? Feature::kCubeShadows
+                 : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
+                                                         : Feature::kPerspectiveShadows);
     features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
     features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
+    if (settings.shadows == ShadowMethod::kSoftExact &&
+        (light.kind == LightKind::kDirectional ? light.half_angle : light.radius) > 0)
+      features.set(Feature::kSoftExact);
     features.set(Feature::kOutputShadow, settings.shadow_layer);
   }
   features.set(Feature::kLift, surfaces.smooth && features.shadows());
@@ -178,7 +183,8 @@ FeatureSet lookupFeatures(const FeatureSet& features) {
 
 FeatureSet beamFeatures(const FeatureSet& features) {
   FeatureSet beams;
-  for (const Feature feature : {Feature::kExact, Feature::kHoles, Feature::kLift, Feature::kLightLists})
+  for (const Feature feature :
+       {Feature::kExact, Feature::kSoftExact, Feature::kHoles, Feature::kLift, Feature::kLightLists})
     beams.set(feature, features.has(feature));
   return beams;
 }

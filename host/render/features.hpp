@@ -36,6 +36,7 @@ enum class Feature : unsigned {
   kPcf,
   kSoft,
   kExact,
+  kSoftExact,
   kHoles,
   kLift,
   kFogLinear,
@@ -106,7 +107,9 @@ struct ShadeSettings {
   /// With ShadowMethod::kAuto the way of each light. Empty: a picture's are chosen by shadowWays, and where
   /// no picture is known, all are exact.
   std::vector<ShadowWay> shadow_ways{};
-  int pcf_width = 2;          ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
+  int soft_samples =
+      16;             ///< of a light that has a size, with ShadowMethod::kSoftExact, 1 to kMostSoftSamples
+  int pcf_width = 2;  ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
   ShadowLimits shadow_limits{};
   int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
   int exp2_degree = 6;

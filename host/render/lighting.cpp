@@ -12,7 +12,6 @@
 #include "gbuffer/packed_normal.hpp"
 #include "render/count_in_range.hpp"
 #include "render/find_needed.hpp"
-#include "render/hole_rays.hpp"
 #include "render/seen_rounding.hpp"
 #include "render/shade.hpp"
 #include "render/shade_tiles.hpp"
@@ -149,10 +148,10 @@ void drawShadowMaps(Device& device, const Scene& scene, Lighting& lighting, cons
   });
 }
 
-/// The exact shadows of all entries of the lists. Sets `traced` to the number of pairs that took a ray.
-PairBits decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
-                       const FeatureSet& features, const GBuffer& gbuffer, const GBufferBuffers& buffers,
-                       const LightLists& lists, std::uint64_t& traced, Stats& stats) {
+/// The exact shadows of all entries of the lists. Sets `traced` to the pairs that took rays.
+PairShadows decideShadows(Device& device, const Scene& scene, const Lighting& lighting,
+                          const FeatureSet& features, const GBuffer& gbuffer, const GBufferBuffers& buffers,
+                          const LightLists& lists, TracedPairs& traced, Stats& stats) {
   PairShadows shadows = timed(stats, Stage::kBeamShadows, [&] {
     return beamShadows(device, featureDefines(beamFeatures(features)),
                        {.plane_stride = gbuffer.pixels(),
@@ -161,12 +160,15 @@ PairBits decideShadows(Device& device, const Scene& scene, const Lighting& light
                         .lift = buffers.lift,
                         .lists = lists,
                         .beams = lighting.beams,
-                        .holes = features.has(Feature::kHoles)});
+                        .holes = features.has(Feature::kHoles),
+                        .soft = features.has(Feature::kSoftExact)});
   });
   if (!shadows.unsure.empty())
-    traced = timed(stats, Stage::kHoleRays,
-                   [&] { return traceHoles(device, scene, lighting.beams, gbuffer, lists, shadows); });
-  return std::move(shadows.lit);
+    traced = timed(stats, Stage::kShadowRays, [&] {
+      return tracePairs(device, scene, lighting.beams, gbuffer, lists, features.has(Feature::kSoftExact),
+                        shadows);
+    });
+  return shadows;
 }
 
 /// How many lights have each pixel in their range.
@@ -321,7 +323,8 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
         for (const std::uint32_t light : order)
           casts.push_back(shadowWay(scene, light, settings) == ShadowWay::kBeams);
         prepareBeams(device, scene, camera, kept->tree, features.has(Feature::kHoles) ? kept->masks : nullptr,
-                     order, casts, lighting.host_lights, lighting.beams);
+                     order, casts, lighting.host_lights,
+                     features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
       }
     }
     lighting.frame.light_count = static_cast<uint>(lighting.host_lights.size());
@@ -362,9 +365,13 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
     drawShadowMaps(device, scene, lighting, lookup_defines, buffers, lists, pixels, stats);
   const ShadowMaps& shadows = lighting.host_shadows;
   if (features.has(Feature::kExact))
-    lit.pair_bits =
-        decideShadows(device, scene, lighting, features, gbuffer, buffers, lists, lit.traced, stats);
-  const Buffer<const uint> pair_bits = borrowed(device, lit.pair_bits);
+    lit.pairs = decideShadows(device, scene, lighting, features, gbuffer, buffers, lists, lit.traced, stats);
+  // Without lights of a size tracePairs() has set the bits of those that were unsure.
+  if (!features.has(Feature::kSoftExact)) lit.pairs.unsure = {};
+  const Buffer<const uint> pair_bits = borrowed(device, lit.pairs.lit),
+                           ray_bits = borrowed(device, lit.pairs.unsure),
+                           first_share = borrowed(device, lit.pairs.first_share);
+  const Buffer<const float> shares = borrowed(device, lit.pairs.shares);
   ShadeFrame frame = lighting.frame;
   frame.plane_stride = static_cast<uint>(pixels);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(shadows.texels.size(), 1));
@@ -402,6 +409,9 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
            .shadow_faces = lighting.shadow_faces,
            .shadow_texels = lighting.shadow_texels,
            .pair_bits = pair_bits,
+           .ray_bits = ray_bits,
+           .first_share = first_share,
+           .shares = shares,
            .image = image});
   });
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
@@ -417,9 +427,12 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              geometric_normal.size() + lift.size() + emission.size() +
                              lit.light_error.size() + lit.color.size();
-  stats.device_bytes = std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
-                                                        shadows.texels.size() * sizeof(ShadowTexel) +
-                                                        lit.pair_bits.size() * sizeof(uint));
+  stats.device_bytes =
+      std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +
+                                       shadows.texels.size() * sizeof(ShadowTexel) +
+                                       (lit.pairs.lit.size() + lit.pairs.unsure.size() +
+                                        lit.pairs.first_share.size() + lit.pairs.shares.size()) *
+                                           sizeof(uint));
   return lit;
 }
 
@@ -443,7 +456,8 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
   if (features.has(Feature::kExact)) {
     const Scene nothing;
     prepareBeams(device, nothing, {}, std::make_shared<const TriangleTree>(buildTriangleTree(nothing, {})),
-                 nullptr, {}, {}, {}, lighting.beams);
+                 nullptr, {}, {}, {}, features.has(Feature::kSoftExact) ? settings.soft_samples : 0,
+                 lighting.beams);
   }
   uploadLighting(device, lighting);
   Stats ignored;

@@ -12,6 +12,7 @@
 #include "render/beam_shadows.hpp"
 #include "render/clustered_light.hpp"
 #include "render/features.hpp"
+#include "render/pair_rays.hpp"
 #include "render/stats.hpp"
 #include "scene/scene.hpp"
 #include "shadow/kept_shadows.hpp"
@@ -71,9 +72,9 @@ struct LitPlanes {
   Plane
       list_length;  ///< lights in the list of each pixel's square, if asked for; all where there are no lists
   std::uint64_t list_entries =
-      0;                     ///< of Lighting::lists, or where none were made, of those that shading found
-  PairBits pair_bits;        ///< with Feature::kExact: which pixels each entry of Lighting::lists lights
-  std::uint64_t traced = 0;  ///< pixel-light pairs whose exact shadow took a ray, because a texture decides
+      0;                        ///< of Lighting::lists, or where none were made, of those that shading found
+  PairShadows pairs;            ///< with Feature::kExact: the shadows of the entries of Lighting::lists
+  TracedPairs traced;           ///< of these, the pairs of a pixel and a light that took rays
   std::uint64_t evaluated = 0;  ///< pixel-light pairs that the shade kernel went through, if asked for
   std::uint64_t by_beams = 0;   ///< of these, with lights whose shadows are exact
   std::uint64_t by_maps = 0;    ///< and with lights that have shadow maps

@@ -44,8 +44,11 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
                                 : 0;
-  // Counting lights in range needs lists of its own. Exact shadows are words for each entry.
-  const std::size_t words = (features.has(Feature::kExact) ? 1 : 0) + (features.has(Feature::kHoles) ? 1 : 0);
+  // Counting lights in range needs lists of its own. Exact shadows are words for each entry. Where lights
+  // have a size two more are, and what rays find: as much as eight, if they decide a fourth of the pairs.
+  const std::size_t words = (features.has(Feature::kExact) ? 1 : 0) + (features.has(Feature::kSoftExact) ? 10
+                                                                       : features.has(Feature::kHoles)   ? 1
+                                                                                                         : 0);
   const std::size_t all_lists =
       lists * (1 + counted) + lists * words * (kPairWords * sizeof(uint) / sizeof(ListEntry));
   if (!shared) return sizeof(float) * std::max(lighting, assembling) + all_lists;

@@ -198,9 +198,9 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
   work.shadows = settings.shade.shadows;
   work.shadow_pairs = shaded * mean.by_maps;
   work.beam_pairs = shaded * mean.by_beams;
+  if (needs.all.has(Feature::kSoftExact)) work.soft_samples = shade.soft_samples;
   if (!needs.all.shadowMaps()) return work;
-  const ShadowMaps maps =
-      planShadowMaps(scene, view, shade.shadows, shade.shadow_limits, shade.shadow_ways);
+  const ShadowMaps maps = planShadowMaps(scene, view, shade.shadows, shade.shadow_limits, shade.shadow_ways);
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do
   work.shadow_faces = double(maps.planned.size());
   work.shadow_map_bytes = work.shadow_texels * double(sizeof(ShadowTexel));

@@ -150,7 +150,12 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats
     countClusters(lit.clustered, stats);
     countLightErrors(gbuffer, lit, stats);
   }
-  if (lit.traced > 0) addCount(stats, "shadow_rays", lit.traced);
+  if (lit.pairs.soft_lit + lit.pairs.soft_dark + lit.traced.soft > 0) {
+    addCount(stats, "soft_pairs_lit", lit.pairs.soft_lit);
+    addCount(stats, "soft_pairs_dark", lit.pairs.soft_dark);
+    addCount(stats, "soft_pairs_by_rays", lit.traced.soft);
+  }
+  if (lit.traced.rays > 0) addCount(stats, "shadow_rays", lit.traced.rays);
   if (lit.light_count.empty()) return;
   double in_range = 0;
   for (const float count : lit.light_count) in_range += count;

@@ -41,6 +41,9 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
           {"shadow_faces", arguments.shadow_faces},
           {"shadow_texels", arguments.shadow_texels},
           {"pair_bits", arguments.pair_bits},
+          {"ray_bits", arguments.ray_bits},
+          {"first_share", arguments.first_share},
+          {"shares", arguments.shares},
           {"image", arguments.image}},
          {.items = arguments.frame.plane_stride / pixels_per_item, .group = kTilePixels / pixels_per_item});
   finish(device);

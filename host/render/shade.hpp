@@ -28,7 +28,10 @@ struct ShadeArguments {
   Buffer<const ShadowMap> shadow_maps;
   Buffer<const ShadowFace> shadow_faces;
   Buffer<const ShadowTexel> shadow_texels;  ///< frame.texel_count
-  Buffer<const uint> pair_bits;             ///< see beam_shadows.cl, with Feature::kExact only
+  Buffer<const uint> pair_bits;             ///< PairShadows::lit, with Feature::kExact only
+  Buffer<const uint> ray_bits;              ///< PairShadows::unsure, with Feature::kSoftExact only
+  Buffer<const uint> first_share;           ///< likewise
+  Buffer<const float> shares;               ///< likewise
   Buffer<float> image;  ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
 };
 

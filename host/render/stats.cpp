@@ -18,7 +18,7 @@ const char* stageName(Stage stage) {
       "measure exposure",   "triangle tree",   "prepare lights",
       "gather vertices",    "rasterize",       "cull",
       "find shadow texels", "shadow maps",     "beam shadows",
-      "hole rays",          "clustered light", "shade",
+      "shadow rays",        "clustered light", "shade",
       "read back",          "resolve",         "count lights",
       "check G-buffer",     "write",
   };

@@ -29,7 +29,7 @@ enum class Stage : std::uint8_t {
   kFindShadowTexels,
   kShadowMaps,
   kBeamShadows,
-  kHoleRays,
+  kShadowRays,
   kClusteredLight,
   kShade,
   kReadBack,

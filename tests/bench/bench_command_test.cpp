@@ -126,10 +126,13 @@ TEST_F(BenchCommand, SharpAndSoftShadowsAreEachHeldAgainstTheirOwnTruth) {
   // Soft ones know the light's size.
   EXPECT_LT(meanOf(groups[1], "soft 2048"), meanOf(groups[1], "hard 2048"));
   EXPECT_LT(meanOf(groups[1], "soft 2048"), meanOf(groups[1], "no shadows"));
+  EXPECT_LT(meanOf(groups[1], "soft-exact, 16 samples"), meanOf(groups[1], "soft 2048"));
+  EXPECT_LT(meanOf(groups[1], "soft-exact, 256 samples"), meanOf(groups[1], "soft-exact, 16 samples") / 4);
   for (const auto& group : groups) {
     std::set<std::string> methods;
     for (const auto& row : group["rows"]) methods.insert(row["settings"]["shadows"]);
     EXPECT_EQ(methods.count("soft"), group["name"] == "soft shadows");
+    EXPECT_EQ(methods.count("soft-exact"), group["name"] == "soft shadows");
     EXPECT_EQ(methods.count("exact"), 1u);
     EXPECT_NE(outcome.out.find("\n" + group["name"].get<std::string>() + ": "), std::string::npos);
   }

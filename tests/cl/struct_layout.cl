@@ -72,8 +72,8 @@ __kernel void report_beam_light(__global uint *out) {
   *out++ = OFFSET(place);
   *out++ = OFFSET(reach);
   *out++ = OFFSET(casts);
-  *out++ = OFFSET(pad0);
-  *out++ = OFFSET(pad1);
+  *out++ = OFFSET(size);
+  *out++ = OFFSET(pad);
 }
 
 __kernel void report_hole_triangle(__global uint *out) {

@@ -93,9 +93,9 @@ TEST_F(CommandLine, ShadingAGBufferFileEqualsRenderingBitForBitWithShadowsOnCoar
     "objects": [{"primitive": "plane", "scale": 5},
                 {"primitive": "sphere", "segments": 9, "translate": [0.2, 0.8, 0], "rotate": [13, 31, 7]}],
     "lights": [{"type": "directional", "direction": [-1, -0.7, 0.3], "shadow": true},
-               {"type": "point", "position": [-2, 3, 1], "intensity": 4, "shadow": true},
+               {"type": "point", "position": [-2, 3, 1], "intensity": 4, "radius": 0.3, "shadow": true},
                {"type": "spot", "position": [3, 4, 2], "direction": [-3, -4, -2], "cutoff": 30, "shadow": true}]})");
-  for (const char* options : {"--shadows hard", "--shadows pcf"}) {
+  for (const char* options : {"--shadows hard", "--shadows pcf", "--shadows soft-exact --soft-samples 5"}) {
     const std::string o = options;
     succeed("luciole render coarse.json -o a.exr " + o);
     succeed("luciole gbuffer coarse.json -o g.exr && luciole shade g.exr --scene coarse.json -o b.exr " + o);
@@ -121,6 +121,19 @@ TEST_F(CommandLine, CropIsACutOutOfTheWholePicture) {
   for (int y = 0; y < part.height; ++y)
     for (int i = 0; i < 3 * part.width; ++i)
       ASSERT_EQ(part.pixels[y * 3 * part.width + i], whole.pixels[(y + 7) * 3 * whole.width + 3 * 33 + i]);
+}
+
+TEST_F(CommandLine, SamplesOfALightAreOneTo1024) {
+  for (const char* samples : {"0", "1025", "-1", "1.5"}) {
+    const Outcome outcome =
+        runLine(folder, fmt::format("luciole render scene.json --soft-samples {} -o a.exr", samples));
+    EXPECT_EQ(outcome.status, 2) << samples;
+    EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;
+    EXPECT_NE(outcome.err.find("--soft-samples"), std::string::npos) << outcome.err;
+  }
+  for (const char* samples : {"1", "1024"})
+    succeed(
+        fmt::format("luciole render scene.json --shadows soft-exact --soft-samples {} -o a.exr", samples));
 }
 
 TEST_F(CommandLine, FlatGouraudAndPhongDiffer) {

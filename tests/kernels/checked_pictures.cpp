@@ -40,7 +40,7 @@ void addObjects(const Camera& camera, Scene& scene) {
 
 /// Those of odd numbers have shadows that start above facets. Fifteen in a row have every fog with rows of 1,
 /// 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for unwritten where a function is called with it),
-/// every shadow method with each of them, and either choice of all else.
+/// every shadow method with each of them, and either choice of all else. Three more have soft exact shadows.
 ///
 /// One a process: where a buffer takes the place of a smaller one that was freed, Oclgrind 21.10 takes its
 /// end for unwritten. That is also why nothing is rendered here, which lights more than one G-buffer.
@@ -51,9 +51,13 @@ void lightPicture(unsigned number) {
   Random random(number);
   Camera camera = randomCamera(random);
   camera.orthographic = number % 4 == 3;
-  const auto method = static_cast<ShadowMethod>((number + number / 3) % 5);
+  const auto method =
+      number < 15 ? static_cast<ShadowMethod>((number + number / 3) % 5) : ShadowMethod::kSoftExact;
   Scene scene = randomScene(camera, method == ShadowMethod::kOff ? kSumBlock + 2 : 12, random);
   for (std::size_t i = 0; i < scene.lights.size(); i += 2) scene.lights[i].shadow = true;
+  if (method == ShadowMethod::kSoftExact)
+    for (std::size_t i = 0; i < scene.lights.size(); i += 4)
+      scene.lights[i].radius = scene.lights[i].half_angle = 0.2;
   scene.fog = randomFog(static_cast<FogMode>(number / 3 % 4), random);
   addObjects(camera, scene);
   ShadeSettings settings;

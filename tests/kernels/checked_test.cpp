@@ -97,7 +97,7 @@ TEST_P(CheckedClusters, HaveNoReports) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lanes, CheckedClusters, testing::Values(1, 4, 8), testing::PrintToStringParamName());
-INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 15), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 18), testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace luciole::test

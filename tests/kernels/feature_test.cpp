@@ -39,6 +39,7 @@ const std::vector<Needs>& needs() {
       {kPcf, {kParallelShadows, kPerspectiveShadows, kCubeShadows}},
       {kSoft, {kPerspectiveShadows, kCubeShadows, kParallelShadows}},
       {kExact, {kDirectionalLights, kPointLights, kSpotLights}},
+      {kSoftExact, {kExact}},
       {kHoles, {kExact}},
       {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows}},
       {kOutputShadow, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
@@ -63,7 +64,8 @@ FeatureSet completed(FeatureSet features) {
     if (chosen) features.set(method, false);
     chosen |= features.has(method);
   }
-  if (!features.has(Feature::kExact)) features.set(Feature::kHoles, false);
+  if (!features.has(Feature::kExact))
+    for (const Feature feature : {Feature::kHoles, Feature::kSoftExact}) features.set(feature, false);
   return features;
 }
 
@@ -84,15 +86,17 @@ bool isShadowMethod(std::size_t feature) {
 }
 
 /// The pairs that no set shows: a feature without the one that it cannot do without, two shadow methods,
-/// holes with another method than the one that knows them.
+/// holes or lights of a size with another method than the one that knows them.
 bool impossible(const Pair& pair) {
   const auto [i, i_on, j, j_on] = pair;
   if (i_on && j_on && isShadowMethod(i) && isShadowMethod(j)) return true;
-  const auto isHoles = [](std::size_t feature) { return Feature(feature) == Feature::kHoles; };
+  const auto isOfExact = [](std::size_t feature) {
+    return Feature(feature) == Feature::kHoles || Feature(feature) == Feature::kSoftExact;
+  };
   const auto isOther = [](std::size_t feature) {
     return isShadowMethod(feature) && Feature(feature) != Feature::kExact;
   };
-  if (i_on && j_on && ((isHoles(i) && isOther(j)) || (isHoles(j) && isOther(i)))) return true;
+  if (i_on && j_on && ((isOfExact(i) && isOther(j)) || (isOfExact(j) && isOther(i)))) return true;
   for (const Needs& rule : needs()) {
     if (rule.any_of.size() > 1) continue;
     const auto feature = std::size_t(rule.feature), other = std::size_t(rule.any_of[0]);
@@ -174,6 +178,10 @@ Light lightWith(const FeatureSet& features, const std::vector<LightKind>& kinds,
                        (!features.has(Feature::kCubeShadows) || random.chance(0.5));
   light.cutoff = glm::radians(one_map ? 50.0 : 80.0);
   light.inner_cone = 0.5 * light.cutoff;
+  if (features.has(Feature::kSoftExact)) {
+    light.radius = 0.3;
+    light.half_angle = 0.1;
+  }
   light.shadow = features.has(Feature::kExact) ||
                  features.has(light.kind == LightKind::kDirectional ? Feature::kParallelShadows
                               : usesCubeMap(light)                  ? Feature::kCubeShadows
@@ -216,10 +224,11 @@ Scene sceneWith(const FeatureSet& features, const Camera& camera, Random& random
 void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const FeatureSet& needed, Model model) {
   Device& device = deviceWithLanes(listDevices().at(selectDevice(listDevices(), "")).lanes);
   const FeatureSet all = everyFeature(needed);
-  const ShadowMethod method = needed.has(Feature::kExact)  ? ShadowMethod::kExact
-                              : needed.has(Feature::kSoft) ? ShadowMethod::kSoft
-                              : needed.has(Feature::kPcf)  ? ShadowMethod::kPcf
-                                                           : ShadowMethod::kHard;
+  const ShadowMethod method = needed.has(Feature::kSoftExact) ? ShadowMethod::kSoftExact
+                              : needed.has(Feature::kExact)   ? ShadowMethod::kExact
+                              : needed.has(Feature::kSoft)    ? ShadowMethod::kSoft
+                              : needed.has(Feature::kPcf)     ? ShadowMethod::kPcf
+                                                              : ShadowMethod::kHard;
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, gbuffer.camera, cameraView(gbuffer.camera, gbuffer.picture_size), needed,

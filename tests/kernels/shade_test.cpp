@@ -15,8 +15,9 @@ namespace {
 /// All of shading but shadows, which the reference leaves to rays; the frame and the lights choose.
 FeatureSet unshadowed(Culling culling) {
   FeatureSet features = everyFeature();
-  for (const Feature shadow : {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows,
-                               Feature::kPcf, Feature::kSoft, Feature::kExact, Feature::kOutputShadow})
+  for (const Feature shadow :
+       {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows, Feature::kPcf,
+        Feature::kSoft, Feature::kExact, Feature::kSoftExact, Feature::kOutputShadow})
     features.set(shadow, false);
   features.set(Feature::kLightLists, culling == Culling::kTiles);
   return features;

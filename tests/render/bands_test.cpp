@@ -49,8 +49,8 @@ TEST(Bands, TheirHeightChangesNoShadowOrLayerByAnyMethod) {
   const Scene scene = sceneFromJson(kBandsScene);
   RenderSettings settings = settingsFor(scene, {100, 150});
   settings.aovs = kAllLayers;
-  for (const auto method :
-       {ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft, ShadowMethod::kExact, ShadowMethod::kAuto}) {
+  for (const auto method : {ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
+                            ShadowMethod::kExact, ShadowMethod::kSoftExact, ShadowMethod::kAuto}) {
     settings.shade.shadows = method;
     expectSameInBands(scene, settings);
   }

@@ -77,16 +77,20 @@ std::vector<Light> lightsOverSheets(Random& random) {
 struct Verdicts {
   std::uint64_t pairs = 0;  ///< of a pixel and a light that may brighten it
   std::uint64_t lit = 0;
-  std::uint64_t wrong = 0;  ///< of which brute force says the opposite
+  std::uint64_t part = 0;         ///< where a part of a light of a size is seen
+  std::uint64_t soft_rays = 0;    ///< of which rays decide, because the light has a size
+  std::uint64_t soft_others = 0;  ///< and those with such lights that rays needn't decide
+  std::uint64_t wrong = 0;        ///< of which brute force says something else
 };
 
 /// Adds up the verdicts on what a camera sees: the G-buffer shows `seen`, and what casts shadows is `scene`.
 void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, glm::ivec2 size, int lanes,
-                 Culling culling, Verdicts& verdicts) {
+                 Culling culling, Verdicts& verdicts, int soft_samples = 0) {
   const View view = cameraView(camera, size);
   ShadeSettings settings;
   settings.culling = culling;
-  settings.shadows = ShadowMethod::kExact;
+  settings.shadows = soft_samples > 0 ? ShadowMethod::kSoftExact : ShadowMethod::kExact;
+  if (soft_samples > 0) settings.soft_samples = soft_samples;
   const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
   GBuffer gbuffer = rasterize(seen, allObjects(seen), view, Shading::kPhong, neededPlanes(features));
   Device& device = deviceWithLanes(lanes);
@@ -109,7 +113,8 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
     const std::size_t first = listed ? starts[tile] : tile * light_count,
                       end = listed ? starts[tile + 1] : first + light_count;
     for (std::size_t entry = first; entry < end; ++entry) {
-      const BeamLight& beam = lighting.beams.lights[listed ? list[entry].light : entry - first];
+      const std::uint32_t light = listed ? list[entry].light : std::uint32_t(entry - first);
+      const BeamLight& beam = lighting.beams.lights[light];
       if (!beam.casts) continue;
       for (std::size_t pixel = 0; pixel < kTilePixels; ++pixel) {
         const std::size_t place = tile * kTilePixels + pixel;
@@ -120,18 +125,23 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
         const glm::dvec3 at(beam.place.x, beam.place.y, beam.place.z);
         const glm::dvec3 way = beam.place.w == 0 ? at : at - glm::dvec3(start);
         if (glm::length(way) > beam.reach || glm::dot(glm::dmat3(view_to_world) * normal, way) <= 0) continue;
-        const bool is_lit = (lit.pair_bits[entry * kPairWords + pixel / 32] >> pixel % 32 & 1) != 0;
+        // Squares that the list leaves out aren't shaded.
+        if (listed && (list[entry].squares >> SQUARE_OF_PIXEL(pixel) & 1) == 0) continue;
+        const float share = shareOf(lit.pairs, entry, pixel);
         ++verdicts.pairs;
-        verdicts.lit += is_lit;
-        verdicts.wrong += is_lit == isHidden(*lighting.beams.tree, start, beam);
+        verdicts.lit += share == 1;
+        verdicts.part += share > 0 && share < 1;
+        verdicts.wrong += share != shareSeen(lighting.beams, start, light);
       }
     }
   }
+  verdicts.soft_rays += lit.traced.soft;
+  verdicts.soft_others += lit.pairs.soft_lit + lit.pairs.soft_dark;
 }
 
 /// A camera at the origin, and the sheets as it sees them.
 void addVerdictsOnSheets(const Sheets& sheets, const std::vector<Light>& lights, int lanes,
-                         Verdicts& verdicts) {
+                         Verdicts& verdicts, int soft_samples = 0) {
   Scene seen;
   seen.materials.resize(1);
   seen.meshes = {sheets.seen};
@@ -144,7 +154,7 @@ void addVerdictsOnSheets(const Sheets& sheets, const std::vector<Light>& lights,
   scene.meshes.push_back(sheets.covers);
   if (!sheets.cast) scene.objects.clear();
   scene.objects.push_back({1, glm::dmat4(1), -1});
-  addVerdicts(scene, seen, camera, kSheetsSize, lanes, Culling::kNone, verdicts);
+  addVerdicts(scene, seen, camera, kSheetsSize, lanes, Culling::kNone, verdicts, soft_samples);
 }
 
 // Hardest is a surface as close behind another as the points on it are uncertain: whether that is a shadow
@@ -244,6 +254,51 @@ TEST(BeamShadows, AgreeWithBruteForceAmongLeavesThatRoundingTurns) {
   EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
   EXPECT_GT(verdicts.pairs, 2000u);
   EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+/// Gives lights sizes: of spheres from a hundredth of a metre to more than the whole scene, and of suns from
+/// that in the sky to the largest; one light in eight has none.
+void giveSizes(Random& random, std::vector<Light>& lights, double scale) {
+  for (Light& light : lights) {
+    const double most = random.chance(0.15) ? 100 : 1;
+    if (random.chance(0.12)) continue;
+    light.radius = scale * std::exp(random.between(std::log(0.01), std::log(most)));
+    light.half_angle = glm::radians(std::exp(random.between(std::log(0.25), std::log(45))));
+  }
+}
+
+TEST(SoftExact, AgreeWithBruteForceInASoupOfTriangles) {
+  Random random(24);
+  Verdicts verdicts;
+  int round = 0;
+  for (const double scale : {1.0, 1.0, 1e-3, 1e16}) {
+    Scene scene = soup(random, 300, scale);
+    const std::vector<Light> lights = scene.lights;
+    for (int more = 0; more < 2; ++more)
+      scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
+    giveSizes(random, scene.lights, scale);
+    const int lanes = std::array{16, 8, 4, 1}[round];
+    addVerdicts(scene, scene, scene.cameras[0], {48, 36}, lanes,
+                round % 2 == 0 ? Culling::kTiles : Culling::kNone, verdicts, std::array{5, 16, 1, 33}[round]);
+    EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs, round " << round;
+    ++round;
+  }
+  EXPECT_GT(verdicts.pairs, 20000u);
+  EXPECT_GT(verdicts.part, verdicts.pairs / 20);
+  EXPECT_GT(verdicts.soft_others, verdicts.soft_rays / 10);
+}
+
+TEST(SoftExact, AgreeWithBruteForceOnSheetsThatNearlyTouch) {
+  Random random(25);
+  Verdicts verdicts;
+  for (const int lanes : {8, 16}) {
+    std::vector<Light> lights = lightsOverSheets(random);
+    giveSizes(random, lights, 0.1);
+    addVerdictsOnSheets(coveredSheets(random), lights, lanes, verdicts, 4);
+  }
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.part, verdicts.pairs / 50);
+  EXPECT_GT(verdicts.soft_others, verdicts.soft_rays);
 }
 
 }  // namespace

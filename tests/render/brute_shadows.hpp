@@ -10,6 +10,8 @@
 #include "kernels/exact_sign.h"
 #include "kernels/shared.h"
 #include "render/beam_shadows.hpp"
+#include "shadow/exact_ray.hpp"
+#include "shadow/light_samples.hpp"
 #include "shadow/triangle_tree.hpp"
 
 // The shadow of every triangle on a point, one by one: what beams are judged by.
@@ -43,12 +45,59 @@ inline bool hides(const TriangleTree& tree, std::size_t block, int slot, const g
   return true;
 }
 
-/// Whether any triangle does.
-inline bool isHidden(const TriangleTree& tree, const glm::vec3& start, const BeamLight& light) {
+/// The weights of a triangle's corners where the line through start and light meets its plane, by Cramer's
+/// rule.
+inline glm::dvec3 weightsAt(const TriangleTree& tree, std::size_t block, int slot, const glm::vec3& start,
+                            const BeamLight& light) {
+  const float* rows = tree.blocks.data() + block * (std::size_t(kBlockRows) * kTreeWidth);
+  std::array<glm::dvec3, 3> corner;
+  for (int v = 0; v < 3; ++v)
+    for (int axis = 0; axis < 3; ++axis) corner[v][axis] = rows[(3 * v + axis) * kTreeWidth + slot];
+  const glm::dvec3 from(start), place(light.place.x, light.place.y, light.place.z);
+  const glm::dvec3 way = light.place.w == 0 ? place : place - from;
+  const glm::dmat3 columns(corner[0] - from, corner[1] - from, corner[2] - from);
+  const glm::dvec3 weights = glm::inverse(columns) * way;
+  return weights / (weights.x + weights.y + weights.z);
+}
+
+/// Whether any triangle does. is_hole: of a triangle with holes; without it there are none.
+inline bool isHidden(const TriangleTree& tree, const glm::vec3& start, const BeamLight& light,
+                     const HoleTest& is_hole = {}) {
   for (std::size_t block = 0; block < tree.block_bits.size(); ++block)
-    for (int slot = 0; slot < kTreeWidth; ++slot)
-      if ((tree.block_bits[block] >> slot & 1) != 0 && hides(tree, block, slot, start, light)) return true;
+    for (int slot = 0; slot < kTreeWidth; ++slot) {
+      const uint bits = tree.block_bits[block];
+      if ((bits >> slot & 1) == 0 || !hides(tree, block, slot, start, light)) continue;
+      if (!is_hole || (bits >> (kTreeWidth + slot) & 1) == 0 ||
+          !is_hole(tree.triangles[block * kTreeWidth + std::size_t(slot)],
+                   weightsAt(tree, block, slot, start, light)))
+        return true;
+    }
   return false;
+}
+
+/// The share of a light that reaches the start point: of its samples, if it has a size. light: its index on
+/// the device.
+inline float shareSeen(const BeamScene& beams, const glm::vec3& start, std::uint32_t light,
+                       const HoleTest& is_hole = {}) {
+  const BeamLight& beam = beams.lights[light];
+  if (beam.size == 0) return isHidden(*beams.tree, start, beam, is_hole) ? 0 : 1;
+  std::vector<float4> places(std::size_t(beams.soft_samples));
+  if (!placeSamples(beam, start, patternOf(beams.samples, beams.soft_samples, start, beams.order[light]),
+                    places))
+    return 1;
+  int seen = 0;
+  for (const float4& place : places)
+    seen += !isHidden(*beams.tree, start, BeamLight{place, 0, 0, 0, 0}, is_hole);
+  return float(seen) / float(places.size());
+}
+
+/// What exact shadows say of a pair: the share of the light that reaches the pixel. entry: of the lists;
+/// pixel: in its tile.
+inline float shareOf(const PairShadows& pairs, std::size_t entry, std::size_t pixel) {
+  const std::size_t word = entry * kPairWords + pixel / 32;
+  const uint bit = 1u << pixel % 32;
+  if (pairs.shares.empty() || (pairs.unsure[word] & bit) == 0) return (pairs.lit[word] & bit) != 0 ? 1 : 0;
+  return pairs.shares[pairs.first_share[word] + uint(std::popcount(pairs.unsure[word] & (bit - 1)))];
 }
 
 /// A pixel's start point in the tree's space, by the operations of kernels/beam_points.clh.

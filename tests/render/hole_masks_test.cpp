@@ -6,6 +6,8 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "raster/opacity.hpp"
+#include "render/brute_shadows.hpp"
 #include "render/lighting.hpp"
 
 // Masks say what the host would: the shadows are those that it finds when it decides every pair that a
@@ -133,7 +135,7 @@ Shadows shadowsOn(const GBuffer& seen, const Scene& scene, const View& view, con
     beams.first_hole_triangle = borrowed(device, beams.masks->first_triangle);
   }
   LitPlanes lit = lightGBuffer(device, scene, lighting, features, seen, {}, stats);
-  return {std::move(lit.pair_bits), lit.traced};
+  return {std::move(lit.pairs.lit), lit.traced.pairs};
 }
 
 TEST(HoleMasks, ChangeNoBitOfWhatTheHostDecides) {
@@ -165,6 +167,51 @@ TEST(HoleMasks, ChangeNoBitOfWhatTheHostDecides) {
   }
   EXPECT_GT(all_rays, 50000u);
   EXPECT_LT(rays, all_rays / 4);
+}
+
+// Each ray to a sample looks the texture up where it meets a leaf.
+TEST(SoftExact, AgreesWithBruteForceBehindHoles) {
+  Random random(78);
+  Scene scene = leaves(random);
+  const Scene seen = wall();
+  for (Light& light : scene.lights) light.radius = light.half_angle = random.chance(0.2) ? 0 : 0.2;
+  const glm::ivec2 size{48, 36};
+  const View view = cameraView(scene.cameras[0], size);
+  ShadeSettings settings;
+  settings.culling = Culling::kNone;
+  settings.shadows = ShadowMethod::kSoftExact;
+  settings.soft_samples = 8;
+  const FeatureSet features = neededFeatures(scene, scene.cameras[0], materialTraits(scene), settings);
+  const GBuffer gbuffer = rasterize(seen, allObjects(seen), view, Shading::kPhong, neededPlanes(features));
+  Device& device = deviceWithLanes(16);
+  Lighting lighting;
+  Stats stats;
+  prepareLighting(device, scene, scene.cameras[0], view, features, settings, lighting, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats);
+  const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
+  std::size_t asked = 0;
+  const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {
+    ++asked;
+    return isHoleAt(scene, objects[0], triangle, weights);
+  };
+  const std::size_t count = lighting.beams.lights.size();
+  std::size_t pairs = 0, part = 0, wrong = 0;
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x)
+      for (std::uint32_t light = 0; light < count; ++light) {
+        const std::size_t place = gbuffer.index(x, y), tile = place / kTilePixels;
+        const float share = shareOf(lit.pairs, tile * count + light, place % kTilePixels);
+        const glm::vec3 start = startInTree(lighting.beams, gbuffer, place);
+        const BeamLight& beam = lighting.beams.lights[light];
+        // Behind the wall no light shines on it.
+        if (beam.place.w != 0 && beam.place.z * 1.0f < -5) continue;
+        ++pairs;
+        part += share > 0 && share < 1;
+        wrong += share != shareSeen(lighting.beams, start, light, is_hole);
+      }
+  EXPECT_EQ(wrong, 0u) << "of " << pairs << " pairs";
+  EXPECT_GT(part, pairs / 10);
+  EXPECT_GT(asked, pairs);
 }
 
 }  // namespace

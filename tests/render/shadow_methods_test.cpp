@@ -62,7 +62,7 @@ TEST_P(ShadowMethods, ShadowsOfAThousandLightsFitIntoTheMemoryGiven) {
   Stats stats;
   renderScene(testDevice(), scene, settings, stats);
   EXPECT_EQ(countOf(stats, "shadow_lights"), 1003u);
-  if (GetParam() == ShadowMethod::kExact) {
+  if (GetParam() == ShadowMethod::kExact || GetParam() == ShadowMethod::kSoftExact) {
     EXPECT_EQ(countOf(stats, "shadow_lights_exact"), 1003u);
     EXPECT_EQ(countOf(stats, "shadow_bytes"), 0u) << "it needs no maps";
     return;
@@ -88,7 +88,7 @@ TEST(SoftShadows, OfAPixelDontDependOnItsNeighbours) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShadowMethods,
                          testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
-                                         ShadowMethod::kExact),
+                                         ShadowMethod::kExact, ShadowMethod::kSoftExact),
                          shadowMethodName);
 
 }  // namespace

@@ -172,7 +172,7 @@ TEST_P(TerminatorOf, FlatFacetsHaveTheirOwnShadows) {
 
 INSTANTIATE_TEST_SUITE_P(All, TerminatorOf,
                          testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
-                                         ShadowMethod::kExact),
+                                         ShadowMethod::kExact, ShadowMethod::kSoftExact),
                          shadowMethodName);
 
 TEST(TerminatorByRays, ReferenceIsSmooth) {

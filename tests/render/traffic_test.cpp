@@ -58,7 +58,8 @@ TEST_P(TrafficByMethod, PictureIsTheSameWhereTheDeviceHasMemoryOfItsOwn) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, TrafficByMethod,
                          testing::Values(ShadowMethod::kOff, ShadowMethod::kHard, ShadowMethod::kPcf,
-                                         ShadowMethod::kSoft, ShadowMethod::kExact));
+                                         ShadowMethod::kSoft, ShadowMethod::kExact,
+                                         ShadowMethod::kSoftExact));
 
 TEST(Traffic, NothingIsCopiedWhereMemoryIsShared) {
   Device device;
