@@ -7,10 +7,10 @@
 
 namespace luciole {
 
-/// Compares shadows with rays. For every method and size of maps: what getting ready and telling the shadows cost,
-/// how many pairs of a pixel and a light are wrong, and what Embree takes for the same pairs. Measures the scene
-/// given, with one sample and with several, or makeShadowScenes() and some halls (makeLampHall) if there is none.
-/// Throws MachineError.
+/// Compares shadows with rays. For every method and size of maps: what getting ready and telling the shadows
+/// cost, how many pairs of a pixel and a light are wrong, and what Embree takes for the same pairs. Measures
+/// the scene given, with one sample and with several, or makeShadowScenes() and some halls (makeLampHall) if
+/// there is none. Throws MachineError.
 SpeedTable measureShadowErrors(const SpeedInput& input);
 
 /// How many pairs of a pixel and a light these settings' shadows get wrong, in the picture of `size` pixels

@@ -26,7 +26,7 @@ ShadowErrors errorsOf(const Scene& scene, ShadowMethod method) {
 
 class HardShadows : public testing::TestWithParam<int> {
  protected:
-  const Scene scene_ = makeShadowScenes()[GetParam()];
+  Scene scene_ = makeShadowScenes()[GetParam()];
 };
 
 TEST_P(HardShadows, AwayFromEdgesMapsAreRightForAllButOneInTwoHundred) {
