@@ -172,8 +172,8 @@ TEST(BeamShadows, AgreeWithBruteForceOnSheetsThatNearlyTouch) {
   EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
 }
 
-/// Triangles of very different sizes and shapes before a camera that looks at them from z = 8, and lights of
-/// each kind: among them, on a corner, in a plane, behind the camera, and far away.
+/// Triangles of very different sizes and shapes, some without area, before a camera that looks at them from z
+/// = 8, and lights of each kind: among them, on a corner, in a plane, behind the camera, and far away.
 Scene soup(Random& random, int count, double scale) {
   Scene scene;
   scene.materials.resize(1);
@@ -182,10 +182,14 @@ Scene soup(Random& random, int count, double scale) {
     const glm::dvec3 middle(random.between(-4, 4), random.between(-3, 3), random.between(-4, 4));
     const double size = std::exp(random.between(std::log(1e-3), std::log(i % 10 == 0 ? 6 : 1)));
     const bool thin = random.chance(0.2);
-    const glm::dvec3 u = size * random.direction(), v = (thin ? 1e-4 : 1.0) * size * random.direction();
+    const glm::dvec3 u = size * random.direction();
+    glm::dvec3 v = (thin ? 1e-4 : 1.0) * size * random.direction();
+    const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
+    // Some are lines, or points.
+    if (i % 20 == 1) v = double(i % 3 - 1) * u;
     for (const glm::dvec3& corner : {middle, middle + u, middle + v}) {
       mesh.positions.push_back(glm::vec3(scale * corner));
-      mesh.normals.push_back(glm::vec3(glm::normalize(glm::cross(u, v))));
+      mesh.normals.push_back(glm::vec3(normal));
     }
     const auto first = std::uint32_t(3 * i);
     mesh.triangles.emplace_back(first, first + 1, first + 2);
@@ -209,6 +213,8 @@ Scene soup(Random& random, int count, double scale) {
   add(LightKind::kPoint,
       (glm::dvec3(mesh.positions[0]) + glm::dvec3(mesh.positions[1]) + glm::dvec3(mesh.positions[2])) / 3.0);
   add(LightKind::kPoint, scale * glm::dvec3(0, 1, 9));
+  add(LightKind::kPoint, scale * glm::dvec3(1, 0, 4));
+  scene.lights.back().range = 4 * scale;
   add(LightKind::kPoint, scale * glm::dvec3(3e5, 1e6, 2e5));
   add(LightKind::kDirectional, scale * glm::dvec3(1, 2, 3));
   add(LightKind::kDirectional, scale * glm::dvec3(-1, 0, 0));
@@ -223,16 +229,34 @@ Scene soup(Random& random, int count, double scale) {
 TEST(BeamShadows, AgreeWithBruteForceInASoupOfTriangles) {
   Random random(22);
   Verdicts verdicts;
-  for (const double scale : {1.0, 1e-3, 1e16}) {
+  for (const double scale : {1.0, 1e-3, 2e17}) {
     const Scene scene = soup(random, 700, scale);
     const int lanes = scale == 1 ? 16 : 8;
-    addVerdicts(scene, scene, scene.cameras[0], {72, 54}, lanes,
+    addVerdicts(scene, scene, scene.cameras[0], {80, 60}, lanes,
                 scale == 1 ? Culling::kTiles : Culling::kNone, verdicts);
     EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs, scale " << scale;
   }
   EXPECT_GT(verdicts.pairs, 20000u);
   EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
   EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+/// Adds lights near the planes of some leaves, from as near as a leaf is wide on, so that rays run along
+/// leaves.
+void lightAlongLeaves(Random& random, const glm::dvec3& away, Scene& scene) {
+  const Mesh& mesh = scene.meshes[0];
+  for (int i = 0; i < 24; ++i) {
+    const glm::uvec3 leaf = mesh.triangles[random.below(mesh.triangles.size())];
+    const glm::dvec3 a(mesh.positions[leaf.x]), ab = glm::dvec3(mesh.positions[leaf.y]) - a,
+                                                ac = glm::dvec3(mesh.positions[leaf.z]) - a;
+    const glm::dvec3 along = glm::normalize(random.between(-1, 1) * ab + random.between(-1, 1) * ac);
+    Light light;
+    light.kind = i % 4 == 0 ? LightKind::kDirectional : LightKind::kPoint;
+    light.shadow = true;
+    light.direction = along;
+    light.position = away + a + 0.3 * (ab + ac) + std::exp(random.between(std::log(1e-3), 0)) * along;
+    scene.lights.push_back(light);
+  }
 }
 
 // Corners are rounded by so much that triangles turn, and rays run along them.
@@ -243,6 +267,7 @@ TEST(BeamShadows, AgreeWithBruteForceAmongLeavesThatRoundingTurns) {
   const glm::dvec3 away(50, 60, 70);
   scene.objects[0].object_to_world[3] = glm::dvec4(away, 1);
   for (Light& light : scene.lights) light.position = away + 1e-3 * light.position;
+  lightAlongLeaves(random, away, scene);
   // Far away from them, and with so narrow a view that they fill the picture.
   Camera camera = scene.cameras[0];
   camera.camera_to_world = cameraToWorld(glm::dvec3(0), away, {0, 1, 0});
@@ -253,6 +278,67 @@ TEST(BeamShadows, AgreeWithBruteForceAmongLeavesThatRoundingTurns) {
   addVerdicts(scene, scene, camera, {72, 54}, 16, Culling::kNone, verdicts);
   EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
   EXPECT_GT(verdicts.pairs, 2000u);
+  EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+// Rays go through edges and corners exactly, and are stopped by the triangles on both sides.
+TEST(BeamShadows, AgreeWithBruteForceWhereRaysGoThroughEdges) {
+  constexpr int kSize = 64;
+  Random random(25);
+  Sheets sheets;
+  addSheet({-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, sheets.seen);
+  // The middle of a pixel, as far from the axis as the light sees it at half of the floor's depth.
+  const auto middle = [&](double share) { return share * ((random.below(kSize) + 0.5) * 2 / kSize - 1); };
+  for (int i = 0; i < 60; ++i) {
+    const double share = i % 2 == 0 ? 1 : 0.5, side = share * 2 / kSize * (1 + random.below(12));
+    addSheet({middle(share), middle(share), -2}, {side, 0, 0}, {0, side, 0}, sheets.covers);
+  }
+  Scene seen;
+  seen.materials.resize(1);
+  seen.meshes = {sheets.seen};
+  seen.objects = {{0, glm::dmat4(1), -1}};
+  for (const LightKind kind : {LightKind::kDirectional, LightKind::kPoint}) {
+    Light light;
+    light.kind = kind;
+    light.shadow = true;
+    light.direction = {0, 0, -1};
+    seen.lights.push_back(light);
+  }
+  Camera camera;
+  camera.orthographic = true;
+  seen.cameras = {camera};
+  Scene scene = seen;
+  scene.meshes.push_back(sheets.covers);
+  scene.objects.push_back({1, glm::dmat4(1), -1});
+  Verdicts verdicts;
+  for (const int lanes : {1, 16})
+    addVerdicts(scene, seen, camera, {kSize, kSize}, lanes, Culling::kNone, verdicts);
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_EQ(verdicts.pairs, 2u * 2 * kSize * kSize);
+  EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
+  EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+// The plane of a triangle that is much larger than the distance of the points is less certain than they are.
+TEST(BeamShadows, AgreeWithBruteForceCloseUnderTrianglesMuchLargerThanTheScene) {
+  Random random(24);
+  Verdicts verdicts;
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(random.between(-1, 1), random.between(-1, 1), 2));
+    const glm::dvec3 u = glm::normalize(glm::cross(normal, random.direction())), v = glm::cross(normal, u);
+    const glm::dvec3 middle(0, 0, -4);
+    Sheets sheets;
+    addSheet(middle - 10.0 * (u + v), 20.0 * u, 20.0 * v, sheets.seen);
+    const double side = std::exp(random.between(std::log(1e2), std::log(1e4)));
+    const double gap = random.between(0.05, 1.5) * double(POINT_ERROR) * side;
+    // A little tilted: some points are nearer to it than it is certain, some aren't.
+    const glm::dvec3 tilted = glm::normalize(v + 0.2 * gap * normal);
+    addSheet(middle - side * (0.4 * u + 0.3 * tilted) + gap * normal, side * u, side * tilted, sheets.covers);
+    sheets.cast = i % 2 == 0;
+    addVerdictsOnSheets(sheets, lightsOverSheets(random), i % 4 < 2 ? 16 : 4, verdicts);
+  }
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
   EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
 }
 
