@@ -299,7 +299,7 @@ std::size_t countUnblocked(const TriangleTree& tree, const glm::vec3& start, std
   while (size > 0) {
     const int reference = stack[--size];
     if (reference < 0) {
-      const auto number = std::size_t(~reference);
+      const std::size_t number = ~unsigned(reference);
       if (asked == number || !blockAll(tree, number, is_hole, lights)) continue;
       likely = number;
       if (countLeft(lights) == 0) return 0;
