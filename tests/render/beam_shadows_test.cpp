@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
@@ -80,12 +82,15 @@ struct Verdicts {
   std::uint64_t part = 0;         ///< where a part of a light of a size is seen
   std::uint64_t soft_rays = 0;    ///< of which rays decide, because the light has a size
   std::uint64_t soft_others = 0;  ///< and those with such lights that rays needn't decide
+  std::uint64_t before = 0;       ///< lit as the point is before a triangle that would hide it anywhere
   std::uint64_t wrong = 0;        ///< of which brute force says something else
 };
 
 /// Adds up the verdicts on what a camera sees: the G-buffer shows `seen`, and what casts shadows is `scene`.
+/// move: moves the points; then Verdicts::before is counted.
 void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, glm::ivec2 size, int lanes,
-                 Culling culling, Verdicts& verdicts, int soft_samples = 0) {
+                 Culling culling, Verdicts& verdicts, int soft_samples = 0,
+                 const std::function<void(GBuffer&)>& move = {}) {
   const View view = cameraView(camera, size);
   ShadeSettings settings;
   settings.culling = culling;
@@ -93,6 +98,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
   if (soft_samples > 0) settings.soft_samples = soft_samples;
   const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
   GBuffer gbuffer = rasterize(seen, allObjects(seen), view, Shading::kPhong, neededPlanes(features));
+  if (move) move(gbuffer);
   Device& device = deviceWithLanes(lanes);
   Lighting lighting;
   Stats stats;
@@ -131,6 +137,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
         ++verdicts.pairs;
         verdicts.lit += share == 1;
         verdicts.part += share > 0 && share < 1;
+        if (move && share == 1) verdicts.before += isBeforeOne(*lighting.beams.tree, start, beam);
         verdicts.wrong += share != shareSeen(lighting.beams, start, light);
       }
     }
@@ -279,6 +286,66 @@ TEST(BeamShadows, AgreeWithBruteForceAmongLeavesThatRoundingTurns) {
   EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
   EXPECT_GT(verdicts.pairs, 2000u);
   EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
+// The corners of tiny triangles far from the origin are rounded by so much that a point beyond a triangle's
+// plane may be before its corners. Each point lies on the ray from a light to a triangle that it is almost in
+// the plane of.
+TEST(BeamShadows, AgreeWithBruteForceBeforeTrianglesThatRoundingTurned) {
+  Random random(26);
+  const glm::dvec3 away(40, 50, -70);
+  Verdicts verdicts;
+  for (const int lanes : {1, 4, 8, 16, 16, 16, 16, 16}) {
+    Sheets sheets;
+    addSheet({-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, sheets.seen);
+    Scene seen;
+    seen.materials.resize(1);
+    seen.meshes = {sheets.seen};
+    seen.objects = {{0, glm::dmat4(1), -1}};
+    for (int i = 0; i < 8; ++i) {
+      Light light;
+      light.kind = LightKind::kPoint;
+      light.shadow = true;
+      light.position = away + 0.05 * random.direction();
+      seen.lights.push_back(light);
+    }
+    std::vector<glm::vec3> points;
+    for (int i = 0; i < 2 * kTilePixels; ++i) {
+      const glm::dvec3 light = seen.lights[std::size_t(random.below(8))].position - away;
+      const double distance = std::exp(random.between(std::log(1e-2), std::log(5e-2)));
+      const double side = std::exp(random.between(std::log(5e-6), std::log(2e-5)));
+      const double angle = std::exp(random.between(std::log(0.03), std::log(0.3)));
+      const glm::dvec3 way = random.direction(), across = glm::cross(way, random.direction());
+      const glm::dvec3 u = side * glm::normalize(way + angle * random.direction());
+      const glm::dvec3 corner = light + distance * way, v = side * glm::normalize(across);
+      addSheet(corner, u, v, sheets.covers);
+      // Of one of its triangles, as it is rounded.
+      const double a = random.between(0, 1), b = random.between(0, 1 - a);
+      const glm::dvec3 p(glm::vec3(away + corner)), q(glm::vec3(away + corner + u)),
+          r(glm::vec3(away + corner + u + v));
+      const glm::dvec3 met = p + a * (q - p) + b * (r - p), from = away + light;
+      points.push_back(glm::vec3(from + random.between(0.1, 0.9) * (met - from)));
+    }
+    const auto move = [&](GBuffer& gbuffer) {
+      const std::size_t stride = gbuffer.pixels();
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::vec3 normal(random.direction());
+        for (int c = 0; c < 3; ++c) {
+          gbuffer.position[i + std::size_t(c) * stride] = points[i][c];
+          gbuffer.normal[i + std::size_t(c) * stride] = normal[c];
+        }
+      }
+    };
+    Camera camera;
+    camera.camera_to_world = glm::dmat4(1);
+    seen.cameras = {camera};
+    Scene scene = seen;
+    scene.meshes.push_back(sheets.covers);
+    scene.objects.push_back({1, glm::translate(glm::dmat4(1), away), -1});
+    addVerdicts(scene, seen, camera, {2 * kTileSize, kTileSize}, lanes, Culling::kNone, verdicts, 0, move);
+  }
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.before, 10u);
 }
 
 // Rays go through edges and corners exactly, and are stopped by the triangles on both sides.

@@ -18,8 +18,9 @@
 namespace luciole::test {
 
 /// Whether a triangle of the tree hides the start point from the light. Without holes.
+/// anywhere: though the point is before the triangle's corners, too (blockers.clh).
 inline bool hides(const TriangleTree& tree, std::size_t block, int slot, const glm::vec3& start,
-                  const BeamLight& light) {
+                  const BeamLight& light, bool anywhere = false) {
   const float* rows = tree.blocks.data() + block * (std::size_t(kBlockRows) * kTreeWidth);
   std::array<float4, 3> corner;
   for (int v = 0; v < 3; ++v)
@@ -36,7 +37,7 @@ inline bool hides(const TriangleTree& tree, std::size_t block, int slot, const g
   const float own = rows[int(kRoundingRow) * kTreeWidth + slot];
   if (!(float(side) * height > std::max(tolerance, own))) return false;
   const float4 s{start.x, start.y, start.z, 0};
-  if (orientation(corner[0], corner[1], corner[2], s) == side) return false;
+  if (!anywhere && orientation(corner[0], corner[1], corner[2], s) == side) return false;
   for (int v = 0; v < 3; ++v) {
     const float4 &x = corner[v], &y = corner[(v + 1) % 3];
     if ((parallel ? orientation_along(x, y, s, light.place) : orientation(x, y, s, light.place)) == -side)
@@ -58,6 +59,16 @@ inline glm::dvec3 weightsAt(const TriangleTree& tree, std::size_t block, int slo
   const glm::dmat3 columns(corner[0] - from, corner[1] - from, corner[2] - from);
   const glm::dvec3 weights = glm::inverse(columns) * way;
   return weights / (weights.x + weights.y + weights.z);
+}
+
+/// Whether the start point lies before a triangle that would hide it anywhere.
+inline bool isBeforeOne(const TriangleTree& tree, const glm::vec3& start, const BeamLight& light) {
+  for (std::size_t block = 0; block < tree.block_bits.size(); ++block)
+    for (int slot = 0; slot < kTreeWidth; ++slot)
+      if ((tree.block_bits[block] >> slot & 1) != 0 && !hides(tree, block, slot, start, light) &&
+          hides(tree, block, slot, start, light, true))
+        return true;
+  return false;
 }
 
 /// Whether any triangle does. is_hole: of a triangle with holes; without it there are none.
