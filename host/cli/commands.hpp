@@ -35,6 +35,7 @@ void tellWarnings(const std::vector<std::string>& warnings);
 void addRenderCommand(CLI::App& app, CommandContext& context);
 void addGBufferCommand(CLI::App& app, CommandContext& context);
 void addShadeCommand(CLI::App& app, CommandContext& context);
+void addRelightCommand(CLI::App& app, CommandContext& context);
 void addReferenceCommand(CLI::App& app, CommandContext& context);
 void addCompareCommand(CLI::App& app, CommandContext& context);
 void addBenchCommand(CLI::App& app, CommandContext& context);

@@ -115,6 +115,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addRenderCommand(app, context);
   addGBufferCommand(app, context);
   addShadeCommand(app, context);
+  addRelightCommand(app, context);
   addReferenceCommand(app, context);
   addCompareCommand(app, context);
   addBenchCommand(app, context);

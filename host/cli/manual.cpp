@@ -62,6 +62,8 @@ const Terms kManualExamples{
     {"A G-buffer, lit later:",
      "luciole gbuffer scene.json -o surfaces.exr\n"
      "luciole shade surfaces.exr --scene scene.json --exposure 1 -o brighter.png"},
+    {"Another program's picture, lit again by its layers:",
+     "luciole relight surfaces.exr --lights scene.json -o again.png"},
     {"A thousand lights in what the camera sees:",
      "luciole generate lights scene.json --count 1000 -o many.json\n"
      "luciole render many.json -o many.png"}};

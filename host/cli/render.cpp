@@ -19,7 +19,6 @@
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"
-#include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
 #include "render/measure_exposure.hpp"
@@ -356,47 +355,6 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       reportStats(picture, stats, frame);
       stats = laterStats(context.command_line);
     }
-  });
-}
-
-void addShadeCommand(CLI::App& app, CommandContext& context) {
-  CLI::App* command = app.add_subcommand("shade", "light a G-buffer, from here or from another renderer");
-  auto options = std::make_shared<PictureOptions>();
-  auto gbuffer_path = std::make_shared<std::string>();
-  auto scene_path = std::make_shared<std::string>();
-  command->add_option("GBUFFER", *gbuffer_path, "an EXR with channels P and N, or Z and N and a camera")
-      ->required();
-  command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
-      ->required();
-  addPictureOptions(*command, *options,
-                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
-  command->callback([&context, options, gbuffer_path, scene_path] {
-    const int frame = useFrame(*options, "shade");
-    checkOutput(*options);
-    Stats stats;
-    stats.command = context.command_line;
-    Device& device = context.device;
-    startDevice(options->device, device);
-    const Scene scene =
-        timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
-    const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path); });
-    const RenderSettings settings = renderSettings(*options, scene);
-    logEvent("frame_begun", {{"frame", frame}});
-    Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
-    logDevice(device.description);
-    if (measuresExposure(*options, *scene_path)) {
-      timed(stats, Stage::kMeasureExposure, [&] {
-        stats.measured_exposure = measureExposure(image, gbuffer);
-        expose(image, *stats.measured_exposure);
-      });
-    }
-    const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
-      return writeImage(image, options->output, pictureMetadata(stats, &device),
-                        writeOptions(*options, gbuffer));
-    });
-    reportHalves(*options, limited, stats);
-    reportLightError(*options, stats);
-    reportStats(*options, stats, frame);
   });
 }
 

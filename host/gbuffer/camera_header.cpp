@@ -82,20 +82,10 @@ std::vector<double> parseNumbers(std::istringstream text, std::size_t count, con
   return numbers;
 }
 
-/// A float matrix of a rotation is orthogonal to within a few 6e-8, and text of other tools to about six
-/// digits. A tolerance of 1e-4 accepts both. Scales and shears are refused: they would change distances, and
-/// so the light.
+/// Scales and shears are refused: they would change distances, and so the light.
 void checkRigid(const glm::dmat4& m, const std::string& path, const char* attribute) {
-  const glm::dmat3 rotation(m);
-  const glm::dmat3 product = glm::transpose(rotation) * rotation;
-  bool rigid = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) rigid = rigid && std::abs(product[i][j] - (i == j ? 1.0 : 0.0)) <= 1e-4;
-    rigid = rigid && std::isfinite(m[3][i]);
-  }
-  if (!rigid) {
-    throw InputError(fmt::format("{}: attribute {}: expected a rotation and a translation", path, attribute));
-  }
+  if (isRigid(m)) return;
+  throw InputError(fmt::format("{}: attribute {}: expected a rotation and a translation", path, attribute));
 }
 
 Camera parseOwn(const ExrAttributes& attributes, const std::string& path) {
@@ -125,18 +115,24 @@ Camera parseOwn(const ExrAttributes& attributes, const std::string& path) {
   return camera;
 }
 
+bool isParallel(const glm::dmat4& to_ndc) { return std::abs(to_ndc[2][3]) <= 1e-6 * std::abs(to_ndc[3][3]); }
+
+/// Whether the view axis meets the picture's middle. The product of a float matrix and a float matrix's
+/// inverse has an error of a few 1e-7 for a camera near the origin, which grows with its distance. A shift
+/// below a thousandth of the picture counts as such an error.
+bool isCentred(const glm::dmat4& to_ndc) {
+  const glm::dvec4 middle = to_ndc[isParallel(to_ndc) ? 3 : 2] / to_ndc[isParallel(to_ndc) ? 3 : 2].w;
+  return std::abs(middle.x - 0.5) < 1e-3 && std::abs(middle.y - 0.5) < 1e-3;
+}
+
 /// Reads the opening of a centred projection into the camera. `to_ndc`: camera space with +z ahead to NDC.
 void readProjection(const glm::dmat4& to_ndc, CameraHeader& header) {
-  const bool parallel = std::abs(to_ndc[2][3]) <= 1e-6 * std::abs(to_ndc[3][3]);
-  const int homogeneous = parallel ? 3 : 2;
-  const double w = to_ndc[homogeneous][3];
-  // The product of a float matrix and a float matrix's inverse has an error of a few 1e-7 for a camera near
-  // the origin, which grows with its distance. A shift below a thousandth of the picture counts as such an
-  // error.
-  const bool centred =
-      std::abs(to_ndc[homogeneous][0] / w - 0.5) < 1e-3 && std::abs(to_ndc[homogeneous][1] / w - 0.5) < 1e-3;
+  const bool parallel = isParallel(to_ndc);
+  const double w = to_ndc[parallel ? 3 : 2][3];
   const glm::dvec2 half{0.5 * w / to_ndc[0][0], -0.5 * w / to_ndc[1][1]};
-  if (!centred || !(half.x > 0) || !(half.y > 0) || !std::isfinite(half.x) || !std::isfinite(half.y)) return;
+  if (!isCentred(to_ndc) || !(half.x > 0) || !(half.y > 0) || !std::isfinite(half.x) ||
+      !std::isfinite(half.y))
+    return;
   header.half_extent = half;
   header.camera.orthographic = parallel;
   if (parallel) {
@@ -144,6 +140,15 @@ void readProjection(const glm::dmat4& to_ndc, CameraHeader& header) {
   } else {
     header.camera.fov_y = 2 * std::atan(half.y);
   }
+}
+
+/// Whether the matrices are for column vectors, as pbrt writes them. A rotation alone doesn't tell; then the
+/// projection does.
+bool isTransposed(const glm::dmat4& world_to_camera, const std::optional<glm::dmat4>& world_to_ndc) {
+  if (!isRigid(glm::transpose(world_to_camera))) return false;
+  if (!isRigid(world_to_camera)) return true;
+  return world_to_ndc && !isCentred(*world_to_ndc * glm::inverse(world_to_camera)) &&
+         isCentred(glm::transpose(*world_to_ndc) * world_to_camera);
 }
 
 /// Whether camera space has +z ahead (see readCamera).
@@ -160,6 +165,19 @@ bool looksAlongPlusZ(const glm::dmat4& world_to_camera, const std::optional<glm:
 }
 
 }  // namespace
+
+bool isRigid(const glm::dmat4& m) {
+  // A float matrix of a rotation is orthogonal to within a few 6e-8, and text of other tools to about six
+  // digits.
+  const glm::dmat3 rotation(m);
+  const glm::dmat3 product = glm::transpose(rotation) * rotation;
+  bool rigid = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rigid = rigid && std::abs(product[i][j] - (i == j ? 1.0 : 0.0)) <= 1e-4;
+    rigid = rigid && std::isfinite(m[3][i]);
+  }
+  return rigid;
+}
 
 ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size) {
   const glm::dmat4 world_to_camera = mirrorZ() * glm::inverse(camera.camera_to_world);
@@ -190,10 +208,14 @@ std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ive
   }
   std::optional<glm::dmat4> world_to_camera = findMatrix(attributes, kWorldToCamera);
   if (!world_to_camera) return {};
+  auto world_to_ndc = findMatrix(attributes, kWorldToNdc);
+  if (isTransposed(*world_to_camera, world_to_ndc)) {
+    world_to_camera = glm::transpose(*world_to_camera);
+    if (world_to_ndc) world_to_ndc = glm::transpose(*world_to_ndc);
+  }
   checkRigid(*world_to_camera, path, "worldToCamera");
   std::optional<glm::dmat4> to_ndc;
-  if (const auto world_to_ndc = findMatrix(attributes, kWorldToNdc))
-    to_ndc = *world_to_ndc * glm::inverse(*world_to_camera);
+  if (world_to_ndc) to_ndc = *world_to_ndc * glm::inverse(*world_to_camera);
   if (!looksAlongPlusZ(*world_to_camera, to_ndc, visible_points)) {
     world_to_camera = mirrorZ() * *world_to_camera;
     if (to_ndc) to_ndc = *to_ndc * mirrorZ();

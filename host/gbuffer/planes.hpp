@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "gbuffer/gbuffer.hpp"
 
 namespace luciole {
@@ -11,6 +13,10 @@ void allocatePlanes(PlaneSet planes, GBuffer& gbuffer);
 
 /// Frees all groups, so that the G-buffer tells sizes and places only.
 void freePlanes(GBuffer& gbuffer);
+
+inline bool isFinite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// Writes the three components of a pixel. `place` is GBuffer::index, `stride` GBuffer::pixels.
 inline void storePixel(const glm::vec3& value, std::size_t place, std::size_t stride, Plane& group) {

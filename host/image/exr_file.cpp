@@ -5,7 +5,6 @@
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
-#include <ImfThreading.h>
 #include <fmt/format.h>
 #include <half.h>
 #include <tbb/parallel_for.h>
@@ -22,7 +21,7 @@
 
 #include "base/error.hpp"
 #include "base/output_file.hpp"
-#include "base/threads.hpp"
+#include "image/exr_threads.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
 
@@ -125,7 +124,7 @@ class ExrFile : public RowFile {
       halves_.push_back(options.half && isColorChannel(name) ? half_channels_++ : kNoHalf);
     at_ = {options.crop_origin.x, options.crop_origin.y};
     encode([&] {
-      if (Imf::globalThreadCount() == 0 && threadCount() > 1) Imf::setGlobalThreadCount(int(threadCount()));
+      useExrThreads();
       output_.emplace(stream_, makeHeader(width, height, channels, metadata, options));
     });
   }

@@ -70,7 +70,8 @@ PicturePart partOf(const OIIO::ImageSpec& spec) {
                    .channels = spec.channelnames,
                    .types = {},
                    .compression = spec.get_string_attribute("compression"),
-                   .attributes = attributesOf(spec)};
+                   .attributes = attributesOf(spec),
+                   .is_deep = spec.deep};
   for (int channel = 0; channel < spec.nchannels; ++channel)
     part.types.emplace_back(spec.channelformat(channel).c_str());
   return part;
@@ -104,23 +105,6 @@ Image readImage(const std::string& path) {
     image.pixels[i] = is_color && !is_linear ? linear_of_code[codes[i]] : float(codes[i]) / 65535.0f;
   }
   return image;
-}
-
-LayerFile readLayers(const std::string& path) {
-  const auto input = openPicture(path, path);
-  const OIIO::ImageSpec spec = input->spec();
-  const std::size_t values = std::size_t(spec.width) * spec.height * spec.nchannels;
-  requireMemory(double(values) * sizeof(float), path);
-  LayerFile file{.path = path,
-                 .size = {spec.width, spec.height},
-                 .picture_size = {spec.full_width, spec.full_height},
-                 .crop_origin = cropOrigin(spec),
-                 .channels = spec.channelnames,
-                 .values = {},
-                 .attributes = attributesOf(spec)};
-  file.values = std::make_unique_for_overwrite<float[]>(values);
-  readValues(*input, path, OIIO::TypeDesc::FLOAT, file.values.get());
-  return file;
 }
 
 std::vector<PicturePart> readParts(const std::string& path) {

@@ -59,8 +59,6 @@ std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int
   return functions().open_picture_file(path, width, height, channels, format, metadata, options);
 }
 
-LayerFile readLayers(const std::string& path) { return functions().read_layers(path); }
-
 std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
 
 Texture readTexture(const std::string& path) {

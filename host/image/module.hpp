@@ -23,7 +23,6 @@ struct ImageFunctions {
   decltype(&readImage) read_image;
   decltype(&readAttribute) read_attribute;
   decltype(&openPictureFile) open_picture_file;
-  decltype(&readLayers) read_layers;
   decltype(&readParts) read_parts;
   Texture (*read_texture)(const std::string& path);
   Texture (*read_texture_in_memory)(std::span<const std::byte> file, const std::string& name);

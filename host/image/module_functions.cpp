@@ -6,7 +6,6 @@ const ImageFunctions luciole_image_functions{
     .read_image = readImage,
     .read_attribute = readAttribute,
     .open_picture_file = openPictureFile,
-    .read_layers = readLayers,
     .read_parts = readParts,
     .read_texture = readTexture,
     .read_texture_in_memory = readTexture,

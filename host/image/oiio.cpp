@@ -4,13 +4,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <exception>
-#include <filesystem>
 #include <new>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,18 +18,10 @@
 #include "base/output_file.hpp"
 #include "base/picture_size.hpp"
 #include "image/exr_header.hpp"
+#include "image/picture_claims.hpp"
 #include "image/png_input.hpp"
 
 namespace luciole {
-namespace {
-
-constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 31;
-// Deflate, the best compressor of these formats on a constant picture, reaches 1 : 1032; JPEG's progressive
-// mode can do better on empty pictures. A header that claims more than this is damaged.
-constexpr std::uint64_t kMaxCompression = 65536;
-
-}  // namespace
-
 MemoryFile::MemoryFile() : descriptor_(memfd_create("luciole", MFD_CLOEXEC)) {
   if (descriptor_ < 0) throw MachineError(fmt::format("can't make a file in memory: {}", systemReason()));
 }
@@ -87,13 +78,7 @@ auto decoded(const std::string& name, Function&& function) {
 }  // namespace
 
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std::string& name) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": not a file, expected a picture");
-  if (access(path.c_str(), R_OK) != 0)
-    throw InputError(fmt::format("{}: can't read: {}", name, systemReason()));
-  const std::uint64_t file_size = std::filesystem::file_size(path, error);
+  const std::uint64_t file_length = checkPictureFile(path, name);
   checkExrHeader(path, name, kLargestSide);
 
   OIIO::ImageSpec config;
@@ -105,26 +90,13 @@ std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& path, const std
         fmt::format("{}: can't read as a picture: {}", name, messageAbout(OIIO::geterror(), path, name)));
 
   const OIIO::ImageSpec& spec = input->spec();
-  const auto sides_ok = [](int width, int height) {
-    return width >= 1 && width <= kLargestSide && height >= 1 && height <= kLargestSide;
-  };
-  if (!sides_ok(spec.width, spec.height)) {
-    throw InputError(fmt::format("{}: {} x {} pixels, expected 1 to {} a side", name, spec.width, spec.height,
-                                 kLargestSide));
-  }
-  if (!sides_ok(spec.full_width, spec.full_height)) {
-    throw InputError(fmt::format("{}: part of a picture of {} x {} pixels, expected 1 to {} a side", name,
-                                 spec.full_width, spec.full_height, kLargestSide));
-  }
+  checkClaims({.size = {spec.width, spec.height},
+               .whole = {spec.full_width, spec.full_height},
+               .channels = std::uint64_t(std::max(spec.nchannels, 0)),
+               .bytes = spec.image_bytes(true),
+               .file_length = file_length},
+              name);
   if (spec.deep || spec.depth > 1) throw InputError(name + ": a deep or volume picture, expected a flat one");
-  if (spec.nchannels < 1 || spec.image_pixels() * std::uint64_t(spec.nchannels) > kMaxValues) {
-    throw InputError(fmt::format("{}: {} x {} pixels of {} channels, expected at most {} values", name,
-                                 spec.width, spec.height, spec.nchannels, kMaxValues));
-  }
-  if (spec.image_bytes(true) / kMaxCompression > file_size) {
-    throw InputError(fmt::format("{}: claims {} x {} pixels in {} bytes, the header is damaged", name,
-                                 spec.width, spec.height, file_size));
-  }
   return input;
 }
 

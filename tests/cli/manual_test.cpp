@@ -188,7 +188,7 @@ TEST_F(Completion, BashOffersWhatTheHelpShows) {
     }
   }
   ask("''", all.at("").commands);
-  ask("re", {"render", "reference"});
+  ask("re", {"render", "reference", "relight"});
   ask("render --shad", {"--shading", "--shadows", "--shadow-memory", "--shadow-size"});
   ask("render scene.json --shading fl", {"flat"});
   ask("render --shading = ph", {"phong"});  // as bash divides --shading=ph
@@ -208,6 +208,7 @@ TEST_F(Completion, BashOffersWhatTheHelpShows) {
   ask("render 'first\\ o'", {"first one.GLB"});
   ask("render first.json -o first.p", {"first.png"});
   ask("shade g.exr --scene first.", {"first.json"});
+  ask("relight in.exr --lights first.", {"first.json"});
   ask("scale merge first.p", {"first.png"});
   ask("scale merge a b first.p", {"first.png"});
   const std::vector<std::string> answers = linesOf(runScript("bash --norc", script));

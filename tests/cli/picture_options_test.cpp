@@ -278,8 +278,8 @@ TEST_F(PictureFiles, CropsLandInTheirPlaceAndAreComparedThereOnly) {
         "render scene.json --frames 1-1"}) {
     succeed("rm -f *.exr && luciole " + line + " --quiet --crop 8,4,40,30 -o crop." +
             (line.find("frames") == std::string::npos ? "" : "#.") + "exr");
-    const LayerFile file =
-        readLayers(folder / (line.find("frames") == std::string::npos ? "crop.exr" : "crop.1.exr"));
+    const PicturePart file =
+        readParts(folder / (line.find("frames") == std::string::npos ? "crop.exr" : "crop.1.exr")).front();
     EXPECT_EQ(file.picture_size, glm::ivec2(96, 54)) << line;
     EXPECT_EQ(file.crop_origin, glm::ivec2(8, 4)) << line;
     EXPECT_EQ(file.size, glm::ivec2(40, 30)) << line;

@@ -42,6 +42,7 @@ constexpr NotRun kNotRun[] = {
     {"tests/bare_root.sh", "takes root, a network and minutes"},
     {"tests/mutate_kernels.py", "takes hours"},
     {"tests/tidy.sh", "takes clang-tidy 14 and minutes"},
+    {"tests/cli/other_programs_test.sh", "takes PyPI, a gigabyte and minutes; ctest runs it where it can"},
     {"sbatch ", "takes Slurm: tests/cli/slurm_test.sh runs such an array"},
     {"scontrol ", "takes Slurm: tests/cli/slurm_test.sh says it"},
     {"oiiotool ", "reads what an array of 50 tasks made"},

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "gbuffer/gbuffer_file.hpp"
+#include "gbuffer/gbuffer_input.hpp"
 #include "load/load_scene.hpp"
 #include "scale/scale_files.hpp"
 #include "scale/scale_log.hpp"
@@ -54,13 +54,27 @@ inline void readStrangersLog(const std::string& path) {
   ScaleLog(run, summary.description);
 }
 
+/// A file of surfaces as shade reads it, and as relight does that is told all it can be told.
+inline void readStrangersSurfaces(const std::string& path) {
+  const GBufferRequest told{.layers = {{Role::kShininess, "20"}},
+                            .camera_to_world = glm::dmat4(1.0),
+                            .camera = Camera{},
+                            .albedo = true,
+                            .color = true};
+  try {
+    readGBuffer(path, told);
+  } catch (const InputError&) {  // such as a file without a picture
+  }
+  readGBuffer(path, GBufferRequest{});
+}
+
 /// Reads a stranger's file as its extension says: .exr is a G-buffer, .mtl materials, .jsonl the log of an
 /// experiment, all else a scene. A file that is refused in one line, or doesn't fit the machine, has been
 /// dealt with; anything else that goes wrong gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {
-      readGBuffer(path);
+      readStrangersSurfaces(path);
     } else if (path.ends_with(".mtl")) {
       readStrangersMaterials(path);
     } else if (path.ends_with(".jsonl")) {

@@ -122,7 +122,8 @@ TEST(PackedNormal, PixelsHaveTheirTrianglesNormalOnTheViewersSide) {
         for (int x = 0; x < 7; ++x) {
           ASSERT_TRUE(isCovered(gbuffer, x, y));
           const glm::dvec3 geometric_normal = unpackNormal(gbuffer.geometric_normal[gbuffer.index(x, y)]);
-          ASSERT_LE(angleBetween(geometric_normal, normal), 2 * kLargestError) << "rounding of the corners, too";
+          ASSERT_LE(angleBetween(geometric_normal, normal), 2 * kLargestError)
+              << "rounding of the corners, too";
           ASSERT_GT(glm::dot(geometric_normal, glm::dvec3(valueAt(gbuffer.normal, gbuffer, x, y))), 0.0);
         }
     }

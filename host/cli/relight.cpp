@@ -1,0 +1,245 @@
+// The commands that light a file of surfaces: shade and relight.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/event_log.hpp"
+#include "cli/picture_options.hpp"
+#include "cli/picture_output.hpp"
+#include "cli/suggest.hpp"
+#include "gbuffer/camera_header.hpp"
+#include "gbuffer/gbuffer_input.hpp"
+#include "image/exposure.hpp"
+#include "render/measure_exposure.hpp"
+#include "render/render.hpp"
+#include "scene/json/mesh_file.hpp"
+
+namespace luciole {
+namespace {
+
+struct RelightOptions : PictureOptions {
+  std::string input;
+  std::string scene;
+  std::string channels;
+  std::string space;
+  std::string camera_to_world;
+  bool albedo = false;
+  bool add = false;
+};
+
+/// The layers that --channels names. Throws InputError.
+ChosenLayers typedLayers(const std::string& text) {
+  ChosenLayers layers;
+  if (text.empty()) return layers;
+  std::vector<std::string> roles;
+  for (const char* role : kRoleNames)
+    if (!std::string_view(role).starts_with("view_")) roles.emplace_back(role);
+  for (const std::string& pair : split(text, ',')) {
+    const std::size_t equals = pair.find('=');
+    const std::string name = pair.substr(0, equals);
+    const auto role = std::find(kRoleNames.begin(), kRoleNames.end(), name);
+    const bool is_role = std::find(roles.begin(), roles.end(), name) != roles.end();
+    if (!is_role || equals == std::string::npos || equals + 1 == pair.size())
+      throw InputError(fmt::format("--channels {}: expected ROLE=NAME,... with a ROLE of {}{}", pair,
+                                   fmt::join(roles, ", "), is_role ? "" : didYouMean(name, roles)));
+    layers[Role(role - kRoleNames.begin())] = pair.substr(equals + 1);
+  }
+  return layers;
+}
+
+/// The rigid motion that 16 numbers say, row by row, or column by column where only that is one. Throws
+/// InputError.
+glm::dmat4 typedMatrix(const std::string& text) {
+  std::array<double, 16> numbers{};
+  std::size_t count = 0;
+  const char *at = text.data(), *end = at + text.size();
+  const auto isBetween = [](char c) { return c == ' ' || c == ',' || c == '\t' || c == '\n'; };
+  while (at != end) {
+    if (isBetween(*at)) {
+      ++at;
+      continue;
+    }
+    double number = 0;
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || (next != end && !isBetween(*next))) break;
+    if (count < numbers.size()) numbers[count] = number;
+    ++count;
+    at = next;
+  }
+  glm::dmat4 rows;
+  for (int i = 0; i < 16; ++i) rows[i % 4][i / 4] = numbers[std::size_t(i)];
+  if (!isRigid(rows)) rows = glm::transpose(rows);
+  if (at != end || count != numbers.size() || !isRigid(rows))
+    throw InputError(fmt::format(
+        "--camera-to-world {}: expected 16 numbers, row by row, of a rotation and a translation", text));
+  return rows;
+}
+
+GBufferRequest requestOf(const RelightOptions& options, const Scene& scene) {
+  GBufferRequest request{
+      .layers = typedLayers(options.channels), .albedo = options.albedo, .color = options.add};
+  if (!options.space.empty())
+    request.space = options.space == "camera" ? FileSpace::kCamera : FileSpace::kWorld;
+  if (!options.camera_to_world.empty()) request.camera_to_world = typedMatrix(options.camera_to_world);
+  if (!scene.adds_camera) request.camera = scene.cameras.front();
+  return request;
+}
+
+/// Light alone is added to a picture: it has its own background, emission and fog's colour already.
+void leaveLightAlone(Scene& scene, GBuffer& gbuffer) {
+  scene.background = scene.fog.color = glm::vec3(0.0f);
+  gbuffer.emission = {};
+}
+
+/// Adds light to a picture's R, G and B.
+Image sumOf(Image picture, const Image& light) {
+  const std::size_t channels = picture.channels.size(), lit = light.channels.size();
+  tbb::parallel_for(0, picture.height, [&](int y) {
+    for (std::size_t pixel = std::size_t(y) * picture.width; pixel < std::size_t(y + 1) * picture.width;
+         ++pixel)
+      for (std::size_t c = 0; c < 3; ++c)
+        picture.pixels[pixel * channels + c] += light.pixels[pixel * lit + c];
+  });
+  return picture;
+}
+
+/// Lights surfaces and writes the picture. picture: that to which light is added, or empty.
+void lightAndWrite(CommandContext& context, const PictureOptions& options, const Scene& scene,
+                   const std::string& scene_path, const GBuffer& gbuffer, Image picture, int frame,
+                   Stats& stats) {
+  Device& device = context.device;
+  RenderSettings settings = renderSettings(options, scene);
+  const bool adds = !picture.pixels.empty();
+  const float exposure = settings.exposure;
+  if (adds) settings.exposure = 0;
+  logEvent("frame_begun", {{"frame", frame}});
+  Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+  logDevice(device.description);
+  if (adds) {
+    image = sumOf(std::move(picture), image);
+    expose(image, exposure);
+  }
+  if (measuresExposure(options, scene_path)) {
+    timed(stats, Stage::kMeasureExposure, [&] {
+      stats.measured_exposure = measureExposure(image, gbuffer);
+      expose(image, *stats.measured_exposure);
+    });
+  }
+  const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+    return writeImage(image, options.output, pictureMetadata(stats, &device), writeOptions(options, gbuffer));
+  });
+  reportHalves(options, limited, stats);
+  reportLightError(options, stats);
+  reportStats(options, stats, frame);
+}
+
+void tellNotes(const std::vector<std::string>& notes, bool quiet) {
+  for (const std::string& note : notes) {
+    if (logsEvents())
+      logEvent("layers", {{"message", note}});
+    else if (!quiet)
+      fmt::print(stderr, "{}\n", note);
+  }
+}
+
+void relight(CommandContext& context, RelightOptions& options) {
+  const int frame = useFrame(options, "relight");
+  checkOutput(options);
+  if (options.add && (options.alpha || !options.aovs.empty()))
+    throw InputError("--add: keeps the picture's own A and makes no other layers, without --alpha or --aov");
+  if (options.albedo && isMeshFile(options.scene))
+    throw InputError(
+        fmt::format("--albedo: the lights of {} are divided by pi already, as every glTF's", options.scene));
+  Stats stats;
+  stats.command = context.command_line;
+  startDevice(options.device, context.device);
+  Scene scene = timed(stats, Stage::kLoadScene, [&] { return openScene(options.scene, frame, options); });
+  if (scene.adds_lights) throw InputError(options.scene + ": no lights, expected a scene that has some");
+  GBufferInput input = timed(stats, Stage::kReadGBuffer,
+                             [&] { return readGBuffer(options.input, requestOf(options, scene)); });
+  tellNotes(input.notes, options.quiet);
+  if (options.add) leaveLightAlone(scene, input.gbuffer);
+  lightAndWrite(context, options, scene, options.scene, input.gbuffer, std::move(input.color), frame, stats);
+}
+
+}  // namespace
+
+void addShadeCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("shade", "light a G-buffer, from here or from another renderer");
+  auto options = std::make_shared<PictureOptions>();
+  auto gbuffer_path = std::make_shared<std::string>();
+  auto scene_path = std::make_shared<std::string>();
+  command->add_option("GBUFFER", *gbuffer_path, "an EXR with channels P and N, or Z and N and a camera")
+      ->required();
+  command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
+      ->required();
+  addPictureOptions(*command, *options,
+                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
+  command->callback([&context, options, gbuffer_path, scene_path] {
+    const int frame = useFrame(*options, "shade");
+    checkOutput(*options);
+    Stats stats;
+    stats.command = context.command_line;
+    startDevice(options->device, context.device);
+    const Scene scene =
+        timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
+    const GBufferInput input =
+        timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(*gbuffer_path, GBufferRequest{}); });
+    lightAndWrite(context, *options, scene, *scene_path, input.gbuffer, {}, frame, stats);
+  });
+}
+
+void addRelightCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand(
+      "relight", "light another program's picture again, by its layers of positions and normals");
+  auto options = std::make_shared<RelightOptions>();
+  command
+      ->add_option("IN", options->input,
+                   "an EXR of Blender, pbrt, Mitsuba, RenderMan, Arnold, 3Delight or here")
+      ->required();
+  command
+      ->add_option(
+          "--lights", options->scene,
+          "the scene whose lights, ambient, fog and shadow casters count, and its camera where IN has none")
+      ->required()
+      ->type_name("SCENE");
+  command
+      ->add_option(
+          "--channels", options->channels,
+          "ROLE=NAME,...: which layers are which, such as position=Pw,normal=Nw, or shininess=40; a ROLE is "
+          "position, normal, depth, diffuse, specular, shininess, ambient, emission, geometric_normal, lift "
+          "or color (default: by the names that programs give them)")
+      ->type_name("ROLE=NAME,...");
+  command
+      ->add_option(
+          "--space", options->space,
+          "of IN's positions and normals (default: what fits its pixels, else what its program usually has)")
+      ->check(CLI::IsMember(std::vector<std::string>{"world", "camera"}));
+  command
+      ->add_option(
+          "--camera-to-world", options->camera_to_world,
+          "16 numbers, row by row: where the camera is, x to its right, y up and -z ahead (default: IN's)")
+      ->type_name("NUMBERS");
+  command->add_flag("--albedo", options->albedo,
+                    "diffuse is an albedo and lights are in watts a steradian: Kd = albedo / pi, and "
+                    "Ks = specular (n + 2) / 2 pi");
+  command->add_flag("--add", options->add, "add the light to IN's own picture");
+  addPictureOptions(*command, *options,
+                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
+  command->callback([&context, options] { relight(context, *options); });
+}
+
+}  // namespace luciole

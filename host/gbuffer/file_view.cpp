@@ -1,0 +1,129 @@
+#include "gbuffer/file_view.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "base/error.hpp"
+#include "gbuffer/camera_header.hpp"
+
+namespace luciole {
+namespace {
+
+std::vector<SeenPoint> transformed(std::span<const SeenPoint> points, const glm::dmat4& by) {
+  std::vector<SeenPoint> moved(points.begin(), points.end());
+  for (SeenPoint& seen : moved) seen.point = glm::dvec3(by * glm::dvec4(seen.point, 1.0));
+  return moved;
+}
+
+glm::dmat4 scaled(const glm::dvec3& factors) {
+  glm::dmat4 matrix{1.0};
+  for (int i = 0; i < 3; ++i) matrix[i][i] = factors[i];
+  return matrix;
+}
+
+void setOpening(const glm::dvec2& half_extent, bool parallel, FileView& view) {
+  view.knows_camera = true;
+  view.half_extent = half_extent;
+  view.camera.orthographic = parallel;
+  if (parallel)
+    view.camera.half_height = half_extent.y;
+  else
+    view.camera.fov_y = 2 * std::atan(half_extent.y);
+}
+
+/// How wide a scene's camera sees in a picture of that size.
+glm::dvec2 halfExtentOf(const Camera& camera, const glm::dvec2& size) {
+  const double height = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2);
+  return {height * size.x / size.y, height};
+}
+
+std::optional<CameraHeader> headerCamera(const ViewQuestion& asked) {
+  std::vector<glm::dvec3> world;
+  if (asked.space.value_or(asked.usual) == FileSpace::kWorld)
+    for (const SeenPoint& seen : asked.points) world.push_back(seen.point);
+  return readCamera(asked.attributes, asked.picture_size, asked.path, world);
+}
+
+bool liesInWorldSpace(const ViewQuestion& asked, const std::optional<CameraHeader>& header) {
+  if (!header || !header->half_extent) return false;
+  return lieOnRays(transformed(asked.points, glm::inverse(header->camera.camera_to_world)),
+                   asked.picture_size, *header->half_extent, header->camera.orthographic);
+}
+
+}  // namespace
+
+FileView findView(const ViewQuestion& asked) {
+  const glm::dvec2 size = asked.picture_size;
+  const std::optional<CameraHeader> header = headerCamera(asked);
+  FileView view;
+  if (header && header->is_exact && !asked.camera_to_world) {
+    view.camera = header->camera;
+    view.knows_camera = true;
+    view.half_extent = *header->half_extent;
+    view.camera_source = "the file's";
+    view.in_view_space = asked.has_view_space;
+    view.space = asked.space.value_or(FileSpace::kWorld);
+    view.to_view =
+        view.space == FileSpace::kCamera ? glm::dmat4(1.0) : glm::inverse(view.camera.camera_to_world);
+    return view;
+  }
+
+  const std::optional<RayFit> rays = fitRays(asked.points, size);
+  const bool has_camera = asked.camera_to_world || header || asked.camera;
+  view.space = asked.usual;
+  if (asked.space)
+    view.space = *asked.space;
+  else if (liesInWorldSpace(asked, header))
+    view.space = FileSpace::kWorld;
+  else if (rays && rays->is_deep && has_camera)
+    view.space = FileSpace::kCamera;
+  if (view.space == FileSpace::kCamera && !has_camera)
+    throw InputError(
+        asked.path +
+        ": positions are in camera space, and no camera tells where that is: expected one in the "
+        "header, or luciole relight --camera-to-world or a camera in the scene of --lights");
+
+  if (header) view.camera = header->camera;
+  if (header && header->half_extent) setOpening(*header->half_extent, header->camera.orthographic, view);
+  view.camera_source = "the file's";
+  if (asked.camera_to_world) {
+    view.camera.camera_to_world = *asked.camera_to_world;
+    view.camera_source = "as told";
+  } else if (!header && asked.camera) {
+    view.camera = *asked.camera;
+    view.camera_source = "the scene's";
+  } else if (!header) {
+    view.camera_source = "unknown, the eye is taken to be at the origin";
+  }
+
+  if (view.space == FileSpace::kCamera) {
+    // Without a fit a point tells the side. The file's camera, but not a typed one, has the
+    // same axes as the positions.
+    const bool is_behind = !asked.points.empty() && asked.points.front().point.z > 0;
+    const glm::dvec3 signs = rays ? rays->signs : glm::dvec3(1, 1, is_behind ? -1 : 1);
+    view.to_view = scaled(signs);
+    if (header && !asked.camera_to_world)
+      view.camera.camera_to_world = view.camera.camera_to_world * scaled({signs.x, signs.y, 1.0});
+  } else {
+    view.to_view = glm::inverse(view.camera.camera_to_world);
+  }
+
+  const std::vector<SeenPoint> seen = transformed(asked.points, view.to_view);
+  const bool is_scenes = !header && !asked.camera_to_world && asked.camera;
+  if (!view.knows_camera && !is_scenes && has_camera)
+    if (const auto fit = fitRays(seen, size); fit && fit->signs == glm::dvec3(1.0))
+      setOpening(fit->half_extent, false, view);
+  if (!view.knows_camera && asked.camera)
+    setOpening(halfExtentOf(*asked.camera, size), asked.camera->orthographic, view);
+  if (!asked.has_positions && !view.knows_camera)
+    throw InputError(
+        asked.path +
+        ": attribute worldToNDC: depth without positions needs worldToCamera and worldToNDC of a "
+        "centred projection, or a camera in the scene of luciole relight --lights");
+  if (view.knows_camera && !seen.empty() &&
+      !lieOnRays(seen, size, view.half_extent, view.camera.orthographic))
+    view.camera_source += ", by which positions lie elsewhere than their pixels";
+  return view;
+}
+
+}  // namespace luciole

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/layers.hpp"
+
+// Which channels of a picture file are the planes of a G-buffer: by the names that programs give them.
+namespace luciole {
+
+/// What a layer of a file holds. Three channels each, but depth, shininess and lift.
+enum class Role : std::uint8_t {
+  kPosition,
+  kNormal,
+  kDepth,
+  kDiffuse,
+  kSpecular,
+  kShininess,
+  kAmbient,
+  kEmission,
+  kGeometricNormal,  ///< the triangle's own
+  kLift,             ///< see raster/lift.hpp
+  kViewPosition,     ///< in this program's view space
+  kViewNormal,
+  kColor,  ///< the picture itself
+};
+inline constexpr std::size_t kRoleCount = 13;
+/// In the order of Role, as messages and --channels have them.
+inline constexpr std::array<const char*, kRoleCount> kRoleNames{
+    "position", "normal",           "depth", "diffuse",       "specular",    "shininess", "ambient",
+    "emission", "geometric_normal", "lift",  "view_position", "view_normal", "color"};
+
+constexpr bool isScalar(Role role) {
+  return role == Role::kDepth || role == Role::kShininess || role == Role::kLift;
+}
+
+/// The space of a file's positions and normals.
+enum class FileSpace : std::uint8_t {
+  kWorld,
+  kCamera,  ///< the eye at the origin, with axes of the program's own choice
+};
+
+/// How a program names its layers. A role may have several names, apart by |. A name stands for any layer
+/// that ends in a dot and it, so that view layers, parts and nested integrators may come before. Case is
+/// ignored.
+struct Layout {
+  const char* program;
+  const char* position = "";
+  const char* normal = "";
+  const char* depth = "";
+  const char* diffuse = "";
+  const char* specular = "";
+  const char* shininess = "";
+  const char* ambient = "";
+  const char* emission = "";
+  const char* geometric_normal = "";
+  const char* lift = "";
+  const char* view_position = "";
+  const char* view_normal = "";
+  const char* color = "|";              ///< the nameless layer
+  FileSpace space = FileSpace::kWorld;  ///< unless the positions tell another
+  bool is_albedo = true;                ///< `diffuse` is what share of light a surface reflects
+  bool depth_is_distance = false;       ///< from the eye, rather than along the view axis
+};
+
+/// All that is known, this program's own layout first.
+std::span<const Layout> layouts();
+
+/// A layer that was found.
+struct FoundLayer {
+  std::string name{};                       ///< as the file has it, without components; empty: there is none
+  int part = -1;                            ///< in the file; -1: none
+  std::array<int, 3> channels{-1, -1, -1};  ///< places in the part; a scalar's is the first
+  std::optional<float> constant{};          ///< the number that was typed in place of a layer
+
+  bool isThere() const { return part >= 0; }
+};
+
+struct FoundLayers {
+  const Layout* layout = nullptr;
+  std::array<FoundLayer, kRoleCount> layers;
+
+  const FoundLayer& operator[](Role role) const { return layers[std::size_t(role)]; }
+};
+
+/// Layers that the user named, or for shininess a number.
+using ChosenLayers = std::map<Role, std::string>;
+
+/// Finds the layers of a file: those that are chosen, and of the others those of the layout that has the
+/// most. Position, or depth, is always found. Throws InputError, in one line that lists the file's channels,
+/// where that is not so, where a name fits several layers, or where a layer lacks some of its components.
+FoundLayers findLayers(const std::vector<PicturePart>& parts, const ChosenLayers& chosen,
+                       const std::string& path);
+
+}  // namespace luciole

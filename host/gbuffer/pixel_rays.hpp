@@ -1,0 +1,35 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+
+// Points that a picture shows lie on the rays through their pixels. That tells whether they are in camera
+// space, and how wide the camera sees.
+namespace luciole {
+
+/// A point and the pixel that shows it.
+struct SeenPoint {
+  glm::dvec3 point;
+  glm::dvec2 screen;  ///< the pixel's centre: −1 to 1 from the whole picture's left to its right and from its
+                      ///< bottom to its top
+};
+
+/// A perspective camera at the origin that looks along an axis z.
+struct RayFit {
+  glm::dvec2 half_extent;  ///< half the picture's width and height at distance 1, > 0
+  glm::dvec3 signs;        ///< 1 or −1: point × signs has x to the right, y up and −z ahead
+  bool is_deep = false;    ///< the points' depths differ by more than a twentieth, so that it is no chance
+};
+
+/// The camera that sees the points in their pixels, if there is one. At least 16 of them are wanted, and nine
+/// in ten must be less than 1.5 pixels off: positions that were averaged over a pixel at an edge lie
+/// elsewhere. `picture_size`: pixels of the whole picture.
+std::optional<RayFit> fitRays(std::span<const SeenPoint> points, glm::dvec2 picture_size);
+
+/// Whether points in view space (−z ahead) lie on their pixels' rays, to the same extent. half_extent: as in
+/// CameraHeader. False where there are fewer than 16.
+bool lieOnRays(std::span<const SeenPoint> points, glm::dvec2 picture_size, glm::dvec2 half_extent,
+               bool parallel);
+
+}  // namespace luciole

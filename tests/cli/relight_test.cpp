@@ -1,0 +1,149 @@
+// What relight and shade do with other programs' files, as a person types it. What is in the files and how it
+// is found tests/gbuffer looks at.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/program_test.hpp"
+#include "image/image.hpp"
+
+namespace luciole::test {
+namespace {
+
+using testing::HasSubstr;
+
+class RelightCommand : public ProgramTest {
+ protected:
+  RelightCommand() { writeText(folder / "scene.json", kSmallScene); }
+
+  /// A wall of 8 × 6 pixels at z = −4, as another program might write it, and a grey picture of it.
+  void writeWall(const std::string& position, const std::string& normal,
+                 const std::string& components) const {
+    Image wall{8, 6, {"R", "G", "B"}, {}};
+    for (const std::string& layer : {position, normal})
+      for (const char c : components) wall.channels.push_back(layer + "." + c);
+    for (int y = 0; y < 6; ++y)
+      for (int x = 0; x < 8; ++x)
+        for (const float value : {0.25f, 0.5f, 0.75f, float(x - 4), float(y - 3), -4.0f, 0.0f, 0.0f, 1.0f})
+          wall.pixels.push_back(value);
+    writeImage(wall, folder / "wall.exr", {});
+    writeText(folder / "lamp.json", R"({"camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}, "ambient": 0,
+        "background": [1, 2, 3],
+        "lights": [{"type": "point", "position": [0, 0, 0], "color": [1, 0.5, 0.25], "attenuation": [0, 0, 1], "intensity": 16}]})");
+  }
+};
+
+TEST_F(RelightCommand, OfAGBufferFromHereDoesWhatShadeDoesAndSaysWhatItFound) {
+  succeed(
+      "luciole gbuffer scene.json --quiet -o g.exr && luciole shade g.exr --scene scene.json --quiet -o "
+      "a.exr");
+  const std::string told_lines = told("luciole relight g.exr --lights scene.json -o b.exr");
+  EXPECT_THAT(told_lines,
+              HasSubstr("g.exr: named as Luciole's: position = P, normal = N, depth = Z, diffuse = diffuse, "
+                        "specular = specular, shininess = shininess"));
+  EXPECT_THAT(told_lines, HasSubstr("g.exr: positions in world space, camera the file's"));
+  succeed("luciole compare a.exr b.exr --max-abs 0");
+  EXPECT_EQ(told("luciole relight g.exr --lights scene.json --quiet -o b.exr"), "");
+  const std::string events = told("luciole relight g.exr --lights scene.json --log json -o b.exr");
+  EXPECT_THAT(events, HasSubstr(R"("event":"layers")"));
+  EXPECT_THAT(events, HasSubstr("named as Luciole's"));
+}
+
+TEST_F(RelightCommand, BothCommandsUnderstandOtherProgramsNames) {
+  writeWall("ViewLayer.Position", "ViewLayer.Normal", "XYZ");
+  succeed("luciole relight wall.exr --lights lamp.json --quiet -o blender.exr");
+  writeWall("P", "N", "rgb");
+  succeed("luciole relight wall.exr --lights lamp.json --quiet -o python.exr");
+  succeed("luciole shade wall.exr --scene lamp.json --quiet -o shaded.exr");
+  writeWall("where", "facing", "xyz");
+  succeed(
+      "luciole relight wall.exr --lights lamp.json --channels position=where,normal=facing --quiet -o "
+      "told.exr");
+  for (const char* other : {"python.exr", "shaded.exr", "told.exr"})
+    succeed(std::string("luciole compare blender.exr ") + other + " --max-abs 0");
+  // Straight ahead the lamp of 16 is 4 m away: 16 · 0.8 / 4².
+  EXPECT_NEAR(readImage(folder / "told.exr").pixels[(3 * 8 + 4) * 3], 0.8f, 1e-6f);
+}
+
+TEST_F(RelightCommand, AddLaysTheLightAloneOverThePicture) {
+  writeWall("P", "N", "XYZ");
+  succeed("luciole relight wall.exr --lights lamp.json --quiet -o alone.exr");
+  succeed("luciole relight wall.exr --lights lamp.json --add --quiet -o sum.exr");
+  succeed("luciole relight wall.exr --lights lamp.json --add --exposure 1 --quiet -o bright.exr");
+  const Image alone = readImage(folder / "alone.exr"), sum = readImage(folder / "sum.exr"),
+              bright = readImage(folder / "bright.exr");
+  ASSERT_EQ(sum.channels, (std::vector<std::string>{"R", "G", "B"}));
+  for (std::size_t pixel = 0; pixel < 48; ++pixel)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float own = 0.25f * float(c + 1);
+      EXPECT_EQ(sum.pixels[pixel * 3 + c], own + alone.pixels[pixel * 3 + c]);
+      EXPECT_EQ(bright.pixels[pixel * 3 + c], 2 * sum.pixels[pixel * 3 + c]);
+    }
+}
+
+TEST_F(RelightCommand, AddLeavesWhatThePictureHasAlready) {
+  // Emission, background and the fog's own colour are in it.
+  writeText(
+      folder / "dark.json",
+      R"({"ambient": 0, "background": [5, 5, 5], "fog": {"mode": "exp", "density": 0.5, "color": [3, 3, 3]},
+      "lights": [{"type": "point", "position": [0, 900, 0], "range": 1}]})");
+
+  Image file{
+      96,
+      54,
+      {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "emission.R", "emission.G", "emission.B"},
+      {}};
+  for (int i = 0; i < 96 * 54; ++i)
+    for (const float value : {0.5f, 0.25f, 0.125f, 0.0f, 0.0f, i % 2 ? -3.0f : 0.0f, 0.0f, 0.0f,
+                              i % 2 ? 1.0f : 0.0f, 7.0f, 7.0f, 7.0f})
+      file.pixels.push_back(value);
+  writeImage(file, folder / "in.exr", {});
+  succeed("luciole relight in.exr --lights dark.json --add --quiet -o sum.exr");
+  const Image sum = readImage(folder / "sum.exr");
+  for (std::size_t pixel = 0; pixel < 96 * 54; ++pixel) {
+    EXPECT_EQ(sum.pixels[pixel * 3], 0.5f);
+    EXPECT_EQ(sum.pixels[pixel * 3 + 2], 0.125f);
+  }
+}
+
+TEST_F(RelightCommand, TheScenesCameraCountsWhereTheFileHasNone) {
+  writeWall("P", "N", "XYZ");
+  EXPECT_THAT(told("luciole relight wall.exr --lights lamp.json -o a.exr"), HasSubstr("camera the scene's"));
+  EXPECT_THAT(told("luciole relight wall.exr --lights lamp.json --camera-to-world "
+                   "'1 0 0 0  0 1 0 0  0 0 1 5  0 0 0 1' -o b.exr"),
+              HasSubstr("camera as told"));
+  succeed("luciole compare a.exr b.exr --max-abs 0");
+  succeed(
+      "luciole relight wall.exr --lights lamp.json --camera-to-world '-1,0,0,0,0,1,0,0,0,0,-1,5,0,0,0,1' "
+      "--quiet -o c.exr");
+}
+
+TEST_F(RelightCommand, WhatItCannotDoIsOneLine) {
+  writeWall("where", "facing", "xyz");
+  writeImage({2, 2, {"R", "G", "B"}, std::vector<float>(12, 0.5f)}, folder / "picture.exr", {});
+  writeText(folder / "objects.json", R"({"objects": [{"primitive": "box"}]})");
+  const std::string relight = "luciole relight wall.exr --lights lamp.json -o a.exr ";
+  refuse("luciole relight picture.exr --lights lamp.json -o a.exr", 2,
+         "picture.exr: no layer that is known to hold positions or depths among the channels B, G, R; "
+         "luciole relight "
+         "--channels ROLE=NAME,... says which layer is which");
+  refuse("luciole shade picture.exr --scene lamp.json -o a.exr", 2, "among the channels B, G, R;");
+  refuse("luciole relight missing.exr --lights lamp.json -o a.exr", 2, "missing.exr: no such file");
+  refuse(relight + "--channels position=Pw", 2, "wall.exr: position Pw: no such layer among the channels");
+  refuse(relight + "--channels postion=where", 2, "did you mean position?");
+  refuse(relight + "--channels position", 2, "--channels position: expected ROLE=NAME");
+  refuse(relight + "--camera-to-world '1 2 3'", 2, "--camera-to-world 1 2 3: expected 16 numbers");
+  refuse(relight + "--camera-to-world '2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1'", 2,
+         "of a rotation and a translation");
+  refuse(relight + "--add --alpha", 2, "--add: keeps the picture's own A");
+  refuse("luciole relight wall.exr --lights lamp.gltf --albedo -o a.exr", 2,
+         "--albedo: the lights of lamp.gltf are");
+  refuse("luciole relight wall.exr --lights objects.json -o a.exr", 2, "objects.json: no lights");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.exr"));
+}
+
+}  // namespace
+}  // namespace luciole::test
