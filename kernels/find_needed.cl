@@ -10,9 +10,15 @@
 #include "shadow.clh"
 #include "shared.h"
 
+// The bin that was noted last. The rows of a tile mostly fall into the same one, and then need no atomic operation.
+typedef struct {
+  uint bin, depth;
+} LastNoted;
+
 // Notes the bins around a row of lookups, those in the mask; all of them are on this face. reach: texels that a lookup may read
 // around its place.
-INLINE void add_needed(__global const ShadowFace *face, int reach, volatile __global uint *needed, const MapPoint *point, intL mask) {
+INLINE void add_needed(__global const ShadowFace *face, int reach, __global uint *needed, const MapPoint *point, intL mask,
+                       LastNoted *last_noted) {
   // A lookup that is on a face lies within it, so its texel fits into an int.
   intL x = convert_intL(point->x), y = convert_intL(point->y), none = 0x7fffffff;
   int low_x = smallest_lane(mask ? x : none) - reach, high_x = largest_lane(mask ? x : -none) + reach;
@@ -23,8 +29,10 @@ INLINE void add_needed(__global const ShadowFace *face, int reach, volatile __gl
   for (int y = max(low_y, 0) / kShadowBin; y <= min(max(high_y, 0) / kShadowBin, last); ++y) {
     for (int x = max(low_x, 0) / kShadowBin; x <= min(max(high_x, 0) / kShadowBin, last); ++x) {
       uint bin = face->first_bin + y * (last + 1) + x;
-      // It only ever gets less: where it is no more already, no atomic operation is needed. That is so for most rows.
-      if (needed[bin] > depth) atomic_min(needed + bin, depth);
+      if (bin == last_noted->bin && depth >= last_noted->depth) continue;
+      last_noted->bin = bin;
+      last_noted->depth = depth;
+      atomic_min(needed + bin, depth);
     }
   }
 }
@@ -42,6 +50,7 @@ WORK void note_tile(uint tile, uint plane_stride, __global const float *position
     __global const ShadeLight *light = lights + index;
     if (light->shadow >= kExactShadow) continue;
     __global const ShadowMap *map = shadow_maps + light->shadow;
+    LastNoted last_noted = {kNotNeeded, 0};
     for (uint row = 0; row < kTilePixels; row += LANES) {
       uint first = tile * kTilePixels + row;
       if (!(squares & 1u << SQUARE_OF_PIXEL(first))) continue;
@@ -54,7 +63,7 @@ WORK void note_tile(uint tile, uint plane_stride, __global const float *position
       point.face -= (int)map->first_face;
       for (uint face = 0; face < map->face_count; ++face) {
         intL here = receives & (point.face == (int)face);
-        if (any_lane(here)) add_needed(shadow_faces + map->first_face + face, (int)map->filter_radius, needed, &point, here);
+        if (any_lane(here)) add_needed(shadow_faces + map->first_face + face, (int)map->filter_radius, needed, &point, here, &last_noted);
       }
     }
   }
