@@ -86,7 +86,8 @@ TEST_F(Misspelt, CommandsGetASuggestion) {
 TEST_F(Misspelt, ValuesGetASuggestion) {
   const std::string line = "luciole render scene.json -o out.png ";
   expectSaid(line + "--shadows pfc",
-             "luciole: --shadows: 'pfc' is none of auto, off, hard, pcf, soft, exact; did you mean pcf? (see "
+             "luciole: --shadows: 'pfc' is none of auto, off, hard, pcf, soft, exact, soft-exact; did you "
+             "mean pcf? (see "
              "luciole help)");
   expectSaid(line + "--shading smooth",
              "luciole: --shading: 'smooth' is none of flat, gouraud, phong (see luciole help)");
