@@ -6,8 +6,8 @@ set -euo pipefail
 
 luciole=$(realpath "$1")
 case $3 in
-  blender) package="bpy==4.5.*" python=python3.11 module=bpy ;;  # PyPI's Blender 4.5 is for this Python alone
-  mitsuba) package="mitsuba==3.*" python=python3 module=mitsuba ;;
+  blender) packages=("bpy==4.5.*") python=python3.11 module=bpy ;;  # PyPI's Blender 4.5 is for this Python alone
+  mitsuba) packages=("mitsuba==3.*" numpy) python=python3 module=mitsuba ;;
 esac
 place=$2/$3
 here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
@@ -16,15 +16,15 @@ skip() {
   echo "needs $3 ($1), which ${2}" >&2
   exit 77
 }
-command -v "$python" >/dev/null || skip "PyPI: $package" "takes $python" "$module"
+command -v "$python" >/dev/null || skip "PyPI: ${packages[*]}" "takes $python" "$module"
 if ! [[ -e $place/installed ]]; then
   # Made under another name and then moved, so that an installation that was cut off is none.
   rm -rf "$place" "$place.new"
   mkdir -p "$2"
   log=$place.log
-  "$python" -m venv "$place.new" >"$log" 2>&1 || skip "PyPI: $package" "takes $python with its module venv" "$module"
-  timeout 600 "$place.new/bin/python" -m pip install --quiet --no-cache-dir --retries 1 --timeout 10 "$package" \
-    >>"$log" 2>&1 || { rm -rf "$place.new" && skip "PyPI: $package" "can't be installed here: $(tail -n 1 "$log")" "$module"; }
+  "$python" -m venv "$place.new" >"$log" 2>&1 || skip "PyPI: ${packages[*]}" "takes $python with its module venv" "$module"
+  timeout 600 "$place.new/bin/python" -m pip install --quiet --no-cache-dir --retries 1 --timeout 10 "${packages[@]}" \
+    >>"$log" 2>&1 || { rm -rf "$place.new" && skip "PyPI: ${packages[*]}" "can't be installed here: $(tail -n 1 "$log")" "$module"; }
   touch "$place.new/installed"
   mv "$place.new" "$place"
 fi
