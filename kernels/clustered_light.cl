@@ -5,9 +5,8 @@
 //   take_pixels → light_group:      walk_clusters (light_clusters.clh) → for each row: add_listed, then the far field (far_field.clh)
 //               → highlight_group:  walk_highlights (highlights.clh) → for each row: add_listed_highlights, then the series
 //
-// A group whose bound is above what is allowed, light_error·max(1, colour), is lit again with smaller errors of each cluster. Groups too small
-// for a walk to pay are put together, and lit by every light one by one. What was accepted of the groups before in a run, and what their walks
-// were as work, steers both. So a pixel's light is a function of its run alone.
+// A group whose bound is above what is allowed, light_error·max(1, colour), is lit again with smaller errors of each cluster. What was
+// accepted steers the groups after it in the run. So a pixel's light is a function of its run alone.
 #include "cut_clusters.clh"
 #include "far_field.clh"
 #include "features.clh"
@@ -34,14 +33,6 @@ enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
 #define GROUP_SPREAD 0.12f
 // So many pixels of a group, which follow each other in Z order, share the series of highlights.
 enum { kHighlightPixels = 64 };
-// Units of WalkWork: of a row that a walk looks at, of a cluster and of a light's highlight that pixels add, and of what else a group takes.
-#define ROW_WORK 25.0f
-#define CUT_WORK 6.0f
-#define HIGHLIGHT_WORK 3.0f
-#define GROUP_WORK 100.0f
-enum { kWorkPixels = 16 };
-// Of a walk's work what it has in the mean of late.
-#define NEW_WORK_SHARE 0.25f
 // What a bound that no float holds is given as.
 #define LARGEST_BOUND 3e38f
 // Of the allowed error what the diffuse light of pixels with highlights may take. The highlights may take the rest.
@@ -60,16 +51,10 @@ typedef struct {
   float light_error;
 } Scene;
 
-// What walks take, in units of a light that is added to kWorkPixels pixels: for the group, and for each kWorkPixels pixels of it.
+// Of the allowed error what is accepted of a cluster.
 typedef struct {
-  float group, pixels;
-} WalkWork;
-
-// What a run's groups leave to those after them.
-typedef struct {
-  float diffuse, specular;  // of the allowed error what is accepted of a cluster
-  WalkWork work;            // of late
-} Steering;
+  float diffuse, specular;
+} Shares;
 
 // For a tile.
 typedef struct {
@@ -90,11 +75,6 @@ INLINE floatL pixel_values(const GroupPixels *pixels, uint value, uint first) { 
 INLINE vec3L pixel_vector(const GroupPixels *pixels, uint value, uint first) {
   vec3L v = {pixel_values(pixels, value, first), pixel_values(pixels, value + 1, first), pixel_values(pixels, value + 2, first)};
   return v;
-}
-
-INLINE void fill_last_row(GroupPixels *pixels) {
-  for (uint i = pixels->count; i % LANES > 0; ++i)
-    for (uint value = 0; value < kPixelValues; ++value) pixels->value[value][i] = pixels->value[value][i / LANES * LANES];
 }
 
 // Takes a group off the pixels that are left of a tile, which are not none.
@@ -130,17 +110,8 @@ INLINE void take_pixels(const Tile *tile, intL *left, GroupPixels *pixels) {
       ++pixels->count;
     }
   }
-  fill_last_row(pixels);
-}
-
-// Moves a group's pixels to others of the same exponent.
-INLINE void append_pixels(const GroupPixels *group, GroupPixels *others) {
-  for (uint i = 0; i < group->count; ++i, ++others->count) {
-    others->place[others->count] = group->place[i];
-    for (uint value = 0; value < kPixelValues; ++value) others->value[value][others->count] = group->value[value][i];
-  }
-  others->exponent = group->exponent;
-  fill_last_row(others);
+  for (uint i = pixels->count; i % LANES > 0; ++i)
+    for (uint value = 0; value < kPixelValues; ++value) pixels->value[value][i] = pixels->value[value][i / LANES * LANES];
 }
 
 // What bounds the pixels from `first` to `end` of a group. colors: kDiffuse or kSpecular.
@@ -264,17 +235,9 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
 // Errors grow somewhat slower than what is accepted.
 INLINE float next_share(float share, float worst) { return share * min(max(0.7f / worst, 0.125f), 4.0f); }
 
-// Whether all lights one by one are less work for a group of pixels than walks of late were.
-INLINE bool every_light_pays(const WalkWork *of_late, ulong lights, const GroupPixels *pixels) {
-  float parts = (float)pixels->count / kWorkPixels;
-  float every = (CLUSTERED_HIGHLIGHTS && any_specular(pixels) ? 1.0f + HIGHLIGHT_WORK : 1.0f) * (float)lights;
-  return of_late->group + parts * of_late->pixels > parts * every;
-}
-
-
-// Sets the diffuse light of a group's pixels in `out`. every_light: no cluster stands for any. work: this is added to it.
-INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float light_error, bool every_light, float *share, WalkWork *work,
-                        float out[6][kTilePixels], Counts *counts) {
+// Sets the diffuse light of a group's pixels in `out`.
+INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float light_error, float *share, float out[6][kTilePixels],
+                        Counts *counts) {
   PixelGroup group = bound_group(pixels, 0, pixels->count, kDiffuse, light_error);
   if (!(group.gain > 0.0f)) return;
   for (uint tries = 1;; ++tries) {
@@ -288,12 +251,10 @@ INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float ligh
     }
     start_field(&sums);
     start_cluster_walk(tree, &walk);
-    uint lights = 0, cuts = 0;
-    bool last = every_light || tries == kMostTries;
+    uint cuts = 0;
     for (bool done = false; !done;) {
-      done = walk_clusters(tree, &group, last ? 0.0f : *share, &walk, &sums);
+      done = walk_clusters(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
       add_listed(&walk, pixels, tree, row_sums);
-      lights += walk.lights;
       cuts += walk.clusters;
       counts->lights += walk.lights * pixels->count;
       counts->clusters += walk.clusters * pixels->count;
@@ -301,11 +262,8 @@ INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float ligh
     }
     counts->far_clusters += walk.far_clusters;
     float worst = finish_group(pixels, &sums, &group, row_sums, cuts, light_error, out);
-    if (last) return;
-    work->group += GROUP_WORK + ROW_WORK * (float)walk.rows;
-    work->pixels += (float)lights + CUT_WORK * (float)cuts;
     *share = next_share(*share, worst);
-    if (worst <= 1.0f) return;
+    if (worst <= 1.0f || tries == kMostTries) return;
     pixels->redone = true;
   }
 }
@@ -400,7 +358,7 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
 
 // Adds the highlights of a group's pixels from `first` to `end` to `out`.
 INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, const ShadeFrame *frame, const ClusterTree *tree, float light_error,
-                            bool every_light, float *share, WalkWork *work, float out[6][kTilePixels], Counts *counts) {
+                            float *share, float out[6][kTilePixels], Counts *counts) {
   HighlightGroup group = bound_highlights(pixels, first, end, frame, light_error);
   if (!(group.place.gain > 0.0f)) return;
   float result[6][kHighlightPixels];
@@ -415,50 +373,29 @@ INLINE void highlight_group(const GroupPixels *pixels, uint first, uint end, con
     }
     start_lobes(&sums);
     start_cluster_walk(tree, &walk);
-    uint lights = 0;
-    bool last = every_light || tries == kMostTries;
     for (bool done = false; !done;) {
-      done = walk_highlights(tree, &group, last ? 0.0f : *share, &walk, &sums);
+      done = walk_highlights(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
       for (uint i = first; i < end; i += LANES) {
         HighlightPixels row = highlight_pixels(pixels, i, frame);
         HighlightSums some = row_sums[(i - first) / LANES];
         add_listed_highlights(&walk, tree, &row, group.exponent, group.model, &some);
         row_sums[(i - first) / LANES] = some;
       }
-      lights += walk.lights;
       counts->lights += walk.lights * (end - first);
       walk.lights = 0;
     }
     counts->far_clusters += walk.far_clusters;
     float worst = finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, light_error, out, result);
-    if (last) break;
-    work->group += GROUP_WORK + ROW_WORK * (float)walk.rows;
-    work->pixels += HIGHLIGHT_WORK * (float)lights * (float)(end - first) / (float)pixels->count;
     *share = next_share(*share, worst);
-    if (worst <= 1.0f) break;
+    if (worst <= 1.0f || tries == kMostTries) break;
     if (!pixels->redone && tries == 1) counts->redone += end - first;
   }
   for (uint i = first; i < end; ++i)
     for (uint plane = 0; plane < 6; ++plane) out[plane][pixels->place[i]] = result[plane][i - first];
 }
 
-// Lights pixels that take_pixels() took, or every light those of several such groups.
-INLINE void light_pixels(GroupPixels *pixels, const Scene *scene, bool every_light, Steering *steering, float out[6][kTilePixels], Counts *counts) {
-  bool shines = CLUSTERED_HIGHLIGHTS && any_specular(pixels);
-  WalkWork work = {0.0f, 0.0f};
-  light_group(pixels, &scene->diffuse, shines ? DIFFUSE_SHARE * scene->light_error : scene->light_error, every_light, &steering->diffuse, &work, out,
-              counts);
-  if (pixels->redone) counts->redone += pixels->count;
-  if (shines)
-    for (uint first = 0; first < pixels->count; first += kHighlightPixels)
-      highlight_group(pixels, first, min(first + kHighlightPixels, pixels->count), &scene->frame, &scene->specular, scene->light_error, every_light,
-                      &steering->specular, &work, out, counts);
-  if (every_light) return;
-  steering->work.group += NEW_WORK_SHARE * (work.group - steering->work.group);
-  steering->work.pixels += NEW_WORK_SHARE * (work.pixels - steering->work.pixels);
-}
-
-INLINE void light_tile(const Tile *tile, const Scene *scene, Steering *steering, __global float *light, __global float *bound,
+// Lights a tile. shares: updated by what was accepted.
+INLINE void light_tile(const Tile *tile, const Scene *scene, Shares *shares, __global float *light, __global float *bound,
                        __global uint *counts) {
   float out[6][kTilePixels] __attribute__((aligned(64)));
   intL left[kTileRows], any_left = 0;
@@ -475,25 +412,19 @@ INLINE void light_tile(const Tile *tile, const Scene *scene, Steering *steering,
     for (uint i = 0; i < 6; ++i) *(floatL *)(out[i] + row * LANES) = 0.0f;
   }
   Counts counted = {0, 0, 0, 0};
-  GroupPixels small;
-  small.count = 0;
-  small.redone = false;
   while (any_lane(any_left)) {
     GroupPixels pixels;
     take_pixels(tile, left, &pixels);
-    if (every_light_pays(&steering->work, scene->diffuse.lights, &pixels)) {
-      if (small.count > 0 && small.exponent != pixels.exponent) {
-        light_pixels(&small, scene, true, steering, out, &counted);
-        small.count = 0;
-      }
-      append_pixels(&pixels, &small);
-    } else {
-      light_pixels(&pixels, scene, false, steering, out, &counted);
-    }
+    bool shines = CLUSTERED_HIGHLIGHTS && any_specular(&pixels);
+    light_group(&pixels, &scene->diffuse, shines ? DIFFUSE_SHARE * scene->light_error : scene->light_error, &shares->diffuse, out, &counted);
+    if (pixels.redone) counted.redone += pixels.count;
+    if (shines)
+      for (uint first = 0; first < pixels.count; first += kHighlightPixels)
+        highlight_group(&pixels, first, min(first + kHighlightPixels, pixels.count), &scene->frame, &scene->specular, scene->light_error,
+                        &shares->specular, out, &counted);
     any_left = 0;
     for (uint row = 0; row < kTileRows; ++row) any_left |= left[row];
   }
-  if (small.count > 0) light_pixels(&small, scene, true, steering, out, &counted);
   for (uint row = 0; row < kTileRows; ++row) {
     vec3L position = load_vec3(tile->position + row * LANES, tile->stride);
     intL covered = position.z > -INFINITY;
@@ -514,9 +445,9 @@ INLINE void light_tile(const Tile *tile, const Scene *scene, Steering *steering,
 }
 
 WORK void light_run(Tile tile, const Scene *scene, uint tiles, __global float *light, __global float *bound, __global uint *counts) {
-  Steering steering = {0x1p-8f, 0x1p-8f, {0.0f, 0.0f}};
+  Shares shares = {0x1p-8f, 0x1p-8f};
   for (uint i = 0; i < tiles; ++i) {
-    light_tile(&tile, scene, &steering, light, bound, counts);
+    light_tile(&tile, scene, &shares, light, bound, counts);
     tile.position += kTilePixels;
     tile.normal += kTilePixels;
     tile.diffuse += kTilePixels;

@@ -34,6 +34,7 @@ void LayerReader::read(const std::vector<FoundLayer>& layers) {
       throw InputError(fmt::format("{}: parts {} and {} differ: {}, and {}", path_, forMessage(first->name),
                                    forMessage(one.name), placeOf(*first), placeOf(one)));
   }
+  if (!first) return;
   for (const auto& [part, channels] : wanted) {
     const std::vector<int> list(channels.begin(), channels.end());
     const std::size_t pixels = std::size_t(first->size.x) * std::size_t(first->size.y);

@@ -38,7 +38,7 @@ bool lieOnRays(std::span<const SeenPoint> points, glm::dvec2 picture_size, glm::
   return double(on_rays) >= kShare * double(points.size());
 }
 
-std::optional<RayFit> fitRays(std::span<const SeenPoint> points, glm::dvec2 picture_size) {
+std::optional<RayFit> fitRays(std::span<const SeenPoint> points, const glm::dvec2& picture_size) {
   if (points.size() < kFewest) return {};
   const auto x = middleRatio(points, 0), y = middleRatio(points, 1);
   if (!x || !y) return {};

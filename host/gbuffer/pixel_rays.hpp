@@ -25,7 +25,7 @@ struct RayFit {
 /// The camera that sees the points in their pixels, if there is one. At least 16 of them are wanted, and nine
 /// in ten must be less than 1.5 pixels off: positions that were averaged over a pixel at an edge lie
 /// elsewhere. `picture_size`: pixels of the whole picture.
-std::optional<RayFit> fitRays(std::span<const SeenPoint> points, glm::dvec2 picture_size);
+std::optional<RayFit> fitRays(std::span<const SeenPoint> points, const glm::dvec2& picture_size);
 
 /// Whether points in view space (−z ahead) lie on their pixels' rays, to the same extent. half_extent: as in
 /// CameraHeader. False where there are fewer than 16.

@@ -142,8 +142,7 @@ TEST(LightErrors, ThreePlacementsOfTwoNumbersKeepFourBounds) {
     EXPECT_GT(median(table, row, "times_faster"), 0);
     // A float's rounding more.
     EXPECT_LE(count(table, row, "max_bound_steps"), 1.000001 * steps);
-    // In so small a picture some groups of pixels are lit by every light.
-    EXPECT_GT(count(table, row, "max_bound_steps"), 0);
+    EXPECT_GT(count(table, row, "max_bound_steps"), 0.5 * steps);
     EXPECT_LT(count(table, row, "mean_bound_steps"), count(table, row, "max_bound_steps"));
     EXPECT_GT(count(table, row, "max_error_steps"), 0);
     EXPECT_LT(count(table, row, "mean_error_steps"), count(table, row, "max_error_steps"));

@@ -469,7 +469,7 @@ TEST_F(HardClusteredLight, OfLightsBetweenTheStepsOfAStair) {
 // Walks that list more lights, and more than once, than a list holds; cut clusters too.
 TEST_F(HardClusteredLight, OfMoreLightsThanAListHolds) {
   const GBuffer gbuffer = wavySurface(16, 16, 0, random, 0);
-  const Lights lights = lightsIn({-6, 1, -6.5}, {0, 5, -5.5}, 50000, random);
+  const Lights lights = lightsIn({-6, 1, -6.5}, {0, 5, -5.5}, 20000, random);
   const Lit lit = lightBy(deviceWithLanes(16), gbuffer, lights, 1.0f / 512);
   EXPECT_GT(double(lit.counts.lights), 3000.0 * 16 * 16);
   EXPECT_GT(double(lit.counts.clusters), 50.0 * 16 * 16);

@@ -28,8 +28,7 @@ void expectCertified(const std::string& name, Model model, bool highlights, std:
       EXPECT_EQ(check.broken, 0u) << "error / bound " << check.worst << " at " << check.worst_pixel.x << ", "
                                   << check.worst_pixel.y;
       EXPECT_EQ(check.unmet, 0u) << "bound / allowed " << check.largest_bound;
-      // Sums of every light are right to 3e-6: less than this of the smallest error.
-      EXPECT_GT(check.largest_error, 0.0031) << "the picture is as good as exact: nothing was tested";
+      EXPECT_GT(check.largest_error, 0.01) << "the picture is as good as exact: nothing was tested";
     }
   }
 }
