@@ -18,7 +18,7 @@ constexpr std::uint64_t kMaxValues = std::uint64_t(1) << 31;
 // mode can do better on empty pictures. A header that claims more than this is damaged.
 constexpr std::uint64_t kMaxCompression = 65536;
 
-bool sidesOk(glm::i64vec2 size) {
+bool sidesOk(const glm::i64vec2& size) {
   return size.x >= 1 && size.x <= kLargestSide && size.y >= 1 && size.y <= kLargestSide;
 }
 

@@ -26,12 +26,12 @@ ShadowErrors errorsOf(const Scene& scene, ShadowMethod method) {
 
 class HardShadows : public testing::TestWithParam<int> {
  protected:
-  Scene scene_ = makeShadowScenes()[GetParam()];
+  Scene scene = makeShadowScenes()[GetParam()];
 };
 
 TEST_P(HardShadows, AwayFromEdgesMapsAreRightForAllButOneInTwoHundred) {
   for (const ShadowMethod method : {ShadowMethod::kHard, ShadowMethod::kPcf}) {
-    const ShadowErrors errors = errorsOf(scene_, method);
+    const ShadowErrors errors = errorsOf(scene, method);
     EXPECT_GT(errors.lit, 1000);
     EXPECT_GT(errors.dark, 50);
     EXPECT_LE((errors.wrongly_dark + errors.wrongly_lit) * 200, errors.lit + errors.dark);
@@ -39,7 +39,7 @@ TEST_P(HardShadows, AwayFromEdgesMapsAreRightForAllButOneInTwoHundred) {
 }
 
 TEST_P(HardShadows, ExactOnesAreWhatRaysSayEverywhere) {
-  const ShadowErrors errors = errorsOf(scene_, ShadowMethod::kExact);
+  const ShadowErrors errors = errorsOf(scene, ShadowMethod::kExact);
   EXPECT_EQ(errors.wrongly_dark, 0u);
   EXPECT_EQ(errors.wrongly_lit, 0u);
   EXPECT_EQ(errors.wrong_edges, 0u);
