@@ -695,10 +695,11 @@ WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const fl
 }
 
 // position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only. nodes, children, blocks, block_bits,
-// root: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the rotation from view space to the tree's axes; w of the first: the tree's scale. tree_most: the
-// largest |x|, |y|, |z| in the tree. tiles: of the G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each
-// pixel of the tile; 0 for lights that cast no shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers:
-// a number for each entry, with SOFT_EXACT only: of pixels that a light of a size may reach; 0 for other lights.
+// root: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the
+// rotation from view space to the tree's axes; w of the first: the tree's scale. tree_most: the largest |x|, |y|, |z| in the tree. tiles: of the
+// G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no
+// shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT
+// only: of pixels that a light of a size may reach; 0 for other lights.
 __kernel void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
                            float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
                            __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
