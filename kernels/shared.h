@@ -132,9 +132,13 @@ SHARED_SIZE(ShadeLight, 112);
 // lie in the leaves of a balanced binary tree whose inner nodes are clusters.
 //
 // A cluster is a column of a row of kClusterSlots: the two children of a node, their four and their eight children come in this order,
-// from slots 0, 2 and 6 on. So one vector tests three levels. Row r belongs to a node whose level is a multiple of 3, and its slots
-// 6 to 13 to the rows 8·r + 1 to 8·r + 8. Row 0 is the root's.
+// from slots 0, 2 and 6 on. So one vector tests three levels. Row 0 is the root's, and has CLUSTER_TOP_LEVELS levels; all others, of which a
+// walk meets most at the tree's bottom, have three. The rows of a level follow each other, after those of the levels above: the nodes of
+// a row's last level have their own rows in the same order, or are leaves.
 enum { kClusterSlots = 16, kRowClusters = 14, kLeafLights = 8 };
+
+// Levels in row 0 of a tree that has so many, 1 or more, below its root.
+#define CLUSTER_TOP_LEVELS(levels) (((levels) + 2) % 3 + 1)
 
 // Fields of a cluster, kClusterSlots floats each; view space, metres. The lights are at δ from the centre, and q is a channel of a light's
 // diffuse colour over its quadratic attenuation. Bounds hold for every channel.

@@ -41,11 +41,17 @@ void setLight(const UnboundedLight& light, float* out) {
   field(kLightMost) = std::max({color.x, color.y, color.z});
 }
 
-/// Rows of a tree of that many levels.
-std::size_t rowCount(unsigned levels) {
-  std::size_t rows = 0;
-  for (unsigned level = 0; level < levels; level += 3) rows = 8 * rows + 1;
-  return rows;
+/// Calls `visit(level, levels, first)` for each level of the tree whose nodes have rows: with the levels that
+/// these have, and the number of the first of the 2^level rows. Returns how many rows there are.
+template <class Visit>
+std::size_t forEachRowLevel(unsigned tree_levels, Visit&& visit) {
+  std::size_t first = 0;
+  for (unsigned level = 0, levels = CLUSTER_TOP_LEVELS(tree_levels); level < tree_levels;
+       level += levels, levels = 3) {
+    visit(level, levels, first);
+    first += std::size_t(1) << level;
+  }
+  return first;
 }
 
 /// Orders order[begin, end) so that each node of the tree below (level, index) holds its part.
@@ -240,23 +246,20 @@ LightClusters buildLightClusters(std::span<const UnboundedLight> lights) {
       }
     }
   });
-  clusters.rows.resize(rowCount(clusters.levels) * kRowFloats);
-  std::size_t first_row = 0;
-  for (unsigned level = 0; level < clusters.levels; level += 3) {
-    const std::size_t rows = std::size_t(1) << level;
-    tbb::parallel_for(std::size_t(0), rows, [&](std::size_t row) {
+  const auto uncounted = [](unsigned, unsigned, std::size_t) {};
+  clusters.rows.resize(forEachRowLevel(clusters.levels, uncounted) * kRowFloats);
+  forEachRowLevel(clusters.levels, [&](unsigned level, unsigned levels, std::size_t first_row) {
+    tbb::parallel_for(std::size_t(0), std::size_t(1) << level, [&](std::size_t row) {
       float* out = &clusters.rows[(first_row + row) * kRowFloats];
       std::fill_n(out, kRowFloats, 0.0f);
-      for (std::size_t below = 1, slot = 0; below <= 3; ++below)
+      for (unsigned below = 1, slot = 0; below <= levels; ++below)
         for (std::size_t i = 0; i < std::size_t(1) << below; ++i, ++slot) {
-          const unsigned at = level + unsigned(below);
-          if (at > clusters.levels) return;
+          const unsigned at = level + below;
           const std::size_t node = (row << below) + i;
           setCluster(planes, clusterBegin(count, at, node), clusterBegin(count, at, node + 1), out + slot);
         }
     });
-    first_row += rows;
-  }
+  });
   return clusters;
 }
 
