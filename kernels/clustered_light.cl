@@ -35,6 +35,8 @@ enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
 enum { kHighlightPixels = 64 };
 // What a bound that no float holds is given as.
 #define LARGEST_BOUND 3e38f
+// Of the allowed error what is accepted of one cluster at most.
+#define MOST_SHARE 0.0625f
 // Of the allowed error what the diffuse light of pixels with highlights may take. The highlights may take the rest.
 #define DIFFUSE_SHARE 0.5f
 
@@ -232,8 +234,9 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
   return worst;
 }
 
-// Errors grow somewhat slower than what is accepted.
-INLINE float next_share(float share, float worst) { return share * min(max(0.7f / worst, 0.125f), 4.0f); }
+// Errors grow somewhat slower than what is accepted. However little groups ask for that are nearly dark, the next one must not need all its tries
+// to come back from there.
+INLINE float next_share(float share, float worst) { return min(share * min(max(0.7f / worst, 0.125f), 4.0f), MOST_SHARE); }
 
 // Sets the diffuse light of a group's pixels in `out`.
 INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float light_error, float *share, float out[6][kTilePixels],

@@ -226,7 +226,7 @@ enum { kPairWords = kTilePixels / 32 };
 
 // kPhongModel …
 #define MODEL_NUMBER(name, typed, shown, meaning) k##name##Model,
-enum { EACH_MODEL(MODEL_NUMBER) };
+enum { EACH_MODEL(MODEL_NUMBER) kModelCount };
 #undef MODEL_NUMBER
 
 enum { kNoFog = 0, kFogLinear = 1, kFogExp = 2, kFogExp2 = 3 };

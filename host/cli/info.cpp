@@ -111,6 +111,7 @@ void addMaterials(const Scene& scene, const SceneInfo& info, Report& report) {
   for (const Material& material : scene.materials) {
     Json& one = materials.emplace_back();
     one["name"] = material.name;
+    if (material.model) one["model"] = modelName(*material.model);
     for (const auto& [use, map] : {std::pair("diffuse_map", material.diffuse_map),
                                    {"emission_map", material.emission_map},
                                    {"alpha_map", material.alpha_map}})
@@ -230,7 +231,7 @@ Report sceneReport(InfoOptions options) {
   addMaterials(scene, info, report);
   addCameras(scene, report);
   addLights(scene, info.lights, report);
-  addLightUses(scene, settings.shade, report);
+  addLightUses(scene, pictureShading(scene, settings), report);
   report.json["ignored_extensions"] = scene.ignored_extensions;
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));

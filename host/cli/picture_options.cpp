@@ -134,8 +134,8 @@ std::vector<int> parseInts(const std::string& text, char separator, std::size_t 
 CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
   return command
       .add_option("--model", options.model,
-                  "how surfaces reflect light: with highlights of (R.V)^n, of (N.H)^n, in flat steps, or as "
-                  "rough ones do")
+                  "how surfaces reflect light whose materials don't say it: with highlights of (R.V)^n, of "
+                  "(N.H)^n, in flat steps, as rough ones do, or as rough matte ones do")
       ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
       ->capture_default_str();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "scene/model.hpp"
@@ -14,7 +15,7 @@ namespace luciole {
 /// that holds, in this order.
 enum class ExactReason : std::uint8_t {
   kNone,         ///< others may stand for it
-  kModel,        ///< the picture's model is neither Phong's nor Blinn's
+  kModel,        ///< not all surfaces have Phong's model, nor have all Blinn's
   kKind,         ///< it is no point light
   kShadow,       ///< it casts a shadow in this picture
   kRange,        ///< its range is finite
@@ -33,8 +34,8 @@ inline constexpr double kFarthestClustered = 1e15;
 
 /// What of a picture decides which of its lights others may stand for.
 struct LightUse {
-  Model model = Model::kPhong;
-  bool shadows = false;  ///< lights cast them that can
+  std::optional<Model> model = Model::kPhong;  ///< none: surfaces have different ones
+  bool shadows = false;                        ///< lights cast them that can
 };
 
 ExactReason exactReason(const Light& light, const LightUse& use);

@@ -52,8 +52,7 @@ struct Fogged {
 };
 
 /// Upper bound of a highlight by `model`. Phong's and Blinn's lobes and the toon model's highlight are at
-/// most
-/// 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) with facets ≥ α²,
+/// most 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) with facets ≥ α²,
 /// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/cook_torrance.clh): 1/(2α³), times the larger of F0 and F90.
 glm::dvec3 largestHighlight(const Material& material, Model model) {
   const glm::dvec3 specular(material.specular);
@@ -72,7 +71,10 @@ Response responseOf(const Scene& scene, const Object& object, Model model) {
   const auto cover = [&](const Material& material) {
     const glm::dvec3 diffuse(material.diffuse);
     const glm::dvec3 ambient = scene.lighting ? glm::dvec3(material.ambient) : diffuse;
-    response.cover({ambient * tint, diffuse * tint, largestHighlight(material, model)});
+    const Model own = material.model.value_or(model);
+    // Oren and Nayar's model gives at most A + B ≤ 1.13 of a light.
+    const double rough = own == Model::kOrenNayar ? 1.13 : 1;
+    response.cover({ambient * tint, rough * diffuse * tint, largestHighlight(material, own)});
   };
   if (object.material >= 0) {
     cover(scene.materials[object.material]);

@@ -16,6 +16,8 @@ namespace luciole {
 using Plane = std::vector<float, ArrayAllocator<float>>;
 /// A plane of normals, packed by packNormal().
 using PackedNormals = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
+/// A plane of reflection models: 0 where a surface has the picture's, else modelNumber() of its own.
+using ModelPlane = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
 
 /// Bits 0 to 3 of v, moved to bits 0, 2, 4 and 6.
 constexpr std::size_t everyOtherBit(std::size_t v) {
@@ -49,8 +51,9 @@ struct GBuffer {
   Plane ambient;                   ///< r g b; optional
   Plane emission;                  ///< r g b; optional
   PackedNormals geometric_normal;  ///< the triangle's own, on the side that `normal` was turned to; optional
-  Plane lift;     ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
-  Camera camera;  ///< whose view space this is
+  Plane lift;        ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
+  ModelPlane model;  ///< optional
+  Camera camera;     ///< whose view space this is
   bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
@@ -72,6 +75,7 @@ struct PlaneSet {
   bool emission = false;
   bool geometric_normal = false;
   bool lift = false;
+  bool model = false;
 };
 
 }  // namespace luciole

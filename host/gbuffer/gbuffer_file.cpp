@@ -42,6 +42,7 @@ std::vector<std::string> channelNames(const GBuffer& gbuffer) {
   if (!gbuffer.emission.empty()) addChannels(names, "emission", "RGB");
   if (!gbuffer.geometric_normal.empty()) addChannels(names, "Ng", "XYZ");
   if (!gbuffer.lift.empty()) names.push_back("lift");
+  if (!gbuffer.model.empty()) names.push_back("model");
   return names;
 }
 
@@ -72,6 +73,7 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
                 : glm::vec3(0.0f));
     }
     if (!gbuffer.lift.empty()) values.push_back(gbuffer.lift[at]);
+    if (!gbuffer.model.empty()) values.push_back(float(gbuffer.model[at]));
   }
 }
 

@@ -18,6 +18,8 @@ namespace luciole {
 ///     shininess                  exponent
 ///     Ng.X/Y/Z                   the triangle's own normal, unit, world space; 0 where nothing was hit
 ///     lift                       metres along N to where shadow tests start (see raster/lift.hpp)
+///     model                      modelNumber() of what surfaces choose, where any does: 0 none, 1 phong,
+///                                2 blinn-phong, 3 toon, 4 cook-torrance, 5 oren-nayar
 ///
 /// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC and as our own attributes (see
 /// camera_header.hpp). A crop becomes the data window inside the display window. `format` and `compression`

@@ -190,7 +190,7 @@ class Conversion {
 
   /// A G-buffer of the file's size that shows nothing, with the groups that it will have.
   void makeEmpty(GBuffer& gbuffer) const {
-    constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1 + 1;
+    constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1;
     requireMemory(double(pixels()) * kGroupChannels * sizeof(float), path_);
     gbuffer.width = part_.size.x;
     gbuffer.height = part_.size.y;
@@ -204,7 +204,8 @@ class Conversion {
                     .ambient = true,
                     .emission = found_[Role::kEmission].isThere(),
                     .geometric_normal = found_[Role::kGeometricNormal].isThere(),
-                    .lift = found_[Role::kLift].isThere()},
+                    .lift = found_[Role::kLift].isThere(),
+                    .model = found_[Role::kModel].isThere()},
                    gbuffer);
   }
 
@@ -271,7 +272,8 @@ class Conversion {
     const LayerPlanes diffuse = planes(Role::kDiffuse), ambient = planes(Role::kAmbient),
                       emission = planes(Role::kEmission), shininess = planes(Role::kShininess),
                       specular = shines() ? planes(Role::kSpecular) : LayerPlanes{},
-                      facet = planes(Role::kGeometricNormal), lift = planes(Role::kLift);
+                      facet = planes(Role::kGeometricNormal), lift = planes(Role::kLift),
+                      model = planes(Role::kModel);
     const std::size_t stride = gbuffer.pixels();
     const float kd = request_.albedo ? float(1 / std::numbers::pi) : 1.0f;
     const auto color = [&](const LayerPlanes& layer, std::size_t pixel, glm::vec3 missing) {
@@ -294,8 +296,18 @@ class Conversion {
         if (emission) storePixel(color(emission, pixel, {}), place, stride, gbuffer.emission);
         if (facet) gbuffer.geometric_normal[place] = facetAt(facet, pixel, gbuffer, place);
         if (lift) gbuffer.lift[place] = coefficient(lift, pixel, 0, part_, path_);
+        if (model) gbuffer.model[place] = modelAt(model, pixel);
       }
     });
+  }
+
+  std::uint32_t modelAt(const LayerPlanes& model, std::size_t pixel) const {
+    const float number = coefficient(model, pixel, 0, part_, path_);
+    if (number != std::floor(number) || number > float(std::size(kAllModels)))
+      throw InputError(fmt::format("{}: channel {}: pixel {},{} is {}, expected a model's number, 0 to {}",
+                                   path_, model.names[0], pixel % std::size_t(part_.size.x),
+                                   pixel / std::size_t(part_.size.x), number, std::size(kAllModels)));
+    return std::uint32_t(number);
   }
 
   /// The packed geometric normal of a pixel, view space. What writeGBuffer() wrote is restored to the bit,

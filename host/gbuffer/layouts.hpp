@@ -13,7 +13,7 @@
 // Which channels of a picture file are the planes of a G-buffer: by the names that programs give them.
 namespace luciole {
 
-/// What a layer of a file holds. Three channels each, but depth, shininess and lift.
+/// What a layer of a file holds. Three channels each, but depth, shininess, lift and model.
 enum class Role : std::uint8_t {
   kPosition,
   kNormal,
@@ -25,18 +25,19 @@ enum class Role : std::uint8_t {
   kEmission,
   kGeometricNormal,  ///< the triangle's own
   kLift,             ///< see raster/lift.hpp
+  kModel,            ///< modelNumber() of what surfaces choose
   kViewPosition,     ///< in this program's view space
   kViewNormal,
   kColor,  ///< the picture itself
 };
-inline constexpr std::size_t kRoleCount = 13;
+inline constexpr std::size_t kRoleCount = 14;
 /// In the order of Role, as messages and --channels have them.
 inline constexpr std::array<const char*, kRoleCount> kRoleNames{
-    "position", "normal",           "depth", "diffuse",       "specular",    "shininess", "ambient",
-    "emission", "geometric_normal", "lift",  "view_position", "view_normal", "color"};
+    "position", "normal",           "depth", "diffuse", "specular",      "shininess",   "ambient",
+    "emission", "geometric_normal", "lift",  "model",   "view_position", "view_normal", "color"};
 
 constexpr bool isScalar(Role role) {
-  return role == Role::kDepth || role == Role::kShininess || role == Role::kLift;
+  return role == Role::kDepth || role == Role::kShininess || role == Role::kLift || role == Role::kModel;
 }
 
 /// The space of a file's positions and normals.
@@ -60,6 +61,7 @@ struct Layout {
   const char* emission = "";
   const char* geometric_normal = "";
   const char* lift = "";
+  const char* model = "";
   const char* view_position = "";
   const char* view_normal = "";
   const char* color = "|";              ///< the nameless layer

@@ -32,7 +32,8 @@ void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
       [&] { clear(planes.ambient ? 3 * pixels : 0, gbuffer.ambient); },
       [&] { clear(planes.emission ? 3 * pixels : 0, gbuffer.emission); },
       [&] { clear(planes.geometric_normal ? pixels : 0, gbuffer.geometric_normal); },
-      [&] { clear(planes.lift ? pixels : 0, gbuffer.lift); });
+      [&] { clear(planes.lift ? pixels : 0, gbuffer.lift); },
+      [&] { clear(planes.model ? pixels : 0, gbuffer.model); });
 }
 
 void freePlanes(GBuffer& gbuffer) {
@@ -40,6 +41,7 @@ void freePlanes(GBuffer& gbuffer) {
                        &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift})
     *group = {};
   gbuffer.geometric_normal = {};
+  gbuffer.model = {};
 }
 
 }  // namespace luciole

@@ -45,6 +45,7 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
   if (!gbuffer.emission.empty()) storePixel(glow, place, stride, gbuffer.emission);
   // A vertex belongs to several triangles: its own normal stands for theirs.
   if (!gbuffer.geometric_normal.empty()) gbuffer.geometric_normal[place] = packNormal(normal);
+  if (!gbuffer.model.empty()) gbuffer.model[place] = modelNumber(material.model);
   if (!gbuffer.specular.empty()) {
     storePixel(material.specular, place, stride, gbuffer.specular);
     gbuffer.specular[3 * stride + place] = material.shininess;

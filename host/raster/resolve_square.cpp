@@ -80,6 +80,7 @@ void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, st
   if (!gbuffer.geometric_normal.empty())
     store(values.geometric_normal, drawn, whole, gbuffer.geometric_normal.data() + place);
   if (!gbuffer.lift.empty()) store(values.lift, drawn, whole, gbuffer.lift.data() + place);
+  if (!gbuffer.model.empty()) store(values.model, drawn, whole, gbuffer.model.data() + place);
 }
 
 /// Asks for the cache lines of a group of planes that store() will write. (GCC takes a function that only

@@ -204,8 +204,8 @@ void toPlane(const ViewPlane& plane, SquarePlace& place) {
 }
 
 ResolveInput resolveInput(const SampledView& sampled) {
-  return {sampled.scene,   sampled.objects,       sampled.plane,
-          sampled.shading, sampled.vertex_colors, sampled.planes.lift};
+  return {sampled.scene,         sampled.objects,     sampled.plane,       sampled.shading,
+          sampled.vertex_colors, sampled.planes.lift, sampled.planes.model};
 }
 
 /// Groups the samples of a part of a strip, resolves the pixels' first points, and appends the others to

@@ -285,6 +285,8 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   normalize(normal, seen.facing_normal, values.normal);
   setLift(seen, weights, normal, values.lift);
   values.geometric_normal.fill(seen.geometric_normal);
+  values.has_models = input.models;
+  if (input.models) values.model.fill(modelNumber(surface.material->model));
   setMaterial(input, seen, weights, values);
   if (seen.mapped) setMaps(input, seen, crossing, weights, sees_it, values);
   return values;
@@ -299,6 +301,7 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.emission, sees_it, out.emission);
   blend(values.geometric_normal, sees_it, out.geometric_normal);
   blend(values.lift, sees_it, out.lift);
+  if (values.has_models) blend(values.model, sees_it, out.model);
   if (!values.mapped && !out.mapped) return;
   out.mapped = true;
   blend(values.reflection_map, sees_it, out.reflection_map);

@@ -18,6 +18,8 @@ struct SquareValues {
   Lanes3<float> emission;
   Lanes<std::uint32_t> geometric_normal;
   Lanes<float> lift;
+  bool has_models = false;     ///< as ResolveInput::models
+  Lanes<std::uint32_t> model;  ///< a ModelPlane's, where has_models
   /// The maps that applyMaps() multiplies in.
   bool mapped = false;                        ///< any pixel has one, or else all below means nothing
   Lanes<const TextureUse*> reflection_map{};  ///< into diffuse and ambient; null: none

@@ -76,6 +76,22 @@ double cookTorrance(const Directions& at, double f0, double shininess) {
   return facetDistribution(n_dot_h, alpha) * masking * fresnel * kPi * n_dot_l;
 }
 
+// M. Oren and S. Nayar, "Generalization of Lambert's Reflectance Model", SIGGRAPH 1994, equation 30, by the
+// angles themselves.
+double orenNayar(const Directions& at, double shininess) {
+  const double cos_l = std::clamp(glm::dot(at.normal, at.to_light), -1.0, 1.0);
+  const double cos_v = std::clamp(glm::dot(at.normal, at.to_eye), -1.0, 1.0);
+  const glm::dvec3 along_l = unitOrZero(at.to_light - cos_l * at.normal),
+                   along_v = unitOrZero(at.to_eye - cos_v * at.normal);
+  const double theta_l = std::acos(cos_l), theta_v = std::acos(cos_v);
+  const double alpha = std::max(theta_l, theta_v), beta = std::min(theta_l, theta_v);
+  const double sigma2 = 1 / (shininess + 2);
+  const double a = 1 - 0.5 * sigma2 / (sigma2 + 0.33), b = 0.45 * sigma2 / (sigma2 + 0.09);
+  // Where a direction is the normal it has no azimuth, but then tan β is 0.
+  const double azimuth = std::max(glm::dot(along_l, along_v), 0.0);
+  return cos_l * (a + b * azimuth * std::sin(alpha) * std::tan(beta));
+}
+
 Reflected reflectedLight(Model model, const Directions& at, const glm::dvec3& specular, double shininess) {
   const double cosine = glm::dot(at.normal, at.to_light);
   switch (model) {
@@ -89,6 +105,8 @@ Reflected reflectedLight(Model model, const Directions& at, const glm::dvec3& sp
       return {cosine,
               {cookTorrance(at, specular.r, shininess), cookTorrance(at, specular.g, shininess),
                cookTorrance(at, specular.b, shininess)}};
+    case Model::kOrenNayar:
+      return {orenNayar(at, shininess), specular * phongLobe(at, shininess)};
   }
   throw std::logic_error("a model without a reference");
 }

@@ -31,6 +31,9 @@ Reflected reflectedLight(Model model, const Directions& directions, const glm::d
 double toonTone(double cosine);
 double toonHighlight(double lobe);
 
+/// The Oren-Nayar model's diffuse part, N·L included, for N·L > 0. The roughness is σ² = 1/(shininess + 2).
+double orenNayar(const Directions& directions, double shininess);
+
 /// The Cook-Torrance model's specular part, N·L included. f0: a channel of the specular colour.
 double cookTorrance(const Directions& directions, double f0, double shininess);
 

@@ -111,7 +111,8 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
     visibility = [&](const Light& light) {
       return lightVisibility(*settings.shadow_rays, light, start, settings.shadow_samples, seed);
     };
-  const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, settings.model, visibility);
+  const Model model = modelOfNumber(gbuffer.model.empty() ? 0 : gbuffer.model[place], settings.model);
+  const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, model, visibility);
   return settings.fog ? referenceFog(scene.fog, gbuffer.camera, point.position, radiance) : radiance;
 }
 

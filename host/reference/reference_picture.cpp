@@ -12,7 +12,8 @@ std::vector<glm::vec3> lightVertices(const Scene& scene, const std::vector<std::
                                      const View& view, const ReferenceSettings& settings) {
   ReferenceSettings clear = settings;
   clear.fog = false;
-  const GBuffer vertices = gatherVertices(scene, objects, view, {true, true, true});
+  const GBuffer vertices = gatherVertices(
+      scene, objects, view, {.specular = true, .ambient = true, .emission = true, .model = true});
   const std::vector<glm::ivec2> places = allPixels({vertices.width, vertices.height});
   const std::vector<glm::dvec3> colors = referencePixels(scene, vertices, places, clear);
   std::vector<glm::vec3> of_vertex(vertices.pixels());
@@ -33,8 +34,11 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
     sample_view.sample = samplePoint(sample, samples);
-    const PlaneSet planes{
-        .specular = true, .ambient = true, .emission = true, .lift = settings.shadow_rays != nullptr};
+    const PlaneSet planes{.specular = true,
+                          .ambient = true,
+                          .emission = true,
+                          .lift = settings.shadow_rays != nullptr,
+                          .model = true};
     const GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
     ReferenceSettings of_sample = settings;
     if (settings.on_progress)

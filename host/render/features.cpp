@@ -48,6 +48,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
     {"CLUSTERED_LIGHTS", "clustered lights", "clusters that stand for lights, with a bound of the error"},
     {"CLUSTERED_HIGHLIGHTS", "clustered highlights", "highlights of clusters that stand for lights"},
+    {"MATERIAL_MODELS", "material models", "surfaces with models of their own"},
 }};
 
 std::vector<std::string> featureNames(const FeatureSet& features) {
@@ -66,7 +67,17 @@ SurfaceTraits materialTraits(const Scene& scene) {
   const bool shadows =
       std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; });
   traits.smooth = shadows && hasBentCorners(scene);
+  traits.models = modelChoices(scene);
   return traits;
+}
+
+void chooseModel(const ModelChoices& choices, ShadeSettings& settings) {
+  ModelChoices models = choices;  // with the picture's in the place of none
+  if (models[0]) models.set(modelNumber(settings.model));
+  models.reset(0);
+  settings.material_models = models.count() > 1;
+  for (const Model model : kAllModels)
+    if (models.count() == 1 && models[modelNumber(model)]) settings.model = model;
 }
 
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings) {
@@ -78,7 +89,8 @@ ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& 
 }
 
 LightUse lightUse(const ShadeSettings& settings) {
-  return {settings.model, settings.shadows != ShadowMethod::kOff};
+  return {settings.material_models ? std::nullopt : std::optional(settings.model),
+          settings.shadows != ShadowMethod::kOff};
 }
 
 bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
@@ -163,7 +175,12 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
   features.set(Feature::kSpecular, surfaces.specular && any_specular);
-  features.set(featureOf(settings.model), !scene.lights.empty());
+  const bool lit = !scene.lights.empty();
+  if (!settings.material_models || surfaces.models[0]) features.set(featureOf(settings.model), lit);
+  if (settings.material_models)
+    for (const Model model : kAllModels)
+      if (surfaces.models[modelNumber(model)]) features.set(featureOf(model), lit);
+  features.set(Feature::kMaterialModels, settings.material_models && lit);
   features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
   features.set(Feature::kLongSums, summed > kSumBlock);
   // What clusters give a pixel reaches the shading kernels as light that the surface emits.
@@ -202,11 +219,13 @@ FeatureSet clusterFeatures(const FeatureSet& features) {
 }
 
 PlaneSet neededPlanes(const FeatureSet& features) {
-  return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights),
+  return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights) ||
+                      features.has(Feature::kOrenNayar),  // for the shininess
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
           .geometric_normal = features.shadowMaps(),
-          .lift = features.has(Feature::kLift)};
+          .lift = features.has(Feature::kLift),
+          .model = features.has(Feature::kMaterialModels)};
 }
 
 std::string featureDefines(const FeatureSet& features) {

@@ -50,6 +50,7 @@ enum class Feature : unsigned {
   kOutputShadow,
   kClusteredLights,
   kClusteredHighlights,
+  kMaterialModels,
   kCount
 };
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::kCount);
@@ -83,7 +84,8 @@ std::vector<std::string> featureNames(const FeatureSet& features);
 struct SurfaceTraits {
   bool specular = false;
   bool emission = false;
-  bool smooth = false;  ///< shadow tests start above facets (raster/lift.hpp)
+  bool smooth = false;     ///< shadow tests start above facets (raster/lift.hpp)
+  ModelChoices models{1};  ///< that they choose
 };
 /// The traits of a scene's materials and meshes. `smooth` is set only if a light casts shadows.
 SurfaceTraits materialTraits(const Scene& scene);
@@ -99,7 +101,9 @@ constexpr bool isModel(Feature feature) {
 
 /// How to light a G-buffer, apart from what the scene says.
 struct ShadeSettings {
-  Model model = Model::kPhong;
+  Model model = Model::kPhong;  ///< of surfaces that choose none
+  /// Surfaces have different models: G-buffers say which (GBuffer::model). See chooseModel().
+  bool material_models = false;
   Culling culling = Culling::kTiles;
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;
@@ -119,6 +123,9 @@ struct ShadeSettings {
   /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
   bool always_clusters = false;
 };
+
+/// Sets the model of a picture whose surfaces choose these: the one that all have, or `material_models`.
+void chooseModel(const ModelChoices& choices, ShadeSettings& settings);
 
 /// Who tells of a light's shadows in a picture with these settings. light: its index in the scene.
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings);

@@ -348,8 +348,11 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   Plane level;  // lifts of 0, for a G-buffer without lifts
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);
   const Plane& lift = level.empty() ? gbuffer.lift : level;
+  ModelPlane of_picture;  // the picture's model, for a G-buffer without models
+  if (features.has(Feature::kMaterialModels) && gbuffer.model.empty()) of_picture.resize(pixels);
+  const ModelPlane& model = of_picture.empty() ? gbuffer.model : of_picture;
   Plane emission;  // with the light of clusters
-  GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, lighting.unlit);
+  GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, model, lighting.unlit);
   LitPlanes lit;
   lit.color = std::move(used);
   const bool together = needsNoLists(device, lighting, features, counts);
@@ -425,7 +428,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
           [&] { countLights(device, lighting, culled ? &lists : nullptr, gbuffer, buffers, missing, lit); });
   const std::size_t planes = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             geometric_normal.size() + lift.size() + emission.size() +
+                             geometric_normal.size() + lift.size() + model.size() + emission.size() +
                              lit.light_error.size() + lit.color.size();
   stats.device_bytes =
       std::max(stats.device_bytes, planes * sizeof(float) + lighting.bytes + lists.bytes +

@@ -418,6 +418,15 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
   return cut;
 }
 
+/// The models that surfaces choose.
+ModelChoices modelChoices(const GBuffer& gbuffer) {
+  ModelChoices choices;
+  if (gbuffer.model.empty()) choices.set(0);
+  for (std::size_t i = 0; i < gbuffer.model.size(); ++i)
+    if (std::isfinite(gbuffer.position[i + 2 * gbuffer.pixels()])) choices.set(gbuffer.model[i]);
+  return choices;
+}
+
 /// Whether any pixel reflects specular light.
 bool anyShines(const GBuffer& gbuffer) {
   const auto colors = std::ptrdiff_t(gbuffer.specular.empty() ? 0 : 3 * gbuffer.pixels());
@@ -430,6 +439,7 @@ bool anyShines(const GBuffer& gbuffer) {
 ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings) {
   ShadeSettings shade = settings.shade;
   shade.shadow_layer = wants(settings, Aov::kShadow);
+  chooseModel(modelChoices(scene), shade);
   if (shade.shadows != ShadowMethod::kAuto || !shade.shadow_ways.empty() || !scene.lighting) return shade;
   const double points = shadedPoints(scene, settings.size, settings.samples, sharesSamples(settings));
   shade.shadow_ways =
@@ -566,8 +576,9 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   RasterCounts triangles;
   GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
     const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
-    return rasterize(scene, objects, view, settings.shading, {true, true, true, true, smooth}, vertex_colors,
-                     &triangles);
+    const bool models = surfaces.models.to_ulong() > 1;
+    return rasterize(scene, objects, view, settings.shading, {true, true, true, true, smooth, models},
+                     vertex_colors, &triangles);
   });
   gbuffer.camera = settings.camera;
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
@@ -586,8 +597,11 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   one_sample.samples = 1;
   one_sample.camera = gbuffer.camera;
   one_sample.size = gbuffer.picture_size;
-  const ShadeSettings shade = pictureShading(scene, one_sample);
-  const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
+  const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
+                               modelChoices(gbuffer)};
+  ShadeSettings shade = pictureShading(scene, one_sample);
+  shade.model = settings.shade.model;
+  chooseModel(surfaces.models, shade);
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   const FeatureSet features =
       neededFeatures(scene, gbuffer.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));

@@ -5,7 +5,7 @@
 namespace luciole {
 
 GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
-                               const Plane& lift, bool unlit) {
+                               const Plane& lift, const ModelPlane& model, bool unlit) {
   // A single buffer for both: OpenCL leaves two buffers in the same host memory undefined.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
   return {.position = borrowed(device, gbuffer.position),
@@ -15,6 +15,7 @@ GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const Pac
           .ambient = unlit ? diffuse : borrowed(device, gbuffer.ambient),
           .emission = borrowed(device, gbuffer.emission),
           .geometric_normal = borrowed(device, geometric_normal),
+          .model = borrowed(device, model),
           .lift = borrowed(device, lift)};
 }
 
@@ -34,6 +35,7 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
           {"emission", gbuffer.emission},
           {"geometric_normal", gbuffer.geometric_normal},
           {"lift", gbuffer.lift},
+          {"model", gbuffer.model},
           {"lights", arguments.lights},
           {"list_starts", arguments.lists.starts},
           {"list", arguments.lists.list},

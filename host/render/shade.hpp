@@ -11,14 +11,14 @@ namespace luciole {
 /// A G-buffer's groups on the device. A group that the G-buffer lacks is a buffer of 16 bytes.
 struct GBufferBuffers {
   Buffer<const float> position, normal, diffuse, specular, ambient, emission;
-  Buffer<const uint> geometric_normal;
+  Buffer<const uint> geometric_normal, model;
   Buffer<const float> lift;
 };
 
 /// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals and the lift given instead of
 /// its own. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
-                               const Plane& lift, bool unlit);
+                               const Plane& lift, const ModelPlane& model, bool unlit);
 
 struct ShadeArguments {
   const ShadeFrame& frame;

@@ -11,6 +11,7 @@
 
 #include "image/texture.hpp"
 #include "scene/animation.hpp"
+#include "scene/model.hpp"
 
 namespace luciole {
 
@@ -39,6 +40,7 @@ struct Material {
   float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
   bool double_sided = false;  ///< otherwise back faces are culled
   bool colored_emission = false;  ///< vertex colours multiply the emission too
+  std::optional<Model> model;     ///< how it reflects light; none: as the picture's settings say
 };
 
 /// An indexed triangle mesh in its own (object) space, metres. All per-vertex arrays have positions.size()
@@ -154,6 +156,9 @@ struct Scene {
   bool lighting = true;      ///< false: every surface shows its emission + diffuse colour unlit
   Animation animation;       ///< what moves: poseScene() sets cameras, lights and objects by it
 };
+
+/// The models that materials choose whose surfaces the scene has. O(triangles) where a material chooses one.
+ModelChoices modelChoices(const Scene& scene);
 
 /// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {

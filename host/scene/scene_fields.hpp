@@ -21,9 +21,9 @@ void withFields(T& use, Visit&& visit) {
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {
   auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
-         alpha_cutoff, double_sided, colored_emission] = material;
+         alpha_cutoff, double_sided, colored_emission, model] = material;
   visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
-        alpha_cutoff, double_sided, colored_emission);
+        alpha_cutoff, double_sided, colored_emission, model);
 }
 template <Is<Mesh> T, class Visit>
 void withFields(T& mesh, Visit&& visit) {

@@ -30,9 +30,10 @@ const std::vector<Needs>& needs() {
       {kAttenuation, {kPointLights, kSpotLights}},
       {kSmoothWindow, {kPointLights, kSpotLights}},
       {kKhrWindow, {kSpotLights, kPointLights}},
-      {kPointLights, {kPhong, kBlinnPhong, kToon, kCookTorrance}},
-      {kDirectionalLights, {kCookTorrance, kToon, kBlinnPhong, kPhong}},
-      {kSpotLights, {kToon, kPhong, kCookTorrance, kBlinnPhong}},
+      {kMaterialModels, {kDirectionalLights, kPointLights, kSpotLights}},
+      {kPointLights, {kPhong, kBlinnPhong, kToon, kCookTorrance, kOrenNayar}},
+      {kDirectionalLights, {kCookTorrance, kToon, kOrenNayar, kBlinnPhong, kPhong}},
+      {kSpotLights, {kToon, kPhong, kOrenNayar, kCookTorrance, kBlinnPhong}},
       {kSpecular, {kPointLights, kDirectionalLights, kSpotLights}},
       {kLightAmbient, {kAmbient}},
       {kLightAmbient, {kSpotLights, kPointLights, kDirectionalLights}},
@@ -262,6 +263,11 @@ void expectSamePicture(const FeatureSet& features) {
   std::vector<Model> models;
   for (const Model model : kAllModels)
     if (features.has(featureOf(model))) models.push_back(model);
+  if (features.has(Feature::kMaterialModels)) {
+    gbuffer.model.resize(gbuffer.pixels());
+    for (std::uint32_t& number : gbuffer.model)
+      number = random.chance(0.2) ? 0 : modelNumber(pick(models, random));
+  }
   expectSamePicture(scene, gbuffer, features, models.empty() ? Model::kPhong : pick(models, random));
 }
 
@@ -321,7 +327,8 @@ TEST(Features, RealScenesLookAsWithAll) {
     gbuffer.camera = scene.cameras[0];
     for (const ShadeSettings& settings :
          {ShadeSettings{}, ShadeSettings{.model = Model::kBlinnPhong, .culling = Culling::kNone},
-          ShadeSettings{.model = Model::kToon}, ShadeSettings{.model = Model::kCookTorrance}})
+          ShadeSettings{.model = Model::kToon}, ShadeSettings{.model = Model::kCookTorrance},
+          ShadeSettings{.model = Model::kOrenNayar}})
       expectSamePicture(scene, gbuffer,
                         neededFeatures(scene, gbuffer.camera, materialTraits(scene), settings),
                         settings.model);

@@ -170,6 +170,25 @@ inline Interval cookTorranceInterval(const glm::dvec3& normal, const WayToLight&
   return (facets * light * eye * color).widened(60 * kUnit);
 }
 
+/// The Oren-Nayar model's diffuse part, A·x + B·max(L·V − x·v, 0)·x/max(x, v) with x = N·L and v = N·V. The
+/// directions' errors are those of the cosines. A and B round 6 times each, and 8 roundings join all.
+inline Interval orenNayarInterval(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye,
+                                  double shininess) {
+  const auto positive = [](double x) { return std::max(x, 0.0); };
+  const Interval x = growing(glm::dot(normal, way.unit), way.error + 6 * kUnit, positive),
+                 v = growing(glm::dot(normal, to_eye), 12 * kUnit, [](double c) { return c; });
+  const double together = glm::dot(way.unit, to_eye), error = way.error + 16 * kUnit;
+  const Interval product{std::min(x.low * v.low, x.high * v.low), std::max(x.low * v.high, x.high * v.high)};
+  const Interval s{positive(together - error - product.high), positive(together + error - product.low)};
+  const Interval share{x.low < v.high ? x.low / v.high
+                       : x.low > 0    ? 1.0
+                                      : 0.0,
+                       x.high < v.low ? x.high / v.low : 1.0};
+  const double sigma2 = 1 / (shininess + 2);
+  const double a = 1 - 0.5 * sigma2 / (sigma2 + 0.33), b = 0.45 * sigma2 / (sigma2 + 0.09);
+  return (x * a + s * share * b).widened(14 * kUnit);
+}
+
 /// Intervals of reflectedLight(): channel f0 of the specular colour.
 struct ReflectedInterval {
   Interval diffuse, specular;
@@ -189,6 +208,9 @@ inline ReflectedInterval reflectedInterval(Model model, const glm::dvec3& normal
               toonInterval(lobe(mirrorCosine(normal, way, to_eye)), toonHighlight) * f0};
     case Model::kCookTorrance:
       return {cosine, cookTorranceInterval(normal, way, to_eye, shininess, f0)};
+    case Model::kOrenNayar:
+      return {orenNayarInterval(normal, way, to_eye, shininess),
+              lobe(mirrorCosine(normal, way, to_eye)) * f0};
   }
   throw std::logic_error("a model without an interval");
 }
@@ -210,7 +232,8 @@ inline Interval fogInterval(const Fog& fog, double density, double distance) {
   return {std::max(result.low - 0x1p-125, 0.0), std::min(result.high, 1 + 4 * kUnit)};
 }
 
-/// The interval of channel `c` of what the eye sees at `place`, a covered pixel, without shadows.
+/// The interval of channel `c` of what the eye sees at `place`, a covered pixel, without shadows. model: of
+/// surfaces that choose none.
 inline Interval shadeInterval(const Scene& scene, const GBuffer& gbuffer, std::size_t place, int c,
                               Model model) {
   const std::size_t n = gbuffer.pixels();
@@ -237,8 +260,9 @@ inline Interval shadeInterval(const Scene& scene, const GBuffer& gbuffer, std::s
       const double cosine = glm::dot(normal, way.unit), error = way.error + 6 * kUnit;
       Interval reflected{0, 0};
       if (cosine + error > 0) {
+        const Model own = modelOfNumber(gbuffer.model.empty() ? 0 : gbuffer.model[place], model);
         const auto [tone, glint] = reflectedInterval(
-            model, normal, way, to_eye, gbuffer.specular[place + 3 * n], triple(gbuffer.specular)[c]);
+            own, normal, way, to_eye, gbuffer.specular[place + 3 * n], triple(gbuffer.specular)[c]);
         const Interval highlight = glint * double(light.specular[c]);
         reflected = tone * (double(light.diffuse[c]) * diffuse) +
                     Interval{cosine - error > 0 ? highlight.low : 0, highlight.high};

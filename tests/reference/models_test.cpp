@@ -78,11 +78,41 @@ TEST(CookTorranceModel, NeverReflectsMoreThanItGetsAndNearlyAllWhereSmooth) {
   EXPECT_NEAR(wholeReflectance(0, 0), 1 - std::numbers::ln2, 1e-4);
 }
 
-TEST(Models, OnlyToonChangesDiffuseLight) {
+// σ² = 1/(n + 2): A = 1 − ½/(1 + 0.33·(n + 2)) and B = 0.45/(1 + 0.09·(n + 2)). Towards the light α = β = θ.
+TEST(OrenNayarModel, IsThePapersFormulaWhereThatIsKnown) {
+  for (const double n : {0.0, 3.0, 100.0}) {
+    const double a = 1 - 0.5 / (1 + 0.33 * (n + 2)), b = 0.45 / (1 + 0.09 * (n + 2));
+    EXPECT_NEAR(orenNayar({kUp, kUp, kUp}, n), a, kRounding) << n;
+    for (const double angle : {0.1, 0.8, 1.5}) {
+      const double s = std::sin(angle), c = std::cos(angle);
+      EXPECT_NEAR(orenNayar({kUp, leaning(angle), leaning(angle)}, n), a * c + b * s * s, kRounding) << n;
+      // Across the normal, and to the side, there is no second term.
+      EXPECT_NEAR(orenNayar({kUp, leaning(angle), leaning(angle, std::numbers::pi)}, n), a * c, kRounding);
+    }
+  }
+}
+
+TEST(OrenNayarModel, IsLambertsWhereSmoothAndLightAndEyeMayChangePlaces) {
+  const glm::dvec3 l = leaning(0.3, 1), v = leaning(1.2, 2);
+  EXPECT_NEAR(orenNayar({kUp, l, v}, 1e12), l.z, 1e-11);
+  EXPECT_NEAR(orenNayar({kUp, l, v}, 1) / l.z, orenNayar({kUp, v, l}, 1) / v.z, kRounding);
+}
+
+TEST(OrenNayarModel, IsAtMostWhatCullingByFogTakesItFor) {
+  for (double n = 0; n < 100; n = 1.1 * n + 0.1)
+    for (double a = 0; a < 1.57; a += 0.05)
+      for (double b = 0; b < 1.57; b += 0.05)
+        EXPECT_LE(orenNayar({kUp, leaning(a), leaning(b)}, n), 1.13) << n << ", " << a << ", " << b;
+}
+
+TEST(Models, OnlyToonAndOrenNayarChangeDiffuseLight) {
   const Directions at{kUp, leaning(1.0), leaning(0.2)};
   for (const Model model : kAllModels) {
     const double diffuse = reflectedLight(model, at, glm::dvec3(0), 10).diffuse;
-    EXPECT_EQ(diffuse, model == Model::kToon ? 0.625 : at.to_light.z) << modelName(model);
+    if (model == Model::kOrenNayar)
+      EXPECT_EQ(diffuse, orenNayar(at, 10));
+    else
+      EXPECT_EQ(diffuse, model == Model::kToon ? 0.625 : at.to_light.z) << modelName(model);
   }
 }
 

@@ -103,6 +103,37 @@ TEST(LightError, PicturesAreWithinTheirBoundsInAllShadingsFogAndEmission) {
     }
 }
 
+// Of nearly dark pixels any cluster is accepted. The groups after them start from what those accepted.
+TEST(LightError, PixelsAfterNearlyDarkOnesAreNotLitLightByLight) {
+  std::string lights;
+  for (int i = 0; i < 20'000; ++i)
+    lights += fmt::format(
+        R"({}{{"type": "point", "position": [{}, {}, {}], "intensity": 0.0002, "attenuation": [0, 0, 1]}})",
+        i ? "," : "", 0.1 * (i % 100) - 5, 1 + 0.1 * (i / 100 % 10), 0.2 * (i / 1000) - 2);
+  const auto lightsOf = [&](const char* dark) {
+    // Bright stripes, each right of a dark one, so that all runs of tiles have both.
+    std::string objects;
+    for (int i = 0; i < 8; ++i)
+      objects += fmt::format(
+          R"({}{{"primitive": "plane", "translate": [{}, 0, 0], "scale": [0.5, 1, 3], "material": "{}"}})",
+          i ? "," : "", i - 3.5, i % 2 ? "bright" : "dark");
+    const Scene scene = sceneFromJson(fmt::format(
+        R"({{"camera": {{"eye": [0, 9, 0], "target": [0, 0, 0], "up": [0, 0, -1], "orthographic": 2}},
+        "materials": {{"dark": {{"diffuse": {0}, "specular": {0}}}, "bright": {{"diffuse": 0.7, "specular": 0.3, "shininess": 20}}}},
+        "objects": [{1}], "lights": [{2}]}})",
+        dark, objects, lights));
+    RenderSettings settings = settingsFor(scene, {256, 128});
+    settings.shade.light_error = 1.0f / 64;
+    settings.shade.always_clusters = true;
+    settings.count_lights = true;
+    Stats stats;
+    renderScene(testDevice(), scene, settings, stats);
+    return double(countOf(stats, "pixel_clustered_lights_evaluated"));
+  };
+  // Black pixels ask for nothing at all.
+  EXPECT_LT(lightsOf("1e-9"), 1.5 * lightsOf("0"));
+}
+
 TEST(LightError, SamplesAreWithinTheMeanOfTheirBounds) {
   const Scene scene = sceneFromJson(manyLights(kEmits, kThickFog));
   for (const auto shading : {SampleShading::kShared, SampleShading::kAll})

@@ -154,11 +154,12 @@ TEST(Property, UnusedFeaturesChangeNothing) {
          const GBuffer gbuffer = gbufferOf(made);
          SurfaceTraits surfaces = materialTraits(made.scene);
          surfaces.smooth = !gbuffer.lift.empty();
-         const FeatureSet needed = neededFeatures(made.scene, settings.camera, surfaces, settings.shade);
+         const ShadeSettings shade = pictureShading(made.scene, settings);
+         const FeatureSet needed = neededFeatures(made.scene, settings.camera, surfaces, shade);
          Lighting lighting;
          Stats stats;
          prepareLighting(testDevice(), made.scene, settings.camera,
-                         cameraView(settings.camera, settings.size), needed, settings.shade, lighting, stats);
+                         cameraView(settings.camera, settings.size), needed, shade, lighting, stats);
          const Plane least =
              lightGBuffer(testDevice(), made.scene, lighting, needed, gbuffer, {}, stats).color;
          const Plane most =

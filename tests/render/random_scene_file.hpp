@@ -26,7 +26,8 @@ struct SceneKind {
 inline constexpr SceneKind kSceneKinds[] = {{false, Model::kPhong, "", false, false},
                                             {true, Model::kBlinnPhong, "linear", false, true},
                                             {false, Model::kToon, "exp2", true, false},
-                                            {false, Model::kCookTorrance, "", false, false}};
+                                            {false, Model::kCookTorrance, "", false, false},
+                                            {false, Model::kOrenNayar, "", false, false}};
 inline constexpr unsigned kFirstFreeSeed = 1'000'000;  ///< from here on anything goes
 
 namespace random_scene_file {
@@ -156,7 +157,8 @@ inline SceneJson randomSceneFile(unsigned seed) {
             std::array{"", "linear", "exp", "exp2"}[random.below(4)], random.chance(0.5), random.chance(0.5)};
   SceneJson scene;
   scene["camera"] = camera(kind.orthographic, random);
-  scene["size"] = {16 + 4 * random.below(20) + int(kind.model), 17 + random.below(38)};
+  constexpr int kModels = std::size(kAllModels);
+  scene["size"] = {kModels * (3 + random.below(16)) + int(kind.model), 17 + random.below(38)};
   scene["background"] = array(random.color());
   if (!free || random.chance(0.7)) scene["ambient"] = array(random.color(0.1) + 0.001);
   if (*kind.fog) {
@@ -165,6 +167,13 @@ inline SceneJson randomSceneFile(unsigned seed) {
   }
   constexpr int kMaterials = 4;
   for (int i = 0; i < kMaterials; ++i) scene["materials"][fmt::format("m{}", i)] = material(random);
+  // Now and then materials choose their models. Of the others, those of one kind do, so that they share a
+  // program.
+  const bool of_their_own = free ? random.chance(0.3) : kind.model == Model::kOrenNayar;
+  for (int i = 0; i < kMaterials && of_their_own; ++i)
+    if (!free || random.chance(0.7))
+      scene["materials"][fmt::format("m{}", i)]["model"] =
+          modelName(kAllModels[free ? random.below(kModels) : 2 * i % kModels]);
   if (!free) {
     scene["materials"]["m0"]["specular"] = {0.3, 0.4, 0.5};
     scene["materials"]["m0"]["emission"] = {0.1, 0.0, 0.2};

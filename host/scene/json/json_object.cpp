@@ -46,9 +46,16 @@ TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene
   return use;
 }
 
+Model readModel(const JsonNode& node) {
+  const std::string name = readText(node);
+  for (const Model model : kAllModels)
+    if (name == modelName(model)) return model;
+  refuse(node, fmt::format("no model \"{}\"; expected \"{}\"", name, fmt::join(kModelNames, "\", \"")));
+}
+
 Material readMaterial(const JsonNode& node, const std::string& folder, Scene& scene) {
   allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
-                   "alpha_map", "alpha", "alpha_cutoff", "double_sided"});
+                   "alpha_map", "alpha", "alpha_cutoff", "double_sided", "model"});
   Material material;
   material.name = node.key;
   if (const auto n = find(node, "diffuse")) material.diffuse = readColor(*n);
@@ -74,6 +81,7 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
   if (const auto n = find(node, "alpha_cutoff"))
     material.alpha_cutoff = static_cast<float>(readNumber(*n, 0, 1));
   if (const auto n = find(node, "double_sided")) material.double_sided = readBool(*n);
+  if (const auto n = find(node, "model")) material.model = readModel(*n);
   return material;
 }
 
