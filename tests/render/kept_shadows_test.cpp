@@ -89,7 +89,7 @@ TEST_P(KeptPictures, AreSoOnADeviceWithMemoryOfItsOwn) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, KeptPictures,
                          testing::Values(ShadowMethod::kHard, ShadowMethod::kPcf, ShadowMethod::kSoft,
-                                         ShadowMethod::kExact, ShadowMethod::kAuto),
+                                         ShadowMethod::kExact, ShadowMethod::kSoftExact, ShadowMethod::kAuto),
                          shadowMethodName);
 
 }  // namespace

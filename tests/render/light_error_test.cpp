@@ -103,6 +103,17 @@ TEST(LightError, PicturesAreWithinTheirBoundsInAllShadingsFogAndEmission) {
     }
 }
 
+TEST(LightError, PicturesWithShadowsOfLightsOfASizeAreWithinTheirBounds) {
+  const Scene scene = sceneFromJson(manyLights(kEmits, kThickFog, R"(,
+     {"type": "directional", "direction": [-1, -2, -1], "intensity": 0.5, "angle": 5, "shadow": true},
+     {"type": "point", "position": [1, 2, 2], "range": 4, "radius": 0.3, "shadow": true})"));
+  for (const ShadowMethod method : {ShadowMethod::kSoftExact, ShadowMethod::kAuto}) {
+    RenderSettings settings = settingsFor(scene, {40, 30});
+    settings.shade.shadows = method;
+    expectWithinBounds(renderBoth(scene, settings));
+  }
+}
+
 // Of nearly dark pixels any cluster is accepted. The groups after them start from what those accepted.
 TEST(LightError, PixelsAfterNearlyDarkOnesAreNotLitLightByLight) {
   std::string lights;
