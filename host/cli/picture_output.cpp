@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -13,6 +14,7 @@
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
+#include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 
 namespace luciole {
@@ -66,8 +68,23 @@ void checkOutput(const PictureOptions& options) {
     throw InputError(fmt::format(
         "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
         options.tone, options.output));
-  if (!aovsOf(options).empty() && outputFormat(options.output, options.format).extension != "exr")
-    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  const std::vector<Aov> aovs = aovsOf(options);
+  if ((!aovs.empty() || options.light_groups) &&
+      outputFormat(options.output, options.format).extension != "exr")
+    throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
+                                 options.light_groups ? "--light-groups" : "--aov", options.output));
+  RenderSettings layers;
+  layers.aovs = aovs;
+  layers.light_groups = options.light_groups;
+  if (wantsLightLayers(layers))
+    for (const auto& [is_given, what] : {std::pair{options.light_error > 0, "--light-error"},
+                                         std::pair{options.shading == "gouraud", "--shading gouraud"}})
+      if (is_given)
+        throw InputError(
+            fmt::format("{}: layers of light add up to the picture only where each light is summed by itself "
+                        "in each pixel; "
+                        "leave out {}",
+                        what, options.light_groups ? "--light-groups" : "these of --aov"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkTraceFile(options);

@@ -158,8 +158,10 @@ void tellNotes(const std::vector<std::string>& notes, bool quiet) {
 void relight(CommandContext& context, RelightOptions& options) {
   const int frame = useFrame(options, "relight");
   checkOutput(options);
-  if (options.add && (options.alpha || !options.aovs.empty()))
-    throw InputError("--add: keeps the picture's own A and makes no other layers, without --alpha or --aov");
+  if (options.add && (options.alpha || options.light_groups || !options.aovs.empty()))
+    throw InputError(
+        "--add: keeps the picture's own A and makes no other layers, without --alpha, --aov or "
+        "--light-groups");
   if (options.albedo && isMeshFile(options.scene))
     throw InputError(
         fmt::format("--albedo: the lights of {} are divided by pi already, as every glTF's", options.scene));

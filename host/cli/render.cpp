@@ -203,8 +203,9 @@ void checkFilmOptions(const RenderOptions& options) {
     throw InputError(fmt::format(
         "{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
         options.output));
-  if (!options.aovs.empty())
-    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  if (!options.aovs.empty() || options.light_groups)
+    throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
+                                 options.light_groups ? "--light-groups" : "--aov", options.output));
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
 }
 
