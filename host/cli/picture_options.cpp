@@ -29,7 +29,7 @@
 namespace luciole {
 namespace {
 
-/// What --aov names, in the order of its help.
+/// What --aov names, in the order of its help; a name may stand for several layers.
 const std::vector<std::pair<std::string, Aov>> kAovs{{"position", Aov::kPosition},
                                                      {"normal", Aov::kNormal},
                                                      {"depth", Aov::kDepth},
@@ -40,6 +40,12 @@ const std::vector<std::pair<std::string, Aov>> kAovs{{"position", Aov::kPosition
                                                      {"specular_light", Aov::kSpecularLight},
                                                      {"emission", Aov::kEmission},
                                                      {"fog", Aov::kFog},
+                                                     {"object_id", Aov::kObjectId},
+                                                     {"material_id", Aov::kMaterialId},
+                                                     {"cryptomatte", Aov::kCryptoObject},
+                                                     {"cryptomatte", Aov::kCryptoMaterial},
+                                                     {"cryptomatte_object", Aov::kCryptoObject},
+                                                     {"cryptomatte_material", Aov::kCryptoMaterial},
                                                      {"light_count", Aov::kLightCount},
                                                      {"list_length", Aov::kListLength},
                                                      {"shadow", Aov::kShadow},
@@ -49,7 +55,8 @@ const std::vector<std::pair<std::string, Aov>> kAovs{{"position", Aov::kPosition
 /// All names of kAovs, with this between them.
 std::string aovNames(const char* separator) {
   std::vector<std::string> names;
-  for (const auto& [name, aov] : kAovs) names.push_back(name);
+  for (const auto& [name, aov] : kAovs)
+    if (names.empty() || names.back() != name) names.push_back(name);
   return fmt::format("{}", fmt::join(names, separator));
 }
 
@@ -387,15 +394,17 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
   std::vector<Aov> aovs;
   if (options.aovs.empty()) return aovs;
   for (const std::string& name : split(options.aovs, ',')) {
-    const auto found =
-        std::find_if(kAovs.begin(), kAovs.end(), [&](const auto& one) { return one.first == name; });
-    if (found == kAovs.end()) {
-      std::vector<std::string> names;
-      for (const auto& [known, aov] : kAovs) names.push_back(known);
-      throw InputError(
-          fmt::format("--aov: '{}' is none of {}{}", name, aovNames(", "), didYouMean(name, names)));
+    bool is_known = false;
+    for (const auto& [known, aov] : kAovs) {
+      if (known != name) continue;
+      is_known = true;
+      if (std::find(aovs.begin(), aovs.end(), aov) == aovs.end()) aovs.push_back(aov);
     }
-    if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
+    if (is_known) continue;
+    std::vector<std::string> names;
+    for (const auto& [known, aov] : kAovs) names.push_back(known);
+    throw InputError(
+        fmt::format("--aov: '{}' is none of {}{}", name, aovNames(", "), didYouMean(name, names)));
   }
   return aovs;
 }

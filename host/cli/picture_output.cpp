@@ -37,6 +37,18 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
                           {"milliseconds", eventMilliseconds(ended - stats.began)}});
 }
 
+/// Throws InputError for a compression that changes `what`.
+void checkLossless(const PictureOptions& options, const std::string& what) {
+  if (options.compression.empty()) return;
+  std::vector<std::string> lossless;
+  for (const ExrCompression& one : kExrCompressions)
+    if (one.is_lossless) lossless.push_back(one.name);
+  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+    throw InputError(
+        fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                    options.compression, what, fmt::join(lossless, ", ")));
+}
+
 }  // namespace
 
 WriteOptions fileOptions(const PictureOptions& options) {
@@ -73,6 +85,9 @@ void checkOutput(const PictureOptions& options) {
       outputFormat(options.output, options.format).extension != "exr")
     throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
                                  options.light_groups ? "--light-groups" : "--aov", options.output));
+  if (std::any_of(aovs.begin(), aovs.end(),
+                  [](Aov aov) { return aov == Aov::kCryptoObject || aov == Aov::kCryptoMaterial; }))
+    checkLossless(options, "Cryptomattes");
   RenderSettings layers;
   layers.aovs = aovs;
   layers.light_groups = options.light_groups;
@@ -92,14 +107,7 @@ void checkOutput(const PictureOptions& options) {
 
 void checkDataOutput(const PictureOptions& options, const std::string& what) {
   checkOutput(options);
-  if (options.compression.empty()) return;
-  std::vector<std::string> lossless;
-  for (const ExrCompression& one : kExrCompressions)
-    if (one.is_lossless) lossless.push_back(one.name);
-  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
-    throw InputError(
-        fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
-                    options.compression, what, fmt::join(lossless, ", ")));
+  checkLossless(options, what);
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,

@@ -23,6 +23,7 @@
 #include "image/film.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
+#include "render/surface_ids.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
@@ -65,6 +66,8 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   const Crop window = windowOf(settings);
   WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
   how.film = film;
+  const Metadata mattes = surfaceIdTexts(scene, settings);
+  how.exr.texts.insert(how.exr.texts.end(), mattes.begin(), mattes.end());
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {

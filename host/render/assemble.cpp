@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "image/cryptomatte.hpp"
 #include "raster/square.hpp"
 
 namespace luciole {
@@ -22,7 +24,8 @@ std::size_t channelOf(const Image& image, const char* name) {
 /// A channel of the finished picture, and where its values are.
 struct Layer {
   std::string name;
-  const float* plane;  ///< in the G-buffer's layout; null: zeros
+  const float* plane;      ///< in the G-buffer's layout; null: filled in later
+  float otherwise = 0.0f;  ///< without a plane
 };
 
 std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group,
@@ -115,7 +118,13 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
       case Aov::kListLength:
       case Aov::kShadow:
       case Aov::kShadingCount:
+      case Aov::kObjectId:
+      case Aov::kMaterialId:
         count += 1;
+        break;
+      case Aov::kCryptoObject:
+      case Aov::kCryptoMaterial:
+        count += 2 * kCryptomatteRanks;
         break;
       case Aov::kAmbient:
       case Aov::kDiffuseLight:
@@ -172,6 +181,18 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
       case Aov::kShadingCount:
         append({{kShadingCount, nullptr}});
         break;
+      case Aov::kObjectId:
+        append({{"object_id", nullptr, -1.0f}});
+        break;
+      case Aov::kMaterialId:
+        append({{"material_id", nullptr, -1.0f}});
+        break;
+      case Aov::kCryptoObject:
+      case Aov::kCryptoMaterial:
+        for (std::string& name :
+             cryptomatteChannels(aov == Aov::kCryptoObject ? kCryptoObject : kCryptoMaterial))
+          append({{std::move(name), nullptr}});
+        break;
       case Aov::kAmbient:
       case Aov::kDiffuseLight:
       case Aov::kSpecularLight:
@@ -190,7 +211,7 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
   if (layers.empty()) return image;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     for (std::size_t c = 0; c < layers.size(); ++c)
-      pixel[first_layer + c] = layers[c].plane ? layers[c].plane[place] : 0.0f;
+      pixel[first_layer + c] = layers[c].plane ? layers[c].plane[place] : layers[c].otherwise;
   });
   return image;
 }

@@ -25,6 +25,7 @@
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
 #include "render/shadow_ways.hpp"
+#include "render/surface_ids.hpp"
 #include "render/uneven_pixels.hpp"
 
 namespace luciole {
@@ -583,6 +584,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   const int bands = (bottom - 1 - origin) / height - (top - origin) / height + 1;
   Progress progress{settings.on_pass, bands * (shared ? 1 : settings.samples)};
   RasterCounts triangles;
+  const MatteIds matte_ids = matteIds(scene, settings);
   View band = view;
   for (int y = top; y < bottom; y += band.crop_size.y) {
     const int end = std::min(origin + ((y - origin) / height + 1) * height, bottom);
@@ -592,6 +594,9 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
                                      {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
     const auto render = shared ? renderSharedSamples : renderAllSamples;
     prepared.used.picture = render(device, scene, settings, prepared, band, triangles, progress, stats);
+    if (wantsSurfaceIds(settings))
+      timed(stats, Stage::kRasterize,
+            [&] { setSurfaceIds(scene, band, settings, matte_ids, prepared.used.picture); });
     take(prepared.used.picture);
   }
   countLightUses(scene, shade, prepared.lighting, stats);

@@ -38,6 +38,11 @@ enum class Aov : std::uint8_t {
   kSpecularLight,
   kEmission,  ///< and the background
   kFog,       ///< the fog's own colour
+  // What renderBands() alone knows, by surface_ids.hpp. Objects and materials are numbered as in the scene.
+  kObjectId,        ///< -1 where nothing is seen
+  kMaterialId,      ///< likewise
+  kCryptoObject,    ///< Cryptomatte: which objects cover how much of the pixel's samples
+  kCryptoMaterial,  ///< the same of materials
 };
 
 /// What of a pixel's samples is shaded.
@@ -54,8 +59,8 @@ struct RenderSettings {
   SampleShading sample_shading = SampleShading::kShared;
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  /// Layers. But for kLightError, kShadingCount and the parts of the light they show the first sample, or the
-  /// point that is shaded for it.
+  /// Layers. But for kLightError, kShadingCount, Cryptomattes and the parts of the light they show the first
+  /// sample, or the point that is shaded for it.
   std::vector<Aov> aovs;
   /// Adds three channels for each group of lights that has any, and three for what no light gives: their sum
   /// is the picture. Neither these nor parts of the light go with ShadeSettings::light_error, which is

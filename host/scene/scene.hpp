@@ -61,7 +61,8 @@ struct Mesh {
 struct Object {
   std::uint32_t mesh = 0;
   glm::dmat4 object_to_world{1.0};
-  int material = -1;  ///< replaces the material of every triangle of the mesh, unless -1
+  int material = -1;      ///< replaces the material of every triangle of the mesh, unless -1
+  std::string name = {};  ///< may be empty, or that of several
 };
 
 enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };

@@ -32,8 +32,8 @@ void withFields(T& mesh, Visit&& visit) {
 }
 template <Is<Object> T, class Visit>
 void withFields(T& object, Visit&& visit) {
-  auto& [mesh, object_to_world, material] = object;
-  visit(mesh, object_to_world, material);
+  auto& [mesh, object_to_world, material, name] = object;
+  visit(mesh, object_to_world, material, name);
 }
 template <Is<Light> T, class Visit>
 void withFields(T& light, Visit&& visit) {

@@ -33,7 +33,8 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
     {"Fog",
      R"({"ambient": 1, "fog": {"mode": "exp2", "density": [0.1, 0.2, 0.3], "color": 0.5, "distance": "depth"}})"},
     {"LinearFog", R"({"ambient": 1, "fog": {"mode": "linear"}})"},
-    {"Defaults", R"({"fog": {"mode": "exp"}, "objects": [{"primitive": "torus", "segments": 4}],
+    {"Defaults",
+     R"({"fog": {"mode": "exp"}, "objects": [{"name": "a name", "primitive": "torus", "segments": 4}],
       "lights": [{"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0]}],
       "light_fields": [{"count": 2, "shape": "surface"}]})"},
     {"Materials", R"({"ambient": 1, "materials": {

@@ -162,7 +162,7 @@ void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Sc
     const std::uint32_t mesh = static_cast<std::uint32_t>(meshes[index]);
     // A scale of 0 hides an object. What moves may have it for a while, and is kept.
     if (placed.moving < 0 && isFlat(placed.to_world)) continue;
-    scene.objects.push_back({mesh, placed.to_world, -1});
+    scene.objects.push_back({mesh, placed.to_world, -1, model.file.nodes[placed.node].name});
     if (placed.moving < 0) continue;
     attach(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
                    static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
