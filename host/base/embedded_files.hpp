@@ -20,6 +20,9 @@ const std::vector<EmbeddedFile>& yardstickKernels();
 /// The files of host/scale/page/, of which experimentPage makes its page.
 const std::vector<EmbeddedFile>& pageFiles();
 
+/// The files of host/cli/mix_page/, of which mixPage makes its page.
+const std::vector<EmbeddedFile>& mixPageFiles();
+
 /// The text of the file of that name. Throws std::logic_error if there is none.
 std::string_view embeddedText(const std::vector<EmbeddedFile>& files, std::string_view name);
 

@@ -64,6 +64,9 @@ const Terms kManualExamples{
      "luciole shade surfaces.exr --scene scene.json --exposure 1 -o brighter.png"},
     {"Another program's picture, lit again by its layers:",
      "luciole relight surfaces.exr --lights scene.json -o again.png"},
+    {"Groups of lights weighed anew, without shading:",
+     "luciole render scene.json --light-groups -o groups.exr\n"
+     "luciole mix groups.exr --light-mixer rest=0.5 -o mixed.png"},
     {"A thousand lights in what the camera sees:",
      "luciole generate lights scene.json --count 1000 -o many.json\n"
      "luciole render many.json -o many.png"}};

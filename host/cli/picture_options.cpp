@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/threads.hpp"
@@ -29,11 +29,36 @@
 namespace luciole {
 namespace {
 
-const std::map<std::string, Aov> kAovs{
-    {"position", Aov::kPosition},         {"normal", Aov::kNormal},     {"depth", Aov::kDepth},
-    {"diffuse", Aov::kDiffuse},           {"material", Aov::kMaterial}, {"light_count", Aov::kLightCount},
-    {"list_length", Aov::kListLength},    {"shadow", Aov::kShadow},     {"light_error", Aov::kLightError},
-    {"shading_count", Aov::kShadingCount}};
+/// What --aov names, in the order of its help; a name may stand for several layers.
+const std::vector<std::pair<std::string, Aov>> kAovs{{"position", Aov::kPosition},
+                                                     {"normal", Aov::kNormal},
+                                                     {"depth", Aov::kDepth},
+                                                     {"diffuse", Aov::kDiffuse},
+                                                     {"material", Aov::kMaterial},
+                                                     {"ambient", Aov::kAmbient},
+                                                     {"diffuse_light", Aov::kDiffuseLight},
+                                                     {"specular_light", Aov::kSpecularLight},
+                                                     {"emission", Aov::kEmission},
+                                                     {"fog", Aov::kFog},
+                                                     {"object_id", Aov::kObjectId},
+                                                     {"material_id", Aov::kMaterialId},
+                                                     {"cryptomatte", Aov::kCryptoObject},
+                                                     {"cryptomatte", Aov::kCryptoMaterial},
+                                                     {"cryptomatte_object", Aov::kCryptoObject},
+                                                     {"cryptomatte_material", Aov::kCryptoMaterial},
+                                                     {"light_count", Aov::kLightCount},
+                                                     {"list_length", Aov::kListLength},
+                                                     {"shadow", Aov::kShadow},
+                                                     {"light_error", Aov::kLightError},
+                                                     {"shading_count", Aov::kShadingCount}};
+
+/// All names of kAovs, with this between them.
+std::string aovNames(const char* separator) {
+  std::vector<std::string> names;
+  for (const auto& [name, aov] : kAovs)
+    if (names.empty() || names.back() != name) names.push_back(name);
+  return fmt::format("{}", fmt::join(names, separator));
+}
 
 std::vector<std::string> compressionNames() {
   std::vector<std::string> names(kPngCompressions.begin(), kPngCompressions.end());
@@ -184,9 +209,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             "what of a pixel's samples is shaded: a point for those that see the same surface, or all")
         ->check(oneOf({"shared", "all"}))
         ->capture_default_str();
-  if (groups & kModelOptions) {
-    addModelOption(command, options);
-    if (is_one_picture)
+  if (groups & kModelOptions) addModelOption(command, options);
+  if (groups & (kModelOptions | kColorOptions)) {
+    if (is_one_picture && (groups & kModelOptions))
       command
           .add_option("--exposure", options.exposure,
                       "stops: colours times 2^STOPS; or auto: what brings the picture's mean to middle grey, "
@@ -216,10 +241,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
       command.add_flag("--half", options.half,
                        "an EXR's colours as 16-bit floats: half the size, each within 2^-11 of itself or, if "
                        "below 2^-14, within 2^-25; at most 65504; positions, depths and counts keep 32 bits");
-      command.add_flag(
-          "--alpha", options.alpha,
-          "no background, and a channel A: the share of a pixel's samples that show a surface; "
-          "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
+      if (groups & kModelOptions)
+        command.add_flag(
+            "--alpha", options.alpha,
+            "no background, and a channel A: the share of a pixel's samples that show a surface; "
+            "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
     }
   }
   if (groups & kShadeOptions) {
@@ -274,14 +300,16 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             },
             ""))
         ->default_str("0");
-    if (is_one_picture)
-      command.add_option(
-          "--aov", options.aovs,
-          "extra layers of an EXR: "
-          "position,normal,depth,diffuse,material,light_count,list_length,shadow,light_error,shading_count");
+    if (is_one_picture) {
+      command.add_flag(
+          "--light-groups", options.light_groups,
+          "extra layers of an EXR, whose sum is the picture: light_groups.NAME of the lights of each "
+          "group, light_groups.rest of all that no light gives; luciole mix weighs them anew");
+      command.add_option("--aov", options.aovs, "extra layers of an EXR: " + aovNames(","));
+    }
   }
   if (groups & kCastOption) addCastShadowsOption(command, options);
-  addMissingTexturesOption(command, options.missing_textures);
+  if (!(groups & kColorOptions)) addMissingTexturesOption(command, options.missing_textures);
   if (groups & kFrameOption)
     command.add_option(
         "--frames", options.frames,
@@ -289,7 +317,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
   if (groups & kDeviceOption)
     command.add_option("--device", options.device,
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
-  if (is_one_picture) {
+  if (is_one_picture && !(groups & kColorOptions)) {
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
     addTraceOption(command, options.trace);
   }
@@ -366,19 +394,22 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
   std::vector<Aov> aovs;
   if (options.aovs.empty()) return aovs;
   for (const std::string& name : split(options.aovs, ',')) {
-    const auto found = kAovs.find(name);
-    if (found == kAovs.end()) {
-      std::vector<std::string> names;
-      for (const auto& [known, aov] : kAovs) names.push_back(known);
-      throw InputError(
-          fmt::format("--aov: '{}' is none of position, normal, depth, diffuse, material, light_count, "
-                      "list_length, shadow, light_error, shading_count{}",
-                      name, didYouMean(name, names)));
+    bool is_known = false;
+    for (const auto& [known, aov] : kAovs) {
+      if (known != name) continue;
+      is_known = true;
+      if (std::find(aovs.begin(), aovs.end(), aov) == aovs.end()) aovs.push_back(aov);
     }
-    if (std::find(aovs.begin(), aovs.end(), found->second) == aovs.end()) aovs.push_back(found->second);
+    if (is_known) continue;
+    std::vector<std::string> names;
+    for (const auto& [known, aov] : kAovs) names.push_back(known);
+    throw InputError(
+        fmt::format("--aov: '{}' is none of {}{}", name, aovNames(", "), didYouMean(name, names)));
   }
   return aovs;
 }
+
+float exposureOf(const PictureOptions& options) { return float(exposureStops(options.exposure).value_or(0)); }
 
 Model modelOf(const PictureOptions& options) {
   std::size_t model = 0;  // one of them it is: the option's check lets no other name through
@@ -419,7 +450,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;
   settings.aovs = aovsOf(options);
-  settings.exposure = float(exposureStops(options.exposure).value_or(0));
+  settings.light_groups = options.light_groups;
+  settings.exposure = exposureOf(options);
   settings.count_lights = !options.stats.empty();
   return settings;
 }

@@ -36,6 +36,7 @@ struct PictureOptions {
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   int shadow_size = ShadowLimits{}.size;
   std::string aovs;
+  bool light_groups = false;
   std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
   std::string dither = "on";
   std::string tone = "clip";
@@ -59,11 +60,14 @@ enum OptionGroup : unsigned {
   kModelOptions = 4,  ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
   kShadeOptions =
       8,  ///< --culling, --tile, --shadows, --soft-samples, --pcf-width, --shadow-memory, --shadow-size,
-          ///< --light-error, --aov;
+          ///< --light-error, --light-groups, --aov;
           ///< with kSampleOption also --samples-shading
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
+  kColorOptions =
+      256,  ///< instead of all others, for pictures that aren't of a scene: what a file holds of
+            ///< colours (--exposure in stops, --dither, --tone, --bits, --half), without --stats and --trace
   kManyPictures = 64,  ///< for many files, so without options about one: -o, --format, --dither, --crop ...,
                        ///< and with stops alone for --exposure
 };
@@ -93,6 +97,9 @@ Scene openLitScene(const std::string& path, double frame, const PictureOptions& 
 
 /// The layers that --aov names, each once. Throws InputError.
 std::vector<Aov> aovsOf(const PictureOptions& options);
+
+/// The stops that --exposure names; 0 for auto and without it.
+float exposureOf(const PictureOptions& options);
 
 /// The model that --model names.
 Model modelOf(const PictureOptions& options);

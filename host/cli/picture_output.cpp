@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -13,6 +14,7 @@
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
+#include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 
 namespace luciole {
@@ -33,6 +35,18 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
                           {"triangles", stats.triangles},
                           {"lights", stats.lights},
                           {"milliseconds", eventMilliseconds(ended - stats.began)}});
+}
+
+/// Throws InputError for a compression that changes `what`.
+void checkLossless(const PictureOptions& options, const std::string& what) {
+  if (options.compression.empty()) return;
+  std::vector<std::string> lossless;
+  for (const ExrCompression& one : kExrCompressions)
+    if (one.is_lossless) lossless.push_back(one.name);
+  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+    throw InputError(
+        fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                    options.compression, what, fmt::join(lossless, ", ")));
 }
 
 }  // namespace
@@ -66,8 +80,26 @@ void checkOutput(const PictureOptions& options) {
     throw InputError(fmt::format(
         "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
         options.tone, options.output));
-  if (!aovsOf(options).empty() && outputFormat(options.output, options.format).extension != "exr")
-    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  const std::vector<Aov> aovs = aovsOf(options);
+  if ((!aovs.empty() || options.light_groups) &&
+      outputFormat(options.output, options.format).extension != "exr")
+    throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
+                                 options.light_groups ? "--light-groups" : "--aov", options.output));
+  if (std::any_of(aovs.begin(), aovs.end(),
+                  [](Aov aov) { return aov == Aov::kCryptoObject || aov == Aov::kCryptoMaterial; }))
+    checkLossless(options, "Cryptomattes");
+  RenderSettings layers;
+  layers.aovs = aovs;
+  layers.light_groups = options.light_groups;
+  if (wantsLightLayers(layers))
+    for (const auto& [is_given, what] : {std::pair{options.light_error > 0, "--light-error"},
+                                         std::pair{options.shading == "gouraud", "--shading gouraud"}})
+      if (is_given)
+        throw InputError(
+            fmt::format("{}: layers of light add up to the picture only where each light is summed by itself "
+                        "in each pixel; "
+                        "leave out {}",
+                        what, options.light_groups ? "--light-groups" : "these of --aov"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkTraceFile(options);
@@ -75,14 +107,7 @@ void checkOutput(const PictureOptions& options) {
 
 void checkDataOutput(const PictureOptions& options, const std::string& what) {
   checkOutput(options);
-  if (options.compression.empty()) return;
-  std::vector<std::string> lossless;
-  for (const ExrCompression& one : kExrCompressions)
-    if (one.is_lossless) lossless.push_back(one.name);
-  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
-    throw InputError(
-        fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
-                    options.compression, what, fmt::join(lossless, ", ")));
+  checkLossless(options, what);
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,

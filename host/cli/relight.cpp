@@ -25,6 +25,7 @@
 #include "image/exposure.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
+#include "render/surface_ids.hpp"
 #include "scene/json/mesh_file.hpp"
 
 namespace luciole {
@@ -116,6 +117,16 @@ Image sumOf(Image picture, const Image& light) {
   return picture;
 }
 
+/// Throws InputError for layers of --aov that a file of surfaces doesn't know.
+void refuseSurfaceIds(const PictureOptions& options) {
+  RenderSettings layers;
+  layers.aovs = aovsOf(options);
+  if (wantsSurfaceIds(layers))
+    throw InputError(
+        "--aov: a G-buffer knows no objects and materials; render makes object_id, material_id and "
+        "cryptomatte");
+}
+
 /// Lights surfaces and writes the picture. picture: that to which light is added, or empty.
 void lightAndWrite(CommandContext& context, const PictureOptions& options, const Scene& scene,
                    const std::string& scene_path, const GBuffer& gbuffer, Image picture, int frame,
@@ -158,8 +169,11 @@ void tellNotes(const std::vector<std::string>& notes, bool quiet) {
 void relight(CommandContext& context, RelightOptions& options) {
   const int frame = useFrame(options, "relight");
   checkOutput(options);
-  if (options.add && (options.alpha || !options.aovs.empty()))
-    throw InputError("--add: keeps the picture's own A and makes no other layers, without --alpha or --aov");
+  refuseSurfaceIds(options);
+  if (options.add && (options.alpha || options.light_groups || !options.aovs.empty()))
+    throw InputError(
+        "--add: keeps the picture's own A and makes no other layers, without --alpha, --aov or "
+        "--light-groups");
   if (options.albedo && isMeshFile(options.scene))
     throw InputError(
         fmt::format("--albedo: the lights of {} are divided by pi already, as every glTF's", options.scene));
@@ -191,6 +205,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);
+    refuseSurfaceIds(*options);
     Stats stats;
     stats.command = context.command_line;
     startDevice(options->device, context.device);

@@ -23,6 +23,7 @@
 #include "image/film.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
+#include "render/surface_ids.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
@@ -65,6 +66,8 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   const Crop window = windowOf(settings);
   WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
   how.film = film;
+  const Metadata mattes = surfaceIdTexts(scene, settings);
+  how.exr.texts.insert(how.exr.texts.end(), mattes.begin(), mattes.end());
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {
@@ -203,8 +206,9 @@ void checkFilmOptions(const RenderOptions& options) {
     throw InputError(fmt::format(
         "{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
         options.output));
-  if (!options.aovs.empty())
-    throw InputError(fmt::format("--aov: {} cannot hold layers, an .exr can", options.output));
+  if (!options.aovs.empty() || options.light_groups)
+    throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
+                                 options.light_groups ? "--light-groups" : "--aov", options.output));
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
 }
 

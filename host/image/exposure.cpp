@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <vector>
+
+#include "image/light_names.hpp"
 
 namespace luciole {
 namespace {
@@ -73,8 +74,7 @@ void expose(Image& image, double stops) {
   const float scale = std::exp2(float(stops));
   const std::size_t channels = image.channels.size();
   for (std::size_t c = 0; c < channels; ++c) {
-    const std::string& name = image.channels[c];
-    if (name != "R" && name != "G" && name != "B") continue;
+    if (!isLightChannel(image.channels[c])) continue;
     for (std::size_t i = c; i < image.pixels.size(); i += channels)
       image.pixels[i] = std::clamp(image.pixels[i] * scale, -kLargest, kLargest);
   }

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/write_file.hpp"
+#include "image/cryptomatte.hpp"
 
 namespace luciole {
 namespace {
@@ -88,6 +89,7 @@ float largestColor(const WriteOptions& options) {
 
 bool isColorChannel(const std::string& name) {
   if (name == "Y") return true;
+  if (name.starts_with(kCryptoObject) || name.starts_with(kCryptoMaterial)) return false;
   const std::size_t dot = name.rfind('.');
   const std::string component = dot == std::string::npos ? name : name.substr(dot + 1);
   return component == "R" || component == "G" || component == "B" || component == "A";

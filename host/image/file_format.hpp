@@ -53,8 +53,8 @@ inline constexpr float kLargestHalf = 65504.0f;
 float largestColor(const WriteOptions& options);
 
 /// Whether an EXR's channel holds a colour or a coverage, which 16-bit floats show well enough: R, G, B, A
-/// and Y, and R, G, B, A of layers. Others, as positions, depths and counts, are data and need all their
-/// bits.
+/// and Y, and R, G, B, A of layers but Cryptomattes. Others, as positions, depths and counts, are data and
+/// need all their bits.
 bool isColorChannel(const std::string& name);
 
 /// The format of a file to write. `named` is an extension; where it is empty the path's own counts, and for

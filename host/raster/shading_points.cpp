@@ -376,6 +376,25 @@ SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts) {
   return shared;
 }
 
+void visitSamples(const SampledView& sampled,
+                  const std::function<void(const glm::ivec2&, std::span<const std::uint32_t>)>& visit) {
+  std::vector<std::uint8_t> covering(sampled.triangle_count);
+  tbb::enumerable_thread_specific<StripSamples> tables;
+  tbb::parallel_for(0, sampled.bins.size(), [&](int bin) {
+    if (sampled.bins.list(bin).empty()) return;
+    StripSamples& samples = tables.local();
+    forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
+      drawRows(sampled, bin, row, covering, samples);
+      const glm::ivec2 first = glm::max(part.first, sampled.inner.first),
+                       end = glm::min(part.end, sampled.inner.end);
+      for (int y = first.y; y < end.y; ++y)
+        for (int x = first.x; x < end.x; ++x)
+          visit({x, y}, {samples.labels(glm::ivec2(x, y) - sampled.bins.origin(bin), sampled.pattern),
+                         std::size_t(sampled.pattern.count)});
+    });
+  });
+}
+
 std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<const std::uint8_t> chosen) {
   std::vector<std::size_t> counts(sampled.bins.size());
   tbb::parallel_for(0, sampled.bins.size(), [&](int bin) {

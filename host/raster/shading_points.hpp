@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -104,6 +105,11 @@ constexpr double kSameShade = 2.0 / 255;
 /// Draws the samples and lets them share points. The result doesn't depend on the number of threads, and a
 /// pixel's points not on the crop. `counts`: as in rasterize(). Throws as allocateArray does.
 SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts);
+
+/// Draws the samples, and calls visit(pixel of the whole picture, triangles' numbers or kNoTriangle of its
+/// samples) for each pixel of `inner` in a bin that shows anything, in parallel.
+void visitSamples(const SampledView& sampled,
+                  const std::function<void(const glm::ivec2&, std::span<const std::uint32_t>)>& visit);
 
 /// How many of the chosen pixels each bin holds. `chosen`: 1 or 0 for each pixel, row by row.
 std::vector<std::size_t> chosenInBins(const SampledView& sampled, std::span<const std::uint8_t> chosen);

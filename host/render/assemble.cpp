@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "image/cryptomatte.hpp"
 #include "raster/square.hpp"
 
 namespace luciole {
@@ -22,7 +24,8 @@ std::size_t channelOf(const Image& image, const char* name) {
 /// A channel of the finished picture, and where its values are.
 struct Layer {
   std::string name;
-  const float* plane;  ///< in the G-buffer's layout; null: zeros
+  const float* plane;      ///< in the G-buffer's layout; null: filled in later
+  float otherwise = 0.0f;  ///< without a plane
 };
 
 std::vector<Layer> groupLayers(const GBuffer& gbuffer, const Plane& group,
@@ -82,6 +85,11 @@ float finiteColor(float color) {
   return std::max(color < kLargest ? color : kLargest, -kLargest);
 }
 
+/// What sums over a pixel's samples are multiplied by.
+float scaleOf(const RenderSettings& settings) {
+  return std::exp2(settings.exposure) / float(settings.samples);
+}
+
 }  // namespace
 
 bool wants(const RenderSettings& settings, Aov aov) {
@@ -110,15 +118,27 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
       case Aov::kListLength:
       case Aov::kShadow:
       case Aov::kShadingCount:
+      case Aov::kObjectId:
+      case Aov::kMaterialId:
         count += 1;
         break;
+      case Aov::kCryptoObject:
+      case Aov::kCryptoMaterial:
+        count += 2 * kCryptomatteRanks;
+        break;
+      case Aov::kAmbient:
+      case Aov::kDiffuseLight:
+      case Aov::kSpecularLight:
+      case Aov::kEmission:
+      case Aov::kFog:
+        break;  // lightLayers() has them
     }
   }
   return count;
 }
 
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
-                   Image used) {
+                   const std::vector<std::string>& light_layers, Image used) {
   const std::size_t n = gbuffer.pixels();
   std::vector<Layer> layers;
   const auto append = [&](std::vector<Layer> more) { layers.insert(layers.end(), more.begin(), more.end()); };
@@ -161,19 +181,48 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
       case Aov::kShadingCount:
         append({{kShadingCount, nullptr}});
         break;
+      case Aov::kObjectId:
+        append({{"object_id", nullptr, -1.0f}});
+        break;
+      case Aov::kMaterialId:
+        append({{"material_id", nullptr, -1.0f}});
+        break;
+      case Aov::kCryptoObject:
+      case Aov::kCryptoMaterial:
+        for (std::string& name :
+             cryptomatteChannels(aov == Aov::kCryptoObject ? kCryptoObject : kCryptoMaterial))
+          append({{std::move(name), nullptr}});
+        break;
+      case Aov::kAmbient:
+      case Aov::kDiffuseLight:
+      case Aov::kSpecularLight:
+      case Aov::kEmission:
+      case Aov::kFog:
+        break;  // come last, see below
     }
   }
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, std::move(used.pixels)};
   if (settings.alpha) image.channels.push_back("A");
   const std::size_t first_layer = image.channels.size();
   for (const Layer& layer : layers) image.channels.push_back(layer.name);
+  for (const std::string& layer : light_layers)
+    for (const char* component : {"R", "G", "B"}) image.channels.push_back(layer + component);
   image.pixels.resize(std::size_t(image.width) * image.height * image.channels.size());
   if (layers.empty()) return image;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     for (std::size_t c = 0; c < layers.size(); ++c)
-      pixel[first_layer + c] = layers[c].plane ? layers[c].plane[place] : 0.0f;
+      pixel[first_layer + c] = layers[c].plane ? layers[c].plane[place] : layers[c].otherwise;
   });
   return image;
+}
+
+void setLightLayer(const GBuffer& gbuffer, const Plane& sums, const RenderSettings& settings,
+                   std::size_t first_channel, Image& image) {
+  const std::size_t n = gbuffer.pixels();
+  const float scale = scaleOf(settings);
+  forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
+    for (std::size_t c = 0; c < 3; ++c) pixel[first_channel + c] = finiteColor(sums[place + c * n] * scale);
+  });
 }
 
 void countCovered(const GBuffer& gbuffer, Plane& covered) {
@@ -190,7 +239,7 @@ void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettin
   const std::size_t counted = channelOf(image, kShadingCount);
   const std::size_t bounded =
       sums.light_error.empty() ? image.channels.size() : channelOf(image, kLightErrorR);
-  const float scale = std::exp2(settings.exposure) / float(settings.samples);
+  const float scale = scaleOf(settings);
   // Each of n samples' products and sums rounds both colour and bound, and so do the factor and the product
   // with it: fewer than 2n + 3 roundings of 2⁻²⁴, of terms ≥ 0.
   const double rounding = (2 * settings.samples + 3) * 0x1p-24;

@@ -11,15 +11,17 @@ namespace luciole {
 /// Whether the settings ask for this layer.
 bool wants(const RenderSettings& settings, Aov aov);
 
-/// Number of channels of a picture whose G-buffer has these groups: R G B, A and the layers asked for.
+/// Number of channels of a picture whose G-buffer has these groups: R G B, A and the layers asked for,
+/// without those of lightLayers().
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes);
 
 /// A picture of the G-buffer's size with channels R G B and, if asked for, A, which setColors() fills in as
 /// it does the number of shadings, and the layers that the settings ask for, from the first sample's G-buffer
-/// and lit planes. Its positions and normals are in world space. `used`: a picture that is done with, whose
-/// memory it takes.
+/// and lit planes. Its positions and normals are in world space. light_layers: names
+/// of layers whose channels come last, NAME + R, G and B, for setLightLayer(). `used`: a picture that is done
+/// with, whose memory it takes.
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
-                   Image used = {});
+                   const std::vector<std::string>& light_layers, Image used = {});
 
 /// Adds 1 to each pixel of `covered` that shows a surface in this sample's G-buffer. An empty plane is made.
 void countCovered(const GBuffer& gbuffer, Plane& covered);
@@ -32,5 +34,9 @@ bool countsCovered(const RenderSettings& settings);
 /// G-buffer's layout; `covered` as countsCovered() says, and empty `shadings` where each of those samples was
 /// shaded.
 void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image);
+
+/// Fills in three channels of a layer of light as setColors() does R G B. sums: r g b, over the samples.
+void setLightLayer(const GBuffer& gbuffer, const Plane& sums, const RenderSettings& settings,
+                   std::size_t first_channel, Image& image);
 
 }  // namespace luciole

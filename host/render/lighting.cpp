@@ -326,6 +326,7 @@ void prepareLighting(Device& device, const Scene& scene, const Camera& camera, c
                      order, casts, lighting.host_lights,
                      features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
       }
+      lighting.light_order = std::move(order);
     }
     lighting.frame.light_count = static_cast<uint>(lighting.host_lights.size());
     lighting.host_tree = buildLightTree(lighting.host_lights);

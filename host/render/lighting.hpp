@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "culling/cull.hpp"
 #include "culling/light_clusters.hpp"
@@ -29,6 +30,7 @@ struct Lighting {
   unsigned group_log2 = 0;   ///< see CullArguments
   bool unlit = false;      ///< the scene switches lighting off: the diffuse colour takes the place of ambient
   LightArray host_lights;  ///< those that are summed by themselves
+  std::vector<std::uint32_t> light_order;  ///< the scene's index of each
   LightTree host_tree;
   ShadowMaps host_shadows;
   BeamScene beams;  ///< with Feature::kExact only

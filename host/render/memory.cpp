@@ -7,6 +7,7 @@
 #include "culling/exact_reason.hpp"
 #include "raster/bins.hpp"
 #include "render/assemble.hpp"
+#include "render/light_layers.hpp"
 
 namespace luciole {
 namespace {
@@ -24,15 +25,16 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
                               (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
   const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
-  const std::size_t channels = channelCount(settings, planes);
+  const std::size_t light_layers = 3 * lightLayers(scene, settings).size();
+  const std::size_t channels = channelCount(settings, planes) + light_layers;
   const bool world =
       wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
   // Colours and counts are counted twice: on the device and on the host. The picture of the band before is
   // there, too, and from the second sample on the sum.
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
   const bool shared = sharesSamples(settings);
-  const std::size_t lighting =
-      gbuffer + 2 * lit + 2 * counted + channels + (settings.samples > 1 ? lit + covered : 0);
+  const std::size_t sums = settings.samples > 1 ? lit + covered + light_layers : 0;
+  const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
   const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
                                  (wants(settings, Aov::kShadow) ? 1 : 0);
@@ -53,8 +55,10 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
       lists * (1 + counted) + lists * words * (kPairWords * sizeof(uint) / sizeof(ListEntry));
   if (!shared) return sizeof(float) * std::max(lighting, assembling) + all_lists;
   // Two sums beside colours, and a pass of points with as many planes as pixels have.
-  const std::size_t first = std::max(gbuffer + 2 * lit + 2 * counted + channels, assembling + 2);
-  const std::size_t further = 3 + 2 + channels + (gbuffer + 2 * lit + 2 * counted) / kPixelsAPoint + 1;
+  const std::size_t first =
+      std::max(gbuffer + 2 * lit + 2 * counted + channels + light_layers, assembling + 2);
+  const std::size_t further =
+      3 + 2 + channels + light_layers + (gbuffer + 2 * lit + 2 * counted) / kPixelsAPoint + 1;
   const std::size_t labels = sizeof(std::uint32_t) * std::size_t(settings.samples);
   return sizeof(float) * std::max(first, further) + kPointBytesPerPixel + labels + all_lists;
 }

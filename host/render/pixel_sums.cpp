@@ -42,18 +42,18 @@ void addPoints(const GBuffer& layout, const PointLists& points, std::size_t firs
       for (int c = 0; c < 3; ++c) sums.color[i + c * n] += samples * lit[place + c * stride];
       if (!sums.light_error.empty())
         for (int c = 0; c < 3; ++c) sums.light_error[i + c * n] += samples * light_error[place + c * stride];
-      sums.covered[i] += samples;
-      sums.shadings[i] += 1.0f;
+      if (!sums.covered.empty()) sums.covered[i] += samples;
+      if (!sums.shadings.empty()) sums.shadings[i] += 1.0f;
       ++place;
     }
   });
 }
 
-void addBackground(const glm::vec3& background, int samples, PixelSums& sums) {
-  const std::size_t n = sums.covered.size();
+void addBackground(const glm::vec3& background, int samples, const Plane& covered, Plane& color) {
+  const std::size_t n = covered.size();
   tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
-    const float bare = float(samples) - sums.covered[i];
-    for (int c = 0; c < 3; ++c) sums.color[i + c * n] += bare * background[c];
+    const float bare = float(samples) - covered[i];
+    for (int c = 0; c < 3; ++c) color[i + c * n] += bare * background[c];
   });
 }
 

@@ -28,6 +28,7 @@ void addPoints(const GBuffer& layout, const PointLists& points, std::size_t firs
                const Plane& lit, const Plane& light_error, std::size_t stride, PixelSums& sums);
 
 /// Adds the background's colour for the samples of a picture of so many samples a pixel that see no surface.
-void addBackground(const glm::vec3& background, int samples, PixelSums& sums);
+/// covered: as in PixelSums.
+void addBackground(const glm::vec3& background, int samples, const Plane& covered, Plane& color);
 
 }  // namespace luciole

@@ -20,10 +20,12 @@
 #include "raster/shading_points.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
+#include "render/light_layers.hpp"
 #include "render/lighting.hpp"
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
 #include "render/shadow_ways.hpp"
+#include "render/surface_ids.hpp"
 #include "render/uneven_pixels.hpp"
 
 namespace luciole {
@@ -199,6 +201,15 @@ std::future<double> startCompiling(Device& device, const std::vector<FeatureSet>
   });
 }
 
+/// Adds the features that layers of light need beside those of the picture.
+void addPassesOf(const std::vector<LightLayer>& layers, const FeatureSet& features,
+                 std::vector<FeatureSet>& passes) {
+  for (const LightLayer& layer : layers) {
+    const FeatureSet needed = layerFeatures(features, layer);
+    if (std::find(passes.begin(), passes.end(), needed) == passes.end()) passes.push_back(needed);
+  }
+}
+
 void awaitKernels(std::future<double>& compiling, Device& device, Stats& stats) {
   const double milliseconds = timed(stats, Stage::kWaitForKernels, [&] { return compiling.get(); });
   addStage(stats, Stage::kCompileKernels, milliseconds);
@@ -241,6 +252,7 @@ struct Prepared {
   FeatureSet features;  ///< of the pass that shades pixels
   std::vector<std::uint32_t> objects;
   Lighting lighting;
+  std::vector<LayerLighting> layers;  ///< of light
   std::vector<glm::vec3> vertex_colors;
   PlaneSet planes;
   UsedMemory used;
@@ -258,6 +270,22 @@ struct Progress {
   }
 };
 
+/// The names of layers of light.
+std::vector<std::string> namesOf(const std::vector<LayerLighting>& layers) {
+  std::vector<std::string> names;
+  for (const LayerLighting& one : layers) names.push_back(one.layer.name);
+  return names;
+}
+
+/// The first channel of a layer of light: they come last.
+std::size_t channelOfLayer(const Image& picture, std::size_t layer, std::size_t layers) {
+  return picture.channels.size() - 3 * (layers - layer);
+}
+
+void addPlanes(const Plane& more, std::size_t count, Plane& sum) {
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) { sum[i] += more[i]; });
+}
+
 /// The pixels that `view` shows, with each sample rasterized and shaded by itself.
 Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
                        const View& view, RasterCounts& triangles, Progress& progress, Stats& stats) {
@@ -265,6 +293,7 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
   Image picture;
   View of_sample = view;
   PixelSums sums;
+  std::vector<Plane> layer_sums(prepared.layers.size());
   for (int sample = 0; sample < settings.samples; ++sample) {
     const TraceSpan span("sample", {{"sample", sample}, {"samples", settings.samples}});
     of_sample.sample = samplePoint(sample, settings.samples);
@@ -278,19 +307,29 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
     countPass(gbuffer, lit, settings.count_lights, stats);
     timed(stats, Stage::kResolve, [&] {
       if (sample == 0) {
-        picture = startPicture(gbuffer, lit, settings, std::move(used.picture));
+        picture = startPicture(gbuffer, lit, settings, namesOf(prepared.layers), std::move(used.picture));
         sums.color = std::move(lit.color);
         sums.light_error = std::move(lit.light_error);
       } else {
-        tbb::parallel_for(std::size_t(0), 3 * gbuffer.pixels(),
-                          [&](std::size_t i) { sums.color[i] += lit.color[i]; });
-        tbb::parallel_for(std::size_t(0), lit.light_error.size(),
-                          [&](std::size_t i) { sums.light_error[i] += lit.light_error[i]; });
+        addPlanes(lit.color, 3 * gbuffer.pixels(), sums.color);
+        addPlanes(lit.light_error, lit.light_error.size(), sums.light_error);
         used.color = std::move(lit.color);
       }
       if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
       if (sample + 1 == settings.samples) setColors(gbuffer, sums, settings, picture);
     });
+    for (std::size_t layer = 0; layer < layer_sums.size(); ++layer) {
+      Plane& sum = layer_sums[layer];
+      Plane color = lightLayer(device, scene, prepared.lighting, prepared.layers[layer], prepared.features,
+                               gbuffer, stats, std::move(used.color));
+      timed(stats, Stage::kResolve, [&] {
+        if (sample > 0) addPlanes(color, 3 * gbuffer.pixels(), sum);
+        (sample > 0 ? used.color : sum) = std::move(color);
+        if (sample + 1 < settings.samples) return;
+        setLightLayer(gbuffer, sum, settings, channelOfLayer(picture, layer, layer_sums.size()), picture);
+        used.color = std::move(sum);
+      });
+    }
     used.gbuffer = std::move(gbuffer);
     progress.step();
   }
@@ -335,9 +374,15 @@ Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
   return part;
 }
 
+/// A picture's sums over the samples of its pixels, and those of each layer of its light.
+struct PictureSums {
+  PixelSums picture;
+  std::vector<PixelSums> layers;  ///< colours alone
+};
+
 /// Lights points, and adds them to the pixels' sums.
 void addLit(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
-            const SampledView& sampled, const GBuffer& layout, const PointLists& points, PixelSums& sums,
+            const SampledView& sampled, const GBuffer& layout, const PointLists& points, PictureSums& sums,
             Stats& stats) {
   const std::size_t most_points = pointsAPass(layout.pixels());
   for (std::size_t first = 0, end; first < points.size(); first = end) {
@@ -349,15 +394,22 @@ void addLit(Device& device, const Scene& scene, const RenderSettings& settings, 
     const LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, gbuffer,
                                        wantedCounts(settings, 1), stats);
     countPass(gbuffer, lit, settings.count_lights, stats);
-    timed(stats, Stage::kResolve,
-          [&] { addPoints(layout, points, first, end, lit.color, lit.light_error, gbuffer.pixels(), sums); });
+    const auto add = [&](const Plane& color, const Plane& error, PixelSums& to) {
+      timed(stats, Stage::kResolve,
+            [&] { addPoints(layout, points, first, end, color, error, gbuffer.pixels(), to); });
+    };
+    add(lit.color, lit.light_error, sums.picture);
+    for (std::size_t layer = 0; layer < sums.layers.size(); ++layer)
+      add(lightLayer(device, scene, prepared.lighting, prepared.layers[layer], prepared.features, gbuffer,
+                     stats),
+          {}, sums.layers[layer]);
   }
 }
 
 /// Lights every sample of the chosen pixels, some bins after the other, and adds them to the pixels' sums.
 void addEverySample(Device& device, const Scene& scene, const RenderSettings& settings, Prepared& prepared,
                     const SampledView& sampled, const SharedSamples& shared,
-                    const std::vector<std::uint8_t>& chosen, PixelSums& sums, Stats& stats) {
+                    const std::vector<std::uint8_t>& chosen, PictureSums& sums, Stats& stats) {
   const GBuffer& layout = shared.gbuffer;
   const std::vector<std::size_t> in_bins = chosenInBins(sampled, chosen);
   const std::size_t most_points = pointsAPass(layout.pixels());
@@ -395,22 +447,41 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
   LitPlanes lit = lightGBuffer(device, scene, prepared.lighting, prepared.features, shared.gbuffer,
                                wantedCounts(settings, 0), stats);
   countPass(shared.gbuffer, lit, settings.count_lights, stats);
-  PixelSums sums;
+  PictureSums sums;
   std::vector<std::uint8_t> uneven;
   Image picture = timed(stats, Stage::kResolve, [&] {
-    Image started = startPicture(shared.gbuffer, lit, settings, std::move(prepared.used.picture));
+    Image started = startPicture(shared.gbuffer, lit, settings, namesOf(prepared.layers),
+                                 std::move(prepared.used.picture));
     uneven = unevenPixels(sampled, shared, lit.color);
     leaveOut(uneven, shared);
-    sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));
+    sums.picture =
+        firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));
     return started;
   });
+  for (LayerLighting& layer : prepared.layers) {
+    Plane color =
+        lightLayer(device, scene, prepared.lighting, layer, prepared.features, shared.gbuffer, stats);
+    timed(stats, Stage::kResolve, [&] {
+      PixelSums first = firstPoints(shared.gbuffer, shared.samples, std::move(color), {});
+      sums.layers.push_back({std::move(first.color), {}, {}, {}});
+    });
+  }
   freePlanes(shared.gbuffer);
   addLit(device, scene, settings, prepared, sampled, shared.gbuffer, shared.further, sums, stats);
   addEverySample(device, scene, settings, prepared, sampled, shared, uneven, sums, stats);
   Image cut = timed(stats, Stage::kResolve, [&] {
-    const float4 background = prepared.lighting.frame.background;
-    addBackground({background.x, background.y, background.z}, settings.samples, sums);
-    setColors(shared.gbuffer, sums, settings, picture);
+    const Plane& covered = sums.picture.covered;
+    const auto addBare = [&](const ShadeFrame& frame, Plane& color) {
+      const float4& background = frame.background;
+      addBackground({background.x, background.y, background.z}, settings.samples, covered, color);
+    };
+    addBare(prepared.lighting.frame, sums.picture.color);
+    setColors(shared.gbuffer, sums.picture, settings, picture);
+    for (std::size_t layer = 0; layer < sums.layers.size(); ++layer) {
+      addBare(prepared.layers[layer].frame, sums.layers[layer].color);
+      setLightLayer(shared.gbuffer, sums.layers[layer].color, settings,
+                    channelOfLayer(picture, layer, sums.layers.size()), picture);
+    }
     return cutOut(std::move(picture), sampled.inner.first - sampled.view.crop_origin,
                   sampled.inner.end - sampled.inner.first);
   });
@@ -440,6 +511,7 @@ ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings)
   ShadeSettings shade = settings.shade;
   shade.shadow_layer = wants(settings, Aov::kShadow);
   chooseModel(modelChoices(scene), shade);
+  if (wantsLightLayers(settings)) shade.light_error = 0;
   if (shade.shadows != ShadowMethod::kAuto || !shade.shadow_ways.empty() || !scene.lighting) return shade;
   const double points = shadedPoints(scene, settings.size, settings.samples, sharesSamples(settings));
   shade.shadow_ways =
@@ -490,12 +562,16 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   prepared.planes = planes;
   std::vector<FeatureSet> passes{prepared.features};
   if (gouraud) passes.push_back(vertexFeatures(features));
+  std::vector<LightLayer> layers = lightLayers(scene, settings);
+  addPassesOf(layers, prepared.features, passes);
   std::future<double> compiling = startCompiling(device, passes, shade);
   prepared.objects = settings.alpha ? allObjects(scene)
                                     : objectsInSight(scene, view, settings.exposure, settings.shade.model);
   prepareLighting(device, scene, settings.camera, view, features, shade, prepared.lighting, stats, kept);
   prepared.lighting.host_shadows.expects_more = settings.samples > 1;
   if (settings.alpha) prepared.lighting.frame.background = {};
+  prepared.layers = timed(stats, Stage::kPrepareLights,
+                          [&] { return prepareLayers(device, scene, prepared.lighting, std::move(layers)); });
   awaitKernels(compiling, device, stats);
   if (gouraud)
     prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
@@ -518,6 +594,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   const int bands = (bottom - 1 - origin) / height - (top - origin) / height + 1;
   Progress progress{settings.on_pass, bands * (shared ? 1 : settings.samples)};
   RasterCounts triangles;
+  const MatteIds matte_ids = matteIds(scene, settings);
   View band = view;
   for (int y = top; y < bottom; y += band.crop_size.y) {
     const int end = std::min(origin + ((y - origin) / height + 1) * height, bottom);
@@ -527,6 +604,9 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
                                      {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
     const auto render = shared ? renderSharedSamples : renderAllSamples;
     prepared.used.picture = render(device, scene, settings, prepared, band, triangles, progress, stats);
+    if (wantsSurfaceIds(settings))
+      timed(stats, Stage::kRasterize,
+            [&] { setSurfaceIds(scene, band, settings, matte_ids, prepared.used.picture); });
     take(prepared.used.picture);
   }
   countLightUses(scene, shade, prepared.lighting, stats);
@@ -605,10 +685,18 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   const FeatureSet features =
       neededFeatures(scene, gbuffer.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));
-  std::future<double> compiling = startCompiling(device, {features}, shade);
+  std::vector<LightLayer> layers = lightLayers(scene, one_sample);
+  requireMemory(double(gbuffer.width) * gbuffer.height * 3 * double(layers.size() + 1) * sizeof(float),
+                fmt::format("{} layers of {}x{} pixels", layers.size() + 1, gbuffer.width, gbuffer.height));
+  std::vector<FeatureSet> passes{features};
+  addPassesOf(layers, features, passes);
+  std::future<double> compiling = startCompiling(device, passes, shade);
   Lighting lighting;
   prepareLighting(device, scene, gbuffer.camera, view, features, shade, lighting, stats);
   if (settings.alpha) lighting.frame.background = {};
+  std::vector<LayerLighting> layer_lightings = timed(stats, Stage::kPrepareLights, [&] {
+    return prepareLayers(device, scene, lighting, std::move(layers));
+  });
   awaitKernels(compiling, device, stats);
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
@@ -617,13 +705,21 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   countPass(gbuffer, lit, settings.count_lights, stats);
   countLightUses(scene, shade, lighting, stats);
   countShadows(lighting, stats);
-  return timed(stats, Stage::kResolve, [&] {
-    Image picture = startPicture(gbuffer, lit, one_sample);
+  Image picture = timed(stats, Stage::kResolve, [&] {
+    Image started = startPicture(gbuffer, lit, one_sample, namesOf(layer_lightings));
     PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error)};
     if (countsCovered(settings)) countCovered(gbuffer, sums.covered);
-    setColors(gbuffer, sums, one_sample, picture);
-    return picture;
+    setColors(gbuffer, sums, one_sample, started);
+    return started;
   });
+  for (std::size_t layer = 0; layer < layer_lightings.size(); ++layer) {
+    const Plane color = lightLayer(device, scene, lighting, layer_lightings[layer], features, gbuffer, stats);
+    timed(stats, Stage::kResolve, [&] {
+      setLightLayer(gbuffer, color, one_sample, channelOfLayer(picture, layer, layer_lightings.size()),
+                    picture);
+    });
+  }
+  return picture;
 }
 
 }  // namespace luciole

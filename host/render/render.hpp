@@ -32,6 +32,17 @@ enum class Aov : std::uint8_t {
   /// vertex.
   kLightError,
   kShadingCount,  ///< points that were shaded for all samples of the pixel
+  // The parts of the picture's light, whose sum is the picture, as light_layers.hpp tells.
+  kAmbient,  ///< ambient light: the scene's, and the lights' own
+  kDiffuseLight,
+  kSpecularLight,
+  kEmission,  ///< and the background
+  kFog,       ///< the fog's own colour
+  // What renderBands() alone knows, by surface_ids.hpp. Objects and materials are numbered as in the scene.
+  kObjectId,        ///< -1 where nothing is seen
+  kMaterialId,      ///< likewise
+  kCryptoObject,    ///< Cryptomatte: which objects cover how much of the pixel's samples
+  kCryptoMaterial,  ///< the same of materials
 };
 
 /// What of a pixel's samples is shaded.
@@ -48,9 +59,13 @@ struct RenderSettings {
   SampleShading sample_shading = SampleShading::kShared;
   Shading shading = Shading::kPhong;
   ShadeSettings shade;
-  /// Layers. But for kLightError and kShadingCount they show the first sample, or the point that is shaded
-  /// for it.
+  /// Layers. But for kLightError, kShadingCount, Cryptomattes and the parts of the light they show the first
+  /// sample, or the point that is shaded for it.
   std::vector<Aov> aovs;
+  /// Adds three channels for each group of lights that has any, and three for what no light gives: their sum
+  /// is the picture. Neither these nor parts of the light go with ShadeSettings::light_error, which is
+  /// ignored beside them, nor with Shading::kGouraud.
+  bool light_groups = false;
   float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
   /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that

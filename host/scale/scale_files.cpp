@@ -11,6 +11,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/page_text.hpp"
+
 namespace luciole {
 namespace {
 
@@ -47,20 +49,6 @@ std::vector<std::string> allStages(const ScaleSummary& summary) {
 std::string snakeCase(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
-}
-
-/// Base 64 as in RFC 4648.
-std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 /// The pictures of the page; files with the same content are stored once.

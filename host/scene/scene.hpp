@@ -63,7 +63,8 @@ struct Mesh {
 struct Object {
   std::uint32_t mesh = 0;
   glm::dmat4 object_to_world{1.0};
-  int material = -1;  ///< replaces the material of every triangle of the mesh, unless -1
+  int material = -1;      ///< replaces the material of every triangle of the mesh, unless -1
+  std::string name = {};  ///< may be empty, or that of several
 };
 
 enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };
@@ -102,6 +103,7 @@ struct Light {
   /// The light's size, which gives its shadow a penumbra and changes nothing else. 0: a sharp shadow.
   double radius = 0.0;      ///< point and spot: of a sphere, metres
   double half_angle = 0.0;  ///< directional: half its angular diameter, radians, 0 to π/4
+  std::uint32_t group = 0;  ///< of those whose light --light-groups keeps apart: indexes Scene::light_groups
 };
 
 enum class FogMode : std::uint8_t { kNone, kLinear, kExp, kExp2 };
@@ -145,6 +147,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
   std::vector<Light> lights;
+  std::vector<std::string> light_groups{"default"};  ///< names; the first is of lights that name no group
   std::vector<Camera> cameras;     ///< may be empty after a loader; never after completeScene()
   std::optional<glm::ivec2> size;  ///< the picture's size that the file asks for
   glm::vec3 background{0.0f};

@@ -32,15 +32,15 @@ void withFields(T& mesh, Visit&& visit) {
 }
 template <Is<Object> T, class Visit>
 void withFields(T& object, Visit&& visit) {
-  auto& [mesh, object_to_world, material] = object;
-  visit(mesh, object_to_world, material);
+  auto& [mesh, object_to_world, material, name] = object;
+  visit(mesh, object_to_world, material, name);
 }
 template <Is<Light> T, class Visit>
 void withFields(T& light, Visit&& visit) {
   auto& [kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
-         inner_cone, exponent, shadow, radius, half_angle] = light;
+         inner_cone, exponent, shadow, radius, half_angle, group] = light;
   visit(kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
-        inner_cone, exponent, shadow, radius, half_angle);
+        inner_cone, exponent, shadow, radius, half_angle, group);
 }
 template <Is<Fog> T, class Visit>
 void withFields(T& fog, Visit&& visit) {
@@ -103,10 +103,11 @@ void withFields(T& animation, Visit&& visit) {
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
   auto& [name, warnings, missing_textures, ignored_extensions, textures, materials, meshes, objects, lights,
-         cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting, animation] =
-      scene;
+         light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
+         lighting, animation] = scene;
   visit(name, warnings, missing_textures, ignored_extensions, textures, materials, meshes, objects, lights,
-        cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting, animation);
+        light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting,
+        animation);
 }
 
 }  // namespace luciole

@@ -33,7 +33,8 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
     {"Fog",
      R"({"ambient": 1, "fog": {"mode": "exp2", "density": [0.1, 0.2, 0.3], "color": 0.5, "distance": "depth"}})"},
     {"LinearFog", R"({"ambient": 1, "fog": {"mode": "linear"}})"},
-    {"Defaults", R"({"fog": {"mode": "exp"}, "objects": [{"primitive": "torus", "segments": 4}],
+    {"Defaults",
+     R"({"fog": {"mode": "exp"}, "objects": [{"name": "a name", "primitive": "torus", "segments": 4}],
       "lights": [{"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0]}],
       "light_fields": [{"count": 2, "shape": "surface"}]})"},
     {"Materials", R"({"ambient": 1, "materials": {
@@ -51,7 +52,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"mesh": "t.obj", "material": "red", "translate": [1, 0, 0], "keys": [{"frame": 1, "translate": [2, 0, 0]}]}]})"},
     {"PointLights", R"({"lights": [
       {"type": "point", "position": [1, 2, 3], "color": [1, 0.8, 0.5], "intensity": 2, "attenuation": [1, 0, 0.5],
-       "range": 8, "shadow": true, "radius": 0.1, "enabled": false},
+       "range": 8, "shadow": true, "radius": 0.1, "enabled": false, "group": "key"},
       {"type": "point", "position": [1, 2, 3], "ambient": 0.1, "diffuse": [1, 0, 0], "specular": 0.5,
        "keys": [{"frame": 1, "position": [0, 0, 0], "intensity": 1}]},
       {"type": "point", "position": [1, 2, 3], "interpolation": "smooth",
@@ -74,7 +75,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"count": 3, "shape": "ball", "center": [0, 1, 0], "radius": 2, "attenuation": [1, 1, 0], "shadow": true},
       {"count": 3, "shape": "sphere", "center": [0, 1, 0], "radius": 2},
       {"count": 3, "shape": "surface", "offset": -0.5, "cutoff": 0.01},
-      {"count": 3, "min": [0, 0, 0], "max": [1, 1, 1], "no_range": true},
+      {"count": 3, "min": [0, 0, 0], "max": [1, 1, 1], "no_range": true, "group": "key"},
       {"count": 3, "shape": "clusters", "clusters": 2, "min": [0, 0, 0], "max": [1, 1, 1], "radius": 0.5},
       {"count": 3, "shape": "curve", "points": [[0, 0, 0], [1, 1, 1], [2, 0, 0]], "radius": 0},
       {"csv": "lamps.csv", "count": 2, "seed": 1, "intensity": 3, "range": [1, 2], "attenuation": [0, 0, 1]},

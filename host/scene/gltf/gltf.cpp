@@ -12,6 +12,7 @@
 #include "scene/gltf/gltf_material.hpp"
 #include "scene/gltf/gltf_mesh.hpp"
 #include "scene/gltf/gltf_model.hpp"
+#include "scene/light_groups.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
@@ -161,7 +162,7 @@ void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Sc
     const std::uint32_t mesh = static_cast<std::uint32_t>(meshes[index]);
     // A scale of 0 hides an object. What moves may have it for a while, and is kept.
     if (placed.moving < 0 && isFlat(placed.to_world)) continue;
-    scene.objects.push_back({mesh, placed.to_world, -1});
+    scene.objects.push_back({mesh, placed.to_world, -1, model.file.nodes[placed.node].name});
     if (placed.moving < 0) continue;
     attach(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
                    static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
@@ -199,11 +200,27 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   scene.cameras.push_back(camera);
 }
 
+/// The group that a light's node, or else the light, names: a text "group" in its extras. Extras are
+/// anybody's, so one that can't be a group's name is told and left out.
+std::uint32_t groupOf(const GltfModel& model, int node, const tinygltf::Light& light,
+                      LightGroupNumbers& groups, Scene& scene) {
+  for (const tinygltf::Value* extras : {&model.file.nodes[node].extras, &light.extras}) {
+    if (!extras->IsObject() || !extras->Get("group").IsString()) continue;
+    const std::string name = extras->Get("group").Get<std::string>();
+    const std::string fault = faultOfGroupName(name);
+    if (fault.empty()) return lightGroupNumber(name, groups, scene);
+    scene.warnings.push_back(
+        fmt::format("{}: {}: extras.group: {}; left out", model.path, nodePlace(node), fault));
+  }
+  return 0;
+}
+
 /// KHR_lights_punctual. Its intensities are candela and lux, and its Lambertian surface reflects base colour
 /// / π; our diffuse term has no 1/π, so the light carries it: diffuse = specular = colour · intensity / π. A
 /// surface then has the radiance in cd/m² that glTF gives it. Lights cast no shadow, as glTF says nothing of
 /// shadows.
-void addLight(const GltfModel& model, const PlacedNode& placed, double index, Scene& scene) {
+void addLight(const GltfModel& model, const PlacedNode& placed, double index, LightGroupNumbers& groups,
+              Scene& scene) {
   const int number = index >= 0 && index < 1e9 ? static_cast<int>(index) : -1;
   const tinygltf::Light& source = element(model, model.file.lights, number, nodePlace(placed.node), "light");
   const std::string place = fmt::format("extensions.{}.lights[{}]", kLights, number);
@@ -243,6 +260,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Sc
   }
   const std::string fault = attachLight(placed.to_world, light);
   if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
+  light.group = groupOf(model, placed.node, source, groups, scene);
   if (placed.moving >= 0)
     scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
                                                static_cast<std::uint32_t>(placed.moving), placed.since});
@@ -262,11 +280,12 @@ void loadGltf(const std::string& path, Scene& scene) {
   const std::vector<PlacedNode> nodes = placedNodes(model, scene.animation);
   const std::size_t before = scene.objects.size() + scene.cameras.size() + scene.lights.size();
   addObjects(model, nodes, scene);
+  LightGroupNumbers groups = lightGroupNumbers(scene);
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.file.nodes[placed.node];
     if (node.camera >= 0) addCamera(model, placed, scene);
     if (node.extensions.count(kLights)) {
-      addLight(model, placed, extensionNumber(node.extensions, kLights, "light", -1), scene);
+      addLight(model, placed, extensionNumber(node.extensions, kLights, "light", -1), groups, scene);
     }
   }
   if (scene.objects.size() + scene.cameras.size() + scene.lights.size() == before) {

@@ -169,6 +169,15 @@ void readList(const JsonNode& csv, const JsonNode& node, const std::string& fold
   field.count = field.list.size();
 }
 
+/// The number of the group that a light or a field names; that of lights without a group where it doesn't.
+std::uint32_t readGroup(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
+  const auto n = find(node, "group");
+  if (!n) return 0;
+  const std::string name = readText(*n);
+  if (const std::string fault = faultOfGroupName(name); !fault.empty()) refuse(*n, fault);
+  return lightGroupNumber(name, groups, scene);
+}
+
 /// How a light with keys moves. Refuses keys for members that the light itself doesn't have.
 std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& light) {
   if (!hasKeys(node, {"position", "direction", "target", "color", "intensity", "range"})) return std::nullopt;
@@ -212,11 +221,11 @@ std::optional<LightMotion> readLightMotion(const JsonNode& node, const Light& li
 
 }  // namespace
 
-void readLight(const JsonNode& node, Scene& scene) {
-  allowKeys(node,
-            {"type",       "position", "direction",   "target", "color",   "intensity", "ambient",
-             "diffuse",    "specular", "attenuation", "range",  "cutoff",  "exponent",  "inner_cone",
-             "outer_cone", "shadow",   "radius",      "angle",  "enabled", "keys",      "interpolation"});
+void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
+  allowKeys(node, {"type",     "position",   "direction",     "target",      "color",  "intensity",
+                   "ambient",  "diffuse",    "specular",      "attenuation", "range",  "cutoff",
+                   "exponent", "inner_cone", "outer_cone",    "shadow",      "radius", "angle",
+                   "enabled",  "keys",       "interpolation", "group"});
   Light light;
   light.kind = readKind(need(node, "type"));
   if (light.kind == LightKind::kDirectional) {
@@ -238,6 +247,7 @@ void readLight(const JsonNode& node, Scene& scene) {
   }
   readColors(node, light);
   if (const auto n = find(node, "shadow")) light.shadow = readBool(*n);
+  light.group = readGroup(node, groups, scene);
   std::optional<LightMotion> motion = readLightMotion(node, light);
   if (const auto n = find(node, "enabled"); n && !readBool(*n)) return;
   if (motion) {
@@ -247,10 +257,11 @@ void readLight(const JsonNode& node, Scene& scene) {
   scene.lights.push_back(light);
 }
 
-LightField readLightField(const JsonNode& node, const std::string& folder) {
-  allowKeys(node,
-            {"count", "seed", "shape", "min", "max", "center", "radius", "offset", "points", "clusters",
-             "csv", "color", "colors", "intensity", "range", "cutoff", "attenuation", "no_range", "shadow"});
+LightField readLightField(const JsonNode& node, const std::string& folder, LightGroupNumbers& groups,
+                          Scene& scene) {
+  allowKeys(node, {"count",  "seed",   "shape",       "min",      "max",    "center", "radius",
+                   "offset", "points", "clusters",    "csv",      "color",  "colors", "intensity",
+                   "range",  "cutoff", "attenuation", "no_range", "shadow", "group"});
   LightField field;
   if (const auto n = find(node, "seed"))
     field.seed = readCount(*n, std::numeric_limits<std::uint64_t>::max());
@@ -285,6 +296,7 @@ LightField readLightField(const JsonNode& node, const std::string& folder) {
     field.no_range = readBool(*n);
   }
   if (const auto n = find(node, "shadow")) field.shadow = readBool(*n);
+  field.group = readGroup(node, groups, scene);
   return field;
 }
 

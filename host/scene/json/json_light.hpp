@@ -3,17 +3,19 @@
 #include <string>
 
 #include "scene/json/json_fields.hpp"
+#include "scene/light_groups.hpp"
 #include "scene/lights/light_field.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
 
 /// Reads an element of "lights", and its motion, into the scene. A light that is switched off ("enabled":
-/// false) is checked but not added. Throws InputError.
-void readLight(const JsonNode& node, Scene& scene);
+/// false) is checked but not added. groups: of the scene. Throws InputError.
+void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene);
 
 /// Reads an element of "light_fields", and the file that it may name by a path relative to `folder`. Throws
 /// InputError.
-LightField readLightField(const JsonNode& node, const std::string& folder);
+LightField readLightField(const JsonNode& node, const std::string& folder, LightGroupNumbers& groups,
+                          Scene& scene);
 
 }  // namespace luciole

@@ -193,14 +193,22 @@ const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& sce
   return file;
 }
 
+/// The name of a part of an object: the object's, and that of the part where there are several.
+std::string nameOf(const std::string& name, const Object& part, std::size_t parts) {
+  if (name.empty()) return part.name;
+  return parts == 1 || part.name.empty() ? name : fmt::format("{}/{}", name, part.name);
+}
+
 /// Places a file's objects. Those that move in the file move relative to that place.
-void placeObjects(const LoadedFile& file, const Placement& placement, int material, Scene& scene) {
+void placeObjects(const LoadedFile& file, const Placement& placement, int material, const std::string& name,
+                  Scene& scene) {
   Animation& animation = scene.animation;
   const std::size_t first = scene.objects.size();
   const int first_node = static_cast<int>(animation.nodes.size());
   for (const Object& part : file.objects) {
-    scene.objects.push_back(
-        {part.mesh, placement.still * part.object_to_world, material == -1 ? part.material : material});
+    scene.objects.push_back({part.mesh, placement.still * part.object_to_world,
+                             material == -1 ? part.material : material,
+                             nameOf(name, part, file.objects.size())});
   }
   for (MovingNode node : file.nodes) {
     if (node.parent < 0 && placement.node < 0) node.before = placement.still * node.before;
@@ -225,7 +233,7 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
 
 void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded, Scene& scene) {
   allowKeys(node, {"mesh", "primitive", "translate", "rotate", "scale", "material", "segments",
-                   "minor_radius", "uv_scale", "keys", "interpolation"});
+                   "minor_radius", "uv_scale", "keys", "interpolation", "name"});
   const Placement placement = readPlacement(node, scene.animation);
   int material = -1;
   if (const auto n = find(node, "material")) {
@@ -258,7 +266,9 @@ void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded,
   if (scene.animation.nodes.size() + parts->nodes.size() > kMostObjects) {
     refuse(node, fmt::format("a scene may have {} moving nodes at most", kMostObjects));
   }
-  placeObjects(*parts, placement, material, scene);
+  std::string name;
+  if (const auto n = find(node, "name")) name = readText(*n);
+  placeObjects(*parts, placement, material, name, scene);
 }
 
 }  // namespace

@@ -154,12 +154,13 @@ glm::ivec2 readSize(const JsonNode& node) {
 }
 
 std::vector<LightField> readLightFields(const JsonNode& node, const std::string& folder,
-                                        std::uint64_t lights) {
+                                        LightGroupNumbers& groups, Scene& scene) {
   needArray(node);
+  std::uint64_t lights = scene.lights.size();
   std::vector<LightField> fields;
   for (std::size_t i = 0; i < node.json->size(); ++i) {
     const JsonNode field = element(node, i);
-    fields.push_back(readLightField(field, folder));
+    fields.push_back(readLightField(field, folder, groups, scene));
     lights += fields.back().count;
     if (lights > kMostLights) {
       refuse(field, fmt::format("{} lights up to here; a scene may have {} at most", lights, kMostLights));
@@ -187,10 +188,11 @@ SceneFile parseJsonScene(const std::string& text, const std::string& file, const
   Scene& scene = read.scene;
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
   // there may be a million, cameras because their order counts and a JSON object has none.
-  const auto take = [&scene](const JsonNode& node) {
+  LightGroupNumbers groups = lightGroupNumbers(scene);
+  const auto take = [&](const JsonNode& node) {
     const bool in_array = node.index != JsonNode::kNoIndex;
     if (in_array && node.parent->key == "lights") {
-      readLight(node, scene);
+      readLight(node, groups, scene);
       return true;
     }
     if (!in_array && node.parent->key == "cameras") {
@@ -220,7 +222,7 @@ SceneFile parseJsonScene(const std::string& text, const std::string& file, const
   if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
   scene.name = file;
   if (const auto n = find(top, "light_fields"))
-    read.light_fields = readLightFields(*n, folder, scene.lights.size());
+    read.light_fields = readLightFields(*n, folder, groups, scene);
   readObjects(top, folder, scene);
   scene.says_light = saysLight(top);
   return read;

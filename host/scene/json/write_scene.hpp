@@ -8,7 +8,7 @@
 namespace luciole {
 
 /// The text of a Luciole scene with the given point lights, one a line. It keeps the members that
-/// expandLightField sets. Reading it gives the same lights to the bit.
+/// expandLightField sets, but for the group. Reading it gives the same lights to the bit.
 std::string lightsScene(const std::vector<Light>& lights);
 
 /// The same with one object, a mesh file, and a camera, whose direction is kept to within its rounding. The

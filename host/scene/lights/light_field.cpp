@@ -43,6 +43,7 @@ void appendLights(const LightField& field, const std::function<glm::dvec3(std::u
     }
     if (field.cutoff > 0) light.range = rangeForCutoff(light, field.cutoff);
     light.shadow = field.shadow;
+    light.group = field.group;
     lights.push_back(light);
   }
 }

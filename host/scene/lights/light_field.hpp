@@ -58,6 +58,7 @@ struct LightField {
   /// kList.
   bool no_range = false;
   bool shadow = false;
+  std::uint32_t group = 0;  ///< as in Light
 };
 
 /// The most lights a scene may have.

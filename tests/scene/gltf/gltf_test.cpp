@@ -485,6 +485,29 @@ TEST_F(GltfLoader, SpotLightsHaveTheirCones) {
   EXPECT_THROW(light({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}), InputError);
 }
 
+TEST_F(GltfLoader, ExtrasOfANodeOrItsLightNameTheLightsGroup) {
+  GltfFile file = triangleFile();
+  json& lights = file.root["extensions"]["KHR_lights_punctual"]["lights"];
+  json& node = file.root["nodes"][0];
+  lights = {{{"type", "point"}, {"extras", {{"group", "of the light"}}}}};
+  node["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  const auto groupName = [&] {
+    const Scene scene = load(file);
+    return scene.light_groups.at(scene.lights.at(0).group);
+  };
+  EXPECT_EQ(groupName(), "of the light");
+  node["extras"]["group"] = "of the node";
+  EXPECT_EQ(groupName(), "of the node");
+  node["extras"]["group"] = {1, 2};  // somebody else's
+  EXPECT_EQ(groupName(), "of the light");
+  node["extras"]["group"] = "a.b";
+  EXPECT_EQ(groupName(), "of the light");
+  EXPECT_THAT(load(file).warnings, ElementsAre(HasSubstr("nodes[0]: extras.group: expected a group's name")));
+  node.erase("extras");
+  lights[0].erase("extras");
+  EXPECT_EQ(groupName(), "default");
+}
+
 TEST_F(GltfLoader, ImpossibleLightsAreRefused) {
   EXPECT_THROW(light({{"type", "point"}, {"intensity", -1}}), InputError);
   EXPECT_THROW(light({{"type", "point"}, {"range", -1}}), InputError);

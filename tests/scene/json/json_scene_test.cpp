@@ -141,6 +141,17 @@ TEST_F(JsonScene, LightsMayHaveASize) {
         << wrong;
 }
 
+TEST_F(JsonScene, LightsAndFieldsHaveGroupsByName) {
+  const Scene scene = loadWhole(R"({"lights": [
+      {"type": "point", "position": [0,0,0], "group": "key"}, {"type": "point", "position": [0,0,0]},
+      {"type": "directional", "direction": [0,-1,0], "group": "rim"}, {"type": "point", "position": [0,0,0], "group": "key"}],
+      "light_fields": [{"count": 2, "min": [0,0,0], "max": [1,1,1], "group": "rim"}]})");
+  EXPECT_EQ(scene.light_groups, (std::vector<std::string>{"default", "key", "rim"}));
+  std::vector<std::uint32_t> groups;
+  for (const Light& light : scene.lights) groups.push_back(light.group);
+  EXPECT_EQ(groups, (std::vector<std::uint32_t>{1, 0, 2, 1, 2, 2}));
+}
+
 TEST_F(JsonScene, CamerasKeepTheOrderOfTheFile) {
   const Scene scene =
       load(R"({"cameras": {"z": {"eye":[0,0,1],"target":[0,0,0]}, "a": {"eye":[0,0,2],"target":[0,0,0],

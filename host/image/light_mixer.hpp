@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "image/image.hpp"
+
+// Pictures made anew from the layers of their groups of lights, without shading again.
+namespace luciole {
+
+/// What a group's light is multiplied by: r g b, linear.
+struct GroupFactor {
+  std::string group;
+  glm::vec3 factor{1.0f};
+};
+
+/// The groups that an EXR has layers of (kLightGroups), each with a factor of 1, in the order of its
+/// channels. Throws InputError, also where there is none.
+std::vector<GroupFactor> lightGroupsOf(const std::string& path);
+
+/// The sum of an EXR's groups times their factors, and its A where it has one: summed in double, so within
+/// half an ulp. NaN counts as the largest float, as other sums beyond it. `options` gets the file's camera
+/// and place in the whole picture. Throws InputError and MachineError.
+Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups, WriteOptions& options);
+
+/// An EXR's groups, reduced to a picture of so many bytes at most.
+struct SmallGroups {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t>
+      halves;  ///< group after group: r g b of all pixels, row by row, as 16-bit floats
+};
+/// Each pixel is the mean of a square of the file's. Throws as mixLights.
+SmallGroups smallGroups(const std::string& path, const std::vector<GroupFactor>& groups,
+                        std::size_t most_bytes);
+
+}  // namespace luciole

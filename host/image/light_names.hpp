@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace luciole {
+
+/// Layers that hold a part of a picture's light have channels LAYER.R, LAYER.G and LAYER.B, in the units of
+/// the picture's own R, G and B. Those of groups of lights are called so, and then by the group.
+inline constexpr std::string_view kLightGroups = "light_groups.";
+/// Those of the parts that a picture's light is the sum of.
+inline constexpr std::string_view kLightParts[]{"ambient_light.", "diffuse_light.", "specular_light.",
+                                                "emission_light.", "fog_light."};
+
+/// Whether a channel holds a picture's light, or a part of it, which is as bright as the exposure makes it.
+inline bool isLightChannel(std::string_view name) {
+  if (name == "R" || name == "G" || name == "B" || name.starts_with(kLightGroups)) return true;
+  for (const std::string_view part : kLightParts)
+    if (name.starts_with(part)) return true;
+  return false;
+}
+
+}  // namespace luciole
