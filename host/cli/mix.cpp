@@ -69,7 +69,7 @@ void readMixer(const std::string& text, const std::string& file, std::vector<Mix
         std::find_if(terms.begin(), terms.end(), [&](const MixerTerm& one) { return one.group == name; });
     if (term == terms.end()) {
       std::vector<std::string> names;
-      for (const MixerTerm& one : terms) names.push_back(one.group);
+      for (const MixerTerm& one : terms) names.push_back(forMessage(one.group));
       const std::string suggestion = didYouMean(name, names);
       const std::string others = names.size() > 16 ? fmt::format("{} others", names.size())
                                                    : fmt::format("{}", fmt::join(names, ", "));

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/text_file.hpp"
 #include "image/exr_input.hpp"
 #include "image/file_format.hpp"
 #include "image/light_names.hpp"
@@ -22,17 +23,23 @@ namespace {
 /// take time by the square of their number.
 constexpr std::size_t kReadBytes = std::size_t(512) << 20;
 
-/// The part of the file that has the groups' layers; parts().size() where none has.
-std::size_t partOf(const ExrInput& input) {
-  std::size_t part = 0;
-  while (part < input.parts().size()) {
+/// The group whose red channel this is; empty for another channel.
+std::string groupOfRed(const std::string& channel) {
+  if (!channel.starts_with(kLightGroups) || !channel.ends_with(".R")) return "";
+  const std::size_t length = channel.size() - kLightGroups.size();
+  return length > 2 ? channel.substr(kLightGroups.size(), length - 2) : "";
+}
+
+/// The part of the file that has the groups' layers. Throws InputError where none has.
+int partOf(const ExrInput& input, const std::string& path) {
+  for (std::size_t part = 0; part < input.parts().size(); ++part) {
     const std::vector<std::string>& channels = input.parts()[part].channels;
     if (std::any_of(channels.begin(), channels.end(),
-                    [](const std::string& name) { return name.starts_with(kLightGroups); }))
-      break;
-    ++part;
+                    [](const std::string& name) { return !groupOfRed(name).empty(); }))
+      return int(part);
   }
-  return part;
+  throw InputError(
+      fmt::format("{}: no layers {}NAME, which render --light-groups writes", path, kLightGroups));
 }
 
 /// Where a channel is; -1 where there is none of that name.
@@ -44,8 +51,8 @@ int placeOf(const PicturePart& part, const std::string& name) {
 /// Reads the groups' planes, and calls take(group, planes of r, g and b) for one after the other.
 void forEachGroup(ExrInput& input, const std::string& path, const std::vector<GroupFactor>& groups,
                   const std::function<void(std::size_t, const float*)>& take) {
-  const std::size_t part = partOf(input);
-  const PicturePart& header = input.parts()[part];
+  const int part = partOf(input, path);
+  const PicturePart& header = input.parts()[std::size_t(part)];
   const std::size_t pixels = std::size_t(header.size.x) * std::size_t(header.size.y);
   const std::size_t at_once = std::max<std::size_t>(kReadBytes / (3 * pixels * sizeof(float)), 1);
   for (std::size_t first = 0; first < groups.size(); first += at_once) {
@@ -55,10 +62,11 @@ void forEachGroup(ExrInput& input, const std::string& path, const std::vector<Gr
       for (const char* component : {".R", ".G", ".B"}) {
         const std::string name = std::string(kLightGroups) + groups[group].group + component;
         channels.push_back(placeOf(header, name));
-        if (channels.back() < 0) throw InputError(fmt::format("{}: channel {}: missing", path, name));
+        if (channels.back() < 0)
+          throw InputError(fmt::format("{}: channel {}: missing", path, forMessage(name)));
       }
     }
-    const ChannelPlanes planes = input.read(int(part), channels);
+    const ChannelPlanes planes = input.read(part, channels);
     for (std::size_t group = first; group < end; ++group)
       take(group, planes.data() + 3 * pixels * (group - first));
   }
@@ -73,34 +81,33 @@ float finiteColor(double color) {
 
 std::vector<GroupFactor> lightGroupsOf(const std::string& path) {
   const ExrInput input(path);
-  const std::size_t part = partOf(input);
-  if (part == input.parts().size())
-    throw InputError(
-        fmt::format("{}: no layers {}NAME, which render --light-groups writes", path, kLightGroups));
   std::vector<GroupFactor> groups;
-  for (const std::string& name : input.parts()[part].channels)
-    if (name.starts_with(kLightGroups) && name.ends_with(".R") && name.size() > kLightGroups.size() + 2)
-      groups.push_back({name.substr(kLightGroups.size(), name.size() - kLightGroups.size() - 2)});
+  for (const std::string& name : input.parts()[std::size_t(partOf(input, path))].channels)
+    if (const std::string group = groupOfRed(name); !group.empty()) groups.push_back({group});
   return groups;
 }
 
 Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups, WriteOptions& options) {
   ExrInput input(path);
-  const std::size_t part = partOf(input);
-  const PicturePart& header = input.parts()[part];
+  const int part = partOf(input, path);
+  const PicturePart& header = input.parts()[std::size_t(part)];
   const std::size_t pixels = std::size_t(header.size.x) * std::size_t(header.size.y);
-  requireMemory(double(pixels) * (3 * sizeof(double) + 4 * sizeof(float)), path);
-  std::vector<double> sums(3 * pixels);
+  std::vector<double> sums;
   forEachGroup(input, path, groups, [&](std::size_t group, const float* planes) {
+    if (sums.empty()) {  // not before a file that claims much has shown that it holds it
+      requireMemory(double(pixels) * (3 * sizeof(double) + 4 * sizeof(float)), path);
+      sums.resize(3 * pixels);
+    }
     const glm::dvec3 factor(groups[group].factor);
     tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t i) {
       for (int c = 0; c < 3; ++c) sums[3 * i + c] += factor[c] * double(planes[i + std::size_t(c) * pixels]);
     });
   });
+  sums.resize(3 * pixels);  // of no groups
   Image image{header.size.x, header.size.y, {"R", "G", "B"}, {}};
   ChannelPlanes alpha;
   if (const int place = placeOf(header, "A"); place >= 0) {
-    alpha = input.read(int(part), {place});
+    alpha = input.read(part, {place});
     image.channels.push_back("A");
   }
   const std::size_t channels = image.channels.size();
@@ -118,7 +125,7 @@ Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups,
 SmallGroups smallGroups(const std::string& path, const std::vector<GroupFactor>& groups,
                         std::size_t most_bytes) {
   ExrInput input(path);
-  const glm::ivec2 size = input.parts()[partOf(input)].size;
+  const glm::ivec2 size = input.parts()[std::size_t(partOf(input, path))].size;
   const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
   int side = 1;  // of the squares
   const auto shrunk = [&] { return glm::ivec2((size.x + side - 1) / side, (size.y + side - 1) / side); };

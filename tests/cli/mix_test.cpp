@@ -86,6 +86,8 @@ TEST_F(MixCommand, RefusesWhatItCannotDoInOneLine) {
   refuse("luciole mix plain.exr -o none/out.html", 2, "none");
   writeImage({1, 1, {"light_groups.a.R"}, {0}}, folder / "short.exr", {});
   refuse("luciole mix short.exr -o out.exr", 2, "short.exr: channel light_groups.a.G: missing");
+  writeImage({1, 1, {"light_groups.a.G"}, {0}}, folder / "green.exr", {});
+  refuse("luciole mix green.exr -o out.exr", 2, "green.exr: no layers light_groups.NAME");
   writeText(folder / "text.exr", "text");
   refuse("luciole mix text.exr -o out.exr", 2, "text.exr");
   EXPECT_FALSE(std::filesystem::exists(folder / "out.exr"));

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "gbuffer/gbuffer_input.hpp"
+#include "image/light_mixer.hpp"
 #include "load/load_scene.hpp"
 #include "scale/scale_files.hpp"
 #include "scale/scale_log.hpp"
@@ -68,12 +71,27 @@ inline void readStrangersSurfaces(const std::string& path) {
   readGBuffer(path, GBufferRequest{});
 }
 
-/// Reads a stranger's file as its extension says: .exr is a G-buffer, .mtl materials, .jsonl the log of an
-/// experiment, all else a scene. A file that is refused in one line, or doesn't fit the machine, has been
-/// dealt with; anything else that goes wrong gets out of here.
+/// A picture of groups of lights, as mix reads it.
+inline void readStrangersGroups(const std::string& path) {
+  const std::vector<GroupFactor> groups = lightGroupsOf(path);
+  WriteOptions options;
+  const Image mixed = mixLights(path, groups, options);
+  for (const float value : mixed.pixels)
+    if (mixed.channels.size() == 3 && !std::isfinite(value))
+      throw std::logic_error("light that isn't finite");
+  smallGroups(path, groups, 1000);
+}
+
+/// Reads a stranger's file as its extension says: .exr is a G-buffer and a picture of groups of lights, .mtl
+/// materials, .jsonl the log of an experiment, all else a scene. A file that is refused in one line, or
+/// doesn't fit the machine, has been dealt with; anything else that goes wrong gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {
+      try {
+        readStrangersGroups(path);
+      } catch (const InputError&) {  // most have none
+      }
       readStrangersSurfaces(path);
     } else if (path.ends_with(".mtl")) {
       readStrangersMaterials(path);

@@ -141,6 +141,21 @@ TEST_F(JsonScene, LightsMayHaveASize) {
         << wrong;
 }
 
+TEST_F(JsonScene, ObjectsHaveTheirNamesAndThoseOfAFilesParts) {
+  write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("two.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"name": "door", "mesh": 0}, {"mesh": 0, "translation": [1, 0, 0]}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3", "bufferView": 0, "min": [0, 0, 0], "max": [1, 1, 0]}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  const Scene scene = load(R"({"objects": [{"mesh": "one.obj", "name": "sheet"}, {"mesh": "one.obj"},
+      {"mesh": "two.gltf", "name": "house"}, {"mesh": "two.gltf"}]})");
+  std::vector<std::string> names;
+  for (const Object& object : scene.objects) names.push_back(object.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"sheet", "", "house/door", "house", "door", ""}));
+}
+
 TEST_F(JsonScene, LightsAndFieldsHaveGroupsByName) {
   const Scene scene = loadWhole(R"({"lights": [
       {"type": "point", "position": [0,0,0], "group": "key"}, {"type": "point", "position": [0,0,0]},
