@@ -113,6 +113,7 @@ void addMaterials(const Scene& scene, const SceneInfo& info, Report& report) {
     one["name"] = material.name;
     for (const auto& [use, map] : {std::pair("diffuse_map", material.diffuse_map),
                                    {"emission_map", material.emission_map},
+                                   {"normal_map", material.normal_map},
                                    {"alpha_map", material.alpha_map}})
       if (map.texture >= 0) one[use] = scene.textures[std::size_t(map.texture)].name;
   }

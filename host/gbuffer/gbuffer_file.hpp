@@ -17,6 +17,7 @@ namespace luciole {
 ///     diffuse.R/G/B              and specular, ambient, emission alike; linear
 ///     shininess                  exponent
 ///     Ng.X/Y/Z                   the triangle's own normal, unit, world space; 0 where nothing was hit
+///     Nunbent.X/Y/Z              instead, with GBuffer::knows_unbent
 ///     lift                       metres along N to where shadow tests start (see raster/lift.hpp)
 ///
 /// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC and as our own attributes (see

@@ -9,6 +9,7 @@
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/pose.hpp"
+#include "scene/tangents.hpp"
 
 namespace luciole {
 namespace {
@@ -87,6 +88,7 @@ Scene loadScene(const std::string& path, double frame, MissingTextures missing) 
     throw InputError(scene.missing_textures.front());
   for (const std::string& texture : scene.missing_textures)
     scene.warnings.push_back(texture + "; drawn without");
+  addTangents(scene);
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);
   if (frame != 1) poseScene(scene, frame);

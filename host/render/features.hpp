@@ -39,6 +39,7 @@ enum class Feature : unsigned {
   kSoftExact,
   kHoles,
   kLift,
+  kNormalMaps,
   kFogLinear,
   kFogExp,
   kFogExp2,
@@ -84,6 +85,7 @@ struct SurfaceTraits {
   bool specular = false;
   bool emission = false;
   bool smooth = false;  ///< shadow tests start above facets (raster/lift.hpp)
+  bool normal_maps = false;
 };
 /// The traits of a scene's materials and meshes. `smooth` is set only if a light casts shadows.
 SurfaceTraits materialTraits(const Scene& scene);

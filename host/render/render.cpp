@@ -440,6 +440,7 @@ ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings)
 PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings) {
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= settings.shading != Shading::kFlat;
+  surfaces.normal_maps &= settings.shading == Shading::kPhong;
   PictureFeatures result;
   const ShadeSettings shade = pictureShading(scene, settings);
   const View view = cameraView(settings.camera, settings.size);
@@ -566,8 +567,10 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   RasterCounts triangles;
   GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
     const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
-    return rasterize(scene, objects, view, settings.shading, {true, true, true, true, smooth}, vertex_colors,
-                     &triangles);
+    return rasterize(
+        scene, objects, view, settings.shading,
+        {true, true, true, true, smooth, settings.shading == Shading::kPhong && surfaces.normal_maps},
+        vertex_colors, &triangles);
   });
   gbuffer.camera = settings.camera;
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
@@ -587,7 +590,8 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   one_sample.camera = gbuffer.camera;
   one_sample.size = gbuffer.picture_size;
   const ShadeSettings shade = pictureShading(scene, one_sample);
-  const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty()};
+  const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
+                               gbuffer.knows_unbent};
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
   const FeatureSet features =
       neededFeatures(scene, gbuffer.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));

@@ -20,15 +20,17 @@ void withFields(T& use, Visit&& visit) {
 }
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {
-  auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
-         alpha_cutoff, double_sided, colored_emission] = material;
-  visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
-        alpha_cutoff, double_sided, colored_emission);
+  auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
+         normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission] = material;
+  visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
+        normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission);
 }
 template <Is<Mesh> T, class Visit>
 void withFields(T& mesh, Visit&& visit) {
-  auto& [name, positions, normals, uvs, emission_uvs, colors, triangles, triangle_materials, divided] = mesh;
-  visit(name, positions, normals, uvs, emission_uvs, colors, triangles, triangle_materials, divided);
+  auto& [name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, colors, triangles,
+         triangle_materials, divided] = mesh;
+  visit(name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, colors, triangles,
+        triangle_materials, divided);
 }
 template <Is<Object> T, class Visit>
 void withFields(T& object, Visit&& visit) {
@@ -59,8 +61,8 @@ void withFields(T& level, Visit&& visit) {
 }
 template <Is<Texture> T, class Visit>
 void withFields(T& texture, Visit&& visit) {
-  auto& [name, levels, alpha_varies] = texture;
-  visit(name, levels, alpha_varies);
+  auto& [name, levels, alpha_varies, kind, linear] = texture;
+  visit(name, levels, alpha_varies, kind, linear);
 }
 template <Is<CurveKey> T, class Visit>
 void withFields(T& key, Visit&& visit) {

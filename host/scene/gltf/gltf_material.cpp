@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/text_file.hpp"
+#include "image/make_normals.hpp"
 #include "image/read_texture.hpp"
 #include "image/srgb.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 struct Pictures {
   std::map<int, Texture> decoded;
   std::map<int, int> in_scene;
+  std::map<int, int> normals_in_scene;
 };
 
 const tinygltf::Texture& textureOf(const GltfModel& model, int texture, const std::string& place) {
@@ -39,8 +41,8 @@ Pictures decodePictures(const GltfModel& model, const std::vector<int>& material
   for (const int index : materials) {
     const tinygltf::Material& material = gltfMaterial(model, index);
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
-    for (const int texture :
-         {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, material.emissiveTexture.index}) {
+    for (const int texture : {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index,
+                              material.emissiveTexture.index, material.normalTexture.index}) {
       const int image = imageOf(model, texture, gltfMaterialPlace(index));
       if (image >= 0) pictures.decoded.try_emplace(image);
     }
@@ -72,12 +74,16 @@ Wrap wrapOf(int mode) {
 }
 
 TextureUse textureUse(const GltfModel& model, int texture, const std::string& place, Pictures& pictures,
-                      Scene& scene) {
+                      Scene& scene, TextureKind kind = TextureKind::kColor) {
   TextureUse use;
   const int image = imageOf(model, texture, place);
   if (!pictures.decoded.count(image)) return use;
-  const auto [entry, is_new] = pictures.in_scene.try_emplace(image, static_cast<int>(scene.textures.size()));
-  if (is_new) scene.textures.push_back(pictures.decoded.at(image));
+  std::map<int, int>& known = kind == TextureKind::kNormals ? pictures.normals_in_scene : pictures.in_scene;
+  const auto [entry, is_new] = known.try_emplace(image, static_cast<int>(scene.textures.size()));
+  if (is_new) {
+    scene.textures.push_back(pictures.decoded.at(image));
+    if (kind != TextureKind::kColor) makeNormals(kind, scene.textures.back());
+  }
   use.texture = entry->second;
   const int sampler = textureOf(model, texture, place).sampler;
   if (sampler >= 0) {
@@ -167,6 +173,15 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
     material.emission_map = material.diffuse_map;
     material.colored_emission = true;
     material.ambient = material.diffuse = material.specular = glm::vec3(0);
+  }
+  if (!isUnlit(source)) {
+    material.normal_map =
+        textureUse(model, source.normalTexture.index, place, pictures, scene, TextureKind::kNormals);
+    material.normal_scale = static_cast<float>(source.normalTexture.scale);
+    if (!(std::abs(material.normal_scale) <= kMostNormalScale))
+      failGltf(model, place,
+               fmt::format("normalTexture.scale is {0}, expected -{1} to {1}", material.normal_scale,
+                           kMostNormalScale));
   }
   material.alpha = static_cast<float>(base.a);
   if (source.alphaMode == "MASK") material.alpha_cutoff = static_cast<float>(source.alphaCutoff);

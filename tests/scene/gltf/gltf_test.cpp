@@ -296,6 +296,29 @@ TEST_F(GltfTextures, PrimitivesWithAndWithoutGlowOfItsOwnBecomeOneMesh) {
   }
 }
 
+TEST_F(GltfTextures, NormalMapsHaveTangentsAndCoordinatesOfTheirOwn) {
+  json& attributes = file.primitive()["attributes"];
+  attributes["NORMAL"] = file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  attributes["TANGENT"] = file.addAccessor<float>("VEC4", kFloat, 4, {1, 0, 0, -1, 0, 1, 0, 1, 1, 0, 0, 1});
+  EXPECT_TRUE(load(file).meshes.at(0).tangents.empty()) << "nothing bends by them";
+  file.root["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 1}, {"scale", 0.25}};
+  Scene scene = load(file);
+  EXPECT_EQ(scene.meshes.at(0).tangents, (std::vector<glm::vec4>{{1, 0, 0, -1}, {0, 1, 0, 1}, {1, 0, 0, 1}}));
+  expectUvs(scene.meshes[0].uvs, {{0, 0}, {1, 0}, {1, 1}});
+  expectUvs(scene.meshes[0].normal_uvs, {{0, 0.25f}, {1, 0.5f}, {0, 1}});
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.normal_scale, 0.25f);
+  EXPECT_EQ(scene.textures.at(std::size_t(material.normal_map.texture)).kind, TextureKind::kNormals);
+  EXPECT_NE(material.normal_map.texture, material.diffuse_map.texture) << "its numbers are no colours";
+  file.root["materials"][0].erase("pbrMetallicRoughness");
+  file.root["materials"][0].erase("emissiveTexture");
+  scene = load(file);
+  expectUvs(scene.meshes.at(0).uvs, {{0, 0.25f}, {1, 0.5f}, {0, 1}});
+  EXPECT_TRUE(scene.meshes[0].normal_uvs.empty());
+  file.root["materials"][0]["normalTexture"]["scale"] = 1e9;
+  EXPECT_THAT(error(file), HasSubstr("materials[0]: normalTexture.scale"));
+}
+
 TEST_F(GltfTextures, ImpossibleTransformsAreRefused) {
   for (const auto& [members, what] : std::vector<std::pair<json, std::string>>{
            {{{"offset", {1}}}, "baseColorTexture.KHR_texture_transform: offset must be 2 numbers"},
