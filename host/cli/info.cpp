@@ -232,6 +232,9 @@ Report sceneReport(InfoOptions options) {
   addCameras(scene, report);
   addLights(scene, info.lights, report);
   addLightUses(scene, settings.shade, report);
+  report.json["variants"] = scene.variants;
+  if (!scene.variants.empty())
+    addLine(report, "variants", printable(fmt::format("{}", fmt::join(scene.variants, ", "))));
   report.json["ignored_extensions"] = scene.ignored_extensions;
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));

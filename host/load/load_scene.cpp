@@ -70,12 +70,14 @@ void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
 
 }  // namespace
 
-Scene loadScene(const std::string& path, double frame, MissingTextures missing) {
+Scene loadScene(const std::string& path, double frame, MissingTextures missing, const std::string& variant) {
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
   if (is_mesh_file) {
-    loadMeshFile(path, scene);
+    loadMeshFile(path, scene, variant);
     scene.name = path;
+  } else if (!variant.empty()) {
+    throw InputError(path + ": has no variants, which only glTF files have");
   } else if (path == "-" || extensionOf(path) == ".json") {
     SceneFile read = loadJsonScene(path);
     scene = std::move(read.scene);

@@ -150,6 +150,7 @@ struct Scene {
   std::vector<std::string> missing_textures;
   /// glTF extensions that a file uses and that are not supported, each once. There is a warning of each.
   std::vector<std::string> ignored_extensions;
+  std::vector<std::string> variants;  ///< of a glTF file, see loadGltf()
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

@@ -104,11 +104,12 @@ void withFields(T& animation, Visit&& visit) {
 }
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
-  auto& [name, warnings, missing_textures, ignored_extensions, textures, materials, meshes, objects, lights,
-         cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting, animation] =
-      scene;
-  visit(name, warnings, missing_textures, ignored_extensions, textures, materials, meshes, objects, lights,
-        cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting, animation);
+  auto& [name, warnings, missing_textures, ignored_extensions, variants, textures, materials, meshes, objects,
+         lights, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting,
+         animation] = scene;
+  visit(name, warnings, missing_textures, ignored_extensions, variants, textures, materials, meshes, objects,
+        lights, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting,
+        animation);
 }
 
 }  // namespace luciole

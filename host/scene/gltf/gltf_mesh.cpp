@@ -112,6 +112,26 @@ void repairNormals(Mesh& mesh) {
   }
 }
 
+/// The material of a primitive in the chosen variant.
+int materialOf(const GltfModel& model, const tinygltf::Primitive& primitive) {
+  const auto found = primitive.extensions.find("KHR_materials_variants");
+  if (model.variant < 0 || found == primitive.extensions.end()) return primitive.material;
+  const tinygltf::Value& mappings = memberOf(found->second, "mappings");
+  for (std::size_t i = 0; mappings.IsArray() && i < mappings.ArrayLen(); ++i) {
+    const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i));
+    const tinygltf::Value& variants = memberOf(mapping, "variants");
+    for (std::size_t j = 0; variants.IsArray() && j < variants.ArrayLen(); ++j) {
+      const tinygltf::Value& variant = variants.Get(static_cast<int>(j));
+      if (!variant.IsNumber() || variant.GetNumberAsDouble() != model.variant) continue;
+      const tinygltf::Value& material = memberOf(mapping, "material");
+      const double index = material.IsNumber() ? material.GetNumberAsDouble() : -1;
+      // One that the file can't have is refused where it is looked up.
+      return index >= 0 && index < 1e9 ? static_cast<int>(index) : 1'000'000'000;
+    }
+  }
+  return primitive.material;
+}
+
 /// Texture coordinates with the texture's transform applied; empty where the primitive doesn't have them.
 std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& primitive, const GltfUvs& use,
                              const std::string& place) {
@@ -125,9 +145,9 @@ std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& 
 /// coordinates.
 void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
              Mesh& mesh) {
-  const GltfUvs base = baseColorUvs(model, primitive.material),
-                emission = emissionUvs(model, primitive.material),
-                bent = normalUvs(model, primitive.material);
+  const GltfUvs base = baseColorUvs(model, materialOf(model, primitive)),
+                emission = emissionUvs(model, materialOf(model, primitive)),
+                bent = normalUvs(model, materialOf(model, primitive));
   if (bent.set >= 0 && base.set < 0) mesh.uvs = uvsOf(model, primitive, bent, place);
   if (bent.set >= 0 && base.set >= 0 && bent != base) mesh.normal_uvs = uvsOf(model, primitive, bent, place);
   if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
@@ -149,7 +169,7 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   readUvs(model, primitive, place, mesh);
   mesh.normals = readAttribute<glm::vec3>(model, primitive, "NORMAL", place);
   mesh.colors = readColors(model, primitive, place);
-  if (normalUvs(model, primitive.material).set >= 0)
+  if (normalUvs(model, materialOf(model, primitive)).set >= 0)
     mesh.tangents = readAttribute<glm::vec4>(model, primitive, "TANGENT", place);
   for (const std::size_t count : {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normal_uvs.size(),
                                   mesh.tangents.size(), mesh.normals.size(), mesh.colors.size()}) {
@@ -221,8 +241,9 @@ Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials
     const tinygltf::Primitive& primitive = source.primitives[i];
     const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i));
     if (part.triangles.empty()) continue;
-    auto known = std::find(materials.begin(), materials.end(), primitive.material);
-    if (known == materials.end()) known = materials.insert(known, primitive.material);
+    const int material = materialOf(model, primitive);
+    auto known = std::find(materials.begin(), materials.end(), material);
+    if (known == materials.end()) known = materials.insert(known, material);
     append(mesh, part, first_material + static_cast<std::uint32_t>(known - materials.begin()));
   }
   return mesh;
