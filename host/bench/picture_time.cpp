@@ -115,7 +115,7 @@ void writeJsonWithout(const std::string& path, bool is_fog, const std::string& c
   if (is_fog) scene.erase("fog");
   if (scene.contains("materials")) {
     for (auto& [name, material] : scene["materials"].items()) {
-      for (const char* map : {"diffuse_map", "emission_map", "alpha_map"}) {
+      for (const char* map : {"diffuse_map", "emission_map", "normal_map", "bump_map", "alpha_map"}) {
         if (!is_fog) material.erase(map);
         makeAbsolute(material, map);
       }

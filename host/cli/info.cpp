@@ -114,6 +114,7 @@ void addMaterials(const Scene& scene, const SceneInfo& info, Report& report) {
     if (material.model) one["model"] = modelName(*material.model);
     for (const auto& [use, map] : {std::pair("diffuse_map", material.diffuse_map),
                                    {"emission_map", material.emission_map},
+                                   {"normal_map", material.normal_map},
                                    {"alpha_map", material.alpha_map}})
       if (map.texture >= 0) one[use] = scene.textures[std::size_t(map.texture)].name;
   }
@@ -232,6 +233,9 @@ Report sceneReport(InfoOptions options) {
   addCameras(scene, report);
   addLights(scene, info.lights, report);
   addLightUses(scene, pictureShading(scene, settings), report);
+  report.json["variants"] = scene.variants;
+  if (!scene.variants.empty())
+    addLine(report, "variants", printable(fmt::format("{}", fmt::join(scene.variants, ", "))));
   report.json["ignored_extensions"] = scene.ignored_extensions;
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));

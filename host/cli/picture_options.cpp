@@ -191,6 +191,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             ? "one of the scene's cameras, by name or index, or all: a picture of each; {camera} in "
               "the output's name becomes the camera's"
             : "one of the scene's cameras, by name or index");
+    command.add_option("--variant", options.variant,
+                       "one of a glTF file's variants of materials, by name (info lists them)");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
@@ -367,8 +369,8 @@ MissingTextures missingTexturesOf(const std::string& value) {
 
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
   Scene scene;
-  const double milliseconds =
-      millisecondsOf([&] { scene = loadScene(path, frame, missingTexturesOf(options.missing_textures)); });
+  const double milliseconds = millisecondsOf(
+      [&] { scene = loadScene(path, frame, missingTexturesOf(options.missing_textures), options.variant); });
   logEvent("loaded", {{"scene", path},
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},

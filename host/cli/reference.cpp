@@ -175,6 +175,7 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
   stats.counts.emplace_back("gbuffer_pixels_unexplained", check.unexplained);
   stats.errors.emplace_back("gbuffer_position", check.position_error);
   stats.errors.emplace_back("gbuffer_normal", check.normal_error);
+  if (check.bent_normal_error > 0) stats.errors.emplace_back("gbuffer_bent_normal", check.bent_normal_error);
   stats.errors.emplace_back("gbuffer_lift", check.lift_error);
   if (logsEvents()) {
     logEvent("gbuffer_checked", {{"pixels", check.pixels},
@@ -182,7 +183,8 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
                                  {"at_ties", check.at_ties},
                                  {"unexplained", check.unexplained},
                                  {"position_error", check.position_error},
-                                 {"normal_error", check.normal_error}});
+                                 {"normal_error", check.normal_error},
+                                 {"bent_normal_error", check.bent_normal_error}});
     return;
   }
   if (options.quiet) return;

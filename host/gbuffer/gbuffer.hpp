@@ -51,6 +51,9 @@ struct GBuffer {
   Plane ambient;                   ///< r g b; optional
   Plane emission;                  ///< r g b; optional
   PackedNormals geometric_normal;  ///< the triangle's own, on the side that `normal` was turned to; optional
+  /// Whether geometric_normal is instead the interpolated normal that a normal map may have bent. Lights that
+  /// stand behind it are not seen, even by a bent normal that faces them.
+  bool knows_unbent = false;
   Plane lift;        ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
   ModelPlane model;  ///< optional
   Camera camera;     ///< whose view space this is
@@ -75,6 +78,7 @@ struct PlaneSet {
   bool emission = false;
   bool geometric_normal = false;
   bool lift = false;
+  bool unbent = false;  ///< sets GBuffer::knows_unbent; with geometric_normal only
   bool model = false;
 };
 

@@ -40,7 +40,7 @@ std::vector<std::string> channelNames(const GBuffer& gbuffer) {
   }
   if (!gbuffer.ambient.empty()) addChannels(names, "ambient", "RGB");
   if (!gbuffer.emission.empty()) addChannels(names, "emission", "RGB");
-  if (!gbuffer.geometric_normal.empty()) addChannels(names, "Ng", "XYZ");
+  if (!gbuffer.geometric_normal.empty()) addChannels(names, gbuffer.knows_unbent ? "Nunbent" : "Ng", "XYZ");
   if (!gbuffer.lift.empty()) names.push_back("lift");
   if (!gbuffer.model.empty()) names.push_back("model");
   return names;

@@ -188,6 +188,11 @@ class Conversion {
                       .has_view_space = own_view_});
   }
 
+  /// The layer of GBuffer::geometric_normal.
+  Role facetRole() const {
+    return found_[Role::kUnbentNormal].isThere() ? Role::kUnbentNormal : Role::kGeometricNormal;
+  }
+
   /// A G-buffer of the file's size that shows nothing, with the groups that it will have.
   void makeEmpty(GBuffer& gbuffer) const {
     constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1;
@@ -203,8 +208,9 @@ class Conversion {
     allocatePlanes({.specular = true,
                     .ambient = true,
                     .emission = found_[Role::kEmission].isThere(),
-                    .geometric_normal = found_[Role::kGeometricNormal].isThere(),
+                    .geometric_normal = found_[facetRole()].isThere(),
                     .lift = found_[Role::kLift].isThere(),
+                    .unbent = facetRole() == Role::kUnbentNormal,
                     .model = found_[Role::kModel].isThere()},
                    gbuffer);
   }
@@ -272,8 +278,7 @@ class Conversion {
     const LayerPlanes diffuse = planes(Role::kDiffuse), ambient = planes(Role::kAmbient),
                       emission = planes(Role::kEmission), shininess = planes(Role::kShininess),
                       specular = shines() ? planes(Role::kSpecular) : LayerPlanes{},
-                      facet = planes(Role::kGeometricNormal), lift = planes(Role::kLift),
-                      model = planes(Role::kModel);
+                      facet = planes(facetRole()), lift = planes(Role::kLift), model = planes(Role::kModel);
     const std::size_t stride = gbuffer.pixels();
     const float kd = request_.albedo ? float(1 / std::numbers::pi) : 1.0f;
     const auto color = [&](const LayerPlanes& layer, std::size_t pixel, glm::vec3 missing) {

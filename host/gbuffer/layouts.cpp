@@ -28,6 +28,7 @@ constexpr Layout kLayouts[]{
      .ambient = "ambient",
      .emission = "emission",
      .geometric_normal = "Ng",
+     .unbent_normal = "Nunbent",
      .lift = "lift",
      .model = "model",
      .view_position = "Pcam",
@@ -99,10 +100,10 @@ constexpr Layout kLayouts[]{
 
 /// In the order of Role.
 constexpr std::array<const char * Layout::*, kRoleCount> kNamesOf{
-    &Layout::position,         &Layout::normal,    &Layout::depth,   &Layout::diffuse,
-    &Layout::specular,         &Layout::shininess, &Layout::ambient, &Layout::emission,
-    &Layout::geometric_normal, &Layout::lift,      &Layout::model,   &Layout::view_position,
-    &Layout::view_normal,      &Layout::color};
+    &Layout::position,         &Layout::normal,        &Layout::depth,   &Layout::diffuse,
+    &Layout::specular,         &Layout::shininess,     &Layout::ambient, &Layout::emission,
+    &Layout::geometric_normal, &Layout::unbent_normal, &Layout::lift,    &Layout::model,
+    &Layout::view_position,    &Layout::view_normal,   &Layout::color};
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; }
 

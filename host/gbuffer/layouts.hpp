@@ -24,17 +24,19 @@ enum class Role : std::uint8_t {
   kAmbient,
   kEmission,
   kGeometricNormal,  ///< the triangle's own
+  kUnbentNormal,     ///< see GBuffer::knows_unbent
   kLift,             ///< see raster/lift.hpp
   kModel,            ///< modelNumber() of what surfaces choose
   kViewPosition,     ///< in this program's view space
   kViewNormal,
   kColor,  ///< the picture itself
 };
-inline constexpr std::size_t kRoleCount = 14;
+inline constexpr std::size_t kRoleCount = 15;
 /// In the order of Role, as messages and --channels have them.
 inline constexpr std::array<const char*, kRoleCount> kRoleNames{
-    "position", "normal",           "depth", "diffuse", "specular",      "shininess",   "ambient",
-    "emission", "geometric_normal", "lift",  "model",   "view_position", "view_normal", "color"};
+    "position",  "normal",  "depth",         "diffuse",          "specular",
+    "shininess", "ambient", "emission",      "geometric_normal", "unbent_normal",
+    "lift",      "model",   "view_position", "view_normal",      "color"};
 
 constexpr bool isScalar(Role role) {
   return role == Role::kDepth || role == Role::kShininess || role == Role::kLift || role == Role::kModel;
@@ -60,6 +62,7 @@ struct Layout {
   const char* ambient = "";
   const char* emission = "";
   const char* geometric_normal = "";
+  const char* unbent_normal = "";
   const char* lift = "";
   const char* model = "";
   const char* view_position = "";

@@ -20,6 +20,7 @@ void clear(std::size_t count, Group& group) {
 
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
   const std::size_t pixels = gbuffer.pixels();
+  gbuffer.knows_unbent = planes.unbent;
   // In parallel, since most of the time goes into the system's clearing of fresh memory.
   tbb::parallel_invoke(
       [&] {

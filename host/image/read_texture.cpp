@@ -90,6 +90,7 @@ Texture read(const std::string& path, const std::string& name) {
   finest.texels = linear ? texelsOfLinear(*input, name, places) : texelsOfCodes(*input, name, places);
   Texture texture{name, {}};
   texture.levels.push_back(std::move(finest));
+  texture.linear = linear;
   buildMips(texture);
   return texture;
 }

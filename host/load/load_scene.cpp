@@ -9,6 +9,7 @@
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/pose.hpp"
+#include "scene/tangents.hpp"
 
 namespace luciole {
 namespace {
@@ -69,12 +70,14 @@ void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
 
 }  // namespace
 
-Scene loadScene(const std::string& path, double frame, MissingTextures missing) {
+Scene loadScene(const std::string& path, double frame, MissingTextures missing, const std::string& variant) {
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
   if (is_mesh_file) {
-    loadMeshFile(path, scene);
+    loadMeshFile(path, scene, variant);
     scene.name = path;
+  } else if (!variant.empty()) {
+    throw InputError(path + ": has no variants, which only glTF files have");
   } else if (path == "-" || extensionOf(path) == ".json") {
     SceneFile read = loadJsonScene(path);
     scene = std::move(read.scene);
@@ -87,6 +90,7 @@ Scene loadScene(const std::string& path, double frame, MissingTextures missing) 
     throw InputError(scene.missing_textures.front());
   for (const std::string& texture : scene.missing_textures)
     scene.warnings.push_back(texture + "; drawn without");
+  addTangents(scene);
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);
   if (frame != 1) poseScene(scene, frame);

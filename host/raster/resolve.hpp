@@ -17,6 +17,7 @@ struct ResolveInput {
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
   bool lifts;                                ///< fill in GBuffer::lift
+  bool unbent;                               ///< GBuffer::knows_unbent
   bool models;                               ///< fill in GBuffer::model
 
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }

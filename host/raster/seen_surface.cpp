@@ -41,6 +41,8 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   seen.mapped = any_map && !mesh.uvs.empty();
   if (seen.mapped) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
+  seen.bends =
+      surface.material->normal_map.texture >= 0 && input.shading == Shading::kPhong && !mesh.tangents.empty();
   // Lit vertex colours are multiplied by the diffuse map, so they need no other coordinates.
   seen.glows_apart = seen.mapped && !mesh.emission_uvs.empty() && !input.litVertices();
   if (seen.glows_apart) seen.emission_uv = between<glm::dvec2>(mesh.emission_uvs.data(), surface.corners);

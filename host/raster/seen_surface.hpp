@@ -27,6 +27,7 @@ struct SeenSurface {
   Lift lift;                           ///< for ResolveInput::lifts
   bool mapped = false;                 ///< its material has maps that colour it, and its mesh coordinates:
   Interpolant<glm::dvec2> uv;          ///< zero where not
+  bool bends = false;                  ///< a normal map bends its normal
   bool glows_apart = false;            ///< the emission map has texture coordinates of its own:
   Interpolant<glm::dvec2> emission_uv;
   bool colored = false;

@@ -45,6 +45,11 @@ bool agreeAt(const SeenSurface& a, const SeenSurface& b, const glm::dvec3& p, co
   const Glimpse of_a = glimpseAt(a, p), of_b = glimpseAt(b, p);
   if (!(glm::distance(of_a.normal, of_b.normal) <= kSameShade)) return false;
   if (!(glm::distance(of_a.color, of_b.color) <= kSameShade)) return false;
+  if (a.bends) {
+    const glm::dvec4 tangent = tangentAt(a.surface, weightsInPlane(a.surface, p)),
+                     other = tangentAt(b.surface, weightsInPlane(b.surface, p));
+    if (!(glm::distance(tangent, other) <= kSameShade)) return false;
+  }
   const Glimpse right = glimpseAt(a, p + glm::dvec3(0.5 * plane.scale.x, 0, 0));
   const Glimpse below = glimpseAt(a, p + glm::dvec3(0, 0.5 * plane.scale.y, 0));
   const auto near = [&](const auto& value) {
@@ -204,8 +209,8 @@ void toPlane(const ViewPlane& plane, SquarePlace& place) {
 }
 
 ResolveInput resolveInput(const SampledView& sampled) {
-  return {sampled.scene,         sampled.objects,     sampled.plane,       sampled.shading,
-          sampled.vertex_colors, sampled.planes.lift, sampled.planes.model};
+  return {sampled.scene,         sampled.objects,     sampled.plane,         sampled.shading,
+          sampled.vertex_colors, sampled.planes.lift, sampled.planes.unbent, sampled.planes.model};
 }
 
 /// Groups the samples of a part of a strip, resolves the pixels' first points, and appends the others to

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gbuffer/packed_normal.hpp"
+
 namespace luciole {
 namespace {
 
@@ -260,6 +262,45 @@ Lanes3<float> mapColors(const Scene& scene, const Lanes<const TextureUse*>& maps
   return mean;
 }
 
+/// Bends the normals of pixels by the surface's normal map. Red is along the tangent, green across it on its
+/// side, blue along the normal; blue below 0 counts as 0. Where the surface has no tangent, or the map's
+/// vector is shorter than a step of 8 bits, the normal stays. The lift keeps its height above the surface:
+/// along the bent normal it is longer, up to twice, which is enough for normals bent by 60°.
+void bendNormals(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
+                 const PlaneCrossing& crossing, const SquareWeights& weights, const LaneMask& sees_it,
+                 SquareValues& values) {
+  const Surface& surface = seen.surface;
+  const Mesh& mesh = *surface.object->mesh;
+  const std::vector<glm::vec2>& uvs = mesh.normal_uvs.empty() ? mesh.uvs : mesh.normal_uvs;
+  const glm::dvec2 first(uvs[surface.corners[0]]);
+  SquareFootprints footprints;
+  setFootprints(
+      surface,
+      {first, glm::dvec2(uvs[surface.corners[1]]) - first, glm::dvec2(uvs[surface.corners[2]]) - first},
+      input.plane, crossing, weights, footprints);
+  Lanes<const TextureUse*> maps;
+  for (int i = 0; i < kSquarePixels; ++i) maps[i] = sees_it[i] ? &surface.material->normal_map : nullptr;
+  const Lanes3<float> numbers = mapColors(input.scene, maps, place, footprints);
+  const double scale = surface.material->normal_scale, face = surface.front_facing ? 1.0 : -1.0;
+  for (int i = 0; i < kSquarePixels; ++i) {
+    if (!sees_it[i]) continue;
+    const glm::dvec3 normal =
+        face * glm::dvec3(values.normal[0][i], values.normal[1][i], values.normal[2][i]);
+    const glm::dvec4 given =
+        tangentAt(surface, {1.0 - weights.second[i] - weights.third[i], weights.second[i], weights.third[i]});
+    const glm::dvec3 across = given.w * glm::cross(normal, glm::dvec3(given));
+    const glm::dvec3 slopes(scale * (2.0 * numbers[0][i] - 1.0), scale * (2.0 * numbers[1][i] - 1.0),
+                            std::max(2.0 * numbers[2][i] - 1.0, 0.0));
+    const double width = glm::length(across), length = glm::length(slopes);
+    if (!(width > 1e-6) || !(length > 0x1p-8)) continue;
+    const glm::dvec3 right = given.w * glm::cross(across, normal) / width;
+    const glm::dvec3 bent =
+        (slopes.x * right + slopes.y * across / width + slopes.z * normal) * (face / length);
+    for (int c = 0; c < 3; ++c) values.normal[c][i] = float(bent[c]);
+    values.lift[i] /= float(std::max(slopes.z / length, 0.5));
+  }
+}
+
 }  // namespace
 
 SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel) {
@@ -284,7 +325,14 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
                               interpolate(seen.normal, 2, weights)};
   normalize(normal, seen.facing_normal, values.normal);
   setLift(seen, weights, normal, values.lift);
-  values.geometric_normal.fill(seen.geometric_normal);
+  if (input.unbent) {
+    for (int i = 0; i < kSquarePixels; ++i)
+      values.geometric_normal[i] =
+          packNormal({values.normal[0][i], values.normal[1][i], values.normal[2][i]});
+  } else {
+    values.geometric_normal.fill(seen.geometric_normal);
+  }
+  if (seen.bends) bendNormals(input, seen, place, crossing, weights, sees_it, values);
   values.has_models = input.models;
   if (input.models) values.model.fill(modelNumber(surface.material->model));
   setMaterial(input, seen, weights, values);

@@ -116,6 +116,17 @@ float lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& plac
                        place.duv_dy, channel);
 }
 
+glm::dvec4 tangentAt(const Surface& surface, const Weights& weights) {
+  const std::vector<glm::vec4>& tangents = surface.object->mesh->tangents;
+  const glm::dvec4 mean = weights[0] * glm::dvec4(tangents[surface.corners[0]]) +
+                          weights[1] * glm::dvec4(tangents[surface.corners[1]]) +
+                          weights[2] * glm::dvec4(tangents[surface.corners[2]]);
+  const glm::dvec3 tangent = glm::dmat3(surface.object->object_to_view) * glm::dvec3(mean);
+  const double length = glm::length(tangent);
+  const double side = (mean.w < 0.0) != surface.object->mirrored ? -1.0 : 1.0;
+  return {length > 0.0 && std::isfinite(length) ? tangent / length : glm::dvec3(0.0), side};
+}
+
 glm::vec4 vertexColor(const Surface& surface, const Weights& weights) {
   const std::vector<glm::vec4>& colors = surface.object->mesh->colors;
   if (colors.empty()) return glm::vec4(1.0f);

@@ -77,6 +77,10 @@ TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, double
 /// A channel of a map at `place`, as by sampleTexture(); `map` must have a texture.
 float lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place, int channel);
 
+/// The tangent of a surface that a normal map bends, in view space on the front side: unit, or any vector
+/// shorter than 1 where there is none; in w its side, ±1 (see Mesh::tangents).
+glm::dvec4 tangentAt(const Surface& surface, const Weights& weights);
+
 /// The vertex colour at a point; 1 where the mesh has none.
 glm::vec4 vertexColor(const Surface& surface, const Weights& weights);
 

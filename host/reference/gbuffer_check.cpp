@@ -25,6 +25,11 @@ constexpr double kSamePlace = 1e-6;
 /// Normals farther apart than this, in radians, belong to different surfaces.
 constexpr double kSameNormal = 1e-5;
 
+/// The same for normals that a map bends. Its texture coordinates are floats: one of up to 16 is off by 2⁻²¹,
+/// which in a picture of 4096 texels is 1/512 of a texel. Neighbouring texels may differ by a right angle, so
+/// a scale of 1 turns a normal by up to 2 · 2 / 512 along both axes.
+constexpr double kSameBentNormal = 8e-3;
+
 /// What is needed to trace rays in view space.
 struct Tracer {
   const Scene& scene;
@@ -41,6 +46,7 @@ struct SurfaceHit {
   glm::dvec3 position;
   glm::dvec3 normal;  ///< as shaded: interpolated, on the side of the eye
   double lift;        ///< to where shadow tests start
+  bool bent = false;  ///< a normal map bends the normal
   double depth;       ///< metres along the view axis
 };
 
@@ -111,6 +117,45 @@ double liftAt(const glm::dvec3& point, const glm::dvec3& shares, const std::arra
   return std::min(std::clamp(in_front, up / 2, up), longest / 2);
 }
 
+/// Bends the normal of a hit by the normal map. `side`: 1 on the triangle's front, −1 on its back. The frame
+/// that the map is given in has its third axis along the normal, its first as near to the tangent as that
+/// allows, and its second on the side of the tangent's w. In a space that the object's transform mirrors that
+/// is the other side.
+void bend(const Tracer& tracer, std::uint32_t triangle, const glm::ivec2& pixel, const glm::dvec3& shares,
+          double side, SurfaceHit& hit) {
+  const Surface surface = makeSurface(tracer.scene, tracer.geometry.objects, triangle, tracer.plane);
+  const Mesh& mesh = *surface.object->mesh;
+  const auto corner = [&](const auto& values, int i) { return values[surface.corners[i]]; };
+  glm::dvec4 given(0);
+  for (int i = 0; i < 3; ++i) given += shares[i] * glm::dvec4(corner(mesh.tangents, i));
+  const glm::dvec3 normal = side * hit.normal;
+  const glm::dvec3 along = glm::dmat3(surface.object->object_to_view) * glm::dvec3(given);
+  const glm::dvec3 first = along - normal * glm::dot(along, normal);
+  if (!(glm::length(first) > 1e-6 * glm::length(along))) return;
+  glm::dmat3 frame(glm::normalize(first), glm::dvec3(0), normal);
+  frame[1] = glm::cross(normal, frame[0]) * ((given.w < 0) != surface.object->mirrored ? -1.0 : 1.0);
+  const std::vector<glm::vec2>& uvs = mesh.normal_uvs.empty() ? mesh.uvs : mesh.normal_uvs;
+  const auto uvAt = [&](const glm::dvec2& step) {
+    const Weights weights = weightsInPlane(surface, tracer.plane.at(pixel.x + step.x, pixel.y + step.y));
+    return weights[0] * glm::dvec2(corner(uvs, 0)) + weights[1] * glm::dvec2(corner(uvs, 1)) +
+           weights[2] * glm::dvec2(corner(uvs, 2));
+  };
+  const glm::dvec2 here = uvAt({0, 0});
+  const TexturePlace place{
+      glm::vec2(shares[0] * glm::dvec2(corner(uvs, 0)) + shares[1] * glm::dvec2(corner(uvs, 1)) +
+                shares[2] * glm::dvec2(corner(uvs, 2))),
+      glm::vec2(uvAt({1, 0}) - here), glm::vec2(uvAt({0, 1}) - here)};
+  glm::dvec3 in_frame;
+  for (int c = 0; c < 3; ++c)
+    in_frame[c] = 2.0 * lookUp(tracer.scene, surface.material->normal_map, place, c) - 1;
+  in_frame *= glm::dvec3(glm::dvec2(surface.material->normal_scale), 1);
+  in_frame.z = std::max(in_frame.z, 0.0);
+  if (!(glm::length(in_frame) > 1.0 / 256)) return;
+  hit.normal = side * (frame * glm::normalize(in_frame));
+  hit.lift /= std::max(glm::normalize(in_frame).z, 0.5);
+  hit.bent = true;
+}
+
 /// Where the ray meets the triangle's plane. Empty for a triangle that the picture doesn't show here: it
 /// faces away and is single-sided, has a hole at this pixel, or isn't between the near and the far plane.
 std::optional<SurfaceHit> intersect(const Tracer& tracer, const Ray& ray, std::uint32_t triangle,
@@ -147,6 +192,8 @@ std::optional<SurfaceHit> intersect(const Tracer& tracer, const Ray& ray, std::u
   const glm::dvec3 own = glm::normalize(glm::cross(edge1, edge2)) * (object.mirrored ? -side : side);
   hit.normal = length > 0 ? sum / length : own;
   hit.lift = liftAt(hit.position, shares, {a, b, c}, of_corners, sum, leaningCorners(*object.mesh, corners));
+  if (material.normal_map.texture >= 0 && !object.mesh->tangents.empty())
+    bend(tracer, triangle, pixel, shares, side, hit);
   return hit;
 }
 
@@ -223,7 +270,8 @@ double normalError(const Shown& shown, const SurfaceHit& hit) {
 }
 
 bool isSame(const Shown& shown, const SurfaceHit& hit) {
-  return positionError(shown, hit) <= kSamePlace && normalError(shown, hit) <= kSameNormal;
+  return positionError(shown, hit) <= kSamePlace &&
+         normalError(shown, hit) <= (hit.bent ? kSameBentNormal : kSameNormal);
 }
 
 /// Places around another at a distance of `radius` pixels.
@@ -298,8 +346,9 @@ void checkPixel(const Tracer& tracer, const GBuffer& gbuffer, const glm::ivec2& 
     const double error = positionError(shown, hit);
     if (error > check.position_error && check.unexplained == 0) check.worst_pixel = pixel;
     check.position_error = std::max(check.position_error, error);
-    check.normal_error = std::max(check.normal_error, normalError(shown, hit));
-    if (shown.lift)
+    double& normal_error = hit.bent ? check.bent_normal_error : check.normal_error;
+    normal_error = std::max(normal_error, normalError(shown, hit));
+    if (shown.lift && !hit.bent)
       check.lift_error =
           std::max(check.lift_error, std::abs(*shown.lift - hit.lift) / glm::length(hit.position));
     return;
@@ -323,6 +372,7 @@ GBufferCheck sum(const GBufferCheck& a, const GBufferCheck& b) {
   if (b_is_worse) both.worst_pixel = b.worst_pixel;
   both.position_error = std::max(a.position_error, b.position_error);
   both.normal_error = std::max(a.normal_error, b.normal_error);
+  both.bent_normal_error = std::max(a.bent_normal_error, b.bent_normal_error);
   both.lift_error = std::max(a.lift_error, b.lift_error);
   return both;
 }

@@ -20,7 +20,8 @@ struct GBufferCheck {
   /// Largest errors over the pixels that show the surface which the ray hits, farther than kEdgePixels from
   /// its triangle's edges: as a share of the distance from the eye, and in radians.
   double position_error = 0, normal_error = 0;
-  double lift_error = 0;  ///< likewise, as a share of the distance, where the G-buffer has lifts
+  double bent_normal_error = 0;  ///< radians, of normals that a map bends, and of no others
+  double lift_error = 0;         ///< likewise, as a share of the distance, where the G-buffer has lifts
   /// Numbers of pixels that show another surface than the ray hits, or where only one of the two has a
   /// surface, by the reason.
   std::uint64_t beside_edges = 0;  ///< an edge of one of the two is within kEdgePixels: snapping explains it

@@ -8,6 +8,7 @@
 #include <limits>
 #include <mutex>
 
+#include "gbuffer/packed_normal.hpp"
 #include "reference/models.hpp"
 
 namespace luciole {
@@ -97,6 +98,8 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
   SurfacePoint point;
   point.position = glm::dvec3(to_world * glm::dvec4(view_position, 1));
   point.normal = glm::dmat3(to_world) * triple(gbuffer.normal, stride, place);
+  if (gbuffer.knows_unbent)
+    point.unbent = glm::dmat3(to_world) * unpackNormal(gbuffer.geometric_normal[place]);
   point.diffuse = triple(gbuffer.diffuse, stride, place);
   point.specular = triple(gbuffer.specular, stride, place);
   point.ambient = triple(gbuffer.ambient, stride, place);
@@ -118,6 +121,10 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
 
 }  // namespace
 
+/// The sine of the angle by which a packed normal may be off, with some to spare: a light that is so little
+/// behind a surface counts as before it, as in kernels/shading.clh.
+static constexpr double kPackedNormalMargin = 0x1p-13;
+
 // The lighting equation of OpenGL 1.x (The OpenGL Graphics System: A Specification, section "Lighting") with
 // a local viewer. Its highlight is replaced by Phong's, or by another model's.
 glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
@@ -133,7 +140,10 @@ glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const Sur
     if (incoming.share == 0) continue;
     glm::dvec3 reflected = glm::dvec3(light.ambient) * point.ambient;
     const double n_dot_l = glm::dot(normal, incoming.to_light);
-    const double visible = n_dot_l <= 0 ? 0.0 : light.shadow && visibility ? visibility(light) : 1.0;
+    const bool behind = glm::dot(point.unbent, incoming.to_light) <= -kPackedNormalMargin;
+    const double visible = n_dot_l <= 0 || behind       ? 0.0
+                           : light.shadow && visibility ? visibility(light)
+                                                        : 1.0;
     if (visible > 0) {
       const auto [diffuse, specular] =
           reflectedLight(model, {normal, incoming.to_light, to_eye}, point.specular, point.shininess);

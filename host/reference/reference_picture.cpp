@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "image/exposure.hpp"
+#include "scene/tangents.hpp"
 
 namespace luciole {
 namespace {
@@ -34,10 +35,13 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
     sample_view.sample = samplePoint(sample, samples);
+    const bool bent = shading == Shading::kPhong && hasNormalMaps(scene);
     const PlaneSet planes{.specular = true,
                           .ambient = true,
                           .emission = true,
+                          .geometric_normal = bent,
                           .lift = settings.shadow_rays != nullptr,
+                          .unbent = bent,
                           .model = true};
     const GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
     ReferenceSettings of_sample = settings;

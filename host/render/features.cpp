@@ -8,6 +8,7 @@
 #include "kernels/shared.h"
 #include "raster/lift.hpp"
 #include "render/clustered_light.hpp"
+#include "scene/tangents.hpp"
 #include "shadow/shadow_views.hpp"
 
 namespace luciole {
@@ -37,6 +38,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"SOFT_EXACT", "soft exact shadows", "exact shadows of samples of lights of a size"},
     {"HOLES", "holes", "textures with holes, through which light shines"},
     {"LIFT", "lifted shadows", "shadow tests that start on the smooth surface above a facet"},
+    {"NORMAL_MAPS", "normal maps", "lights behind a surface, which a bent normal may face, are not seen"},
     {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
     {"FOG_EXP", "exp fog", "exp(-density z)"},
     {"FOG_EXP2", "exp2 fog", "exp(-(density z)^2)"},
@@ -60,6 +62,7 @@ std::vector<std::string> featureNames(const FeatureSet& features) {
 
 SurfaceTraits materialTraits(const Scene& scene) {
   SurfaceTraits traits;
+  traits.normal_maps = hasNormalMaps(scene);
   for (const Material& material : scene.materials) {
     traits.specular |= material.specular != glm::vec3(0.0f);
     traits.emission |= material.emission != glm::vec3(0.0f);
@@ -95,7 +98,8 @@ LightUse lightUse(const ShadeSettings& settings) {
 
 bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
                      const ShadeSettings& settings) {
-  if (!scene.lighting || !(settings.light_error > 0)) return false;
+  // Clusters know nothing of what stands behind a surface that a bent normal faces.
+  if (!scene.lighting || !(settings.light_error > 0) || surfaces.normal_maps) return false;
   const auto counts = countReasons(scene.lights, lightUse(settings));
   const std::size_t lights = counts[std::size_t(ExactReason::kNone)];
   if (settings.always_clusters) return lights > 0;
@@ -165,6 +169,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     features.set(Feature::kOutputShadow, settings.shadow_layer);
   }
   features.set(Feature::kLift, surfaces.smooth && features.shadows());
+  features.set(Feature::kNormalMaps, surfaces.normal_maps && !scene.lights.empty());
   features.set(Feature::kHoles,
                features.has(Feature::kExact) &&
                    std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -223,8 +228,9 @@ PlaneSet neededPlanes(const FeatureSet& features) {
                       features.has(Feature::kOrenNayar),  // for the shininess
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
-          .geometric_normal = features.shadowMaps(),
+          .geometric_normal = features.shadowMaps() || features.has(Feature::kNormalMaps),
           .lift = features.has(Feature::kLift),
+          .unbent = features.has(Feature::kNormalMaps),
           .model = features.has(Feature::kMaterialModels)};
 }
 

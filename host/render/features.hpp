@@ -39,6 +39,7 @@ enum class Feature : unsigned {
   kSoftExact,
   kHoles,
   kLift,
+  kNormalMaps,
   kFogLinear,
   kFogExp,
   kFogExp2,
@@ -84,7 +85,8 @@ std::vector<std::string> featureNames(const FeatureSet& features);
 struct SurfaceTraits {
   bool specular = false;
   bool emission = false;
-  bool smooth = false;     ///< shadow tests start above facets (raster/lift.hpp)
+  bool smooth = false;  ///< shadow tests start above facets (raster/lift.hpp)
+  bool normal_maps = false;
   ModelChoices models{1};  ///< that they choose
 };
 /// The traits of a scene's materials and meshes. `smooth` is set only if a light casts shadows.

@@ -344,7 +344,8 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, c
   const std::string defines = featureDefines(features) + lighting.math_defines;
   const std::string lookup_defines = featureDefines(lookupFeatures(features));
   PackedNormals packed;
-  if (features.shadowMaps() && gbuffer.geometric_normal.empty()) packed = packNormals(gbuffer);
+  if ((features.shadowMaps() || features.has(Feature::kNormalMaps)) && gbuffer.geometric_normal.empty())
+    packed = packNormals(gbuffer);
   const PackedNormals& geometric_normal = packed.empty() ? gbuffer.geometric_normal : packed;
   Plane level;  // lifts of 0, for a G-buffer without lifts
   if (features.has(Feature::kLift) && gbuffer.lift.empty()) level.resize(pixels);

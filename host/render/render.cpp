@@ -522,6 +522,7 @@ ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings)
 PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings) {
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= settings.shading != Shading::kFlat;
+  surfaces.normal_maps &= settings.shading == Shading::kPhong;
   PictureFeatures result;
   const ShadeSettings shade = pictureShading(scene, settings);
   const View view = cameraView(settings.camera, settings.size);
@@ -656,8 +657,14 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   RasterCounts triangles;
   GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
     const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
-    const bool models = surfaces.models.to_ulong() > 1;
-    return rasterize(scene, objects, view, settings.shading, {true, true, true, true, smooth, models},
+    return rasterize(scene, objects, view, settings.shading,
+                     {.specular = true,
+                      .ambient = true,
+                      .emission = true,
+                      .geometric_normal = true,
+                      .lift = smooth,
+                      .unbent = settings.shading == Shading::kPhong && surfaces.normal_maps,
+                      .model = surfaces.models.to_ulong() > 1},
                      vertex_colors, &triangles);
   });
   gbuffer.camera = settings.camera;
@@ -678,7 +685,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   one_sample.camera = gbuffer.camera;
   one_sample.size = gbuffer.picture_size;
   const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
-                               modelChoices(gbuffer)};
+                               gbuffer.knows_unbent, modelChoices(gbuffer)};
   ShadeSettings shade = pictureShading(scene, one_sample);
   shade.model = settings.shade.model;
   chooseModel(surfaces.models, shade);

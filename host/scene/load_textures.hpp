@@ -7,8 +7,8 @@
 namespace luciole {
 
 /// The index in Scene::textures of the picture file `path`. A new file is added without decoding it; a file
-/// that several materials name is one texture. O(textures).
-int addTexture(Scene& scene, const std::string& path);
+/// that several materials name is one texture of each kind. O(textures).
+int addTexture(Scene& scene, const std::string& path, TextureKind kind = TextureKind::kColor);
 
 /// Whether no texture is left without levels.
 bool allDecoded(const Scene& scene);

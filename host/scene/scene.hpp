@@ -24,6 +24,9 @@ struct TextureUse {
   Wrap wrap_v = Wrap::kRepeat;
 };
 
+/// A limit of Material::normal_scale.
+inline constexpr float kMostNormalScale = 1000;
+
 /// Phong's reflection coefficients, linear Rec.709. Defaults are OpenGL's.
 /// The diffuse map multiplies ambient and diffuse; vertex colours likewise, and emission where it says so.
 struct Material {
@@ -35,6 +38,10 @@ struct Material {
   float shininess = 0.0f;  ///< exponent n ≥ 0 of the specular lobe
   TextureUse diffuse_map;
   TextureUse emission_map;
+  /// Bends the normals that surfaces are lit by, with Shading::kPhong. Of a texture of TextureKind::kNormals
+  /// or kBump.
+  TextureUse normal_map;
+  float normal_scale = 1.0f;  ///< multiplies the map's slopes; |normal_scale| ≤ kMostNormalScale
   TextureUse alpha_map;       ///< opacity: its alpha where it has one that varies, else its red (OBJ map_d)
   float alpha = 1.0f;         ///< constant opacity, multiplied with the maps' and the vertex colour's alpha
   float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
@@ -51,7 +58,12 @@ struct Mesh {
   std::vector<glm::vec3> normals;  ///< unit, never missing: loaders make them
   std::vector<glm::vec2> uvs;      ///< optional; v grows downwards: (0,0) is the picture's top left corner
   std::vector<glm::vec2> emission_uvs;  ///< optional; emission maps use these instead of `uvs`
-  std::vector<glm::vec4> colors;        ///< optional; linear RGBA that multiplies the material's
+  /// Optional; where red of a normal map points, unit, and in w the side of green: ±1 × cross(normal,
+  /// tangent) points up in the picture. All zero at vertices that have none; addTangents() gives those that
+  /// need one.
+  std::vector<glm::vec4> tangents;
+  std::vector<glm::vec2> normal_uvs;  ///< optional; normal maps use these instead of `uvs`
+  std::vector<glm::vec4> colors;      ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
   /// The same surface in smaller triangles, which takes its place where colours are lit at vertices (Gouraud
@@ -142,6 +154,7 @@ struct Scene {
   std::vector<std::string> missing_textures;
   /// glTF extensions that a file uses and that are not supported, each once. There is a warning of each.
   std::vector<std::string> ignored_extensions;
+  std::vector<std::string> variants;  ///< of a glTF file, see loadGltf()
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

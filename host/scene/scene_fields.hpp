@@ -20,15 +20,17 @@ void withFields(T& use, Visit&& visit) {
 }
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {
-  auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
-         alpha_cutoff, double_sided, colored_emission, model] = material;
-  visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, alpha_map, alpha,
-        alpha_cutoff, double_sided, colored_emission, model);
+  auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
+         normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model] = material;
+  visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
+        normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model);
 }
 template <Is<Mesh> T, class Visit>
 void withFields(T& mesh, Visit&& visit) {
-  auto& [name, positions, normals, uvs, emission_uvs, colors, triangles, triangle_materials, divided] = mesh;
-  visit(name, positions, normals, uvs, emission_uvs, colors, triangles, triangle_materials, divided);
+  auto& [name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, colors, triangles,
+         triangle_materials, divided] = mesh;
+  visit(name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, colors, triangles,
+        triangle_materials, divided);
 }
 template <Is<Object> T, class Visit>
 void withFields(T& object, Visit&& visit) {
@@ -59,8 +61,8 @@ void withFields(T& level, Visit&& visit) {
 }
 template <Is<Texture> T, class Visit>
 void withFields(T& texture, Visit&& visit) {
-  auto& [name, levels, alpha_varies] = texture;
-  visit(name, levels, alpha_varies);
+  auto& [name, levels, alpha_varies, kind, linear] = texture;
+  visit(name, levels, alpha_varies, kind, linear);
 }
 template <Is<CurveKey> T, class Visit>
 void withFields(T& key, Visit&& visit) {
@@ -102,12 +104,12 @@ void withFields(T& animation, Visit&& visit) {
 }
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
-  auto& [name, warnings, missing_textures, ignored_extensions, textures, materials, meshes, objects, lights,
-         light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
+  auto& [name, warnings, missing_textures, ignored_extensions, variants, textures, materials, meshes, objects,
+         lights, light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
          lighting, animation] = scene;
-  visit(name, warnings, missing_textures, ignored_extensions, textures, materials, meshes, objects, lights,
-        light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights, lighting,
-        animation);
+  visit(name, warnings, missing_textures, ignored_extensions, variants, textures, materials, meshes, objects,
+        lights, light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
+        lighting, animation);
 }
 
 }  // namespace luciole

@@ -43,6 +43,7 @@ const std::vector<Needs>& needs() {
       {kSoftExact, {kExact}},
       {kHoles, {kExact}},
       {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows}},
+      {kNormalMaps, {kPointLights, kDirectionalLights, kSpotLights}},
       {kOutputShadow, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
       {kParallelShadows, {kDirectionalLights}},
       {kPerspectiveShadows, {kSpotLights}},

@@ -18,11 +18,13 @@ namespace luciole::test {
 /// The features that choose how shadow maps are looked up, of which a program has one at most.
 inline constexpr Feature kShadowMethods[] = {Feature::kPcf, Feature::kSoft, Feature::kExact};
 
-/// Every feature, and the shadow method of `needed`: that is a choice, which no scene makes.
+/// Every feature, and of `needed` the shadow method, which is a choice that no scene makes, and whether there
+/// are normal maps: with them geometric normals mean something else.
 inline FeatureSet everyFeature(const FeatureSet& needed = {}) {
   FeatureSet features;
   for (std::size_t i = 0; i < kFeatureCount; ++i) features.set(static_cast<Feature>(i));
   for (const Feature method : kShadowMethods) features.set(method, needed.has(method));
+  features.set(Feature::kNormalMaps, needed.has(Feature::kNormalMaps));
   return features;
 }
 

@@ -105,5 +105,18 @@ TEST(GBufferCheck, FindsWhatIsWrong) {
   EXPECT_NEAR(check(seen).position_error, 8e-7, 2e-7) << "two roundings of 6e-8 and one of the sum";
 }
 
+/// A bent normal may be off by what kSameBentNormal in gbuffer_check.cpp allows for, at worst; a map of these
+/// has far less contrast.
+TEST(GBufferCheck, KnowsNormalsThatAMapBends) {
+  LUCIOLE_NEEDS_SHARED();
+  const Seen seen =
+      see(loadScene((sharedScenes() / "khronos_DamagedHelmet/glTF-Binary/DamagedHelmet.glb").string()),
+          {480, 270});
+  const GBufferCheck result = check(seen);
+  EXPECT_EQ(result.unexplained, 0u) << "such as at " << result.worst_pixel.x << ", " << result.worst_pixel.y;
+  EXPECT_GT(result.bent_normal_error, 0);
+  EXPECT_LE(result.bent_normal_error, 8e-3);
+}
+
 }  // namespace
 }  // namespace luciole::test

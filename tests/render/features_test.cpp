@@ -120,6 +120,9 @@ TEST(Features, GBufferGroupsFollowTheFeatures) {
        {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows})
     EXPECT_TRUE(neededPlanes(setOf({shadows})).geometric_normal);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kLift})).lift);
+  EXPECT_FALSE(neededPlanes(setOf({Feature::kCubeShadows})).unbent);
+  const PlaneSet bent = neededPlanes(setOf({Feature::kNormalMaps}));
+  EXPECT_TRUE(bent.geometric_normal && bent.unbent);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ inline std::string sceneFault(const Scene& scene) {
     }
   }
   for (const Material& material : scene.materials) {
-    for (const TextureUse& use : {material.diffuse_map, material.emission_map, material.alpha_map}) {
+    for (const TextureUse& use :
+         {material.diffuse_map, material.emission_map, material.normal_map, material.alpha_map}) {
       if (use.texture >= static_cast<int>(scene.textures.size())) return "a texture is out of range";
     }
   }

@@ -40,7 +40,8 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
     {"Materials", R"({"ambient": 1, "materials": {
       "all": {"ambient": 0.1, "diffuse": [0.5, 0.6, 0.7], "specular": 0.3, "emission": [0, 0, 0.5], "shininess": 32,
               "diffuse_map": "gone.png", "emission_map": "gone.png", "alpha_map": "gone.png", "alpha": 0.75,
-              "alpha_cutoff": 0.5, "double_sided": true, "model": "toon"},
+              "alpha_cutoff": 0.5, "double_sided": true, "normal_map": "gone.png", "normal_scale": -2, "model": "toon"},
+      "bumpy": {"bump_map": "gone.png"},
       "none": {}}})"},
     {"Objects", R"({"ambient": 1, "materials": {"red": {"diffuse": [1, 0, 0]}}, "objects": [
       {"primitive": "torus", "segments": 4, "minor_radius": 0.5, "uv_scale": 2, "material": "red", "scale": [1, -2, 3]},
@@ -146,7 +147,7 @@ inline json smallVersion(const std::filesystem::path& path) {
     for (const auto& [name, material] : scene["materials"].items()) {
       if (!used.contains(name)) continue;
       materials[name] = material;
-      for (const char* map : {"diffuse_map", "emission_map", "alpha_map"})
+      for (const char* map : {"diffuse_map", "emission_map", "normal_map", "bump_map", "alpha_map"})
         if (material.contains(map)) materials[name][map] = "gone.png";
     }
     scene["materials"] = materials;

@@ -7,7 +7,9 @@
 #include <map>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/gltf/gltf_accessor.hpp"
 #include "scene/gltf/gltf_animation.hpp"
 #include "scene/gltf/gltf_material.hpp"
 #include "scene/gltf/gltf_mesh.hpp"
@@ -99,9 +101,17 @@ std::vector<int> rootNodes(const GltfModel& model) {
   return roots;
 }
 
-/// Every node of the scene with its transform, parents first. Animated nodes are added to the animation.
-/// Throws InputError unless the nodes form trees (roots without a parent, other nodes with at most one), so
-/// that the walk down from the roots ends.
+/// Whether a node hides itself and all below it (KHR_node_visibility).
+bool isHidden(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  if (found == node.extensions.end()) return false;
+  const tinygltf::Value& visible = memberOf(found->second, "visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
+/// Every node of the scene that isn't hidden with its transform, parents first. Animated nodes are added to
+/// the animation. Throws InputError unless the nodes form trees (roots without a parent, other nodes with at
+/// most one), so that the walk down from the roots ends.
 std::vector<PlacedNode> placedNodes(const GltfModel& model, Animation& animation) {
   const std::map<int, NodeCurves> curves = readGltfAnimations(model, animation);
   const std::vector<tinygltf::Node>& nodes = model.file.nodes;
@@ -122,6 +132,7 @@ std::vector<PlacedNode> placedNodes(const GltfModel& model, Animation& animation
   while (!stack.empty()) {
     PlacedNode next = stack.back();
     stack.pop_back();
+    if (isHidden(nodes[next.node])) continue;
     const LocalTransform local = localTransform(model, next.node);
     next.to_world = next.to_world * local.matrix;
     if (!isFinite(next.to_world)) failGltf(model, nodePlace(next.node), "transform is not finite");
@@ -144,6 +155,46 @@ std::vector<PlacedNode> placedNodes(const GltfModel& model, Animation& animation
   return placed;
 }
 
+/// The transforms of a node's instances (EXT_mesh_gpu_instancing) to the node's space; one of nothing where
+/// it has none.
+std::vector<glm::dmat4> instancesOf(const GltfModel& model, int index) {
+  constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+  const tinygltf::Node& node = model.file.nodes[index];
+  const auto found = node.extensions.find(kInstancing);
+  if (found == node.extensions.end()) return {glm::dmat4(1.0)};
+  const tinygltf::Value& attributes = memberOf(found->second, "attributes");
+  const std::string place = fmt::format("{}.{}", nodePlace(index), kInstancing);
+  std::size_t count = 0;
+  const auto read = [&](const char* name, int components) {
+    std::vector<float> values;
+    if (!attributes.IsObject() || !attributes.Has(name)) return values;
+    const tinygltf::Value& accessor = attributes.Get(name);
+    const double number = accessor.IsNumber() ? accessor.GetNumberAsDouble() : -1;
+    values = readFloats(model, number >= 0 && number < 1e9 ? static_cast<int>(number) : -1, components,
+                        fmt::format("{}.{}", place, name));
+    const std::size_t instances = values.size() / static_cast<std::size_t>(components);
+    if (count != 0 && count != instances)
+      failGltf(model, place, fmt::format("its attributes have {} and {} elements", count, instances));
+    count = instances;
+    return values;
+  };
+  const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
+                           scales = read("SCALE", 3);
+  if (count == 0) failGltf(model, place, "has none of TRANSLATION, ROTATION, SCALE");
+  std::vector<glm::dmat4> instances;
+  for (std::size_t i = 0; i < count; ++i) {
+    glm::dvec3 translate(0), scale(1);
+    glm::dvec4 rotation(0, 0, 0, 1);
+    for (int c = 0; c < 3 && !translations.empty(); ++c) translate[c] = translations[3 * i + std::size_t(c)];
+    for (int c = 0; c < 4 && !rotations.empty(); ++c) rotation[c] = rotations[4 * i + std::size_t(c)];
+    for (int c = 0; c < 3 && !scales.empty(); ++c) scale[c] = scales[3 * i + std::size_t(c)];
+    instances.push_back(placementByQuaternion(translate, rotation, scale));
+    if (!(glm::length(rotation) > 0) || !isFinite(instances.back()))
+      failGltf(model, place, fmt::format("instance {} has no finite transform", i));
+  }
+  return instances;
+}
+
 /// Adds the mesh of each node as an object; a mesh of several nodes becomes one mesh and several objects.
 void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Scene& scene) {
   const std::uint32_t first_material = static_cast<std::uint32_t>(scene.materials.size());
@@ -160,12 +211,16 @@ void addObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes, Sc
     }
     if (meshes[index] < 0) continue;
     const std::uint32_t mesh = static_cast<std::uint32_t>(meshes[index]);
-    // A scale of 0 hides an object. What moves may have it for a while, and is kept.
-    if (placed.moving < 0 && isFlat(placed.to_world)) continue;
-    scene.objects.push_back({mesh, placed.to_world, -1, model.file.nodes[placed.node].name});
-    if (placed.moving < 0) continue;
-    attach(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
-                   static_cast<std::uint32_t>(placed.moving), placed.since, mesh});
+    for (const glm::dmat4& instance : instancesOf(model, placed.node)) {
+      const glm::dmat4 to_world = placed.to_world * instance;
+      if (!isFinite(to_world)) failGltf(model, nodePlace(placed.node), "transform is not finite");
+      // A scale of 0 hides an object. What moves may have it for a while, and is kept.
+      if (placed.moving < 0 && isFlat(to_world)) continue;
+      scene.objects.push_back({mesh, to_world, -1, model.file.nodes[placed.node].name});
+      if (placed.moving < 0) continue;
+      attach(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
+                     static_cast<std::uint32_t>(placed.moving), placed.since * instance, mesh});
+    }
   }
   addGltfMaterials(model, materials, scene);
 }
@@ -269,8 +324,17 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Li
 
 }  // namespace
 
-void loadGltf(const std::string& path, Scene& scene) {
-  const GltfModel model = readGltfModel(path);
+void loadGltf(const std::string& path, Scene& scene, const std::string& variant) {
+  GltfModel model = readGltfModel(path);
+  scene.variants = variantNames(model);
+  if (!variant.empty()) {
+    const auto found = std::find(scene.variants.begin(), scene.variants.end(), variant);
+    if (found == scene.variants.end())
+      throw InputError(fmt::format(
+          "{}: has no variant '{}'; it has {}", path, forMessage(variant),
+          scene.variants.empty() ? "none" : forMessage(fmt::format("{}", fmt::join(scene.variants, ", ")))));
+    model.variant = static_cast<int>(found - scene.variants.begin());
+  }
   for (const std::string& extension : ignoredExtensions(model)) {
     scene.warnings.push_back(
         fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path, forMessage(extension)));

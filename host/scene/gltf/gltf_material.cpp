@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/text_file.hpp"
+#include "image/make_normals.hpp"
 #include "image/read_texture.hpp"
 #include "image/srgb.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 struct Pictures {
   std::map<int, Texture> decoded;
   std::map<int, int> in_scene;
+  std::map<int, int> normals_in_scene;
 };
 
 const tinygltf::Texture& textureOf(const GltfModel& model, int texture, const std::string& place) {
@@ -29,9 +31,26 @@ const tinygltf::Texture& textureOf(const GltfModel& model, int texture, const st
 /// The index of a texture's picture, or -1 where there is no texture.
 int imageOf(const GltfModel& model, int texture, const std::string& place) {
   if (texture < 0) return -1;
-  const int image = textureOf(model, texture, place).source;
+  const tinygltf::Texture& entry = textureOf(model, texture, place);
+  int image = extensionIndex(entry.extensions, "EXT_texture_webp", "source");
+  if (image < 0) image = entry.source;
+  if (image < 0 && entry.extensions.count("KHR_texture_basisu"))
+    failGltf(model, fmt::format("textures[{}]", texture),
+             "has a KHR_texture_basisu picture only, which is not supported; expected a source beside it");
   element(model, model.file.images, image, fmt::format("textures[{}]", texture), "image");
   return image;
+}
+
+constexpr const char* kSpecular = "KHR_materials_specular";
+
+/// The index of one of KHR_materials_specular's textures, or −1.
+int specularTexture(const tinygltf::Material& material, const char* member) {
+  const auto found = material.extensions.find(kSpecular);
+  if (found == material.extensions.end()) return -1;
+  const tinygltf::Value& texture = memberOf(found->second, member);
+  const tinygltf::Value& index = memberOf(texture, "index");
+  const double number = index.IsNumber() ? index.GetNumberAsDouble() : -1;
+  return number >= 0 && number < 1e9 ? static_cast<int>(number) : -1;
 }
 
 Pictures decodePictures(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {
@@ -40,7 +59,9 @@ Pictures decodePictures(const GltfModel& model, const std::vector<int>& material
     const tinygltf::Material& material = gltfMaterial(model, index);
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     for (const int texture :
-         {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, material.emissiveTexture.index}) {
+         {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, material.emissiveTexture.index,
+          material.normalTexture.index, specularTexture(material, "specularTexture"),
+          specularTexture(material, "specularColorTexture")}) {
       const int image = imageOf(model, texture, gltfMaterialPlace(index));
       if (image >= 0) pictures.decoded.try_emplace(image);
     }
@@ -72,12 +93,16 @@ Wrap wrapOf(int mode) {
 }
 
 TextureUse textureUse(const GltfModel& model, int texture, const std::string& place, Pictures& pictures,
-                      Scene& scene) {
+                      Scene& scene, TextureKind kind = TextureKind::kColor) {
   TextureUse use;
   const int image = imageOf(model, texture, place);
   if (!pictures.decoded.count(image)) return use;
-  const auto [entry, is_new] = pictures.in_scene.try_emplace(image, static_cast<int>(scene.textures.size()));
-  if (is_new) scene.textures.push_back(pictures.decoded.at(image));
+  std::map<int, int>& known = kind == TextureKind::kNormals ? pictures.normals_in_scene : pictures.in_scene;
+  const auto [entry, is_new] = known.try_emplace(image, static_cast<int>(scene.textures.size()));
+  if (is_new) {
+    scene.textures.push_back(pictures.decoded.at(image));
+    if (kind != TextureKind::kColor) makeNormals(kind, scene.textures.back());
+  }
   use.texture = entry->second;
   const int sampler = textureOf(model, texture, place).sampler;
   if (sampler >= 0) {
@@ -118,14 +143,41 @@ glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, con
   return result;
 }
 
-void setReflection(Material& material, const glm::dvec3& base, const glm::dvec3& mean_base, double metallic,
-                   double roughness) {
+void setReflection(Material& material, const glm::dvec3& base, const glm::dvec3& mean_base,
+                   const glm::dvec3& dielectric, double metallic, double roughness) {
   const double alpha = std::pow(std::max(roughness, 0.15), 2);
   const double peak = std::min(1.0, 1 / (4 * alpha * alpha));
   material.ambient = glm::vec3(base);
   material.diffuse = glm::vec3(base * (1 - metallic));
-  material.specular = glm::vec3(glm::mix(glm::dvec3(0.04), mean_base, metallic) * peak);
+  material.specular = glm::vec3(glm::mix(dielectric, mean_base, metallic) * peak);
   material.shininess = static_cast<float>((2 / (alpha * alpha) - 2) / 4);
+}
+
+/// What a dielectric reflects head-on, by KHR_materials_ior and KHR_materials_specular, whose textures count
+/// by their means.
+glm::dvec3 dielectricReflection(const GltfModel& model, const tinygltf::Material& source,
+                                const std::string& place, const Pictures& pictures) {
+  const double ior = extensionNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
+  if (ior != 0 && !(ior >= 1)) failGltf(model, place, "ior must be 0 or at least 1");
+  const double plain = ior == 0 ? 1.0 : std::pow((ior - 1) / (ior + 1), 2);
+  double factor = extensionNumber(source.extensions, kSpecular, "specularFactor", 1.0);
+  if (!(factor >= 0 && factor <= 1)) failGltf(model, place, "specularFactor must be from 0 to 1");
+  glm::dvec3 color(1);
+  const auto found = source.extensions.find(kSpecular);
+  if (found == source.extensions.end()) return glm::dvec3(plain);
+  const tinygltf::Value& list = memberOf(found->second, "specularColorFactor");
+  for (int i = 0; i < 3 && list.IsArray() && list.ArrayLen() == 3; ++i)
+    color[i] = list.Get(i).IsNumber() ? list.Get(i).GetNumberAsDouble() : 1.0;
+  if (!(color.x >= 0 && color.y >= 0 && color.z >= 0 && std::isfinite(color.x + color.y + color.z)))
+    failGltf(model, place, "specularColorFactor must be at least 0 and finite");
+  const auto picture = [&](const char* member) -> const Texture* {
+    const auto known = pictures.decoded.find(imageOf(model, specularTexture(source, member), place));
+    return known == pictures.decoded.end() ? nullptr : &known->second;
+  };
+  if (const Texture* texture = picture("specularTexture"))
+    factor *= double(texture->levels.back().texels[3]) / 65535;
+  if (const Texture* texture = picture("specularColorTexture")) color *= meanColor(*texture);
+  return glm::min(plain * color, glm::dvec3(1)) * factor;
 }
 
 Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& scene) {
@@ -150,7 +202,8 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
 
   Material material;
   material.name = index < 0 ? "default" : source.name;
-  setReflection(material, base, mean_base, metallic, roughness);
+  setReflection(material, base, mean_base, dielectricReflection(model, source, place, pictures), metallic,
+                roughness);
   material.diffuse_map = textureUse(model, pbr.baseColorTexture.index, place, pictures, scene);
   const double strength =
       extensionNumber(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0);
@@ -167,6 +220,15 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
     material.emission_map = material.diffuse_map;
     material.colored_emission = true;
     material.ambient = material.diffuse = material.specular = glm::vec3(0);
+  }
+  if (!isUnlit(source)) {
+    material.normal_map =
+        textureUse(model, source.normalTexture.index, place, pictures, scene, TextureKind::kNormals);
+    material.normal_scale = static_cast<float>(source.normalTexture.scale);
+    if (!(std::abs(material.normal_scale) <= kMostNormalScale))
+      failGltf(model, place,
+               fmt::format("normalTexture.scale is {0}, expected -{1} to {1}", material.normal_scale,
+                           kMostNormalScale));
   }
   material.alpha = static_cast<float>(base.a);
   if (source.alphaMode == "MASK") material.alpha_cutoff = static_cast<float>(source.alphaCutoff);

@@ -23,15 +23,16 @@ bool isUnlit(const tinygltf::Material& material);
 ///
 ///     ambient   = base
 ///     diffuse   = base · (1 − m)
-///     specular  = mix(0.04, base, m) · min(1, 1 / (4 α²)),  α = r²
+///     specular  = mix(F0, base, m) · min(1, 1 / (4 α²)),  α = r²
 ///     shininess = (2 / α² − 2) / 4
 ///
-/// For ambient and diffuse the base colour texture becomes the diffuse map instead of its mean. The exponent
-/// is that of Walter et al., "Microfacet Models for Refraction" (2007), for the half vector; a quarter of it
-/// is for the reflected vector. 1 / (4 α²) is the peak of the GGX lobe relative to a Lambertian 1/π, limited
-/// to 1 to keep the highlight in range. r is at least 0.15 (shininess 987), since a sharper highlight falls
-/// between pixels. Nothing is blended: alphaMode BLEND is drawn as MASK with cutoff 0.5. An unlit material
-/// reflects nothing and has its base colour as emission, to the bit.
+/// F0 is 0.04, or what KHR_materials_ior and KHR_materials_specular make it, whose textures count by their
+/// means. For ambient and diffuse the base colour texture becomes the diffuse map instead of its mean. The
+/// exponent is that of Walter et al., "Microfacet Models for Refraction" (2007), for the half vector; a
+/// quarter of it is for the reflected vector. 1 / (4 α²) is the peak of the GGX lobe relative to a Lambertian
+/// 1/π, limited to 1 to keep the highlight in range. r is at least 0.15 (shininess 987), since a sharper
+/// highlight falls between pixels. Nothing is blended: alphaMode BLEND is drawn as MASK with cutoff 0.5. An
+/// unlit material reflects nothing and has its base colour as emission, to the bit.
 void addGltfMaterials(const GltfModel& model, const std::vector<int>& materials, Scene& scene);
 
 }  // namespace luciole

@@ -91,6 +91,8 @@ void makeFlat(Mesh& mesh) {
   mesh.positions = unshared(mesh.positions, mesh.triangles);
   mesh.uvs = unshared(mesh.uvs, mesh.triangles);
   mesh.emission_uvs = unshared(mesh.emission_uvs, mesh.triangles);
+  mesh.normal_uvs = unshared(mesh.normal_uvs, mesh.triangles);
+  mesh.tangents.clear();  // glTF: those of a file without normals are to be ignored
   mesh.colors = unshared(mesh.colors, mesh.triangles);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
   mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
@@ -110,6 +112,26 @@ void repairNormals(Mesh& mesh) {
   }
 }
 
+/// The material of a primitive in the chosen variant.
+int materialOf(const GltfModel& model, const tinygltf::Primitive& primitive) {
+  const auto found = primitive.extensions.find("KHR_materials_variants");
+  if (model.variant < 0 || found == primitive.extensions.end()) return primitive.material;
+  const tinygltf::Value& mappings = memberOf(found->second, "mappings");
+  for (std::size_t i = 0; mappings.IsArray() && i < mappings.ArrayLen(); ++i) {
+    const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i));
+    const tinygltf::Value& variants = memberOf(mapping, "variants");
+    for (std::size_t j = 0; variants.IsArray() && j < variants.ArrayLen(); ++j) {
+      const tinygltf::Value& variant = variants.Get(static_cast<int>(j));
+      if (!variant.IsNumber() || variant.GetNumberAsDouble() != model.variant) continue;
+      const tinygltf::Value& material = memberOf(mapping, "material");
+      const double index = material.IsNumber() ? material.GetNumberAsDouble() : -1;
+      // One that the file can't have is refused where it is looked up.
+      return index >= 0 && index < 1e9 ? static_cast<int>(index) : 1'000'000'000;
+    }
+  }
+  return primitive.material;
+}
+
 /// Texture coordinates with the texture's transform applied; empty where the primitive doesn't have them.
 std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& primitive, const GltfUvs& use,
                              const std::string& place) {
@@ -123,11 +145,15 @@ std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& 
 /// coordinates.
 void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
              Mesh& mesh) {
-  const GltfUvs base = baseColorUvs(model, primitive.material),
-                emission = emissionUvs(model, primitive.material);
+  const GltfUvs base = baseColorUvs(model, materialOf(model, primitive)),
+                emission = emissionUvs(model, materialOf(model, primitive)),
+                bent = normalUvs(model, materialOf(model, primitive));
+  if (bent.set >= 0 && base.set < 0) mesh.uvs = uvsOf(model, primitive, bent, place);
+  if (bent.set >= 0 && base.set >= 0 && bent != base) mesh.normal_uvs = uvsOf(model, primitive, bent, place);
   if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
-  if (emission.set < 0 || emission == base) return;
-  std::vector<glm::vec2>& uvs = base.set < 0 ? mesh.uvs : mesh.emission_uvs;
+  const bool has_uvs = base.set >= 0 || bent.set >= 0;
+  if (emission.set < 0 || emission == (base.set >= 0 ? base : bent)) return;
+  std::vector<glm::vec2>& uvs = has_uvs ? mesh.emission_uvs : mesh.uvs;
   uvs = uvsOf(model, primitive, emission, place);
 }
 
@@ -143,8 +169,10 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   readUvs(model, primitive, place, mesh);
   mesh.normals = readAttribute<glm::vec3>(model, primitive, "NORMAL", place);
   mesh.colors = readColors(model, primitive, place);
-  for (const std::size_t count :
-       {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normals.size(), mesh.colors.size()}) {
+  if (normalUvs(model, materialOf(model, primitive)).set >= 0)
+    mesh.tangents = readAttribute<glm::vec4>(model, primitive, "TANGENT", place);
+  for (const std::size_t count : {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normal_uvs.size(),
+                                  mesh.tangents.size(), mesh.normals.size(), mesh.colors.size()}) {
     if (count == 0 || count == mesh.positions.size()) continue;
     failGltf(model, place,
              fmt::format("its attributes have {} and {} elements", mesh.positions.size(), count));
@@ -152,6 +180,8 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   checkFinite(model, mesh.positions, place + ".POSITION");
   checkFinite(model, mesh.uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.emission_uvs, place + ".TEXCOORD");
+  checkFinite(model, mesh.normal_uvs, place + ".TEXCOORD");
+  checkFinite(model, mesh.tangents, place + ".TANGENT");
   checkFinite(model, mesh.colors, place + ".COLOR_0");
   for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));
 
@@ -182,6 +212,12 @@ void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
     appendOptional(mesh.emission_uvs, before, more.emission_uvs.empty() ? more.uvs : more.emission_uvs, added,
                    glm::vec2(0));
   }
+  if (!mesh.normal_uvs.empty() || !more.normal_uvs.empty()) {
+    if (mesh.normal_uvs.empty()) mesh.normal_uvs = mesh.uvs;
+    appendOptional(mesh.normal_uvs, before, more.normal_uvs.empty() ? more.uvs : more.normal_uvs, added,
+                   glm::vec2(0));
+  }
+  appendOptional(mesh.tangents, before, more.tangents, added, glm::vec4(0));
   appendOptional(mesh.uvs, before, more.uvs, added, glm::vec2(0));
   appendOptional(mesh.colors, before, more.colors, added, glm::vec4(1));
   mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
@@ -205,8 +241,9 @@ Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials
     const tinygltf::Primitive& primitive = source.primitives[i];
     const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i));
     if (part.triangles.empty()) continue;
-    auto known = std::find(materials.begin(), materials.end(), primitive.material);
-    if (known == materials.end()) known = materials.insert(known, primitive.material);
+    const int material = materialOf(model, primitive);
+    auto known = std::find(materials.begin(), materials.end(), material);
+    if (known == materials.end()) known = materials.insert(known, material);
     append(mesh, part, first_material + static_cast<std::uint32_t>(known - materials.begin()));
   }
   return mesh;

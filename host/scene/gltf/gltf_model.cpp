@@ -18,13 +18,23 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/gltf/gltf_meshopt.hpp"
 #include "scene/gltf/gltf_uris.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr std::string_view kSupportedExtensions[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                     "KHR_materials_unlit", "KHR_mesh_quantization",
+constexpr std::string_view kSupportedExtensions[] = {"EXT_mesh_gpu_instancing",
+                                                     "EXT_meshopt_compression",
+                                                     "EXT_texture_webp",
+                                                     "KHR_lights_punctual",
+                                                     "KHR_materials_emissive_strength",
+                                                     "KHR_materials_ior",
+                                                     "KHR_materials_specular",
+                                                     "KHR_materials_variants",
+                                                     "KHR_materials_unlit",
+                                                     "KHR_mesh_quantization",
+                                                     "KHR_node_visibility",
                                                      "KHR_texture_transform"};
 
 bool isSupported(const std::string& extension) {
@@ -78,10 +88,11 @@ void checkRequiredExtensions(const GltfModel& model) {
 
 void parse(GltfModel& model) {
   std::string bytes = readFile(model.path);
+  checkNesting(model.path, jsonOf(bytes, bytes.starts_with("glTF")));
+  bytes = withPlaceholders(std::move(bytes));
   const bool is_binary = bytes.starts_with("glTF");
   const std::size_t size = bytes.size();
   if (size > std::numeric_limits<int>::max()) throw InputError(model.path + ": is larger than 2 GiB");
-  checkNesting(model.path, jsonOf(bytes, is_binary));
   checkUris(model.path, jsonOf(bytes, is_binary));
   bytes.resize(size +
                16);  // tinygltf 2.7 reads up to 8 bytes beyond a GLB whose last chunk lies about its length
@@ -122,11 +133,13 @@ GltfModel readGltfModel(const std::string& path) {
     failGltf(model, "asset",
              fmt::format("version is '{}', expected 2.0", forMessage(model.file.asset.version)));
   }
+  decodeMeshopt(model);
   return model;
 }
 
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place) {
   const tinygltf::BufferView& view = element(model, model.file.bufferViews, buffer_view, place, "bufferView");
+  if (const auto known = model.decoded.find(buffer_view); known != model.decoded.end()) return known->second;
   const std::string here = fmt::format("bufferViews[{}]", buffer_view);
   const tinygltf::Buffer& buffer = element(model, model.file.buffers, view.buffer, here, "buffer");
   const std::size_t size = buffer.data.size();
@@ -155,12 +168,37 @@ std::vector<std::string> ignoredExtensions(const GltfModel& model) {
   return ignored;
 }
 
+std::vector<std::string> variantNames(const GltfModel& model) {
+  std::vector<std::string> names;
+  const auto found = model.file.extensions.find("KHR_materials_variants");
+  if (found == model.file.extensions.end()) return names;
+  const std::string place = "extensions.KHR_materials_variants.variants";
+  const tinygltf::Value& list = memberOf(found->second, "variants");
+  if (!list.IsArray()) failGltf(model, place, "expected a list");
+  for (std::size_t i = 0; i < list.ArrayLen(); ++i) {
+    const tinygltf::Value& name = memberOf(list.Get(static_cast<int>(i)), "name");
+    if (!name.IsString()) failGltf(model, fmt::format("{}[{}]", place, i), "has no name");
+    names.push_back(name.Get<std::string>());
+  }
+  return names;
+}
+
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,
                        double otherwise) {
   const auto found = extensions.find(extension);
   if (found == extensions.end() || !found->second.IsObject() || !found->second.Has(member)) return otherwise;
   const tinygltf::Value& value = found->second.Get(member);
   return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+}
+
+const tinygltf::Value& memberOf(const tinygltf::Value& value, const char* name) {
+  static const tinygltf::Value kNull;
+  return value.IsObject() && value.Has(name) ? value.Get(name) : kNull;
+}
+
+int extensionIndex(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member) {
+  const double number = extensionNumber(extensions, extension, member, -1);
+  return number >= 0 && number < 1e9 ? static_cast<int>(number) : -1;
 }
 
 void failGltf(const GltfModel& model, const std::string& place, const std::string& what) {

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,7 +16,14 @@ struct GltfModel {
   std::string path;
   tinygltf::Model
       file;  ///< Image::image holds a picture file's bytes, not texels; empty where it lies in a buffer
+  /// What buffer views hold that are compressed, by their index (decodeMeshopt()).
+  std::map<int, std::vector<std::byte>> decoded{};
+  int variant = -1;  ///< which of variantNames() materials are of; −1: the primitives' own
 };
+
+/// The names of the file's variants (KHR_materials_variants). Throws InputError where they aren't a list of
+/// names.
+std::vector<std::string> variantNames(const GltfModel& model);
 
 /// Parses a .gltf or .glb with its buffers and pictures. Throws InputError: among others for a glTF other
 /// than 2.x, a missing buffer, and a required extension that is not supported.
@@ -40,6 +48,12 @@ std::span<const std::byte> imageBytes(const GltfModel& model, int image);
 /// A member of an extension's JSON as a number; `otherwise` where there is none or it isn't a number.
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,
                        double otherwise);
+
+/// A member of a JSON object; null where there is none or `value` is no object.
+const tinygltf::Value& memberOf(const tinygltf::Value& value, const char* name);
+
+/// A member of an extension's JSON as an index; −1 where there is none, or none that a file could have.
+int extensionIndex(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member);
 
 /// Throws InputError "path: place: what".
 [[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);

@@ -28,7 +28,8 @@ glm::dvec2 readPair(const GltfModel& model, const tinygltf::Value& transform, co
 /// The specification's matrix is offset · rotation · scale. Its "counter-clockwise" holds for v growing
 /// downwards, as its example of a picture's lower left quadrant and its test model show. The shader in the
 /// specification turns the other way (github.com/KhronosGroup/glTF/issues/1563).
-GltfUvs readUvs(const GltfModel& model, const tinygltf::TextureInfo& texture, const std::string& place) {
+template <class Info>
+GltfUvs readUvs(const GltfModel& model, const Info& texture, const std::string& place) {
   GltfUvs uvs;
   if (texture.index < 0) return uvs;
   uvs.set = texture.texCoord;
@@ -58,6 +59,11 @@ GltfUvs emissionUvs(const GltfModel& model, int material) {
   if (isUnlit(gltfMaterial(model, material))) return baseColorUvs(model, material);
   return readUvs(model, gltfMaterial(model, material).emissiveTexture,
                  gltfMaterialPlace(material) + ".emissiveTexture");
+}
+
+GltfUvs normalUvs(const GltfModel& model, int material) {
+  return readUvs(model, gltfMaterial(model, material).normalTexture,
+                 gltfMaterialPlace(material) + ".normalTexture");
 }
 
 }  // namespace luciole

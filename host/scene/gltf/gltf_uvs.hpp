@@ -19,5 +19,7 @@ struct GltfUvs {
 /// the base colour's. `material` −1 is glTF's default material. Throws InputError.
 GltfUvs baseColorUvs(const GltfModel& model, int material);
 GltfUvs emissionUvs(const GltfModel& model, int material);
+/// Those of the normal texture.
+GltfUvs normalUvs(const GltfModel& model, int material);
 
 }  // namespace luciole

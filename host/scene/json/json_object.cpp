@@ -36,11 +36,12 @@ struct Loaded {
 };
 
 /// No texture where the file is missing.
-TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene) {
+TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene,
+                   TextureKind kind = TextureKind::kColor) {
   TextureUse use;
   const std::string path = pathOf(node, folder), fault = faultOfPath(path);
   if (fault.empty())
-    use.texture = addTexture(scene, path);
+    use.texture = addTexture(scene, path, kind);
   else
     scene.missing_textures.push_back(messageAt(node, fault));
   return use;
@@ -55,7 +56,8 @@ Model readModel(const JsonNode& node) {
 
 Material readMaterial(const JsonNode& node, const std::string& folder, Scene& scene) {
   allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
-                   "alpha_map", "alpha", "alpha_cutoff", "double_sided", "model"});
+                   "normal_map", "bump_map", "normal_scale", "alpha_map", "alpha", "alpha_cutoff",
+                   "double_sided", "model"});
   Material material;
   material.name = node.key;
   if (const auto n = find(node, "diffuse")) material.diffuse = readColor(*n);
@@ -73,6 +75,14 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
   if (const auto n = find(node, "emission")) material.emission = readColor(*n);
   // Where the picture of the emission is missing, there is no emission.
   if (find(node, "emission_map") && material.emission_map.texture < 0) material.emission = glm::vec3(0);
+  if (const auto n = find(node, "normal_map")) {
+    refuseKeys(node, {"bump_map"}, "beside normal_map");
+    material.normal_map = readMap(*n, folder, scene, TextureKind::kNormals);
+  }
+  if (const auto n = find(node, "bump_map"))
+    material.normal_map = readMap(*n, folder, scene, TextureKind::kBump);
+  if (const auto n = find(node, "normal_scale"))
+    material.normal_scale = static_cast<float>(readNumber(*n, -kMostNormalScale, kMostNormalScale));
   if (const auto n = find(node, "alpha_map")) {
     material.alpha_map = readMap(*n, folder, scene);
     if (material.alpha_map.texture >= 0) material.alpha_cutoff = 0.5f;

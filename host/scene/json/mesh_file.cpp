@@ -20,11 +20,12 @@ bool isMeshFile(const std::string& path) {
   return extension == ".obj" || extension == ".gltf" || extension == ".glb";
 }
 
-void loadMeshFile(const std::string& path, Scene& scene) {
+void loadMeshFile(const std::string& path, Scene& scene, const std::string& variant) {
   if (extensionOf(path) == ".obj") {
+    if (!variant.empty()) throw InputError(path + ": has no variants, which only glTF files have");
     loadObj(path, scene);
   } else {
-    loadGltf(path, scene);
+    loadGltf(path, scene, variant);
   }
 }
 

@@ -9,8 +9,8 @@ namespace luciole {
 /// Whether the name ends in .obj, .gltf or .glb, case ignored.
 bool isMeshFile(const std::string& path);
 
-/// Appends a mesh file to `scene`, as loadObj or loadGltf do. Throws InputError.
-void loadMeshFile(const std::string& path, Scene& scene);
+/// Appends a mesh file to `scene`, as loadObj or loadGltf do. An OBJ file has no variants. Throws InputError.
+void loadMeshFile(const std::string& path, Scene& scene, const std::string& variant = "");
 
 /// A file name's extension with its dot, in lower case; "" where there is none.
 std::string extensionOf(const std::string& path);

@@ -90,7 +90,8 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
   };
   if (scene.contains("materials")) {
     for (auto& [name, material] : scene["materials"].items())
-      for (const char* map : {"diffuse_map", "emission_map", "alpha_map"}) movePath(material, map);
+      for (const char* map : {"diffuse_map", "emission_map", "normal_map", "bump_map", "alpha_map"})
+        movePath(material, map);
   }
   if (scene.contains("objects"))
     for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");

@@ -33,7 +33,8 @@ glm::vec3 color(const MtlEntry& entry, const char* statement, const tinyobj::rea
 }
 
 TextureUse textureUse(const MtlEntry& entry, const char* statement, std::string name,
-                      const tinyobj::texture_option_t& options, Scene& scene) {
+                      const tinyobj::texture_option_t& options, Scene& scene,
+                      TextureKind kind = TextureKind::kColor) {
   TextureUse use;
   if (name.empty()) return use;
   const auto& scale = options.scale;
@@ -48,7 +49,7 @@ TextureUse textureUse(const MtlEntry& entry, const char* statement, std::string 
         messageAt(entry, fmt::format("{}: there is no picture '{}'", statement, forMessage(path.string()))));
     return use;
   }
-  use.texture = addTexture(scene, path.string());
+  use.texture = addTexture(scene, path.string(), kind);
   use.wrap_u = use.wrap_v = options.clamp ? Wrap::kClampToEdge : Wrap::kRepeat;
   return use;
 }
@@ -105,6 +106,15 @@ Material readMaterial(const MtlEntry& entry, Scene& scene) {
   material.diffuse_map = textureUse(entry, "map_Kd", values.diffuse_texname, values.diffuse_texopt, scene);
   material.emission_map = textureUse(entry, "map_Ke", values.emissive_texname, values.emissive_texopt, scene);
   material.alpha_map = textureUse(entry, "map_d", values.alpha_texname, values.alpha_texopt, scene);
+  // `norm` is for normals alone. `bump` and `map_bump` mean the same.
+  const bool has_norm = !values.normal_texname.empty();
+  const tinyobj::texture_option_t& bends = has_norm ? values.normal_texopt : values.bump_texopt;
+  material.normal_map =
+      has_norm ? textureUse(entry, "norm", values.normal_texname, bends, scene, TextureKind::kNormals)
+               : textureUse(entry, "bump", values.bump_texname, bends, scene, TextureKind::kBump);
+  if (!(std::abs(bends.bump_multiplier) <= kMostNormalScale))
+    fail(entry, fmt::format("-bm is {0}, expected -{1} to {1}", bends.bump_multiplier, kMostNormalScale));
+  material.normal_scale = bends.bump_multiplier;
   // With a map_Ke and no Ke the factor is 1, or the map would not be seen.
   const bool only_map = material.emission_map.texture >= 0 && material.emission == glm::vec3(0);
   if (only_map) material.emission = glm::vec3(1);

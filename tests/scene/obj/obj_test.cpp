@@ -275,6 +275,25 @@ TEST_F(ObjLoader, ClampedMapsAreClamped) {
   EXPECT_EQ(material("map_Kd a.png\n").diffuse_map.wrap_v, Wrap::kRepeat);
 }
 
+TEST_F(ObjLoader, BumpMapsAndNormalMapsBendNormals) {
+  writePicture("a.png", {1, 0, 0});
+  for (const char* statement :
+       {"bump -bm 0.5 a.png\n", "map_bump -bm 0.5 a.png\n", "map_Bump -bm 0.5 a.png\n"}) {
+    const Material m = material(statement);
+    EXPECT_EQ(m.normal_map.texture, 0) << statement;
+    EXPECT_EQ(m.normal_scale, 0.5f) << statement;
+  }
+  EXPECT_EQ(material("bump a.png\n").normal_scale, 1.0f);
+  EXPECT_EQ(material("map_Kd a.png\n").normal_map.texture, -1);
+  write("m.mtl", "newmtl x\nmap_Kd a.png\nbump a.png\nnorm a.png\n");
+  const Scene scene = load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle);
+  const Material& both = scene.materials.at(0);
+  EXPECT_EQ(scene.textures.at(std::size_t(both.normal_map.texture)).kind, TextureKind::kNormals)
+      << "norm counts";
+  EXPECT_EQ(scene.textures.at(std::size_t(both.diffuse_map.texture)).kind, TextureKind::kColor);
+  EXPECT_THROW(material("bump -bm 1e9 a.png\n"), InputError);
+}
+
 TEST_F(ObjLoader, AMissingPictureIsToldByFileAndMaterialWhichDoesWithout) {
   write("m.mtl", "newmtl x\nKd 0.5 0 0\nKe 1 1 1\nmap_Kd nowhere.png\nmap_Ke gone.png\n");
   const Scene scene = load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle);

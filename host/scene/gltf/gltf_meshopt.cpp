@@ -1,0 +1,166 @@
+#include "scene/gltf/gltf_meshopt.hpp"
+
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace luciole {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+constexpr std::size_t kGlbHeader = 20;  // of a GLB and its first chunk
+
+std::uint32_t wordAt(const std::string& bytes, std::size_t place) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    word |= std::uint32_t{static_cast<unsigned char>(bytes[place + i])} << 8 * i;
+  return word;
+}
+
+void setWord(std::size_t place, std::uint32_t word, std::string& bytes) {
+  for (std::size_t i = 0; i < 4; ++i) bytes[place + i] = static_cast<char>(word >> 8 * i & 0xff);
+}
+
+/// Gives the buffers their bytes. Returns whether there are any such.
+bool fillPlaceholders(Json& file) {
+  if (!file.is_object() || !file.contains("buffers") || !file["buffers"].is_array()) return false;
+  bool any = false;
+  for (Json& buffer : file["buffers"]) {
+    if (!buffer.is_object() || buffer.contains("uri")) continue;
+    const Json fallback =
+        buffer.value(Json::json_pointer(std::string("/extensions/") + kMeshopt + "/fallback"), Json());
+    if (fallback != Json(true)) continue;
+    buffer["uri"] = "data:application/octet-stream;base64,AA==";
+    buffer["byteLength"] = 1;
+    any = true;
+  }
+  return any;
+}
+
+/// What the extension says of a buffer view.
+struct Compressed {
+  std::string place;
+  std::span<const std::byte> bytes;
+  std::size_t count, stride;
+  std::string mode, filter;
+};
+
+std::size_t sizeOf(const GltfModel& model, const tinygltf::Value& extension, const char* member,
+                   std::size_t otherwise, const std::string& place) {
+  const tinygltf::Value& value = memberOf(extension, member);
+  if (!value.IsNumber()) return otherwise;
+  const double number = value.GetNumberAsDouble();
+  if (!(number >= 0 && number < 2147483648.0))
+    failGltf(model, place, fmt::format("{} is {}, expected 0 to 2147483647", member, number));
+  return static_cast<std::size_t>(number);
+}
+
+Compressed readCompressed(const GltfModel& model, const tinygltf::Value& extension,
+                          const std::string& place) {
+  Compressed compressed;
+  compressed.place = place;
+  const std::size_t missing = 0x7fffffff;
+  const std::size_t index = sizeOf(model, extension, "buffer", missing, place);
+  const tinygltf::Buffer& buffer =
+      element(model, model.file.buffers, index < 0x7fffffff ? static_cast<int>(index) : -1, place, "buffer");
+  const std::size_t offset = sizeOf(model, extension, "byteOffset", 0, place),
+                    length = sizeOf(model, extension, "byteLength", missing, place);
+  if (offset > buffer.data.size() || length > buffer.data.size() - offset)
+    failGltf(model, place,
+             fmt::format("{} bytes from {} on reach past its buffer of {} bytes", length, offset,
+                         buffer.data.size()));
+  compressed.bytes = std::as_bytes(std::span(buffer.data)).subspan(offset, length);
+  compressed.count = sizeOf(model, extension, "count", 0, place);
+  compressed.stride = sizeOf(model, extension, "byteStride", 0, place);
+  const auto text = [&](const char* member, const char* otherwise) {
+    const tinygltf::Value& value = memberOf(extension, member);
+    return value.IsString() ? value.Get<std::string>() : std::string(otherwise);
+  };
+  compressed.mode = text("mode", "");
+  compressed.filter = text("filter", "NONE");
+  return compressed;
+}
+
+/// What the decoder takes for granted, and what keeps it from allocating more than the data can hold.
+void check(const GltfModel& model, const Compressed& compressed, std::size_t view_bytes) {
+  const auto fail = [&](const std::string& what) { failGltf(model, compressed.place, what); };
+  const std::size_t stride = compressed.stride, count = compressed.count;
+  const bool is_attributes = compressed.mode == "ATTRIBUTES", is_triangles = compressed.mode == "TRIANGLES";
+  if (!is_attributes && !is_triangles && compressed.mode != "INDICES")
+    fail("mode is none of ATTRIBUTES, TRIANGLES, INDICES");
+  if (is_attributes ? stride == 0 || stride > 256 || stride % 4 != 0 : stride != 2 && stride != 4)
+    fail(fmt::format("byteStride is {}, expected {}", stride,
+                     is_attributes ? "a multiple of 4 up to 256" : "2 or 4"));
+  if (is_triangles && count % 3 != 0) fail(fmt::format("count is {}, expected a multiple of 3", count));
+  if (count == 0 || count * stride != view_bytes)
+    fail(fmt::format("{} elements of {} bytes, but the view has {} bytes", count, stride, view_bytes));
+  // 256 bytes of a block of vertices take 4 or more, and a triangle or an index 1 or more.
+  if (count * stride / 64 > compressed.bytes.size())
+    fail(fmt::format("{} bytes can't hold {} elements of {} bytes", compressed.bytes.size(), count, stride));
+  const bool fits = compressed.filter == "NONE" ||
+                    (is_attributes && ((compressed.filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                                       (compressed.filter == "QUATERNION" && stride == 8) ||
+                                       compressed.filter == "EXPONENTIAL"));
+  if (!fits) fail("its filter is unknown, or not for its mode and byteStride");
+}
+
+std::vector<std::byte> decode(const GltfModel& model, const Compressed& compressed) {
+  const std::size_t count = compressed.count, stride = compressed.stride;
+  std::vector<std::byte> decoded(count * stride);
+  const auto* bytes = reinterpret_cast<const unsigned char*>(compressed.bytes.data());
+  const std::size_t size = compressed.bytes.size();
+  const int fault = compressed.mode == "ATTRIBUTES"
+                        ? meshopt_decodeVertexBuffer(decoded.data(), count, stride, bytes, size)
+                    : compressed.mode == "TRIANGLES"
+                        ? meshopt_decodeIndexBuffer(decoded.data(), count, stride, bytes, size)
+                        : meshopt_decodeIndexSequence(decoded.data(), count, stride, bytes, size);
+  if (fault != 0) failGltf(model, compressed.place, "its data is cut short or damaged");
+  if (compressed.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(decoded.data(), count, stride);
+  if (compressed.filter == "QUATERNION") meshopt_decodeFilterQuat(decoded.data(), count, stride);
+  if (compressed.filter == "EXPONENTIAL") meshopt_decodeFilterExp(decoded.data(), count, stride);
+  return decoded;
+}
+
+}  // namespace
+
+std::string withPlaceholders(std::string bytes) {
+  if (bytes.find(kMeshopt) == std::string::npos) return bytes;
+  const bool is_binary = bytes.starts_with("glTF");
+  std::size_t begin = 0, end = bytes.size();
+  if (is_binary) {
+    if (bytes.size() < kGlbHeader || wordAt(bytes, 12) > bytes.size() - kGlbHeader) return bytes;
+    begin = kGlbHeader;
+    end = kGlbHeader + wordAt(bytes, 12);
+  }
+  Json file = Json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                          bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+  if (file.is_discarded() || !fillPlaceholders(file)) return bytes;
+  std::string text = file.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (!is_binary) return text;
+  text.append((4 - text.size() % 4) % 4, ' ');
+  bytes.replace(begin, end - begin, text);
+  setWord(8, static_cast<std::uint32_t>(wordAt(bytes, 8) + text.size() - (end - begin)), bytes);
+  setWord(12, static_cast<std::uint32_t>(text.size()), bytes);
+  return bytes;
+}
+
+void decodeMeshopt(GltfModel& model) {
+  for (std::size_t i = 0; i < model.file.bufferViews.size(); ++i) {
+    const tinygltf::BufferView& view = model.file.bufferViews[i];
+    const auto found = view.extensions.find(kMeshopt);
+    if (found == view.extensions.end()) continue;
+    const Compressed compressed =
+        readCompressed(model, found->second, fmt::format("bufferViews[{}].{}", i, kMeshopt));
+    check(model, compressed, view.byteLength);
+    model.decoded[static_cast<int>(i)] = decode(model, compressed);
+  }
+}
+
+}  // namespace luciole

@@ -1,0 +1,238 @@
+#include "scene/tangents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace luciole {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// A triangle's tangent in its plane, unit; zero where it has no area in the picture.
+struct Facet {
+  glm::dvec3 tangent{0.0};
+  bool mirrored = false;  ///< clockwise in the picture, v upwards
+};
+
+const std::vector<glm::vec2>& uvsOf(const Mesh& mesh) {
+  return mesh.normal_uvs.empty() ? mesh.uvs : mesh.normal_uvs;
+}
+
+Facet facetOf(const Mesh& mesh, const glm::uvec3& corners) {
+  const std::vector<glm::vec2>& uvs = uvsOf(mesh);
+  const auto position = [&](int i) { return glm::dvec3(mesh.positions[corners[i]]); };
+  const auto uv = [&](int i) { return glm::dvec2(uvs[corners[i]].x, -double(uvs[corners[i]].y)); };
+  const glm::dvec3 edge1 = position(1) - position(0), edge2 = position(2) - position(0);
+  const glm::dvec2 step1 = uv(1) - uv(0), step2 = uv(2) - uv(0);
+  const double area = step1.x * step2.y - step1.y * step2.x;
+  const glm::dvec3 along = (step2.y * edge1 - step1.y * edge2) * (area < 0 ? -1.0 : 1.0);
+  const double length = glm::length(along);
+  if (area == 0 || !(length > 0) || !std::isfinite(length)) return {};
+  return {along / length, area < 0};
+}
+
+/// A vector without its part along a unit normal, unit; zero where nothing is left.
+glm::dvec3 flattened(const glm::dvec3& vector, const glm::dvec3& normal) {
+  const glm::dvec3 flat = vector - normal * glm::dot(normal, vector);
+  const double length = glm::length(flat);
+  return length > 1e-12 * glm::length(vector) && std::isfinite(length) ? flat / length : glm::dvec3(0.0);
+}
+
+/// The number of the first vertex that is the same for tangents: in place, normal and texture coordinates.
+std::vector<std::uint32_t> weld(const Mesh& mesh) {
+  using Key = std::array<float, 8>;
+  const std::vector<glm::vec2>& uvs = uvsOf(mesh);
+  const auto key = [&](std::uint32_t i) {
+    const glm::vec3 p = mesh.positions[i], n = mesh.normals[i];
+    return Key{p.x, p.y, p.z, n.x, n.y, n.z, uvs[i].x, uvs[i].y};
+  };
+  std::vector<std::uint32_t> order(mesh.positions.size()), first(order.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const Key of_a = key(a), of_b = key(b);
+    return of_a != of_b ? of_a < of_b : a < b;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+  return first;
+}
+
+/// Joins corners into groups that share a tangent (union by the lower number, with path halving).
+struct Groups {
+  std::vector<std::uint32_t> parent;
+
+  std::uint32_t find(std::uint32_t corner) {
+    while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
+    return corner;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+};
+
+/// An edge of a triangle between two welded vertices, the lower first.
+struct Edge {
+  std::uint32_t low, high;
+  std::uint32_t low_corner, high_corner;  ///< 3 · triangle + corner
+
+  bool operator<(const Edge& other) const {
+    return std::tie(low, high, low_corner) < std::tie(other.low, other.high, other.low_corner);
+  }
+};
+
+Groups groupCorners(const Mesh& mesh, const std::vector<Facet>& facets,
+                    const std::vector<std::uint32_t>& welded) {
+  Groups groups;
+  groups.parent.resize(3 * mesh.triangles.size());
+  std::iota(groups.parent.begin(), groups.parent.end(), 0u);
+  std::vector<Edge> edges;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (facets[t].tangent == glm::dvec3(0.0)) continue;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t next = (i + 1) % 3;
+      const std::uint32_t a = welded[mesh.triangles[t][int(i)]], b = welded[mesh.triangles[t][int(next)]];
+      if (a < b) edges.push_back({a, b, 3 * t + i, 3 * t + next});
+      if (b < a) edges.push_back({b, a, 3 * t + next, 3 * t + i});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t begin = 0; begin < edges.size();) {
+    std::size_t end = begin;
+    std::array<const Edge*, 2> of_side{};
+    for (; end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high;
+         ++end) {
+      const Edge*& other = of_side[facets[edges[end].low_corner / 3].mirrored];
+      if (other) {
+        groups.join(other->low_corner, edges[end].low_corner);
+        groups.join(other->high_corner, edges[end].high_corner);
+      }
+      other = &edges[end];
+    }
+    begin = end;
+  }
+  return groups;
+}
+
+/// The angle of a triangle at a corner, between its sides flattened into the plane of the corner's normal.
+double angleAt(const Mesh& mesh, const glm::uvec3& corners, int corner, const glm::dvec3& normal) {
+  const glm::dvec3 at(mesh.positions[corners[corner]]);
+  const glm::dvec3 a = flattened(glm::dvec3(mesh.positions[corners[(corner + 1) % 3]]) - at, normal);
+  const glm::dvec3 b = flattened(glm::dvec3(mesh.positions[corners[(corner + 2) % 3]]) - at, normal);
+  return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+}
+
+/// A tangent for each corner, zero where there is none.
+std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>& wanted) {
+  std::vector<Facet> facets(mesh.triangles.size());
+  for (std::size_t t = 0; t < facets.size(); ++t)
+    if (wanted[t]) facets[t] = facetOf(mesh, mesh.triangles[t]);
+  const std::vector<std::uint32_t> welded = weld(mesh);
+  Groups groups = groupCorners(mesh, facets, welded);
+  std::vector<glm::dvec3> sums(3 * facets.size());
+  std::vector<std::uint32_t> some_group(mesh.positions.size(), kNone);  // of a welded vertex
+  for (std::uint32_t corner = 0; corner < sums.size(); ++corner) {
+    const Facet& facet = facets[corner / 3];
+    if (facet.tangent == glm::dvec3(0.0)) continue;
+    const glm::uvec3& corners = mesh.triangles[corner / 3];
+    const glm::dvec3 normal(mesh.normals[corners[int(corner % 3)]]);
+    const std::uint32_t group = groups.find(corner);
+    sums[group] += flattened(facet.tangent, normal) * angleAt(mesh, corners, int(corner % 3), normal);
+    std::uint32_t& some = some_group[welded[corners[int(corner % 3)]]];
+    if (some == kNone) some = group;
+  }
+  std::vector<glm::vec4> tangents(sums.size(), glm::vec4(0));
+  for (std::uint32_t corner = 0; corner < sums.size(); ++corner) {
+    if (!wanted[corner / 3]) continue;
+    const std::uint32_t vertex = mesh.triangles[corner / 3][int(corner % 3)];
+    const bool own = facets[corner / 3].tangent != glm::dvec3(0.0);
+    const std::uint32_t group = own ? groups.find(corner) : some_group[welded[vertex]];
+    if (group == kNone) continue;
+    const glm::dvec3 tangent = flattened(sums[group], glm::dvec3(mesh.normals[vertex]));
+    if (tangent == glm::dvec3(0.0)) continue;
+    tangents[corner] = glm::vec4(tangent, facets[group / 3].mirrored ? -1.0f : 1.0f);
+  }
+  return tangents;
+}
+
+template <class T>
+void copyElement(std::size_t from, std::vector<T>& values) {
+  if (!values.empty()) values.push_back(T(values[from]));
+}
+
+std::uint32_t copyVertex(std::uint32_t from, Mesh& mesh) {
+  copyElement(from, mesh.positions);
+  copyElement(from, mesh.normals);
+  copyElement(from, mesh.uvs);
+  copyElement(from, mesh.emission_uvs);
+  copyElement(from, mesh.normal_uvs);
+  copyElement(from, mesh.tangents);
+  copyElement(from, mesh.colors);
+  return std::uint32_t(mesh.positions.size() - 1);
+}
+
+}  // namespace
+
+bool hasNormalMaps(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.normal_map.texture >= 0; });
+}
+
+void addTangents(const std::vector<bool>& wanted, Mesh& mesh) {
+  const std::vector<glm::vec4> tangents = cornerTangents(mesh, wanted);
+  const std::size_t before = mesh.positions.size();
+  mesh.tangents.resize(before, glm::vec4(0));
+  std::vector<bool> used(before, false);  // by a triangle that keeps what the vertex has
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int i = 0; i < 3 && !wanted[t]; ++i) used[mesh.triangles[t][i]] = true;
+  std::map<std::pair<std::uint32_t, std::array<float, 4>>, std::uint32_t> copies;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!wanted[t]) continue;
+    for (int i = 0; i < 3; ++i) {
+      std::uint32_t& vertex = mesh.triangles[t][i];
+      const glm::vec4& tangent = tangents[3 * t + std::size_t(i)];
+      if (used[vertex] && mesh.tangents[vertex] != tangent) {
+        const auto [copy, is_new] =
+            copies.try_emplace({vertex, {tangent.x, tangent.y, tangent.z, tangent.w}}, kNone);
+        if (is_new) {
+          copy->second = copyVertex(vertex, mesh);
+          used.push_back(true);
+        }
+        vertex = copy->second;
+      }
+      used[vertex] = true;
+      mesh.tangents[vertex] = tangent;
+    }
+  }
+}
+
+void addTangents(Scene& scene) {
+  if (!hasNormalMaps(scene)) return;
+  std::vector<std::vector<bool>> wanted(scene.meshes.size());
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    if (uvsOf(mesh).empty()) continue;
+    std::vector<bool>& triangles = wanted[object.mesh];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const std::uint32_t material =
+          object.material >= 0 ? std::uint32_t(object.material) : mesh.triangle_materials[t];
+      if (scene.materials[material].normal_map.texture < 0) continue;
+      const glm::uvec3& corners = mesh.triangles[t];
+      const auto has = [&](int i) {
+        return !mesh.tangents.empty() && mesh.tangents[corners[i]] != glm::vec4(0);
+      };
+      if (has(0) && has(1) && has(2)) continue;
+      triangles.resize(mesh.triangles.size(), false);
+      triangles[t] = true;
+    }
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (!wanted[i].empty()) addTangents(wanted[i], scene.meshes[i]);
+}
+
+}  // namespace luciole
