@@ -35,6 +35,8 @@ FALLOFF = ("kernels", "FalloffKernels.*")
 FOG = ("kernels", "FogKernels.*")
 PHONG = ("kernels", "PhongKernels.*")
 COOK_TORRANCE = ("kernels", "CookTorranceKernel.*")
+OREN_NAYAR = ("kernels", "OrenNayarKernel.*")
+MODELS = ("render", "*MaterialModels.*/*16")
 TOON = ("kernels", "ToonKernels.*")
 DISC = ("kernels", "DiscKernels.*")
 EXACT_SIGN = ("kernels", "ExactSignKernels.*")
@@ -60,7 +62,7 @@ HORIZON = ("kernels", "HorizonKernels.*")
 CUT_CLUSTERS = ("kernels", "CutClusterKernels.*")
 HIGHLIGHTS = ("kernels", "*HighlightKernels.*/16")
 SHINY = ("render", "*ClusteredLight.OfHighlights*/16")
-CLUSTERED = ("render", "ClusteredLights.*:HardClusteredLight.*-*AllNearTheHorizon")
+CLUSTERED = ("render", "ClusteredLights.*:LightError.PixelsAfter*:HardClusteredLight.*-*AllNearTheHorizon")
 TERMINATOR = ("render", "*Terminator*")
 
 TESTS = {
@@ -94,8 +96,9 @@ TESTS = {
     "phong.clh": [PHONG, CLOSED_FORM, NUMBERS],
     "shade.cl": [CLOSED_FORM, SHADE, PICTURES, SUMS, EXACT, EXACT_SHADOWS],
     "shade_tiles.cl": [SHADE_TILES, SHADE, EXACT],
-    "shading.clh": [CLOSED_FORM, SHADE, PICTURES, SUMS, EXACT, EXACT_SHADOWS, SOFT_PICTURES],
+    "shading.clh": [CLOSED_FORM, SHADE, PICTURES, MODELS, SUMS, EXACT, EXACT_SHADOWS, SOFT_PICTURES],
     "shadow.clh": [SHADOW, NEEDED, MAPS, SOFT, TERMINATOR],
+    "oren_nayar.clh": [OREN_NAYAR],
     "toon.clh": [TOON],
     "wide_integer.h": [EXACT_SIGN],
 }
@@ -204,6 +207,14 @@ MUTANTS = {
         Mutant("smith(max_lanes(n_dot_v, (floatL)(0.0f)), alpha2)", "smith(n_dot_v, alpha2)"),
         Mutant("fma_lanes(-0.5f, length2 * inverse, 1.0f)", "fma_lanes(-1.0f, length2 * inverse, 1.0f)"),
     ],
+    "oren_nayar.clh": [
+        Mutant("fma_lanes(0.33f, shininess, 1.66f)", "fma_lanes(0.33f, shininess, 1.33f)"),
+        Mutant("0.45f / fma", "0.9f / fma"),
+        Mutant("fma_lanes(0.09f, shininess, 1.18f)", "fma_lanes(0.09f, shininess, 1.09f)"),
+        Mutant("max_lanes(n_dot_l, n_dot_v), (floatL)(1e-30f)", "n_dot_v, (floatL)(1e-30f)"),
+        Mutant("fma_lanes(-n_dot_l, n_dot_v,", "fma_lanes(-n_dot_l, n_dot_l,"),
+        Mutant("roughness.retro * together * (n_dot_l / larger)", "roughness.retro * together * n_dot_l"),
+    ],
     "toon.clh": [
         Mutant("32.0f * (x - edge)", "31.0f * (x - edge)"),
         Mutant("(lobe, 0.5f)", "(lobe, 0.49f)"),
@@ -248,7 +259,12 @@ MUTANTS = {
     "shading.clh": [
         Mutant("n_dot_l > 0.0f ?", "n_dot_l > -1.0f ?"),
         Mutant("n_dot_l < 2.0f ? n_dot_l : (floatL)(0.0f)", "n_dot_l"),
-        Mutant("? 0.5f * shininess : shininess", "? shininess : shininess"),
+        Mutant("MODEL_IS(kBlinnPhongModel) ? halved : shininess", "shininess"),
+        Mutant("pixels->model == (int)kBlinnPhongModel ? halved : shininess", "shininess"),
+        Mutant("chosen > 0 ? chosen - 1 : (intL)((int)of_picture)", "chosen - 1"),
+        Mutant("!HAS_MODEL(number) || !(models >> number & 1)", "!HAS_MODEL(number)", same="only work is saved"),
+        Mutant("takes_it ? by_model[k].highlight : pairs[k].highlight", "by_model[k].highlight"),
+        Mutant("takes_it ? by_model[k].grazing : pairs[k].grazing", "by_model[k].grazing"),
         Mutant("k < count ?", "k <= count ?"),
         Mutant("sums->fullest == kSumBlock", "sums->fullest == 2 * kSumBlock"),
         Mutant("sums->terms >= kSumBlock", "sums->terms > kSumBlock"),
@@ -435,6 +451,7 @@ MUTANTS = {
     ],
     "clustered_light.cl": [
         Mutant("COSINE_ROUNDING 5", "COSINE_ROUNDING 0"),
+        Mutant("MOST_SHARE 0.0625f", "MOST_SHARE 1e30f"),
         Mutant("of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4), of_clusters", "of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + 4), of_clusters"),
         Mutant("cut[c] + of_lights * lights[c] +", "cut[c] +"),
         Mutant("cut_bound[c] + of_clusters", "of_clusters"),

@@ -207,7 +207,7 @@ TEST_F(BenchCommand, EveryModelIsHeldAgainstItself) {
   const auto json = nlohmann::json::parse(readText(folder / "out.json"));
   ASSERT_EQ(json["groups"].size(), 1u);
   const auto& rows = json["groups"][0]["rows"];
-  ASSERT_EQ(rows.size(), 4u);
+  ASSERT_EQ(rows.size(), 5u);
   std::set<double> brightest;
   for (const auto& row : rows) {
     EXPECT_EQ(row["settings"]["model"], row["name"]);
