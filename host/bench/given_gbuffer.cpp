@@ -6,6 +6,7 @@
 
 #include "bench/shading_rate.hpp"
 #include "cl/buffer.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "render/render.hpp"
 #include "render/stats.hpp"
 

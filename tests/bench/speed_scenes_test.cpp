@@ -37,7 +37,8 @@ double lightsPerTile(const Scene& scene, const GBuffer& gbuffer) {
     for (std::size_t i = 0; i < places.size(); ++i)
       sum += glm::distance(glm::clamp(places[i], low, high), places[i]) < scene.lights[i].range;
   }
-  return double(sum) / double(n / kTilePixels);
+  const std::size_t tiles = n / kTilePixels;
+  return double(sum) / double(tiles);
 }
 
 TEST(SpeedScenes, HallHasTheStatisticsOfTheBestKnownTiledShader) {

@@ -8,7 +8,7 @@
 namespace luciole::test {
 namespace {
 
-FeatureSet featuresOf(const std::string& json, ShadeSettings settings = {}) {
+FeatureSet featuresOf(const std::string& json, const ShadeSettings& settings = {}) {
   const Scene scene = sceneFromJson(json);
   return neededFeatures(scene, scene.cameras.front(), materialTraits(scene), settings);
 }

@@ -117,10 +117,12 @@ TEST(LightError, PicturesWithShadowsOfLightsOfASizeAreWithinTheirBounds) {
 // Of nearly dark pixels any cluster is accepted. The groups after them start from what those accepted.
 TEST(LightError, PixelsAfterNearlyDarkOnesAreNotLitLightByLight) {
   std::string lights;
-  for (int i = 0; i < 20'000; ++i)
+  for (int i = 0; i < 20'000; ++i) {
+    const int row = i / 1000;
     lights += fmt::format(
         R"({}{{"type": "point", "position": [{}, {}, {}], "intensity": 0.0002, "attenuation": [0, 0, 1]}})",
-        i ? "," : "", 0.1 * (i % 100) - 5, 1 + 0.1 * (i / 100 % 10), 0.2 * (i / 1000) - 2);
+        i ? "," : "", 0.1 * (i % 100) - 5, 1 + 0.1 * (i / 100 % 10), 0.2 * row - 2);
+  }
   const auto lightsOf = [&](const char* dark) {
     // Bright stripes, each right of a dark one, so that all runs of tiles have both.
     std::string objects;

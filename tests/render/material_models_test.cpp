@@ -62,7 +62,8 @@ struct Case {
 class MaterialModels : public testing::TestWithParam<std::tuple<int, Case>> {};
 
 TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
-  const auto& [lanes, of] = GetParam();
+  const int lanes = std::get<0>(GetParam());
+  const Case of = std::get<1>(GetParam());
   Device& device = deviceWithLanes(lanes);
   const auto settingsOf = [&](const Scene& scene) {
     RenderSettings settings = settingsFor(scene, kBallsSize);

@@ -79,7 +79,7 @@ TEST(SurfaceIds, NumbersAreThoseOfTheNamesThatCoverAPixelOfOneSample) {
   for (std::size_t i = 0; i < image.pixels.size(); i += step) {
     const auto value = [&](const char* channel) { return image.pixels[i + channelOf(image, channel)]; };
     const int object = int(value("object_id")), material = int(value("material_id"));
-    ++seen[std::size_t(object + 1)];
+    ++seen[std::size_t(object) + 1];
     ASSERT_EQ(value("CryptoObject00.R"), object < 0 ? 0.0f : cryptomatteId(objects[std::size_t(object)]));
     ASSERT_EQ(value("CryptoMaterial00.R"),
               material < 0 ? 0.0f : cryptomatteId(materials[std::size_t(material)]));

@@ -19,7 +19,6 @@
 namespace luciole {
 namespace {
 
-using testing::HasSubstr;
 using testing::StartsWith;
 
 /// A curve of one component.
@@ -104,15 +103,15 @@ TEST(Curve, SmoothHasNoCornersAndIsStraightWhereItsKeysAre) {
 }
 
 TEST(Curve, SlerpTurnsAtAConstantSpeedTheShorterWay) {
-  const auto aboutY = [](double degrees) {
+  const auto turned = [](double degrees) {
     return glm::dvec4(0, std::sin(glm::radians(degrees) / 2), 0, std::cos(glm::radians(degrees) / 2));
   };
   for (const double sign : {1.0, -1.0}) {  // q and −q are the same rotation
-    Curve curve{Interpolation::kSlerp, {{1, aboutY(0)}, {5, sign * aboutY(120)}}};
+    Curve curve{Interpolation::kSlerp, {{1, turned(0)}, {5, sign * turned(120)}}};
     for (const double frame : {2.0, 3.5, 4.0}) {
       const glm::dvec4 value = valueAt(curve, frame);
       // Sines and cosines of a few roundings each.
-      EXPECT_NEAR(std::abs(glm::dot(value, aboutY(30 * (frame - 1)))), 1, 1e-14);
+      EXPECT_NEAR(std::abs(glm::dot(value, turned(30 * (frame - 1)))), 1, 1e-14);
       EXPECT_NEAR(glm::length(value), 1, 1e-14);
     }
   }
@@ -133,8 +132,8 @@ TEST(OrbitEye, GoesRoundTheTargetAndEndsWhereItBegan) {
 class SceneKeys : public testing::Test {
  protected:
   Scene load(const std::string& text) {
-    std::ofstream(folder_ / "scene.json") << text;
-    return loadScene(folder_ / "scene.json");
+    std::ofstream(folder / "scene.json") << text;
+    return loadScene(folder / "scene.json");
   }
   Scene at(const std::string& text, double frame) {
     Scene scene = load(text);
@@ -147,14 +146,14 @@ class SceneKeys : public testing::Test {
     } catch (const InputError& error) {
       const std::string message = error.what();
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-      return message.substr(std::min(message.size(), folder_.path().string().size() + 1));
+      return message.substr(std::min(message.size(), folder.path().string().size() + 1));
     }
     return "accepted";
   }
   std::string refusal(const std::string& text) {
     return refusal([&] { load(text); });
   }
-  test::TemporaryFolder folder_;
+  test::TemporaryFolder folder;
 };
 
 std::string cameraScene(const std::string& members) { return R"({"camera": {)" + members + "}}"; }

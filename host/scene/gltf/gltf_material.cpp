@@ -128,7 +128,8 @@ glm::dvec3 meanCode(const Texture& texture) {
   glm::dvec3 sum(0);
   for (std::size_t i = 0; i + 3 < texels.size(); i += 4)
     sum += glm::dvec3(texels[i], texels[i + 1], texels[i + 2]);
-  return sum / (65535.0 * static_cast<double>(texels.size() / 4));
+  const std::size_t count = texels.size() / 4;
+  return sum / (65535.0 * static_cast<double>(count));
 }
 
 /// A colour factor; components that the file leaves out are those of `otherwise`. Throws InputError for one

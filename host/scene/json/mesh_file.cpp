@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/error.hpp"
 #include "scene/gltf/gltf.hpp"
 #include "scene/obj/obj.hpp"
 

@@ -24,8 +24,10 @@ class GltfMeshopt : public GltfTest {
 
   GltfMeshopt() {
     std::vector<Vertex> vertices;
-    for (std::uint32_t i = 0; i < kSide * kSide; ++i)
-      vertices.push_back({float(i % kSide), float(i / kSide), float(i % 7) * 0.25f});
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+      const std::uint32_t column = i % kSide, row = i / kSide;
+      vertices.push_back({float(column), float(row), float(i % 7) * 0.25f});
+    }
     std::vector<std::uint32_t> indices;
     for (std::uint32_t y = 0; y + 1 < kSide; ++y)
       for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
