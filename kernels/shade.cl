@@ -79,7 +79,8 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight 
 __kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
                     __global const float *emission, __global const uint *geometric_normal, __global const float *lift,
-                    __global const uint *model, __global const ShadeLight *lights, __global const uint *list_starts, __global const ListEntry *list,
+                    __global const uint *model, __global const ShadeLight *lights, __global const uint *list_starts,
+                    __global const ListEntry *list,
                     __global const ShadowMap *shadow_maps, __global const ShadowFace *shadow_faces,
                     __global const ShadowTexel *shadow_texels, __global const uint *pair_bits, __global const uint *ray_bits,
                     __global const uint *first_share, __global const float *shares, __global float *image) {

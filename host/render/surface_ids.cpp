@@ -22,11 +22,10 @@ struct SurfaceId {
   std::uint32_t object, material;
 };
 
-SurfaceId surfaceOf(const std::vector<PlacedObject>& objects, std::uint32_t triangle) {
+SurfaceId surfaceOf(const Scene& scene, const std::vector<PlacedObject>& objects, std::uint32_t triangle) {
   const PlacedObject& object = objectOfTriangle(objects, triangle);
-  const std::uint32_t in_mesh = triangle - object.first_triangle;
-  return {std::uint32_t(&object - objects.data()),
-          object.material >= 0 ? std::uint32_t(object.material) : object.mesh->triangle_materials[in_mesh]};
+  const Material& material = materialOf(scene, object, triangle - object.first_triangle);
+  return {std::uint32_t(&object - objects.data()), std::uint32_t(&material - scene.materials.data())};
 }
 
 /// How many of a pixel's samples show each name.
@@ -126,7 +125,7 @@ void setSurfaceIds(const Scene& scene, const View& view, const RenderSettings& s
     for (std::size_t i = 0, end; i < triangles.size(); i = end) {
       for (end = i + 1; end < triangles.size() && triangles[end] == triangles[i];) ++end;
       if (triangles[i] == kNoTriangle) continue;
-      const SurfaceId surface = surfaceOf(sampled.objects, triangles[i]);
+      const SurfaceId surface = surfaceOf(scene, sampled.objects, triangles[i]);
       if (i == 0 && object) pixel[*object] = float(surface.object);
       if (i == 0 && material) pixel[*material] = float(surface.material);
       if (objects) count(ids.objects[surface.object], int(end - i), of_objects);
