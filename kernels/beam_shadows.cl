@@ -90,12 +90,12 @@ INLINE void hide_all(const Cluster *cluster, Remaining *remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) remaining->left[row] = 0;
 }
 
-INLINE Rectangle bound_cluster(const Scene *scene, const Outlook *outlook, bool narrow, const Cluster *cluster, const Remaining *remaining) {
-  return narrow ? bound_rows(scene->tile, outlook, cluster->first_row, cluster->end_row, remaining->left) : no_rectangle();
+INLINE Target target_of(const Scene *scene, const Outlook *outlook, const Cluster *cluster, const Remaining *remaining) {
+  return make_target(outlook, &cluster->bounds, bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
 }
 
 // Goes to the end of a walk for one cluster.
-WORK void finish_cluster(const Scene *scene, const Outlook *outlook, bool narrow, const Cluster *cluster, BeamWalk *walk, Candidates *candidates,
+WORK void finish_cluster(const Scene *scene, const Outlook *outlook, const Cluster *cluster, BeamWalk *walk, Candidates *candidates,
                          Remaining *remaining) {
   Beam beam;
   uint left = 0;
@@ -104,7 +104,7 @@ WORK void finish_cluster(const Scene *scene, const Outlook *outlook, bool narrow
     // A beam to half of the points meets less.
     uint now = count_points(remaining->left, cluster->first_row, cluster->end_row);
     if (left == 0 || 2 * now <= left) {
-      Target target = make_target(outlook, narrow, &cluster->bounds, bound_cluster(scene, outlook, narrow, cluster, remaining));
+      Target target = target_of(scene, outlook, cluster, remaining);
       make_beam(&beam, outlook, &target);
       left = now;
     }
@@ -126,8 +126,8 @@ typedef struct {
 // The beam to all of them, which are of a bundle with these bounds.
 INLINE void beam_to_all(const Outlook *outlook, const PointBounds *bounds, const Active *active, Beam *beam) {
   Rectangle rectangle = no_rectangle();
-  for (uint i = 0; i < active->count; ++i) grow_rectangle(&rectangle, &active->target[i].sides);
-  Target target = {true, rectangle, *bounds};
+  for (uint i = 0; i < active->count; ++i) grow_rectangle(&rectangle, &active->target[i].rectangle);
+  Target target = {rectangle, *bounds};
   make_beam(beam, outlook, &target);
 }
 
@@ -141,6 +141,38 @@ INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidate
   }
   active->count = count;
   return count > 0;
+}
+
+// Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns false and does nothing if the light is
+// amid the points or near them.
+WORK bool shade_alone(const Scene *scene, float4 place, float size, const Cluster *points, Remaining *remaining) {
+  Outlook outlook;
+  for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
+  if (!look(place, size, &points->bounds.box, &outlook)) return false;
+  see_rows(scene->tile, &outlook, points->first_row, points->end_row, remaining->left);
+  BeamWalk walk;
+  walk.height = 1;
+  walk.stack[0] = scene->root;
+  finish_cluster(scene, &outlook, points, &walk, scene->candidates, remaining);
+  return true;
+}
+
+// Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't reach.
+WORK void shade_points(const Scene *scene, float4 place, float size, const Cluster *cluster, Remaining *remaining) {
+  for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
+    uint lit = 0;
+    for (uint points = remaining->left[row]; points; points &= points - 1) {
+      uint point = row * kTreeWidth + lowest_bit(points);
+      PointBox box;
+      for (uint axis = 0; axis < 3; ++axis) box.low[axis] = box.high[axis] = scene->tile->place[axis][point];
+      Cluster alone = {row, row + 1, false, bounds_of(&box)};
+      remaining->left[row] = (ushort)(points & (0 - points));
+      // Nothing hides a point from a light where it is itself, and rays decide about one amid a light of a size.
+      if (!shade_alone(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f) remaining->unsure[row] |= remaining->left[row];
+      lit |= remaining->left[row];
+    }
+    remaining->left[row] = (ushort)lit;
+  }
 }
 
 // Takes from what is left of a bundle's points those that a light doesn't reach.
@@ -159,19 +191,14 @@ WORK void shade_bundle(const Scene *scene, float4 place, float size, const Point
   Candidates *candidates = scene->candidates;
   BeamWalk walk;
   if (!look(place, size, &bounds->box, &outlook)) {
-    // The light is amid the points or near them. It may still be beside each cluster.
-    for (uint i = 0; i < active.count; ++i) {
-      const Cluster *cluster = active.cluster[i];
-      bool narrow = look(place, size, &cluster->bounds.box, &outlook);
-      walk.height = 1;
-      walk.stack[0] = scene->root;
-      finish_cluster(scene, &outlook, narrow, cluster, &walk, candidates, remaining);
-    }
+    for (uint i = 0; i < active.count; ++i)
+      if (!shade_alone(scene, place, size, active.cluster[i], remaining)) shade_points(scene, place, size, active.cluster[i], remaining);
     return;
   }
   for (uint i = 0; i < active.count; ++i) {
     const Cluster *cluster = active.cluster[i];
-    active.target[i] = make_target(&outlook, true, &cluster->bounds, bound_cluster(scene, &outlook, true, cluster, remaining));
+    see_rows(tile, &outlook, cluster->first_row, cluster->end_row, remaining->left);
+    active.target[i] = target_of(scene, &outlook, cluster, remaining);
   }
   Beam beam;
   beam_to_all(&outlook, bounds, &active, &beam);
@@ -195,7 +222,7 @@ WORK void shade_bundle(const Scene *scene, float4 place, float size, const Point
     BeamWalk rest;
     rest.height = walk.height;
     for (uint j = 0; j < walk.height; ++j) rest.stack[j] = walk.stack[j];
-    finish_cluster(scene, &outlook, true, active.cluster[i], &rest, candidates, remaining);
+    finish_cluster(scene, &outlook, active.cluster[i], &rest, candidates, remaining);
   }
 }
 
