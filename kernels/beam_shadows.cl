@@ -14,7 +14,7 @@
 //        └─ for each cluster: its candidates (blockers.clh, candidates.clh), and alone the rest of the walk
 //
 // A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a walk of some 10 nodes and blocks of 16
-// triangles for each bundle and light; 30 instructions for each candidate and row of points.
+// triangles for each bundle and light; 15 instructions for each candidate and row of points.
 #include "beam.clh"
 #include "beam_points.clh"
 #include "blockers.clh"
@@ -38,32 +38,35 @@ INLINE bool take_blockers(const Scene *scene, const Outlook *outlook, const Beam
   if (!meet(beam, outlook, scene->blocks, blockers, &triangles)) return false;
   uint covers = triangles.covers & ~hollow;
   if (covers) {
-    remember(scene, blockers->reference[lowest_bit(covers)]);
+    remember(scene, reference_of(blockers, lowest_bit(covers)));
     return true;
   }
-  append(candidates, &triangles, blockers->reference, hollow);
+  append(candidates, &triangles, blockers, hollow);
   return false;
 }
 
 // Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the beam.
 WORK bool find_candidates(const Scene *scene, const Outlook *outlook, const Beam *beam, BeamWalk *walk, Candidates *candidates, uint batch) {
   candidates->count = 0;
-  while (walk->height && candidates->count < batch) {
-    int reference = walk->stack[--walk->height];
+  int *stack = walk->stack;
+  uint height = walk->height;
+  bool covered = false;
+  while (height && !covered && candidates->count < batch) {
+    int reference = stack[--height];
     if (reference >= 0) {
       uint touched = touched_children(beam, scene->nodes + reference * (kNodeRows * kTreeWidth));
-      for (; touched; touched &= touched - 1)
-        walk->stack[walk->height++] = scene->children[reference * kTreeWidth + lowest_bit(touched)];
+      for (; touched; touched &= touched - 1) stack[height++] = scene->children[reference * kTreeWidth + lowest_bit(touched)];
       continue;
     }
     uint block = ~reference, bits = scene->block_bits[block];
-    for (uint i = 0; i < kTreeWidth; i += LANES) {
+    for (uint i = 0; i < kTreeWidth && !covered; i += LANES) {
       Blockers blockers;
       load_blockers(outlook, scene->blocks, block, i, bits >> i, &blockers);
-      if (take_blockers(scene, outlook, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates)) return true;
+      covered = take_blockers(scene, outlook, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
     }
   }
-  return false;
+  walk->height = height;
+  return covered;
 }
 
 // Those triangles that hid much from this light lately. Returns true if one covers the beam.

@@ -409,6 +409,34 @@ TEST(BeamShadows, AgreeWithBruteForceCloseUnderTrianglesMuchLargerThanTheScene) 
   EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
 }
 
+// Which side of a huge triangle a light is on that all but touches it, floats can't tell. All rays from there
+// go through the triangle's middle, so a wrong side would lose it whole.
+TEST(BeamShadows, AgreeWithBruteForceWhereALightAllButTouchesAHugeTriangle) {
+  Random random(31);
+  Verdicts verdicts;
+  for (int i = 0; i < 6; ++i) {
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(random.between(-1, 1), random.between(-1, 1), 3));
+    const glm::dvec3 u = glm::normalize(glm::cross(normal, random.direction())), v = glm::cross(normal, u);
+    const double side = std::exp(random.between(std::log(1e2), std::log(1e4)));
+    Sheets sheets;
+    addSheet({-8, -8, -4}, {16, 0, 0}, {0, 16, 0}, sheets.seen);
+    addSheet(-side * (random.between(0.3, 0.4) * u + random.between(0.5, 0.6) * v), side * u, side * v,
+             sheets.covers);
+    std::vector<Light> lights;
+    for (int j = 0; j < 12; ++j) {
+      Light light;
+      light.kind = LightKind::kPoint;
+      light.shadow = true;
+      light.position = random.between(-1e-7, 1e-7) * side * normal + random.between(-1e-3, 1e-3) * u;
+      lights.push_back(light);
+    }
+    addVerdictsOnSheets(sheets, lights, i % 2 == 0 ? 16 : 4, verdicts);
+  }
+  EXPECT_EQ(verdicts.wrong, 0u) << "of " << verdicts.pairs << " pairs";
+  EXPECT_GT(verdicts.lit, verdicts.pairs / 10);
+  EXPECT_LT(verdicts.lit, verdicts.pairs - verdicts.pairs / 10);
+}
+
 /// Gives lights sizes: of spheres from a hundredth of a metre to more than the whole scene, and of suns from
 /// that in the sky to the largest; one light in eight has none.
 void giveSizes(Random& random, std::vector<Light>& lights, double scale) {
