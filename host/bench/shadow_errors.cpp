@@ -21,13 +21,15 @@ namespace {
 
 constexpr glm::ivec2 kJudgedSize(1280, 720);
 constexpr int kMoreSamples = 16;
+constexpr int kFrames = 24;             ///< of rows that show a moving camera
+constexpr double kStepOfFrames = 0.02;  ///< metres
 
 /// Pictures of halls, beside makeShadowScenes().
 struct Hall {
   int lamps;
   glm::ivec2 size;
 };
-constexpr int kSampledLamps = 30;  ///< of the halls that are timed with kMoreSamples, too
+constexpr int kSampledLamps = 30;  ///< of the halls that are timed with kMoreSamples and kFrames, too
 const Hall kHalls[] = {
     {1, kJudgedSize}, {30, {320, 180}}, {30, kJudgedSize}, {30, {1920, 1080}}, {1000, kJudgedSize}};
 
@@ -227,11 +229,13 @@ struct ShadowRow {
   const Judged* judged;
   ShadeSettings settings;
   int samples = 1;
+  int frames = 1;       ///< more: the camera goes kStepOfFrames from one to the next
   bool embree = false;  ///< bareRays instead of a picture
 };
 
 /// Milliseconds of getting ready (planning and drawing maps, and building the tree of triangles), and of
-/// telling each pair's shadow (finding what maps must show, beams, rays through holes, and shading).
+/// telling each pair's shadow (finding what maps must show, beams, rays through holes, and shading). A
+/// frame's share of them.
 std::vector<double> timeShadows(Device& device, const ShadowRow& row) {
   if (row.embree) {
     const double ready = millisecondsOf([&] { buildRayScene(row.judged->scene, row.judged->rays.origin); });
@@ -239,10 +243,21 @@ std::vector<double> timeShadows(Device& device, const ShadowRow& row) {
     return {ready, tell};
   }
   Stats stats;
-  renderScene(device, row.judged->scene, pictureOf(*row.judged, row.settings, row.samples), stats);
-  return {stageTime(stats, Stage::kTriangleTree) + stageTime(stats, Stage::kShadowMaps),
-          stageTime(stats, Stage::kFindShadowTexels) + stageTime(stats, Stage::kBeamShadows) +
-              stageTime(stats, Stage::kShadowRays) + stageTime(stats, Stage::kShade)};
+  KeptShadows kept;
+  RenderSettings picture = pictureOf(*row.judged, row.settings, row.samples);
+  for (int frame = 0; frame < row.frames; ++frame) {
+    renderBands(
+        device, row.judged->scene, picture, [](const Image&) {}, stats, &kept);
+    glm::dmat4& place = picture.camera.camera_to_world;
+    place[3] -= kStepOfFrames * place[2];
+  }
+  const auto perFrame = [&](std::initializer_list<Stage> stages) {
+    double sum = 0;
+    for (const Stage stage : stages) sum += stageTime(stats, stage);
+    return sum / row.frames;
+  };
+  return {perFrame({Stage::kTriangleTree, Stage::kShadowMaps}),
+          perFrame({Stage::kFindShadowTexels, Stage::kBeamShadows, Stage::kShadowRays, Stage::kShade})};
 }
 
 /// The sizes of maps to try: all for a scene of the user's, only the default for makeShadowScenes().
@@ -302,16 +317,22 @@ void addRows(const SpeedInput& input, const Judged& judged, const std::vector<in
   rows.push_back({.judged = &judged, .settings = {}, .embree = true});
 }
 
-/// Adds rows of kMoreSamples for those from `first` on.
-void addSampledRows(std::size_t first, SpeedTable& table, std::vector<ShadowRow>& rows) {
+/// Adds rows of kMoreSamples, and of kFrames, for those from `first` on.
+void addMoreRows(std::size_t first, SpeedTable& table, std::vector<ShadowRow>& rows) {
   const std::size_t end = rows.size();
+  const auto addMore = [&](std::size_t like, int samples, int frames, const std::string& of) {
+    rows.push_back(rows[like]);
+    rows.back().samples = samples;
+    rows.back().frames = frames;
+    table.rows.push_back(
+        {table.rows[like].name + ", " + of,
+         std::vector<SpeedCell>(table.columns.size(),
+                                NoValue{"errors are counted with one sample and in one frame"})});
+  };
   for (std::size_t i = first; i < end; ++i) {
     if (rows[i].embree) continue;
-    rows.push_back(rows[i]);
-    rows.back().samples = kMoreSamples;
-    table.rows.push_back(
-        {fmt::format("{}, {} samples", table.rows[i].name, kMoreSamples),
-         std::vector<SpeedCell>(table.columns.size(), NoValue{"errors are counted with one sample"})});
+    addMore(i, kMoreSamples, 1, fmt::format("{} samples", kMoreSamples));
+    addMore(i, 1, kFrames, fmt::format("each of {} frames", kFrames));
   }
 }
 
@@ -319,7 +340,8 @@ void addSampledRows(std::size_t first, SpeedTable& table, std::vector<ShadowRow>
 std::size_t rivalOf(const std::vector<ShadowRow>& rows, const ShadowRow& row, bool embree) {
   const auto is_rival = [&](const ShadowRow& other) {
     return other.judged == row.judged && other.embree == embree &&
-           (embree || (other.samples == row.samples && other.settings.shadows == ShadowMethod::kOff));
+           (embree || (other.samples == row.samples && other.frames == row.frames &&
+                       other.settings.shadows == ShadowMethod::kOff));
   };
   return std::size_t(std::find_if(rows.begin(), rows.end(), is_rival) - rows.begin());
 }
@@ -344,8 +366,8 @@ void timeRows(const SpeedInput& input, std::vector<ShadowRow> rows, SpeedTable& 
     cells[4] = summarize(ready);
     cells[5] = summarize(tell);
     cells[6] = summarize(both);
-    if (rows[i].samples > 1) {
-      cells[7] = NoValue{"Embree's row is for one sample"};
+    if (rows[i].samples > 1 || rows[i].frames > 1) {
+      cells[7] = NoValue{"Embree's row is for one sample and one frame"};
     } else if (!rows[i].judged->pairs.empty()) {
       cells[7] = ratio(rows[i].embree ? tell : both, rounds[rivalOf(rows, rows[i], true)].figures[1]);
     }
@@ -382,11 +404,11 @@ SpeedTable measureShadowErrors(const SpeedInput& input) {
                                {"brighter_percent", "brighter by, % of pairs", 4}}};
   std::vector<std::unique_ptr<const Judged>> judged;
   std::vector<ShadowRow> rows;
-  const auto add = [&](const Scene& scene, glm::ivec2 of_scene, bool sampled) {
+  const auto add = [&](const Scene& scene, glm::ivec2 of_scene, bool more) {
     const std::size_t first = rows.size();
     judged.push_back(judgeScene(scene, of_scene));
     addRows(input, *judged.back(), sizesFor(input), table, rows);
-    if (sampled) addSampledRows(first, table, rows);
+    if (more) addMoreRows(first, table, rows);
   };
   if (input.scene) {
     add(*input.scene, size, true);

@@ -9,8 +9,8 @@ namespace luciole {
 
 /// Compares shadows with rays. For every method and size of maps: what getting ready and telling the shadows
 /// cost, how many pairs of a pixel and a light are wrong, and what Embree takes for the same pairs. Measures
-/// the scene given, with one sample and with several, or makeShadowScenes() and some halls (makeLampHall) if
-/// there is none. Throws MachineError.
+/// the scene given, with one sample and with several, alone and as frames of a moving camera, or
+/// makeShadowScenes() and some halls (makeLampHall) if there is none. Throws MachineError.
 SpeedTable measureShadowErrors(const SpeedInput& input);
 
 /// How many pairs of a pixel and a light these settings' shadows get wrong, in the picture of `size` pixels

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 
+#include "base/random.hpp"
 #include "load/frame.hpp"
 #include "scene/pose.hpp"
 #include "scene/primitives.hpp"
@@ -105,10 +106,51 @@ Scene contact() {
   return scene;
 }
 
+/// A leaf: a quadrilateral, bent along its middle.
+void addLeaf(Mesh& mesh, const glm::dvec3& where, const glm::dvec3& along, const glm::dvec3& across) {
+  const auto first = std::uint32_t(mesh.positions.size());
+  const glm::dvec3 up = glm::cross(along, across) / glm::length(along);
+  for (const glm::dvec3& corner : {where, where + 0.5 * (along + across) + 0.3 * up, where + along,
+                                   where + 0.5 * (along - across) + 0.3 * up}) {
+    mesh.positions.push_back(glm::vec3(corner));
+    mesh.normals.push_back(glm::vec3(glm::normalize(up)));
+  }
+  for (const glm::uvec3& corners : {glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)}) {
+    mesh.triangles.push_back(corners + first);
+    mesh.triangle_materials.push_back(0);
+  }
+}
+
+Scene foliage() {
+  constexpr int kShrubs = 20, kLeaves = 2000;
+  Scene scene = startScene("foliage", {0.5, 1.7, 6.5}, {0, 0.6, 0});
+  addGround(scene, 30);
+  std::uint64_t state = 1;
+  const auto uniform = [&](double low, double high) { return between(low, high, nextUniform(state)); };
+  const auto direction = [&] {
+    const double z = uniform(-1, 1), angle = uniform(0, 2 * 3.14159265358979323846), r = std::sqrt(1 - z * z);
+    return glm::dvec3(r * std::cos(angle), r * std::sin(angle), z);
+  };
+  Mesh leaves;
+  for (int i = 0; i < kShrubs; ++i) {
+    const glm::dvec3 middle(uniform(-5, 5), 0.6, uniform(-6, 4));
+    for (int j = 0; j < kLeaves; ++j) {
+      const glm::dvec3 where = middle + glm::dvec3(0.8, 0.6, 0.8) * std::cbrt(uniform(0, 1)) * direction();
+      const glm::dvec3 along = uniform(0.05, 0.1) * direction();
+      const glm::dvec3 across = 0.03 * glm::normalize(glm::cross(along, direction()));
+      addLeaf(leaves, where, along, across);
+    }
+  }
+  scene.meshes.push_back(std::move(leaves));
+  scene.objects.push_back({std::uint32_t(scene.meshes.size() - 1), glm::dmat4(1), -1});
+  for (int i = 0; i < 16; ++i) addLamp(scene, {uniform(-5, 5), uniform(0.3, 2.5), uniform(-6, 4)}, 5);
+  return scene;
+}
+
 }  // namespace
 
 std::vector<Scene> makeShadowScenes() {
-  return {grazingPlane(), thinWall(), picketFence(), cubeSeam(), contact()};
+  return {grazingPlane(), thinWall(), picketFence(), cubeSeam(), contact(), foliage()};
 }
 
 Scene makeLampHall(int lamps) {
