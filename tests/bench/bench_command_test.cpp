@@ -178,10 +178,12 @@ TEST_F(BenchCommand, WhatHasNoValueSaysWhy) {
         << outcome.out;
     const std::string text = readText(folder / "out.json");
     const auto json = nlohmann::json::parse(text);
-    ASSERT_EQ(json["speed"][0]["rows"].size(), 9u);
+    // Embree; and each of four methods in one picture, with 16 samples, and in 24 frames.
+    ASSERT_EQ(json["speed"][0]["rows"].size(), 13u);
     for (const auto& row : json["speed"][0]["rows"]) {
       expectReasons(row);
-      if (row["name"].get<std::string>().ends_with("16 samples")) continue;
+      const std::string name = row["name"];
+      if (name.ends_with("16 samples") || name.ends_with("24 frames")) continue;  // nobody judges these
       for (const char* key : {"times_rays", "wrongly_dark_percent", "wrongly_lit_percent", "edge_percent"})
         EXPECT_TRUE(row.contains(key) && row[key].is_null()) << key;
       EXPECT_EQ(row["pairs"], 0);
