@@ -386,7 +386,7 @@ MUTANTS = {
         Mutant("flip = as_intL(height) & (int)0x80000000", "flip = 0"),
         Mutant("-dot3(m, d)}", "dot3(m, d)}"),
         Mutant("m.z *= outlook->side", "m.z *= 1.0f"),
-        Mutant("abs_lanes(v[0].x) + D.x", "0.0f * D.x"),
+        Mutant("W = {V.x + beam->corner_far[0], V.y + beam->corner_far[1], V.z +", "W = {beam->corner_far[0], beam->corner_far[1], 0.0f * V.z +"),
         Mutant("meets &= height != 0.0f", "meets &= height > 0.0f"),
         Mutant("*in = most >= 0.0f", "*in = least >= 0.0f"),
         Mutant("*covers = least > 0.0f", "*covers = most > 0.0f"),
