@@ -36,6 +36,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context);
 void addGBufferCommand(CLI::App& app, CommandContext& context);
 void addShadeCommand(CLI::App& app, CommandContext& context);
 void addRelightCommand(CLI::App& app, CommandContext& context);
+void addBakeCommand(CLI::App& app, CommandContext& context);
 void addMixCommand(CLI::App& app, CommandContext& context);
 void addReferenceCommand(CLI::App& app, CommandContext& context);
 void addCompareCommand(CLI::App& app, CommandContext& context);

@@ -116,6 +116,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addGBufferCommand(app, context);
   addShadeCommand(app, context);
   addRelightCommand(app, context);
+  addBakeCommand(app, context);
   addMixCommand(app, context);
   addReferenceCommand(app, context);
   addCompareCommand(app, context);

@@ -19,6 +19,9 @@ struct ResolveInput {
   bool lifts;                                ///< fill in GBuffer::lift
   bool unbent;                               ///< GBuffer::knows_unbent
   bool models;                               ///< fill in GBuffer::model
+  /// Not null: the plane sees these instead, which have the same triangles, laid out elsewhere, and shows the
+  /// fronts of `objects` there.
+  const std::vector<PlacedObject>* laid_out = nullptr;
 
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };

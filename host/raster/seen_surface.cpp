@@ -31,6 +31,13 @@ Lift liftOf(const Surface& surface, const Interpolant<glm::dvec3>& normal) {
 SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   SeenSurface seen;
   seen.surface = makeSurface(input.scene, input.objects, triangle, input.plane);
+  if (input.laid_out) {
+    const Surface flat = makeSurface(input.scene, *input.laid_out, triangle, input.plane);
+    seen.surface.weight1 = flat.weight1;
+    seen.surface.weight2 = flat.weight2;
+    seen.surface.determinant = flat.determinant;
+    seen.surface.front_facing = true;
+  }
   const Surface& surface = seen.surface;
   const Mesh& mesh = *surface.object->mesh;
   seen.facing_normal = surface.front_facing ? surface.normal : -surface.normal;

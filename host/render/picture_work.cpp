@@ -126,7 +126,8 @@ double sceneBytes(const Scene& scene) {
   const auto add = [&](const Mesh& mesh) {
     bytes += bytesOf(mesh.positions) + bytesOf(mesh.normals) + bytesOf(mesh.uvs) +
              bytesOf(mesh.emission_uvs) + bytesOf(mesh.tangents) + bytesOf(mesh.normal_uvs) +
-             bytesOf(mesh.colors) + bytesOf(mesh.triangles) + bytesOf(mesh.triangle_materials);
+             bytesOf(mesh.lightmap_uvs) + bytesOf(mesh.colors) + bytesOf(mesh.triangles) +
+             bytesOf(mesh.triangle_materials);
   };
   for (const Mesh& mesh : scene.meshes) {
     add(mesh);

@@ -27,9 +27,9 @@ void withFields(T& material, Visit&& visit) {
 }
 template <Is<Mesh> T, class Visit>
 void withFields(T& mesh, Visit&& visit) {
-  auto& [name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, colors, triangles,
+  auto& [name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, lightmap_uvs, colors, triangles,
          triangle_materials, divided] = mesh;
-  visit(name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, colors, triangles,
+  visit(name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, lightmap_uvs, colors, triangles,
         triangle_materials, divided);
 }
 template <Is<Object> T, class Visit>

@@ -171,6 +171,7 @@ std::uint32_t copyVertex(std::uint32_t from, Mesh& mesh) {
   copyElement(from, mesh.uvs);
   copyElement(from, mesh.emission_uvs);
   copyElement(from, mesh.normal_uvs);
+  copyElement(from, mesh.lightmap_uvs);
   copyElement(from, mesh.tangents);
   copyElement(from, mesh.colors);
   return std::uint32_t(mesh.positions.size() - 1);

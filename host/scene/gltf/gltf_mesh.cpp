@@ -92,6 +92,7 @@ void makeFlat(Mesh& mesh) {
   mesh.uvs = unshared(mesh.uvs, mesh.triangles);
   mesh.emission_uvs = unshared(mesh.emission_uvs, mesh.triangles);
   mesh.normal_uvs = unshared(mesh.normal_uvs, mesh.triangles);
+  mesh.lightmap_uvs = unshared(mesh.lightmap_uvs, mesh.triangles);
   mesh.tangents.clear();  // glTF: those of a file without normals are to be ignored
   mesh.colors = unshared(mesh.colors, mesh.triangles);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
@@ -151,7 +152,11 @@ void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const
   if (bent.set >= 0 && base.set < 0) mesh.uvs = uvsOf(model, primitive, bent, place);
   if (bent.set >= 0 && base.set >= 0 && bent != base) mesh.normal_uvs = uvsOf(model, primitive, bent, place);
   if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
+  mesh.lightmap_uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_1", place);
   const bool has_uvs = base.set >= 0 || bent.set >= 0;
+  // No texture needs them, but a light map can be laid out by them.
+  if (!has_uvs && emission.set < 0)
+    mesh.uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_0", place);
   if (emission.set < 0 || emission == (base.set >= 0 ? base : bent)) return;
   std::vector<glm::vec2>& uvs = has_uvs ? mesh.emission_uvs : mesh.uvs;
   uvs = uvsOf(model, primitive, emission, place);
@@ -171,8 +176,9 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   mesh.colors = readColors(model, primitive, place);
   if (normalUvs(model, materialOf(model, primitive)).set >= 0)
     mesh.tangents = readAttribute<glm::vec4>(model, primitive, "TANGENT", place);
-  for (const std::size_t count : {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normal_uvs.size(),
-                                  mesh.tangents.size(), mesh.normals.size(), mesh.colors.size()}) {
+  for (const std::size_t count :
+       {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normal_uvs.size(), mesh.lightmap_uvs.size(),
+        mesh.tangents.size(), mesh.normals.size(), mesh.colors.size()}) {
     if (count == 0 || count == mesh.positions.size()) continue;
     failGltf(model, place,
              fmt::format("its attributes have {} and {} elements", mesh.positions.size(), count));
@@ -181,6 +187,7 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   checkFinite(model, mesh.uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.emission_uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.normal_uvs, place + ".TEXCOORD");
+  checkFinite(model, mesh.lightmap_uvs, place + ".TEXCOORD_1");
   checkFinite(model, mesh.tangents, place + ".TANGENT");
   checkFinite(model, mesh.colors, place + ".COLOR_0");
   for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));
@@ -204,19 +211,19 @@ void appendOptional(std::vector<T>& all, std::size_t count_before, const std::ve
   all.resize(count_before + count_more, missing);
 }
 
+/// Appends coordinates of one use; a part without such takes its `uvs` for that use, too.
+void appendUvs(std::vector<glm::vec2> Mesh::*uvs, Mesh& mesh, const Mesh& more) {
+  if ((mesh.*uvs).empty() && (more.*uvs).empty()) return;
+  if ((mesh.*uvs).empty()) mesh.*uvs = mesh.uvs;
+  appendOptional(mesh.*uvs, mesh.positions.size(), (more.*uvs).empty() ? more.uvs : more.*uvs,
+                 more.positions.size(), glm::vec2(0));
+}
+
 void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
   const std::size_t before = mesh.positions.size(), added = more.positions.size();
-  if (!mesh.emission_uvs.empty() || !more.emission_uvs.empty()) {
-    // A part without emission coordinates uses its base colour's for both.
-    if (mesh.emission_uvs.empty()) mesh.emission_uvs = mesh.uvs;
-    appendOptional(mesh.emission_uvs, before, more.emission_uvs.empty() ? more.uvs : more.emission_uvs, added,
-                   glm::vec2(0));
-  }
-  if (!mesh.normal_uvs.empty() || !more.normal_uvs.empty()) {
-    if (mesh.normal_uvs.empty()) mesh.normal_uvs = mesh.uvs;
-    appendOptional(mesh.normal_uvs, before, more.normal_uvs.empty() ? more.uvs : more.normal_uvs, added,
-                   glm::vec2(0));
-  }
+  appendUvs(&Mesh::emission_uvs, mesh, more);
+  appendUvs(&Mesh::normal_uvs, mesh, more);
+  appendUvs(&Mesh::lightmap_uvs, mesh, more);
   appendOptional(mesh.tangents, before, more.tangents, added, glm::vec4(0));
   appendOptional(mesh.uvs, before, more.uvs, added, glm::vec2(0));
   appendOptional(mesh.colors, before, more.colors, added, glm::vec4(1));

@@ -296,6 +296,16 @@ TEST_F(GltfTextures, PrimitivesWithAndWithoutGlowOfItsOwnBecomeOneMesh) {
   }
 }
 
+TEST_F(GltfTextures, LightMapsAreLaidOutByTheSecondCoordinatesOrTheFirst) {
+  expectUvs(load(file).meshes.at(0).lightmap_uvs, {{0, 0.25f}, {1, 0.5f}, {0, 1}});
+  file.root.erase("materials");
+  file.primitive().erase("material");
+  file.primitive()["attributes"].erase("TEXCOORD_1");
+  const Scene scene = load(file);
+  EXPECT_TRUE(scene.meshes.at(0).lightmap_uvs.empty());
+  expectUvs(scene.meshes[0].uvs, {{0, 0}, {1, 0}, {1, 1}});
+}
+
 TEST_F(GltfTextures, NormalMapsHaveTangentsAndCoordinatesOfTheirOwn) {
   json& attributes = file.primitive()["attributes"];
   attributes["NORMAL"] = file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});

@@ -1,0 +1,200 @@
+// Light maps, as a person makes them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/program_test.hpp"
+#include "image/image.hpp"
+
+namespace luciole::test {
+namespace {
+
+/// An OBJ in the making, of rectangles with charts of their own in an atlas.
+struct Rectangles {
+  int columns, rows;
+  std::string text;
+  int count = 0;
+
+  /// The corner, the sides and the chart's place. Its normal is cross(u, v).
+  void add(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v) {
+    const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
+    const double margin = 0.05;
+    for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+      const glm::dvec3 p = corner + double(a) * u + double(b) * v;
+      text += fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", p.x, p.y, p.z, normal.x, normal.y, normal.z,
+                          (count % columns + margin + (1 - 2 * margin) * a) / columns,
+                          (count / columns + margin + (1 - 2 * margin) * b) / rows);
+    }
+    const auto corners = [&](int i, int j, int k) {
+      std::string face = "f";
+      for (const int corner_of : {i, j, k}) face += fmt::format(" {0}/{0}/{0}", 4 * count + corner_of);
+      return face + "\n";
+    };
+    text += corners(1, 2, 3) + corners(1, 3, 4);
+    ++count;
+  }
+};
+
+class BakeCommand : public ProgramTest {
+ protected:
+  /// A room of 4 × 3 × 4 m and a block in it.
+  void writeRoom() const {
+    Rectangles room{4, 3, "mtllib room.mtl\nusemtl wall\n"};
+    const glm::dvec3 x(4, 0, 0), y(0, 3, 0), z(0, 0, 4), low(-2, 0, -2);
+    for (const auto& [corner, u, v] :
+         {std::tuple(low, x, y), {low, z, x}, {low, y, z}, {low + z, y, x}, {low + x, z, y}, {low + y, x, z}})
+      room.add(corner, u, v);
+    const glm::dvec3 bx(1, 0, 0), by(0, 1, 0), bz(0, 0, 1), block(-0.7, 0.01, -0.7);
+    for (const auto& [corner, u, v] : {std::tuple(block + bz, bx, by),
+                                       {block + by, bz, bx},
+                                       {block + bx, by, bz},
+                                       {block, by, bx},
+                                       {block, bz, by}})
+      room.add(corner, u, v);
+    writeText(folder / "room.obj", room.text);
+    writeText(folder / "room.mtl", "newmtl wall\nKd 0.7 0.65 0.5\nKa 0.2 0.2 0.2\nKs 0 0 0\n");
+    for (const bool lit : {true, false})
+      writeText(folder / (lit ? "lit.json" : "unlit.json"),
+                fmt::format(R"(
+          {{"camera": {{"eye": [1.7, 2.2, 1.8], "target": [-0.5, 0.8, -0.5], "fov_y": 60}}, "size": [192, 108],
+            "ambient": {}, "objects": [{{"mesh": "{}", "name": "room"}}], "lights": [{}]}})",
+                            lit ? 0.1 : 0.0, lit ? "room.obj" : "room.glb",
+                            lit ? R"(
+          {"type": "point", "position": [1.2, 2.5, -0.5], "color": [3, 2.6, 2], "attenuation": [1, 0, 0.7], "shadow": true},
+          {"type": "spot", "position": [-1.5, 2.7, 1.5], "target": [0, 0, 0], "cutoff": 35, "color": [1, 1.5, 3],
+           "attenuation": [1, 0, 0.2], "shadow": true})"
+                                : ""));
+  }
+
+  /// A square of 2 m that faces up, below a lamp 1 m above its middle.
+  void writeFloor(const std::string& uvs = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n",
+                  const char* faces = "1/1 2/2 3/3 4/4") const {
+    writeText(folder / "floor.obj",
+              fmt::format("mtllib floor.mtl\nusemtl floor\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n{}f {}\n",
+                          uvs, faces));
+    writeText(folder / "floor.mtl", "newmtl floor\nKd 0.5 0.25 0.125\nKa 0 0 0\nKs 0.4 0.4 0.4\nNs 8\n");
+    writeText(
+        folder / "floor.json",
+        R"({"camera": {"eye": [0, 2, 3], "target": [0, 0, 0]}, "ambient": 0, "fog": {"mode": "exp", "density": 1, "color": 1},
+                  "objects": [{"mesh": "floor.obj", "name": "floor"}],
+                  "lights": [{"type": "point", "position": [0, 1, 0], "color": 2, "attenuation": [0, 0, 1]}]})");
+  }
+};
+
+/// The middle of a texel of a map of the floor of n × n.
+glm::dvec3 placeOf(int x, int y, int n) { return {(x + 0.5) * 2 / n - 1, 0, (y + 0.5) * 2 / n - 1}; }
+
+/// Of the lamp: cos θ / d², and Phong's cosine to the power of 8 over d² towards an eye.
+double diffuseAt(const glm::dvec3& place) {
+  const glm::dvec3 way = glm::dvec3(0, 1, 0) - place;
+  return way.y / glm::length(way) / glm::dot(way, way);
+}
+double highlightAt(const glm::dvec3& place, const glm::dvec3& eye) {
+  const glm::dvec3 way = glm::dvec3(0, 1, 0) - place, to_light = glm::normalize(way);
+  const glm::dvec3 mirrored(-to_light.x, to_light.y, -to_light.z);
+  return std::pow(std::max(0.0, glm::dot(mirrored, glm::normalize(eye - place))), 8) / glm::dot(way, way);
+}
+
+// Floats of places and light round by some 2⁻²² each of values below 2.
+constexpr double kError = 1e-5;
+
+TEST_F(BakeCommand, EachTexelIsTheLightAtItsPlaceAndFogIsNone) {
+  writeFloor();
+  succeed("luciole bake floor.json --object floor --size 20x20 --quiet -o map.exr");
+  succeed("luciole bake floor.json --object floor --size 20x20 --irradiance --quiet -o light.exr");
+  succeed("luciole bake floor.json --object floor --size 20x20 --eye 0.5 1.5 1 --quiet -o seen.exr");
+  const Image map = readImage(folder / "map.exr"), light = readImage(folder / "light.exr"),
+              seen = readImage(folder / "seen.exr");
+  ASSERT_EQ(map.width, 20);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) {
+      const glm::dvec3 place = placeOf(x, y, 20);
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t i = std::size_t(3 * (20 * y + x) + c);
+        const double diffuse = 2 * diffuseAt(place), reflected = diffuse * 0.5 / (1 << c);
+        EXPECT_NEAR(map.pixels[i], reflected, kError) << x << " " << y;
+        EXPECT_NEAR(light.pixels[i], diffuse, kError) << x << " " << y;
+        EXPECT_NEAR(seen.pixels[i], reflected + 2 * 0.4 * highlightAt(place, {0.5, 1.5, 1}), 4 * kError)
+            << x << " " << y;
+      }
+    }
+}
+
+// The map's texels are 15 mm wide. Light changes smoothly, so its interpolation errs less than its codes do:
+// half a step of 8-bit sRGB, up to 0.0045 of the brightest. At the edges of shadows a pixel may be a texel
+// off.
+TEST_F(BakeCommand, ARoomBakedAndShownUnlitIsTheRoomLit) {
+  writeRoom();
+  succeed("luciole bake lit.json --object room --size 1024x768 --quiet -o map.exr --to-gltf room.glb");
+  succeed("luciole render lit.json --shadows exact --quiet -o lit.exr");
+  succeed("luciole render unlit.json --quiet -o unlit.exr");
+  const Image map = readImage(folder / "map.exr"), lit = readImage(folder / "lit.exr"),
+              unlit = readImage(folder / "unlit.exr");
+  float strength = 0;
+  for (const float value : map.pixels) strength = std::max(strength, value);
+  std::size_t at_edges = 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
+    const double error = std::abs(double(lit.pixels[i]) - unlit.pixels[i]);
+    sum += error;
+    at_edges += error > 2 * 0.0045 * strength;
+  }
+  const double mean = sum / double(lit.pixels.size());
+  EXPECT_LE(mean, 0.0045 * strength);
+  EXPECT_LE(double(at_edges), 0.048 * double(lit.pixels.size())) << "of " << lit.pixels.size();
+  RecordProperty("mean", fmt::format("{}", mean));
+}
+
+TEST_F(BakeCommand, SeamsHaveTheLightOfTheirChartsAndAlphaTellsWhereChartsAre) {
+  writeFloor("vt 0.25 0.25\nvt 0.75 0.25\nvt 0.75 0.75\nvt 0.25 0.75\n");
+  succeed("luciole bake floor.json --object floor --size 32x32 --irradiance --quiet -o map.exr");
+  succeed("luciole bake floor.json --object floor --size 32x32 --irradiance --alpha --quiet -o alpha.exr");
+  const Image map = readImage(folder / "map.exr"), alpha = readImage(folder / "alpha.exr");
+  for (const int x : {4, 7})
+    EXPECT_NEAR(map.pixels[std::size_t(3 * (32 * 16 + x))], 2 * diffuseAt({-1, 0, 0}), 0.1);
+  ASSERT_EQ(alpha.channels.back(), "A");
+  for (int x = 0; x < 32; ++x) {
+    const bool inside = x >= 8 && x < 24;
+    EXPECT_EQ(alpha.pixels[std::size_t(4 * (32 * 16 + x) + 3)], inside ? 1 : 0) << x;
+    EXPECT_EQ(alpha.pixels[std::size_t(4 * (32 * 16 + x))] > 0, inside) << x;
+  }
+}
+
+TEST_F(BakeCommand, TheGltfHoldsTheObjectWhereItIs) {
+  writeFloor();
+  std::string scene = readText(folder / "floor.json");
+  scene.replace(scene.find(R"("name": "floor")"), 0, R"("translate": [1, 2, 3], "rotate": [0, 30, 0], )");
+  writeText(folder / "moved.json", scene);
+  succeed("luciole bake moved.json --object floor --size 16x16 --quiet -o map.png --to-gltf floor.glb");
+  EXPECT_THAT(succeed("luciole info floor.glb"),
+              testing::HasSubstr("bounds       (-0.366025, 2, 1.63397) to (2.36603, 2, 4.36603)"));
+}
+
+TEST_F(BakeCommand, WrongInputIsRefusedInALineAndNothingIsWritten) {
+  writeFloor();
+  const std::string bake = "luciole bake floor.json --size 8x8 -o map.exr --to-gltf map.glb ";
+  refuse(bake + "--object flor", 2, "floor.json has 1 objects; did you mean floor?: floor");
+  refuse(bake + "--object floor --eye 0 1 0 --shadows hard", 2, "expected exact, soft-exact or off");
+  refuse(bake + "--object floor --exposure auto", 2, "expected stops");
+  refuse(bake + "--object floor --aov object_id", 2, "a map shows one object");
+  refuse("luciole bake floor.json --object floor -o map.exr --to-gltf map.gltf", 2, "ends in .glb");
+  refuse("luciole bake floor.json --object floor -o map.exr --to-gltf no/map.glb", 2, "no");
+  refuse("luciole bake floor.json -o map.exr", 2, "--object");
+  writeFloor("vt 0 0\nvt 2 0\nvt 1 1\nvt 0 1\n");
+  refuse(bake + "--object floor", 2, "fit into a square of one unit");
+  writeFloor("vt 0 0\nvt 1 0\nvt 0.5 0.5\nvt 1 0.1\n");
+  refuse(bake + "--object floor", 2, "its charts overlap");
+  writeFloor("", "1 2 3 4");
+  refuse(bake + "--object floor", 2, "has no texture coordinates");
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.glb"));
+}
+
+}  // namespace
+}  // namespace luciole::test
