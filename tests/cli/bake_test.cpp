@@ -25,11 +25,12 @@ struct Rectangles {
   void add(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v) {
     const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
     const double margin = 0.05;
+    const int column = count % columns, row = count / columns;
     for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
       const glm::dvec3 p = corner + double(a) * u + double(b) * v;
       text += fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", p.x, p.y, p.z, normal.x, normal.y, normal.z,
-                          (count % columns + margin + (1 - 2 * margin) * a) / columns,
-                          (count / columns + margin + (1 - 2 * margin) * b) / rows);
+                          (column + margin + (1 - 2 * margin) * a) / columns,
+                          (row + margin + (1 - 2 * margin) * b) / rows);
     }
     const auto corners = [&](int i, int j, int k) {
       std::string face = "f";
@@ -116,7 +117,7 @@ TEST_F(BakeCommand, EachTexelIsTheLightAtItsPlaceAndFogIsNone) {
     for (int x = 0; x < 20; ++x) {
       const glm::dvec3 place = placeOf(x, y, 20);
       for (int c = 0; c < 3; ++c) {
-        const std::size_t i = std::size_t(3 * (20 * y + x) + c);
+        const std::size_t i = 3 * (20 * std::size_t(y) + std::size_t(x)) + std::size_t(c);
         const double diffuse = 2 * diffuseAt(place), reflected = diffuse * 0.5 / (1 << c);
         EXPECT_NEAR(map.pixels[i], reflected, kError) << x << " " << y;
         EXPECT_NEAR(light.pixels[i], diffuse, kError) << x << " " << y;
@@ -157,12 +158,12 @@ TEST_F(BakeCommand, SeamsHaveTheLightOfTheirChartsAndAlphaTellsWhereChartsAre) {
   succeed("luciole bake floor.json --object floor --size 32x32 --irradiance --alpha --quiet -o alpha.exr");
   const Image map = readImage(folder / "map.exr"), alpha = readImage(folder / "alpha.exr");
   for (const int x : {4, 7})
-    EXPECT_NEAR(map.pixels[std::size_t(3 * (32 * 16 + x))], 2 * diffuseAt({-1, 0, 0}), 0.1);
+    EXPECT_NEAR(map.pixels[3 * (32 * 16 + std::size_t(x))], 2 * diffuseAt({-1, 0, 0}), 0.1);
   ASSERT_EQ(alpha.channels.back(), "A");
   for (int x = 0; x < 32; ++x) {
     const bool inside = x >= 8 && x < 24;
-    EXPECT_EQ(alpha.pixels[std::size_t(4 * (32 * 16 + x) + 3)], inside ? 1 : 0) << x;
-    EXPECT_EQ(alpha.pixels[std::size_t(4 * (32 * 16 + x))] > 0, inside) << x;
+    EXPECT_EQ(alpha.pixels[4 * (32 * 16 + std::size_t(x)) + 3], inside ? 1 : 0) << x;
+    EXPECT_EQ(alpha.pixels[4 * (32 * 16 + std::size_t(x))] > 0, inside) << x;
   }
 }
 
