@@ -14,6 +14,7 @@
 #include "load/load_scene.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/bounds.hpp"
+#include "scene/gltf/lights_asset.hpp"
 #include "scene/json/light_list.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/json/write_scene.hpp"
@@ -196,13 +197,9 @@ void checkOptions(const LightsOptions& options) {
     throw InputError("--range: the lowest is above the highest");
 }
 
-}  // namespace
-
-void addGenerateCommand(CLI::App& app, CommandContext&) {
-  CLI::App* command = app.add_subcommand("generate", "seeded light fields, as scene files");
-  command->require_subcommand(1);
+void addLightsCommand(CLI::App& command) {
   CLI::App* lights =
-      command->add_subcommand("lights", "point lights spread at random, the same for the same seed");
+      command.add_subcommand("lights", "point lights spread at random, the same for the same seed");
   auto options = std::make_shared<LightsOptions>();
   const CLI::Range any(-1e18, 1e18), positive(1e-18, 1e18), not_negative(0.0, 1e18);
   const auto vectorOption = [&](const char* name, std::vector<double>& value, const char* help) {
@@ -271,6 +268,38 @@ void addGenerateCommand(CLI::App& app, CommandContext&) {
     checkOptions(*options);
     generateLights(*options);
   });
+}
+
+struct AssetOptions {
+  std::uint64_t count = kDefaultCount, seed = 0;
+  std::string output;
+};
+
+void addAssetCommand(CLI::App& command) {
+  CLI::App* asset = command.add_subcommand("gltf-lights", "a glTF file with many lights, to test viewers by");
+  auto options = std::make_shared<AssetOptions>();
+  asset->add_option("--count", options->count, "lights, 1 to 1000000")
+      ->check(CLI::Range(std::uint64_t(1), kMostAssetLights))
+      ->capture_default_str();
+  asset->add_option("--seed", options->seed)->capture_default_str();
+  asset
+      ->add_option("-o,--output", options->output,
+                   ".glb, or .gltf with a .bin beside it (- : .glb on standard output)")
+      ->required();
+  asset->callback([options] {
+    checkGltfPath(options->output);
+    checkPlace(options->output);
+    writeGltf(lightsAsset(options->count, options->seed), options->output);
+  });
+}
+
+}  // namespace
+
+void addGenerateCommand(CLI::App& app, CommandContext&) {
+  CLI::App* command = app.add_subcommand("generate", "seeded light fields, as scene files");
+  command->require_subcommand(1);
+  addLightsCommand(*command);
+  addAssetCommand(*command);
 }
 
 }  // namespace luciole
