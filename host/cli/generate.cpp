@@ -296,7 +296,8 @@ void addAssetCommand(CLI::App& command) {
 }  // namespace
 
 void addGenerateCommand(CLI::App& app, CommandContext&) {
-  CLI::App* command = app.add_subcommand("generate", "seeded light fields, as scene files");
+  CLI::App* command =
+      app.add_subcommand("generate", "seeded light fields as scene files, and glTF files with many lights");
   command->require_subcommand(1);
   addLightsCommand(*command);
   addAssetCommand(*command);
