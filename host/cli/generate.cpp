@@ -14,7 +14,6 @@
 #include "load/load_scene.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/bounds.hpp"
-#include "scene/gltf/lights_asset.hpp"
 #include "scene/json/light_list.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/json/write_scene.hpp"
@@ -270,37 +269,14 @@ void addLightsCommand(CLI::App& command) {
   });
 }
 
-struct AssetOptions {
-  std::uint64_t count = kDefaultCount, seed = 0;
-  std::string output;
-};
-
-void addAssetCommand(CLI::App& command) {
-  CLI::App* asset = command.add_subcommand("gltf-lights", "a glTF file with many lights, to test viewers by");
-  auto options = std::make_shared<AssetOptions>();
-  asset->add_option("--count", options->count, "lights, 1 to 1000000")
-      ->check(CLI::Range(std::uint64_t(1), kMostAssetLights))
-      ->capture_default_str();
-  asset->add_option("--seed", options->seed)->capture_default_str();
-  asset
-      ->add_option("-o,--output", options->output,
-                   ".glb, or .gltf with a .bin beside it (- : .glb on standard output)")
-      ->required();
-  asset->callback([options] {
-    checkGltfPath(options->output);
-    checkPlace(options->output);
-    writeGltf(lightsAsset(options->count, options->seed), options->output);
-  });
-}
-
 }  // namespace
 
-void addGenerateCommand(CLI::App& app, CommandContext&) {
+void addGenerateCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("generate", "seeded light fields as scene files, and glTF files with many lights");
   command->require_subcommand(1);
   addLightsCommand(*command);
-  addAssetCommand(*command);
+  addGltfLightsCommand(*command, context);
 }
 
 }  // namespace luciole

@@ -179,11 +179,25 @@ TEST_F(Generate, ThePictureOfAGltfOfManyLightsIsThatInDoublePrecision) {
   EXPECT_GT(figures["max_abs"], 0);
 }
 
+TEST_F(Generate, AGltfOfLightsComesWithItsReferenceAndFigures) {
+  succeed("luciole generate gltf-lights --count 30 --seed 2 -o many.glb --reference truth.exr");
+  succeed("luciole reference many.glb --exposure 0 --quiet -o same.exr");
+  EXPECT_EQ(readImage(folder / "truth.exr").pixels, readImage(folder / "same.exr").pixels);
+  EXPECT_EQ(readImage(folder / "truth.png").width, 1280);
+  succeed("luciole render many.glb --exposure 0 --quiet -o ours.exr");
+  const auto told = nlohmann::json::parse(readText(folder / "truth.json")),
+             figures = nlohmann::json::parse(succeed("luciole compare truth.exr ours.exr --json -"));
+  EXPECT_EQ(told["count"], 30);
+  for (const auto& [name, figure] : figures.items()) EXPECT_EQ(told[name], figure) << name;
+}
+
 TEST_F(Generate, AGltfOfManyLightsIsRefusedInALine) {
   for (const char* count : {"0", "-1", "1000001", "1e3", "99999999999999999999999"})
     refuse(fmt::format("luciole generate gltf-lights --count {} -o many.glb", count), 2, "--count");
   refuse("luciole generate gltf-lights -o many.obj", 2, ".glb or .gltf");
   refuse("luciole generate gltf-lights -o gone/many.gltf", 2, "no such folder");
+  refuse("luciole generate gltf-lights -o many.glb --reference truth.png", 2, ".exr");
+  refuse("luciole generate gltf-lights -o - --reference truth.exr", 2, "--reference");
   refuse("test ! -e many.glb && luciole generate gltf-lights", 2, "--output");
 }
 
