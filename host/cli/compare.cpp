@@ -15,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
+#include "cli/difference_json.hpp"
 #include "cli/event_log.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
@@ -33,42 +34,6 @@ struct CompareOptions {
 };
 
 constexpr float kDifferenceGain = 10.0f;
-
-/// The reason why a figure is infinite, for people.
-const char* whyInfinite(const std::string& name, const ImageDifference& d) {
-  if (name == "psnr" && d.rmse == 0) return "no finite value differs";
-  return d.nonfinite > 0 ? "a pixel of one picture alone is not finite"
-                         : "A is black, of which nothing is a share";
-}
-
-/// JSON has no infinity: an infinite figure becomes null, with a reason beside it.
-nlohmann::ordered_json differenceJson(const ImageDifference& d) {
-  nlohmann::ordered_json json, reasons;
-  json["channels"] = d.channels;
-  json["pixels"] = d.pixels;
-  for (const auto& [name, value] : {std::pair("max_abs", d.max_abs),
-                                    {"mean_abs", d.mean_abs},
-                                    {"max_relative", d.max_relative},
-                                    {"mean_relative", d.mean_relative},
-                                    {"mean_signed", d.mean_signed},
-                                    {"rmse", d.rmse},
-                                    {"psnr", d.psnr},
-                                    {"relmse", d.relmse},
-                                    {"p99_abs", d.p99_abs},
-                                    {"p999_abs", d.p999_abs}}) {
-    if (std::isfinite(value)) {
-      json[name] = value;
-    } else {
-      json[name] = nullptr;
-      reasons[name] = whyInfinite(name, d);
-    }
-  }
-  if (!reasons.empty()) json["reasons"] = reasons;
-  json["nonfinite"] = d.nonfinite;
-  json["pixels_over"] = {{"half_step", d.over[0]}, {"one_step", d.over[1]}, {"four_steps", d.over[2]}};
-  json["worst_pixel"] = d.worst_pixel;
-  return json;
-}
 
 void checkOptions(const CompareOptions& options) {
   if (options.max_abs && !(*options.max_abs >= 0))

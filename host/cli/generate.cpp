@@ -196,13 +196,9 @@ void checkOptions(const LightsOptions& options) {
     throw InputError("--range: the lowest is above the highest");
 }
 
-}  // namespace
-
-void addGenerateCommand(CLI::App& app, CommandContext&) {
-  CLI::App* command = app.add_subcommand("generate", "seeded light fields, as scene files");
-  command->require_subcommand(1);
+void addLightsCommand(CLI::App& command) {
   CLI::App* lights =
-      command->add_subcommand("lights", "point lights spread at random, the same for the same seed");
+      command.add_subcommand("lights", "point lights spread at random, the same for the same seed");
   auto options = std::make_shared<LightsOptions>();
   const CLI::Range any(-1e18, 1e18), positive(1e-18, 1e18), not_negative(0.0, 1e18);
   const auto vectorOption = [&](const char* name, std::vector<double>& value, const char* help) {
@@ -271,6 +267,16 @@ void addGenerateCommand(CLI::App& app, CommandContext&) {
     checkOptions(*options);
     generateLights(*options);
   });
+}
+
+}  // namespace
+
+void addGenerateCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command =
+      app.add_subcommand("generate", "seeded light fields as scene files, and glTF files with many lights");
+  command->require_subcommand(1);
+  addLightsCommand(*command);
+  addGltfLightsCommand(*command, context);
 }
 
 }  // namespace luciole

@@ -8,12 +8,12 @@ namespace {
 
 /// What stands for the value of an option that takes a text, wherever the option has no list of values.
 const std::map<std::string, std::string> kValueNames{
-    {"output", "FILE"},    {"stats", "FILE"},    {"json", "FILE"},         {"diff", "FILE"},
-    {"error-map", "FILE"}, {"plot", "FILE"},     {"side-by-side", "FILE"}, {"gbuffer", "FILE"},
-    {"scene", "FILE"},     {"csv", "FILE"},      {"size", "WxH"},          {"crop", "X,Y,W,H"},
-    {"camera", "NAME"},    {"format", "NAME"},   {"device", "NAME"},       {"field", "NAME"},
-    {"shape", "NAME"},     {"frames", "FRAMES"}, {"shard", "I/N"},         {"exposure", "STOPS"},
-    {"aov", "LAYERS"},     {"lights", "COUNTS"}, {"trace", "FILE"}};
+    {"output", "FILE"},    {"stats", "FILE"},  {"json", "FILE"},         {"diff", "FILE"},
+    {"error-map", "FILE"}, {"plot", "FILE"},   {"side-by-side", "FILE"}, {"gbuffer", "FILE"},
+    {"scene", "FILE"},     {"csv", "FILE"},    {"reference", "FILE"},    {"size", "WxH"},
+    {"crop", "X,Y,W,H"},   {"camera", "NAME"}, {"format", "NAME"},       {"device", "NAME"},
+    {"field", "NAME"},     {"shape", "NAME"},  {"frames", "FRAMES"},     {"shard", "I/N"},
+    {"exposure", "STOPS"}, {"aov", "LAYERS"},  {"lights", "COUNTS"},     {"trace", "FILE"}};
 
 }  // namespace
 

@@ -163,5 +163,43 @@ TEST_F(Generate, LightFieldsOverAMeshDoNotMoveItsCamera) {
   EXPECT_EQ(loadScene(folder / "field.json").cameras.front().camera_to_world, seen);
 }
 
+TEST_F(Generate, ThePictureOfAGltfOfManyLightsIsThatInDoublePrecision) {
+  succeed(
+      "luciole generate gltf-lights --count 200 --seed 2 -o many.glb && "
+      "luciole reference many.glb --exposure 0 --size 320x180 --quiet -o truth.exr && "
+      "luciole render many.glb --exposure 0 --size 320x180 --quiet -o ours.exr");
+  const auto figures = nlohmann::json::parse(succeed("luciole compare truth.exr ours.exr --json -"));
+  EXPECT_EQ(figures["pixels"], 320 * 180);
+  // What is seen lies up to 100 m from the eye, where a light's place rounds by 2^-18 m along each axis at
+  // most, so by e = 6.6e-6 m. No ball has a light nearer than d = 0.3 m, so light turns by e / d, and
+  // 1 / d^2 changes by 2 e / d. A highlight cos^n t changes by n cos^(n-1) t sin t e / d <= 0.61 sqrt(n) e /
+  // d of its peak, and n is 127 at a roughness of 0.25. That is 2e-4 of the brightest.
+  EXPECT_LT(figures["max_relative"], 2e-4);
+  EXPECT_LT(figures["mean_relative"], 1e-7);  // the program's promise
+  EXPECT_GT(figures["max_abs"], 0);
+}
+
+TEST_F(Generate, AGltfOfLightsComesWithItsReferenceAndFigures) {
+  succeed("luciole generate gltf-lights --count 30 --seed 2 -o many.glb --reference truth.exr");
+  succeed("luciole reference many.glb --exposure 0 --quiet -o same.exr");
+  EXPECT_EQ(readImage(folder / "truth.exr").pixels, readImage(folder / "same.exr").pixels);
+  EXPECT_EQ(readImage(folder / "truth.png").width, 1280);
+  succeed("luciole render many.glb --exposure 0 --quiet -o ours.exr");
+  const auto told = nlohmann::json::parse(readText(folder / "truth.json")),
+             figures = nlohmann::json::parse(succeed("luciole compare truth.exr ours.exr --json -"));
+  EXPECT_EQ(told["count"], 30);
+  for (const auto& [name, figure] : figures.items()) EXPECT_EQ(told[name], figure) << name;
+}
+
+TEST_F(Generate, AGltfOfManyLightsIsRefusedInALine) {
+  for (const char* count : {"0", "-1", "1000001", "1e3", "99999999999999999999999"})
+    refuse(fmt::format("luciole generate gltf-lights --count {} -o many.glb", count), 2, "--count");
+  refuse("luciole generate gltf-lights -o many.obj", 2, ".glb or .gltf");
+  refuse("luciole generate gltf-lights -o gone/many.gltf", 2, "no such folder");
+  refuse("luciole generate gltf-lights -o many.glb --reference truth.png", 2, ".exr");
+  refuse("luciole generate gltf-lights -o - --reference truth.exr", 2, "--reference");
+  refuse("test ! -e many.glb && luciole generate gltf-lights", 2, "--output");
+}
+
 }  // namespace
 }  // namespace luciole::test

@@ -21,8 +21,6 @@
 namespace luciole::test {
 namespace {
 
-using Place = json::json_pointer;
-
 /// A new value: what it is by asSchemasSeeIt(), and its text, if that isn't what the value is written as.
 struct NewValue {
   json seen;
@@ -133,20 +131,6 @@ std::vector<NewValue> changesOf(const json& value) {
   if (value.is_array()) addChangedArray(value, changed);
   if (value.is_object()) addChangedObject(value, changed);
   return changed;
-}
-
-void addPlaces(const json& value, const Place& place, std::vector<Place>& places) {
-  places.push_back(place);
-  if (value.is_object())
-    for (const auto& [key, member] : value.items()) addPlaces(member, place / key, places);
-  if (value.is_array())
-    for (std::size_t i = 0; i < value.size(); ++i) addPlaces(value[i], place / i, places);
-}
-
-std::vector<Place> placesIn(const json& scene) {
-  std::vector<Place> places;
-  addPlaces(scene, Place(), places);
-  return places;
 }
 
 /// Whether no mesh in the scene is of so many segments that making it takes long. Cylinders are tried with

@@ -33,8 +33,6 @@ TEST(SceneSchema, AgreesWithTheLoader) {
 namespace luciole::test {
 namespace {
 
-using Place = json::json_pointer;
-
 /// The schema's keys: each with the definition that it is a key of.
 using SchemaKey = std::pair<const json*, std::string>;
 std::map<SchemaKey, const json*> schemaKeys() {

@@ -14,6 +14,7 @@
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
+#include <vector>
 
 #include "base/error.hpp"
 #include "scene/json/json_scene.hpp"
@@ -92,6 +93,23 @@ inline json asSchemasSeeIt(json value) {
   }
   return value;
 }
+using Place = json::json_pointer;
+
+inline void addPlaces(const json& value, const Place& place, std::vector<Place>& places) {
+  places.push_back(place);
+  if (value.is_object())
+    for (const auto& [key, member] : value.items()) addPlaces(member, place / key, places);
+  if (value.is_array())
+    for (std::size_t i = 0; i < value.size(); ++i) addPlaces(value[i], place / i, places);
+}
+
+/// Every place in a value, its own included.
+inline std::vector<Place> placesIn(const json& scene) {
+  std::vector<Place> places;
+  addPlaces(scene, Place(), places);
+  return places;
+}
+
 /// The two that judge a scene file: the schema and the loader.
 class Judges {
  public:
