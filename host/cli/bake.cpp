@@ -26,6 +26,7 @@
 #include "render/surface_ids.hpp"
 #include "scene/bounds.hpp"
 #include "scene/gltf/write_baked.hpp"
+#include "scene/gltf/write_gltf.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole {
@@ -126,8 +127,7 @@ void checkOptions(const BakeOptions& options) {
   if (options.exposure == "auto")
     throw InputError("--exposure auto: a map keeps the scene's units, expected stops");
   if (!options.gltf.empty()) {
-    if (!options.gltf.ends_with(".glb"))
-      throw InputError(fmt::format("--to-gltf {}: expected a name that ends in .glb", options.gltf));
+    checkGltfPath(options.gltf);
     checkPlace(options.gltf);
   }
   const std::string& shadows = options.shadows;
@@ -208,7 +208,7 @@ void addBakeCommand(CLI::App& app, CommandContext& context) {
                     "ambient count as 1, emission as 0");
   command
       ->add_option("--to-gltf", options->gltf,
-                   "also write the object as a .glb, with the map as its emissive texture")
+                   "also write the object as a .glb or .gltf, with the map as its emissive texture")
       ->type_name("FILE");
   addPictureOptions(*command, *options,
                     kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);

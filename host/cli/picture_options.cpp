@@ -375,6 +375,7 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},
                       {"milliseconds", eventMilliseconds(milliseconds)}});
+  if (modelOf(options) == Model::kCookTorrance) takeFacets(scene);
   castShadows(options, scene);
   if (!options.quiet) tellWarnings(scene.warnings);
   return scene;

@@ -19,4 +19,13 @@ ModelChoices modelChoices(const Scene& scene) {
   return choices;
 }
 
+void takeFacets(Scene& scene) {
+  for (Material& material : scene.materials) {
+    if (!material.facets || material.model) continue;
+    const double alpha = material.facets->alpha;
+    material.specular = material.facets->f0;
+    material.shininess = float(2 / (alpha * alpha) - 2);
+  }
+}
+
 }  // namespace luciole

@@ -27,6 +27,12 @@ struct TextureUse {
 /// A limit of Material::normal_scale.
 inline constexpr float kMostNormalScale = 1000;
 
+/// A microfacet surface, as glTF's materials are.
+struct Facets {
+  glm::vec3 f0{0.0f};  ///< the share of light that it reflects head-on
+  float alpha = 1.0f;  ///< GGX's, in (0, 1]: the square of glTF's roughness
+};
+
 /// Phong's reflection coefficients, linear Rec.709. Defaults are OpenGL's.
 /// The diffuse map multiplies ambient and diffuse; vertex colours likewise, and emission where it says so.
 struct Material {
@@ -48,6 +54,8 @@ struct Material {
   bool double_sided = false;  ///< otherwise back faces are culled
   bool colored_emission = false;  ///< vertex colours multiply the emission too
   std::optional<Model> model;     ///< how it reflects light; none: as the picture's settings say
+  /// What `specular` and `shininess`, which are of Phong's model, stand for. See takeFacets().
+  std::optional<Facets> facets;
 };
 
 /// An indexed triangle mesh in its own (object) space, metres. All per-vertex arrays have positions.size()
@@ -176,6 +184,10 @@ struct Scene {
 
 /// The models that materials choose whose surfaces the scene has. O(triangles) where a material chooses one.
 ModelChoices modelChoices(const Scene& scene);
+
+/// Gives materials that know their facets, and choose no model, the coefficients that Model::kCookTorrance
+/// takes: f0 as `specular`, and the `shininess` 2/α² − 2. For scenes that are shown by that model.
+void takeFacets(Scene& scene);
 
 /// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {

@@ -21,9 +21,15 @@ void withFields(T& use, Visit&& visit) {
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {
   auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
-         normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model] = material;
+         normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model, facets] =
+      material;
   visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
-        normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model);
+        normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model, facets);
+}
+template <Is<Facets> T, class Visit>
+void withFields(T& surface, Visit&& visit) {
+  auto& [f0, alpha] = surface;
+  visit(f0, alpha);
 }
 template <Is<Mesh> T, class Visit>
 void withFields(T& mesh, Visit&& visit) {

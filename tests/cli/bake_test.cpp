@@ -184,7 +184,7 @@ TEST_F(BakeCommand, WrongInputIsRefusedInALineAndNothingIsWritten) {
   refuse(bake + "--object floor --eye 0 1 0 --shadows hard", 2, "expected exact, soft-exact or off");
   refuse(bake + "--object floor --exposure auto", 2, "expected stops");
   refuse(bake + "--object floor --aov object_id", 2, "a map shows one object");
-  refuse("luciole bake floor.json --object floor -o map.exr --to-gltf map.gltf", 2, "ends in .glb");
+  refuse("luciole bake floor.json --object floor -o map.exr --to-gltf map.obj", 2, "ends in .glb or .gltf");
   refuse("luciole bake floor.json --object floor -o map.exr --to-gltf no/map.glb", 2, "no");
   refuse("luciole bake floor.json -o map.exr", 2, "--object");
   writeFloor("vt 0 0\nvt 2 0\nvt 1 1\nvt 0 1\n");

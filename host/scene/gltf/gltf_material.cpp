@@ -144,14 +144,20 @@ glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, con
   return result;
 }
 
+/// Phong's model for a surface of GGX's facets (Walter et al. 2007). Its lobe's exponent is a quarter of the
+/// facets' 2/α² − 2, because a mirrored direction turns by twice the angle of its facet, and cosines of small
+/// angles fall by their squares. Its peak is the facets', whose term π·D·G·F / (4 N·V) is F0 / 4α² head-on.
+/// So a metal's highlight has all its light; a dielectric's lacks what Fresnel's term adds at grazing angles.
+/// Roughness below 0.15 would need lobes narrower than a pixel mostly is.
 void setReflection(Material& material, const glm::dvec3& base, const glm::dvec3& mean_base,
                    const glm::dvec3& dielectric, double metallic, double roughness) {
   const double alpha = std::pow(std::max(roughness, 0.15), 2);
-  const double peak = std::min(1.0, 1 / (4 * alpha * alpha));
   material.ambient = glm::vec3(base);
   material.diffuse = glm::vec3(base * (1 - metallic));
-  material.specular = glm::vec3(glm::mix(dielectric, mean_base, metallic) * peak);
+  const glm::dvec3 f0 = glm::mix(dielectric, mean_base, metallic);
+  material.specular = glm::vec3(f0 / (4 * alpha * alpha));
   material.shininess = static_cast<float>((2 / (alpha * alpha) - 2) / 4);
+  material.facets = {glm::vec3(f0), static_cast<float>(alpha)};
 }
 
 /// What a dielectric reflects head-on, by KHR_materials_ior and KHR_materials_specular, whose textures count
@@ -221,6 +227,7 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
     material.emission_map = material.diffuse_map;
     material.colored_emission = true;
     material.ambient = material.diffuse = material.specular = glm::vec3(0);
+    material.facets.reset();
   }
   if (!isUnlit(source)) {
     material.normal_map =

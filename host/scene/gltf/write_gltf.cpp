@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <span>
 
 #include "base/error.hpp"
@@ -18,7 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kUnsignedShort = 5123, kFloat = 5126, kVertices = 34962, kIndices = 34963;
+constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126, kVertices = 34962, kIndices = 34963;
+constexpr int kLinear = 9729, kTrilinear = 9987, kClampToEdge = 33071;
 
 void addWord(std::uint32_t word, std::string& bytes) {
   for (int i = 0; i < 4; ++i) bytes += static_cast<char>(word >> 8 * i & 0xff);
@@ -44,10 +46,11 @@ int addAccessor(const std::string& elements, std::size_t count, const char* type
   return static_cast<int>(accessors.size()) - 1;
 }
 
-std::string floatsOf(const std::vector<glm::vec3>& vectors) {
+template <class Vector>
+std::string floatsOf(const std::vector<Vector>& vectors) {
   std::string bytes;
-  for (const glm::vec3& vector : vectors) {
-    for (int i = 0; i < 3; ++i) {
+  for (const Vector& vector : vectors) {
+    for (int i = 0; i < Vector::length(); ++i) {
       std::uint32_t word = 0;
       std::memcpy(&word, &vector[i], 4);
       addWord(word, bytes);
@@ -101,21 +104,39 @@ Json addTriangles(const GltfTriangles& triangles, GltfDocument& document) {
     low = glm::min(low, position);
     high = glm::max(high, position);
   }
+  const std::size_t count = triangles.positions.size();
+  const bool is_short = count <= 65535;
   std::string indices;
   for (const glm::uvec3& corners : triangles.corners) {
-    for (int i = 0; i < 3; ++i) {
-      indices += static_cast<char>(corners[i] & 0xff);
-      indices += static_cast<char>(corners[i] >> 8 & 0xff);
-    }
+    for (int i = 0; i < 3; ++i)
+      for (int byte = 0; byte < (is_short ? 2 : 4); ++byte)
+        indices += static_cast<char>(corners[i] >> 8 * byte & 0xff);
   }
-  const std::size_t count = triangles.positions.size();
   const int position = addAccessor(floatsOf(triangles.positions), count, "VEC3", kFloat, kVertices, document);
   document.root["accessors"][static_cast<std::size_t>(position)].update(
       {{"min", numbersOf(low)}, {"max", numbersOf(high)}});
   const int normal = addAccessor(floatsOf(triangles.normals), count, "VEC3", kFloat, kVertices, document);
-  const int index =
-      addAccessor(indices, 3 * triangles.corners.size(), "SCALAR", kUnsignedShort, kIndices, document);
-  return {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", index}};
+  const int index = addAccessor(indices, 3 * triangles.corners.size(), "SCALAR",
+                                is_short ? kUnsignedShort : kUnsignedInt, kIndices, document);
+  Json primitive{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", index}};
+  if (!triangles.uvs.empty())
+    primitive["attributes"]["TEXCOORD_0"] =
+        addAccessor(floatsOf(triangles.uvs), count, "VEC2", kFloat, kVertices, document);
+  return primitive;
+}
+
+int addPngTexture(const std::string& png, GltfDocument& document) {
+  Json& root = document.root;
+  root["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", document.bytes.size()}, {"byteLength", png.size()}});
+  document.bytes += png;
+  align('\0', document.bytes);
+  root["images"].push_back({{"bufferView", root["bufferViews"].size() - 1}, {"mimeType", "image/png"}});
+  root["samplers"].push_back(
+      {{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}});
+  root["textures"].push_back(
+      {{"sampler", root["samplers"].size() - 1}, {"source", root["images"].size() - 1}});
+  return static_cast<int>(root["textures"].size()) - 1;
 }
 
 void checkGltfPath(const std::string& path) {
@@ -139,6 +160,8 @@ void writeGltf(GltfDocument document, const std::string& path) {
   std::string json = jsonText(document);
   align(' ', json);
   const std::size_t size = 12 + 8 + json.size() + 8 + document.bytes.size();
+  if (size > std::numeric_limits<std::uint32_t>::max())
+    throw InputError(path + ": a .glb holds 4 GiB at most");
   std::string glb = "glTF";
   glb.reserve(size);
   addWord(2, glb);

@@ -10,6 +10,7 @@ namespace luciole {
 /// Triangles of a mesh to be written: a position and a unit normal for each vertex.
 struct GltfTriangles {
   std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec2> uvs;       ///< optional; v grows downwards
   std::vector<glm::uvec3> corners;  ///< counter-clockwise from the front
 };
 
@@ -31,14 +32,18 @@ double millimetres(double metres);
 int addNode(const std::string& json, GltfDocument& document);
 
 /// Appends the triangles to the buffer, as accessors. Returns a primitive of these, without a material.
-/// `triangles` must have 1 to 65535 vertices.
+/// `triangles` must have a vertex.
 nlohmann::ordered_json addTriangles(const GltfTriangles& triangles, GltfDocument& document);
+
+/// Appends a PNG's bytes to the buffer, and a texture of it that ends at its edges. Returns the texture.
+int addPngTexture(const std::string& png, GltfDocument& document);
 
 /// Throws InputError unless the path's name ends in .glb or .gltf, or is "-".
 void checkGltfPath(const std::string& path);
 
 /// Writes the document: a .glb or "-" as one binary file, a .gltf with its buffer beside it as a .bin. Throws
-/// InputError for a name that ends otherwise, and where writeTextFile() does.
+/// InputError for a name that ends otherwise or a binary file beyond glTF's 4 GiB, and where writeTextFile()
+/// does.
 void writeGltf(GltfDocument document, const std::string& path);
 
 }  // namespace luciole

@@ -706,12 +706,12 @@ TEST_F(GltfLoader, DielectricsAndMetalsBecomePhong) {
       {"baseColorFactor", {0.8, 0.4, 0.2, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 0.5}};
   const Material g = material({{"pbrMetallicRoughness", gold}});
   expectNear(g.diffuse, glm::dvec3(0));
-  expectNear(g.specular, {0.8, 0.4, 0.2});  // alpha 1/4: the peak would be 4, and is limited to 1
+  expectNear(g.specular, {3.2, 1.6, 0.8});  // alpha 1/4: times 4
   EXPECT_EQ(g.shininess, 7.5f);             // (2 x 16 - 2) / 4
 
   const Material mirror = material({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}});
   EXPECT_LT(mirror.shininess, 1000.0f);
-  EXPECT_LE(mirror.specular.x, 1.0f);
+  EXPECT_NEAR(mirror.specular.x, 1 / (4 * std::pow(0.15, 4)), 1e-3) << "as of a roughness of 0.15";
 }
 
 TEST_F(GltfLoader, MetalnessAndRoughnessMapsCountWithTheirMean) {
