@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/machine_memory.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/resolve_square.hpp"
 #include "raster/seen_surface.hpp"
@@ -20,6 +21,9 @@ namespace {
 
 /// Samples that tell whether a chart covers a part of a texel.
 constexpr int kSamplesOfATexel = 16;
+
+/// Of a texel: all groups of a G-buffer, and three labels.
+constexpr double kBytesPerTexel = (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1 + 3) * 4;
 
 /// The object alone, flat as its map, before a parallel camera at the origin whose picture is the map.
 /// Triangles keep their numbers, or get those from the end.
@@ -78,6 +82,7 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
   before.orthographic = true;
   const View view = cameraView(before, size);
   checkView(view);
+  requireMemory(kBytesPerTexel * size.x * size.y, fmt::format("a map of {}x{} texels", size.x, size.y));
   TextureSpace result;
   result.gbuffer = emptyGBuffer(view, planes);
   GBuffer& gbuffer = result.gbuffer;
