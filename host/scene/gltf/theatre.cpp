@@ -294,7 +294,8 @@ std::vector<int> addTheatre(GltfDocument& document) {
   const std::vector<glm::dvec2> places = pedestalPlaces();
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool is_metal = i % 2 == 0;
-    const double roughness = 0.25 + 0.05 * static_cast<double>(3 * i / 2);
+    const std::size_t steps = 3 * i / 2;
+    const double roughness = 0.25 + 0.05 * static_cast<double>(steps);
     const std::string name = fmt::format("{} of roughness {:.2f}", is_metal ? "metal" : "lacquer", roughness);
     const int material =
         addMaterial(name.c_str(), is_metal ? glm::dvec3(0.9, 0.87, 0.82) : glm::dvec3(0.55, 0.06, 0.05),

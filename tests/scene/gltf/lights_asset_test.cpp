@@ -92,7 +92,8 @@ void checkPrimitive(const Read& file, const json& primitive) {
   };
   for (std::size_t i = 0; i < normals.size() / 3; ++i)
     EXPECT_NEAR(glm::length(vectorAt(normals, double(i))), 1, 2 * 0x1p-24);  // each component rounds
-  const double most = double(positions.size() / 3);
+  const std::size_t vertices = positions.size() / 3;
+  const double most = double(vertices);
   for (const double index : indices) ASSERT_LT(index, std::min(most, 65535.0));
   for (std::size_t i = 0; i < indices.size(); i += 3) {
     const glm::dvec3 a = vectorAt(positions, indices[i]), b = vectorAt(positions, indices[i + 1]),
@@ -222,7 +223,8 @@ TEST_F(LightsAsset, TheRowsGetMuchTheSameLightWhateverTheCount) {
     for (int i = 0; i < kPlaces; ++i) {
       // On the stage and the paving before it, where the ground is even.
       SurfacePoint point;
-      point.position = {-12.0 + 1.2 * (i % 20), 0.13, 8.0 + 1.2 * (i / 20)};
+      const int column = i % 20, row = i / 20;
+      point.position = {-12.0 + 1.2 * column, 0.13, 8.0 + 1.2 * row};
       point.normal = {0, 1, 0};
       point.diffuse = glm::dvec3(kPi);  // our lights are divided by it: the irradiance is left
       const glm::dvec3 light = referenceRadiance(scene, camera, point, Model::kPhong);
