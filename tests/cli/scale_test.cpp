@@ -372,6 +372,14 @@ TEST_F(ScaleCommand, LightsOfAFileMakeThePictureThatRenderMakesOfThem) {
   EXPECT_THAT(refuse("--lights 1,4 --field lights.csv --repeat 1 -o more"), HasSubstr("lights.csv"));
 }
 
+TEST_F(ScaleCommand, TheVariantOfAGltfFileIsAskedFor) {
+  writeText(folder / "wall.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{}]})");
+  const Outcome outcome =
+      runLine(folder, "luciole scale wall.gltf --variant worn --lights 1 --repeat 1 -o run");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("has no variant 'worn'"));
+}
+
 TEST_F(ScaleCommand, PointThatTheMachineCannotDoIsToldAndTheOthersAreMade) {
   // 10⁸ lights take more than 10 GB, which are refused when they are asked for.
   const Outcome outcome =
