@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +25,6 @@
 #include "scene/bounds.hpp"
 #include "scene/gltf/write_baked.hpp"
 #include "scene/gltf/write_gltf.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
@@ -55,8 +52,9 @@ std::uint32_t objectNamed(const Scene& scene, const std::string& name) {
   if (count == 0) {
     const std::string hint = didYouMean(name, names);
     const std::size_t shown = std::min(names.size(), kNamesShown);
-    throw InputError(fmt::format("--object {}: {} has {} objects{}: {}{}", name, scene.name, names.size(),
-                                 hint, fmt::join(names.begin(), names.begin() + std::ptrdiff_t(shown), ", "),
+    throw InputError(fmt::format("--object {}: {} has no object of that name{}; it has {}{}", name,
+                                 scene.name, hint,
+                                 fmt::join(names.begin(), names.begin() + std::ptrdiff_t(shown), ", "),
                                  shown < names.size() ? " ..." : ""));
   }
   if (count > 1) throw InputError(fmt::format("--object {}: {} objects have that name", name, count));
@@ -128,6 +126,7 @@ void checkOptions(const BakeOptions& options) {
     throw InputError("--exposure auto: a map keeps the scene's units, expected stops");
   if (!options.gltf.empty()) {
     checkGltfPath(options.gltf);
+    if (options.gltf == "-") throw InputError("--to-gltf -: expected a file's name, standard output is -o's");
     checkPlace(options.gltf);
   }
   const std::string& shadows = options.shadows;

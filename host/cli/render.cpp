@@ -329,6 +329,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   auto scene_path = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
+  addModelOption(*command, *options);
   addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path] {
     const int frame = useFrame(*options, "gbuffer");

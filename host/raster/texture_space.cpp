@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -62,7 +63,11 @@ std::vector<glm::vec2> lightMapUvs(const Scene& scene, const Mesh& mesh) {
   const std::string of = fmt::format("{}: mesh {}", scene.name, mesh.name);
   if (uvs.empty()) throw InputError(of + " has no texture coordinates, by which a map could be laid out");
   glm::vec2 low(std::numeric_limits<float>::max());
-  for (const glm::vec2& uv : uvs) low = glm::min(low, uv);
+  for (const glm::vec2& uv : uvs) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+      throw InputError(of + ": a texture coordinate is not finite");
+    low = glm::min(low, uv);
+  }
   const glm::vec2 square = glm::floor(low);
   for (glm::vec2& uv : uvs) {
     uv -= square;
@@ -102,9 +107,11 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
       result.overlapping += labels[i] != kNoTriangle && labels[i] != last - others[i];
     }
   }
-  const std::vector<std::uint32_t> anywhere = labelsOf(flat, view, kSamplesOfATexel);
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labels[i] == kNoTriangle) labels[i] = anywhere[i];
+  if (result.covered < labels.size()) {
+    const std::vector<std::uint32_t> anywhere = labelsOf(flat, view, kSamplesOfATexel);
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      if (labels[i] == kNoTriangle) labels[i] = anywhere[i];
+  }
 
   const std::uint32_t drawn[] = {object};
   const std::vector<PlacedObject> objects =

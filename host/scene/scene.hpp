@@ -70,9 +70,10 @@ struct Mesh {
   /// tangent) points up in the picture. All zero at vertices that have none; addTangents() gives those that
   /// need one.
   std::vector<glm::vec4> tangents;
-  std::vector<glm::vec2> normal_uvs;    ///< optional; normal maps use these instead of `uvs`
-  std::vector<glm::vec2> lightmap_uvs;  ///< optional; light maps are laid out by these instead of `uvs`
-  std::vector<glm::vec4> colors;        ///< optional; linear RGBA that multiplies the material's
+  std::vector<glm::vec2> normal_uvs;  ///< optional; normal maps use these instead of `uvs`
+  /// Optional; light maps are laid out by these instead of `uvs`. May be any numbers: see lightMapUvs().
+  std::vector<glm::vec2> lightmap_uvs;
+  std::vector<glm::vec4> colors;  ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
   /// The same surface in smaller triangles, which takes its place where colours are lit at vertices (Gouraud

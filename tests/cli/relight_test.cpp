@@ -52,6 +52,24 @@ TEST_F(RelightCommand, OfAGBufferFromHereDoesWhatShadeDoesAndSaysWhatItFound) {
   EXPECT_THAT(events, HasSubstr("named as Luciole's"));
 }
 
+TEST_F(RelightCommand, AGBufferOfAGltfHasTheCoefficientsOfItsModel) {
+  writeText(folder / "metal.gltf",
+            R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+      "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.6, 0.3, 1], "roughnessFactor": 0.3}}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})");
+  for (const std::string model : {"phong", "cook-torrance"}) {
+    const std::string with = " --quiet --model " + model + " ";
+    succeed("luciole render metal.gltf --size 64x36" + with + "-o " + model + ".exr");
+    succeed("luciole gbuffer metal.gltf --size 64x36" + with + "-o g.exr");
+    succeed("luciole shade g.exr --scene metal.gltf" + with + "-o shaded.exr");
+    succeed("luciole compare " + model + ".exr shaded.exr --max-abs 0");
+  }
+  EXPECT_EQ(runLine(folder, "luciole compare phong.exr cook-torrance.exr --max-abs 1e-3").status, 1);
+}
+
 TEST_F(RelightCommand, BothCommandsUnderstandOtherProgramsNames) {
   writeWall("ViewLayer.Position", "ViewLayer.Normal", "XYZ");
   succeed("luciole relight wall.exr --lights lamp.json --quiet -o blender.exr");

@@ -44,6 +44,9 @@ Scene sheet() {
   }
   Texture normals = randomChain({16, 16}, random);
   normals.kind = TextureKind::kNormals;
+  // Bent normals are then no shorter than 1 before they are normalized.
+  for (MipLevel& level : normals.levels)
+    for (std::size_t i = 2; i < level.texels.size(); i += 4) level.texels[i] = 65535;
   scene.textures = {randomChain({32, 32}, random), normals};
   scene.materials[0].diffuse_map.texture = 0;
   scene.materials[0].normal_map.texture = 1;
@@ -69,8 +72,9 @@ double difference(const Plane& a, const Plane& b) {
 }
 
 // A camera that looks at a sheet as its map lies sees the same. Coordinates are floats, and so is the map's
-// copy of the mesh, so places are off by a few roundings of 1; a texture's colours change by the texel that
-// is 1/32 wide, normals by one that is 1/16, so by some 2⁻²⁴ · 32 · 4.
+// copy of the mesh: places are off by three roundings of 1, 3 · 2⁻²⁴, and coordinates by half of that. A
+// map's values change by 1 within a texel, along two axes: its colours by 32 · 2 · 1.5 · 2⁻²⁴, which
+// vertices' colours double, its slopes, which are twice the values, by 2 · 16 · 2 · 1.5 · 2⁻²⁴.
 TEST(TextureSpace, HasWhatACameraSeesThatLooksAtTheMap) {
   const Scene scene = sheet();
   constexpr glm::ivec2 kSize(50, 50);
@@ -78,7 +82,7 @@ TEST(TextureSpace, HasWhatACameraSeesThatLooksAtTheMap) {
   const TextureSpace map = rasterizeTextureSpace(scene, 0, kSize, above(), kAll);
   EXPECT_EQ(map.covered, std::size_t(kSize.x) * kSize.y);
   EXPECT_EQ(map.overlapping, 0u);
-  constexpr double kError = 0x1p-24 * 32 * 16;
+  constexpr double kError = 2 * 32 * 2 * 1.5 * 0x1p-24;
   EXPECT_LE(difference(seen.position, map.gbuffer.position), kError);
   EXPECT_LE(difference(seen.normal, map.gbuffer.normal), kError);
   EXPECT_LE(difference(seen.diffuse, map.gbuffer.diffuse), kError);

@@ -41,6 +41,15 @@ struct Sheets {
   bool cast = true;
 };
 
+/// A mesh where it is, of one material.
+Scene sceneOf(const Mesh& mesh) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes = {mesh};
+  scene.objects = {{0, glm::dmat4(1), -1}};
+  return scene;
+}
+
 Sheets coveredSheets(Random& random) {
   Sheets sheets;
   for (int i = 0; i < kSheets; ++i) {
@@ -149,10 +158,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
 /// A camera at the origin, and the sheets as it sees them.
 void addVerdictsOnSheets(const Sheets& sheets, const std::vector<Light>& lights, int lanes,
                          Verdicts& verdicts, int soft_samples = 0) {
-  Scene seen;
-  seen.materials.resize(1);
-  seen.meshes = {sheets.seen};
-  seen.objects = {{0, glm::dmat4(1), -1}};
+  Scene seen = sceneOf(sheets.seen);
   seen.lights = lights;
   Camera camera;
   camera.camera_to_world = glm::dmat4(1);
@@ -298,10 +304,7 @@ TEST(BeamShadows, AgreeWithBruteForceBeforeTrianglesThatRoundingTurned) {
   for (const int lanes : {1, 4, 8, 16, 16, 16, 16, 16}) {
     Sheets sheets;
     addSheet({-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, sheets.seen);
-    Scene seen;
-    seen.materials.resize(1);
-    seen.meshes = {sheets.seen};
-    seen.objects = {{0, glm::dmat4(1), -1}};
+    Scene seen = sceneOf(sheets.seen);
     for (int i = 0; i < 8; ++i) {
       Light light;
       light.kind = LightKind::kPoint;
@@ -360,10 +363,7 @@ TEST(BeamShadows, AgreeWithBruteForceWhereRaysGoThroughEdges) {
     const double share = i % 2 == 0 ? 1 : 0.5, side = share * 2 / kSize * (1 + random.below(12));
     addSheet({middle(share), middle(share), -2}, {side, 0, 0}, {0, side, 0}, sheets.covers);
   }
-  Scene seen;
-  seen.materials.resize(1);
-  seen.meshes = {sheets.seen};
-  seen.objects = {{0, glm::dmat4(1), -1}};
+  Scene seen = sceneOf(sheets.seen);
   for (const LightKind kind : {LightKind::kDirectional, LightKind::kPoint}) {
     Light light;
     light.kind = kind;
@@ -446,10 +446,7 @@ TEST(BeamShadows, AgreeWithBruteForceWherePointsLieAlongASunsRays) {
     const glm::dvec3 towards = glm::normalize(glm::dvec3(1, 0.9, 0.8) + 0.1 * random.direction());
     Sheets sheets;
     addSheet({-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, sheets.seen);
-    Scene seen;
-    seen.materials.resize(1);
-    seen.meshes = {sheets.seen};
-    seen.objects = {{0, glm::dmat4(1), -1}};
+    Scene seen = sceneOf(sheets.seen);
     Light sun;
     sun.kind = LightKind::kDirectional;
     sun.shadow = true;

@@ -152,11 +152,10 @@ void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const
   if (bent.set >= 0 && base.set < 0) mesh.uvs = uvsOf(model, primitive, bent, place);
   if (bent.set >= 0 && base.set >= 0 && bent != base) mesh.normal_uvs = uvsOf(model, primitive, bent, place);
   if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
-  mesh.lightmap_uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_1", place);
   const bool has_uvs = base.set >= 0 || bent.set >= 0;
-  // No texture needs them, but a light map can be laid out by them.
-  if (!has_uvs && emission.set < 0)
-    mesh.uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_0", place);
+  mesh.lightmap_uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_1", place);
+  if (mesh.lightmap_uvs.empty() && !has_uvs && emission.set < 0)
+    mesh.lightmap_uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_0", place);
   if (emission.set < 0 || emission == (base.set >= 0 ? base : bent)) return;
   std::vector<glm::vec2>& uvs = has_uvs ? mesh.emission_uvs : mesh.uvs;
   uvs = uvsOf(model, primitive, emission, place);
@@ -187,7 +186,6 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   checkFinite(model, mesh.uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.emission_uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.normal_uvs, place + ".TEXCOORD");
-  checkFinite(model, mesh.lightmap_uvs, place + ".TEXCOORD_1");
   checkFinite(model, mesh.tangents, place + ".TANGENT");
   checkFinite(model, mesh.colors, place + ".COLOR_0");
   for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));

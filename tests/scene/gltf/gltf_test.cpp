@@ -302,8 +302,8 @@ TEST_F(GltfTextures, LightMapsAreLaidOutByTheSecondCoordinatesOrTheFirst) {
   file.primitive().erase("material");
   file.primitive()["attributes"].erase("TEXCOORD_1");
   const Scene scene = load(file);
-  EXPECT_TRUE(scene.meshes.at(0).lightmap_uvs.empty());
-  expectUvs(scene.meshes[0].uvs, {{0, 0}, {1, 0}, {1, 1}});
+  EXPECT_TRUE(scene.meshes.at(0).uvs.empty()) << "no texture needs them";
+  expectUvs(scene.meshes[0].lightmap_uvs, {{0, 0}, {1, 0}, {1, 1}});
 }
 
 TEST_F(GltfTextures, NormalMapsHaveTangentsAndCoordinatesOfTheirOwn) {
