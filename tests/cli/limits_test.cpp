@@ -89,7 +89,9 @@ TEST_F(Limits, LetKernelsBeCompiledOrEndInOneLine) {
 TEST_F(Limits, WhatIsNeededAndWhatMayBeUsedIsTold) {
   writeText(folder / "many.json",
             R"({"light_fields": [{"count": 9000000, "min": [0, 0, 0], "max": [1, 1, 1]}]})");
+  writeText(folder / "floor.json", R"({"objects": [{"name": "floor", "primitive": "plane"}]})");
   for (const char* command : {"luciole gbuffer scene.json --size 8192x8192 -o out.exr",
+                              "luciole bake floor.json --object floor --size 16384x16384 -o out.exr",
                               "luciole reference scene.json --size 8192x8192 -o out.exr",
                               "luciole reference many.json -o out.exr"}) {
     const Outcome outcome = runLine(folder, std::string("ulimit -v 1400000 && ") + command);
