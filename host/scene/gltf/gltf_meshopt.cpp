@@ -12,8 +12,6 @@
 namespace luciole {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr std::size_t kGlbHeader = 20;  // of a GLB and its first chunk
 
@@ -29,14 +27,14 @@ void setWord(std::size_t place, std::uint32_t word, std::string& bytes) {
 }
 
 /// Gives the buffers their bytes. Returns whether there are any such.
-bool fillPlaceholders(Json& file) {
+bool fillPlaceholders(nlohmann::json& file) {
   if (!file.is_object() || !file.contains("buffers") || !file["buffers"].is_array()) return false;
   bool any = false;
-  for (Json& buffer : file["buffers"]) {
+  for (nlohmann::json& buffer : file["buffers"]) {
     if (!buffer.is_object() || buffer.contains("uri")) continue;
-    const Json fallback =
-        buffer.value(Json::json_pointer(std::string("/extensions/") + kMeshopt + "/fallback"), Json());
-    if (fallback != Json(true)) continue;
+    const nlohmann::json fallback =
+        buffer.value(nlohmann::json::json_pointer(std::string("/extensions/") + kMeshopt + "/fallback"), nlohmann::json());
+    if (fallback != nlohmann::json(true)) continue;
     buffer["uri"] = "data:application/octet-stream;base64,AA==";
     buffer["byteLength"] = 1;
     any = true;
@@ -139,10 +137,10 @@ std::string withPlaceholders(std::string bytes) {
     begin = kGlbHeader;
     end = kGlbHeader + wordAt(bytes, 12);
   }
-  Json file = Json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+  nlohmann::json file = nlohmann::json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
                           bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
   if (file.is_discarded() || !fillPlaceholders(file)) return bytes;
-  std::string text = file.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = file.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   if (!is_binary) return text;
   text.append((4 - text.size() % 4) % 4, ' ');
   bytes.replace(begin, end - begin, text);

@@ -183,6 +183,13 @@ std::vector<std::string> variantNames(const GltfModel& model) {
   return names;
 }
 
+std::vector<std::string> animationNames(const GltfModel& model) {
+  std::vector<std::string> names;
+  for (const tinygltf::Animation& animation : model.file.animations)
+    names.push_back(animation.name.empty() ? std::to_string(names.size()) : animation.name);
+  return names;
+}
+
 double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,
                        double otherwise) {
   const auto found = extensions.find(extension);
