@@ -116,9 +116,8 @@ std::string deform(const Deformation& deformation, std::span<const double> pose,
         const glm::dmat3 m(joints);
         const double side = glm::determinant(m) < 0 ? -1 : 1;
         position = glm::dvec3(joints * glm::dvec4(position, 1));
-        normal =
-            side * (glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])) *
-                    normal);
+        normal = side * (glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])) *
+                         normal);
         tangent = {m * glm::dvec3(tangent), side * tangent.w};
       }
       mesh.positions[i] = position;

@@ -24,8 +24,8 @@ struct RestShape {
   std::vector<glm::vec3> normals;  ///< unit; 0: the vertex shows flat triangles, whose normals are theirs
   std::vector<MorphTarget> targets;
   std::vector<std::uint32_t> first_influence{0};  ///< of each vertex, and then the count of all
-  std::vector<std::uint32_t> influence_joints;  ///< index into Deformation::joints
-  std::vector<float> influence_weights;         ///< above 0; their sum over a vertex may be any
+  std::vector<std::uint32_t> influence_joints;    ///< index into Deformation::joints
+  std::vector<float> influence_weights;           ///< above 0; their sum over a vertex may be any
 };
 
 /// A joint moves rest positions to world space by its node's transform · after.
@@ -43,9 +43,9 @@ struct Deformation {
   std::vector<double> weights;      ///< of the targets, where no curve moves them
   /// In Animation::curves: of the targets' weights, four a curve. Empty: they are `weights`.
   std::vector<int> weight_curves;
-  std::vector<Joint> joints;       ///< none: there is no skin
-  glm::dmat4 world_to_mesh{1.0};   ///< from the space that joints move positions to
-  std::vector<double> pose;        ///< what the mesh shows, see poseNumbers(); empty: the rest
+  std::vector<Joint> joints;      ///< none: there is no skin
+  glm::dmat4 world_to_mesh{1.0};  ///< from the space that joints move positions to
+  std::vector<double> pose;       ///< what the mesh shows, see poseNumbers(); empty: the rest
 };
 
 /// The numbers of a pose: for each joint its matrix from rest to the mesh's space, by columns, then a weight

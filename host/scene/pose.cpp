@@ -74,8 +74,7 @@ std::vector<double> weightsAt(const Animation& animation, const Deformation& def
 
 /// Deforms a mesh, unless it shows this pose already.
 void poseMesh(Scene& scene, const std::vector<glm::dmat4>& worlds, double frame, Deformation& deformation) {
-  std::vector<double> pose =
-      poseNumbers(deformation, worlds, weightsAt(scene.animation, deformation, frame));
+  std::vector<double> pose = poseNumbers(deformation, worlds, weightsAt(scene.animation, deformation, frame));
   if (pose == deformation.pose) return;
   deformation.pose.clear();  // should there be no such shape
   Mesh& mesh = scene.meshes[deformation.mesh];

@@ -124,17 +124,19 @@ void withFields(T& deformation, Visit&& visit) {
 }
 template <Is<Animation> T, class Visit>
 void withFields(T& animation, Visit&& visit) {
-  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations, no_mesh] = animation;
-  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations, no_mesh);
+  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
+         no_mesh] = animation;
+  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
+        no_mesh);
 }
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
-  auto& [name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials, meshes, objects,
-         lights, light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
-         lighting, animation] = scene;
-  visit(name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials, meshes, objects,
-        lights, light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
-        lighting, animation);
+  auto& [name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
+         meshes, objects, lights, light_groups, cameras, size, background, ambient, fog, says_light,
+         adds_camera, adds_lights, lighting, animation] = scene;
+  visit(name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
+        meshes, objects, lights, light_groups, cameras, size, background, ambient, fog, says_light,
+        adds_camera, adds_lights, lighting, animation);
 }
 
 }  // namespace luciole

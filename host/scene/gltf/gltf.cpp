@@ -142,7 +142,8 @@ int findAnimation(const std::string& path, const std::vector<std::string>& names
     if (error == std::errc() && end == wanted.data() + wanted.size() && index < names.size())
       return static_cast<int>(index);
     throw InputError(fmt::format("{}: has no animation '{}'{}; it has {}, by name or counted from 0", path,
-                                 forMessage(wanted), forMessage(didYouMean(wanted, names)), listNames(names)));
+                                 forMessage(wanted), forMessage(didYouMean(wanted, names)),
+                                 listNames(names)));
   }
   if (std::find(found + 1, names.end(), wanted) != names.end())
     throw InputError(fmt::format("{}: has several animations '{}'; expected a number, counted from 0", path,

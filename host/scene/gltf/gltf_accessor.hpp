@@ -31,7 +31,8 @@ template <typename Vector>
 void checkFinite(const GltfModel& model, const std::vector<Vector>& vectors, const std::string& place) {
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     for (int j = 0; j < Vector::length(); ++j) {
-      if (!std::isfinite(vectors[i][j])) failGltf(model, place, "element " + std::to_string(i) + " is not finite");
+      if (!std::isfinite(vectors[i][j]))
+        failGltf(model, place, "element " + std::to_string(i) + " is not finite");
     }
   }
 }

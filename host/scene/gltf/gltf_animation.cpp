@@ -123,7 +123,7 @@ void readAnimation(const GltfModel& model, std::size_t index, Animation& animati
       if (node.weights.empty()) node.weights = curves;
       continue;
     }
-    int& part = target.is_rotation                   ? node.rotation
+    int& part = target.is_rotation                     ? node.rotation
                 : channel.target_path == "translation" ? node.translation
                                                        : node.scale;
     if (part < 0) part = curves.front();

@@ -18,6 +18,7 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/gltf/gltf_fit.hpp"
 #include "scene/gltf/gltf_meshopt.hpp"
 #include "scene/gltf/gltf_uris.hpp"
 
@@ -89,7 +90,7 @@ void checkRequiredExtensions(const GltfModel& model) {
 void parse(GltfModel& model) {
   std::string bytes = readFile(model.path);
   checkNesting(model.path, jsonOf(bytes, bytes.starts_with("glTF")));
-  bytes = withPlaceholders(std::move(bytes));
+  bytes = fitForTinygltf(std::move(bytes));
   const bool is_binary = bytes.starts_with("glTF");
   const std::size_t size = bytes.size();
   if (size > std::numeric_limits<int>::max()) throw InputError(model.path + ": is larger than 2 GiB");

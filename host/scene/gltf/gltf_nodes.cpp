@@ -86,8 +86,8 @@ bool isHidden(const tinygltf::Node& node) {
   return visible.IsBool() && !visible.Get<bool>();
 }
 
-/// Of each node the one that it is a child of; -1: none. Throws InputError unless every node has one parent at
-/// most, and roots have none.
+/// Of each node the one that it is a child of; -1: none. Throws InputError unless every node has one parent
+/// at most, and roots have none.
 std::vector<int> parentsOf(const GltfModel& model, const std::vector<int>& roots) {
   const std::vector<tinygltf::Node>& nodes = model.file.nodes;
   std::vector<int> parents(nodes.size(), -1), uses(nodes.size(), 0);

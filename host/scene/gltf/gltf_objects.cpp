@@ -71,10 +71,10 @@ struct Source {
   const std::vector<PlacedNode>& nodes;
   const std::map<int, NodeCurves>& curves;
   std::uint32_t first_material;
-  std::vector<int> materials{};             ///< glTF's, in the order of the scene's
-  std::map<int, int> meshes{};              ///< glTF's index -> Scene::meshes; -1: nothing to draw
-  std::map<int, RestMesh> rest_meshes{};    ///< by glTF's index
-  std::vector<std::size_t> places{};        ///< of each node of the file that is placed: in `nodes`
+  std::vector<int> materials{};           ///< glTF's, in the order of the scene's
+  std::map<int, int> meshes{};            ///< glTF's index -> Scene::meshes; -1: nothing to draw
+  std::map<int, RestMesh> rest_meshes{};  ///< by glTF's index
+  std::vector<std::size_t> places{};      ///< of each node of the file that is placed: in `nodes`
 };
 
 /// A transform to near the deformed mesh, so that its vertices are small numbers: by whole metres, and
@@ -82,8 +82,7 @@ struct Source {
 /// pose: where the mesh's space is the world.
 glm::dmat4 frameOf(const RestShape& rest, std::span<const double> pose, std::size_t joints) {
   std::size_t mirrored = 0;
-  for (std::size_t i = 0; i < joints; ++i)
-    mirrored += glm::determinant(glm::dmat3(jointMatrix(pose, i))) < 0;
+  for (std::size_t i = 0; i < joints; ++i) mirrored += glm::determinant(glm::dmat3(jointMatrix(pose, i))) < 0;
   glm::dmat4 frame(1.0);
   if (2 * mirrored > joints) frame[0][0] = -1;
   const glm::dvec4 first = meanOfJoints(rest, 0, pose) * glm::dvec4(rest.positions[0], 1);

@@ -95,7 +95,8 @@ GltfSkin readGltfSkin(const GltfModel& model, int skin, const std::string& place
     for (int column = 0; column < 4; ++column)
       for (int row = 0; row < 3; ++row) {  // its last row is 0 0 0 1
         const float number = numbers[16 * i + std::size_t(4 * column + row)];
-        if (!std::isfinite(number)) failGltf(model, here, "a number of its inverseBindMatrices is not finite");
+        if (!std::isfinite(number))
+          failGltf(model, here, "a number of its inverseBindMatrices is not finite");
         result.inverse_binds[i][column][row] = number;
       }
   return result;
@@ -155,8 +156,7 @@ std::vector<double> targetWeights(const GltfModel& model, int node) {
   const bool of_node = !source.weights.empty();
   std::vector<double> weights = of_node ? source.weights : model.file.meshes[source.mesh].weights;
   if (weights.empty()) weights.resize(count, 0.0);
-  const std::string place =
-      of_node ? fmt::format("nodes[{}]", node) : fmt::format("meshes[{}]", source.mesh);
+  const std::string place = of_node ? fmt::format("nodes[{}]", node) : fmt::format("meshes[{}]", source.mesh);
   if (weights.size() != count)
     failGltf(model, place, fmt::format("has {} weights for {} morph targets", weights.size(), count));
   for (const double weight : weights)

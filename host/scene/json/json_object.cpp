@@ -30,10 +30,10 @@ struct LoadedFile {
 
 /// What has been loaded so far, by its key, so that nothing is loaded twice.
 struct Loaded {
-  std::uint32_t plain_material = 0;               ///< of primitives that name none
-  std::map<std::string, int> materials;           ///< name -> index in Scene::materials
+  std::uint32_t plain_material = 0;                             ///< of primitives that name none
+  std::map<std::string, int> materials;                         ///< name -> index in Scene::materials
   std::map<std::array<std::string, 3>, LoadedFile> mesh_files;  ///< by path, variant and animation
-  std::map<Primitive, std::uint32_t> primitives;  ///< -> index in Scene::meshes
+  std::map<Primitive, std::uint32_t> primitives;                ///< -> index in Scene::meshes
 };
 
 /// No texture where the file is missing.
@@ -254,8 +254,8 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
 }
 
 void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded, Scene& scene) {
-  allowKeys(node, {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material", "segments",
-                   "minor_radius", "uv_scale", "keys", "interpolation", "name"});
+  allowKeys(node, {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
+                   "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name"});
   const Placement placement = readPlacement(node, scene.animation);
   int material = -1;
   if (const auto n = find(node, "material")) {

@@ -21,26 +21,26 @@ using testing::HasSubstr;
 /// node 2, at (0,1,0). Node 0 has mesh and skin.
 GltfFile barFile() {
   GltfFile file;
-  const int position = file.addAccessor<float>("VEC3", kFloat, 3,
-                                               {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0});
-  const int normal = file.addAccessor<float>("VEC3", kFloat, 3,
-                                             {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const int position =
+      file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0});
+  const int normal =
+      file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int joints = file.addAccessor<std::uint8_t>(
       "VEC4", kUnsignedByte, 4, {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
-  const int weights = file.addAccessor<float>("VEC4", kFloat, 4, {1,    0,    0, 0, 1,    0,    0, 0,
-                                                                  0.5f, 0.5f, 0, 0, 0.5f, 0.5f, 0, 0,
-                                                                  1,    0,    0, 0, 1,    0,    0, 0});
-  const int indices = file.addAccessor<std::uint16_t>("SCALAR", kUnsignedShort, 1,
-                                                      {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4});
-  const int binds = file.addAccessor<float>("MAT4", kFloat, 16, {1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1, 0, 0, 0, 0, 1,
-                                                                 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1, 0, 0, -1, 0, 1});
-  file.root["meshes"] = {{{"primitives",
-                           {{{"attributes",
-                              {{"POSITION", position}, {"NORMAL", normal}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
-                             {"indices", indices}}}}}};
-  file.root["nodes"] = {{{"mesh", 0}, {"skin", 0}},
-                        {{"children", {2}}},
-                        {{"translation", {0, 1, 0}}}};
+  const int weights = file.addAccessor<float>(
+      "VEC4", kFloat, 4,
+      {1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0, 0.5f, 0.5f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  const int indices =
+      file.addAccessor<std::uint16_t>("SCALAR", kUnsignedShort, 1, {0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4});
+  const int binds = file.addAccessor<float>(
+      "MAT4", kFloat, 16,
+      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1});
+  file.root["meshes"] = {
+      {{"primitives",
+        {{{"attributes",
+           {{"POSITION", position}, {"NORMAL", normal}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
+          {"indices", indices}}}}}};
+  file.root["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"children", {2}}}, {{"translation", {0, 1, 0}}}};
   file.root["scenes"] = {{{"nodes", {0, 1}}}};
   file.root["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", binds}}};
   return file;
@@ -87,15 +87,14 @@ std::vector<glm::dvec3> normalsOf(const Scene& scene) {
 constexpr double kRounding = 2 * 4.0 / (1 << 24);
 
 void expectPlace(const glm::dvec3& a, const glm::dvec3& b, const std::string& what) {
-  EXPECT_LE(glm::length(a - b), kRounding) << what << ": " << a.x << " " << a.y << " " << a.z << ", expected "
-                                           << b.x << " " << b.y << " " << b.z;
+  EXPECT_LE(glm::length(a - b), kRounding)
+      << what << ": " << a.x << " " << a.y << " " << a.z << ", expected " << b.x << " " << b.y << " " << b.z;
 }
 
 /// Where the bar is while joint 1 is turned by an angle about x: the linear blend of both joints.
 std::vector<glm::dvec3> bentBar(double angle) {
-  const glm::dmat4 upper =
-      glm::rotate(glm::translate(glm::dmat4(1), {0.0, 1.0, 0.0}), angle, {1, 0, 0}) *
-      glm::translate(glm::dmat4(1), {0.0, -1.0, 0.0});
+  const glm::dmat4 upper = glm::rotate(glm::translate(glm::dmat4(1), {0.0, 1.0, 0.0}), angle, {1, 0, 0}) *
+                           glm::translate(glm::dmat4(1), {0.0, -1.0, 0.0});
   std::vector<glm::dvec3> places;
   for (int i = 0; i < 6; ++i) {
     const double share = (i / 2) * 0.5;
@@ -245,7 +244,8 @@ TEST_F(GltfDeform, JointsMayBeHiddenOrOutsideTheScene) {
 bool facesItsNormal(const Scene& scene) {
   const std::vector<glm::dvec3> places = placesOf(scene);
   const glm::uvec3 triangle = scene.meshes.at(scene.objects[0].mesh).triangles.at(0);
-  const glm::dvec3 side = glm::cross(places[triangle.y] - places[triangle.x], places[triangle.z] - places[triangle.x]);
+  const glm::dvec3 side =
+      glm::cross(places[triangle.y] - places[triangle.x], places[triangle.z] - places[triangle.x]);
   const double mirrors = glm::determinant(glm::dmat3(scene.objects[0].object_to_world));
   return glm::dot(side, normalsOf(scene)[triangle.x]) * mirrors > 0;
 }
@@ -285,7 +285,8 @@ TEST_F(GltfDeform, FlatTrianglesStayFlat) {
 GltfFile morphFile(const std::vector<glm::vec3>& shifts) {
   GltfFile file = triangleFile();
   for (const glm::vec3& s : shifts) {
-    const int target = file.addAccessor<float>("VEC3", kFloat, 3, {s.x, s.y, s.z, s.x, s.y, s.z, s.x, s.y, s.z});
+    const int target =
+        file.addAccessor<float>("VEC3", kFloat, 3, {s.x, s.y, s.z, s.x, s.y, s.z, s.x, s.y, s.z});
     file.primitive()["targets"].push_back({{"POSITION", target}});
   }
   return file;
@@ -358,6 +359,20 @@ TEST_F(GltfDeform, TargetsMoveAVertexBeforeJointsDo) {
   expectPlace(placesOf(scene)[4], {0, 1, 1}, "turned");
 }
 
+TEST_F(GltfDeform, ChannelsOfWhatAnExtensionMovesAreLeftOut) {
+  GltfFile file = bendingFile();
+  json& animation = file.root["animations"][0];
+  json pointer = animation["channels"][0];
+  pointer["target"] = {{"path", "pointer"},
+                       {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/0/rotation"}}}}}};
+  animation["channels"].insert(animation["channels"].begin(), pointer);
+  file.root["extensionsUsed"] = {"KHR_animation_pointer"};
+  Scene scene = load(file);
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("'KHR_animation_pointer' is not supported")));
+  poseScene(scene, 25);
+  expectPlace(placesOf(scene)[5], bentBar(kPi / 2)[5], "the others move");
+}
+
 TEST_F(GltfDeform, ASceneFilePlacesWhatDeforms) {
   load(bendingFile());
   std::ofstream(folder / "scene.json") << R"({"objects": [
@@ -381,8 +396,9 @@ TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
   refuses(bar, "refers to skin 4", [](GltfFile& f) { f.root["nodes"][0]["skin"] = 4; });
   refuses(bar, "skins[0]: has no joints", [](GltfFile& f) { f.root["skins"][0]["joints"] = json::array(); });
   refuses(bar, "refers to node 9", [](GltfFile& f) { f.root["skins"][0]["joints"] = {1, 9}; });
-  refuses(bar, "has 3 joints, but 2 inverseBindMatrices",
-          [](GltfFile& f) { f.root["skins"][0]["joints"] = {1, 2, 0}; });
+  refuses(bar, "has 3 joints, but 2 inverseBindMatrices", [](GltfFile& f) {
+    f.root["skins"][0]["joints"] = {1, 2, 0};
+  });
   refuses(bar, "a vertex follows joint 1, but its skin has 1",
           [](GltfFile& f) { f.root["skins"][0]["joints"] = {1}; });
   refuses(bar, "without JOINTS_0", [&](GltfFile& f) {
@@ -411,7 +427,8 @@ TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
     f.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
         f.primitive()["attributes"]["POSITION"];
   });
-  refuses(morph, "has 1 weights for 2 morph targets", [](GltfFile& f) { f.root["meshes"][0]["weights"] = {1}; });
+  refuses(morph, "has 1 weights for 2 morph targets",
+          [](GltfFile& f) { f.root["meshes"][0]["weights"] = {1}; });
   refuses(morph, "has 3 weights for 2", [](GltfFile& f) { f.root["nodes"][0]["weights"] = {1, 2, 3}; });
   refuses(morph, "targets[1].POSITION: has 2 elements for 3 vertices", [](GltfFile& f) {
     f.root["meshes"][0]["weights"] = {1, 0};
