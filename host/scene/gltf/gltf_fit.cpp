@@ -49,7 +49,8 @@ bool fit(nlohmann::json& file) {
     if (!animation.contains("channels") || !animation["channels"].is_array()) return;
     nlohmann::json kept = nlohmann::json::array();
     for (nlohmann::json& channel : animation["channels"])
-      if (!channel.is_object() || !channel.contains("target") || channel.contains(kNode)) kept.push_back(channel);
+      if (!channel.is_object() || !channel.contains("target") || channel.contains(kNode))
+        kept.push_back(channel);
     changed = changed || kept.size() != animation["channels"].size();
     animation["channels"] = std::move(kept);
   });

@@ -97,8 +97,9 @@ std::vector<glm::dvec3> bentBar(double angle) {
                            glm::translate(glm::dmat4(1), {0.0, -1.0, 0.0});
   std::vector<glm::dvec3> places;
   for (int i = 0; i < 6; ++i) {
-    const double share = (i / 2) * 0.5;
-    const glm::dvec4 rest(i % 2, i / 2, 0, 1);
+    const int row = i / 2;
+    const double share = row * 0.5;
+    const glm::dvec4 rest(i % 2, row, 0, 1);
     places.emplace_back(share * (upper * rest) + (1 - share) * rest);
   }
   return places;
