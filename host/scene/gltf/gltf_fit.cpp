@@ -30,6 +30,23 @@ void eachObject(nlohmann::json& owner, const char* list, const Visit& visit) {
     if (object.is_object()) visit(object);
 }
 
+/// Gives the accessors of a primitive that Draco compresses its data's buffer view, unless they have one.
+/// Returns whether there are any such.
+bool fitDraco(nlohmann::json& primitive, nlohmann::json& accessors) {
+  static const nlohmann::json::json_pointer kView("/extensions/KHR_draco_mesh_compression/bufferView");
+  if (!primitive.contains(kView) || !accessors.is_array()) return false;
+  bool changed = false;
+  const auto fit = [&](const nlohmann::json& number) {
+    const std::size_t index = number.is_number_unsigned() ? number.get<std::size_t>() : accessors.size();
+    if (index >= accessors.size() || !accessors[index].is_object()) return;
+    changed = accessors[index].emplace("bufferView", primitive[kView]).second || changed;
+  };
+  if (primitive.contains("indices")) fit(primitive["indices"]);
+  if (primitive.contains("attributes") && primitive["attributes"].is_object())
+    for (const nlohmann::json& number : primitive["attributes"]) fit(number);
+  return changed;
+}
+
 /// Changes the file, and returns whether it did.
 bool fit(nlohmann::json& file) {
   static const nlohmann::json::json_pointer kFallback("/extensions/EXT_meshopt_compression/fallback"),
@@ -40,6 +57,11 @@ bool fit(nlohmann::json& file) {
     buffer["uri"] = "data:application/octet-stream;base64,AA==";
     buffer["byteLength"] = 1;
     changed = true;
+  });
+  eachObject(file, "meshes", [&](nlohmann::json& mesh) {
+    eachObject(mesh, "primitives", [&](nlohmann::json& primitive) {
+      if (file.contains("accessors")) changed = fitDraco(primitive, file["accessors"]) || changed;
+    });
   });
   eachObject(file, "skins", [&](nlohmann::json& skin) {
     changed = changed || !skin.contains("inverseBindMatrices");
@@ -58,7 +80,8 @@ bool fit(nlohmann::json& file) {
 }
 
 bool mayNeedIt(std::string_view bytes) {
-  for (const char* what : {"EXT_meshopt_compression", "\"skins\"", "KHR_animation_pointer"})
+  for (const char* what :
+       {"EXT_meshopt_compression", "KHR_draco_mesh_compression", "\"skins\"", "KHR_animation_pointer"})
     if (bytes.find(what) != std::string_view::npos) return true;
   return false;
 }

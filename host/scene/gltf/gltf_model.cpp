@@ -18,6 +18,7 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/gltf/gltf_draco.hpp"
 #include "scene/gltf/gltf_fit.hpp"
 #include "scene/gltf/gltf_meshopt.hpp"
 #include "scene/gltf/gltf_uris.hpp"
@@ -28,6 +29,7 @@ namespace {
 constexpr std::string_view kSupportedExtensions[] = {"EXT_mesh_gpu_instancing",
                                                      "EXT_meshopt_compression",
                                                      "EXT_texture_webp",
+                                                     "KHR_draco_mesh_compression",
                                                      "KHR_lights_punctual",
                                                      "KHR_materials_emissive_strength",
                                                      "KHR_materials_ior",
@@ -135,6 +137,7 @@ GltfModel readGltfModel(const std::string& path) {
              fmt::format("version is '{}', expected 2.0", forMessage(model.file.asset.version)));
   }
   decodeMeshopt(model);
+  decodeDraco(model);
   return model;
 }
 

@@ -16,7 +16,7 @@ struct GltfModel {
   std::string path;
   tinygltf::Model
       file;  ///< Image::image holds a picture file's bytes, not texels; empty where it lies in a buffer
-  /// What buffer views hold that are compressed, by their index (decodeMeshopt()).
+  /// What buffer views hold that are compressed, by their index (decodeMeshopt(), decodeDraco()).
   std::map<int, std::vector<std::byte>> decoded{};
   int variant = -1;    ///< which of variantNames() materials are of; −1: the primitives' own
   int animation = -1;  ///< which of the file's runs; −1: all
