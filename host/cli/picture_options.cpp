@@ -253,6 +253,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
     }
   }
+  if (is_one_picture && (groups & kShadeOptions))
+    command.add_flag(
+        "--hash", options.hash,
+        "print the SHA-256 of the picture's floats to standard output; equal hashes, equal bits");
   if (groups & kShadeOptions) {
     command
         .add_option("--culling", options.culling,

@@ -20,6 +20,7 @@ struct PictureOptions {
   std::string size;
   std::string camera;
   GltfChoice choice;
+  bool hash = false;
   int camera_index = -1;  ///< replaces `camera`, see optionsOfCameras(); -1: doesn't
   int samples = 1;
   std::string samples_shading = "shared";

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -100,6 +101,9 @@ void checkOutput(const PictureOptions& options) {
                         "in each pixel; "
                         "leave out {}",
                         what, options.light_groups ? "--light-groups" : "these of --aov"));
+  if (options.hash && (options.output == "-" || options.stats == "-"))
+    throw InputError(fmt::format("--hash: is written to standard output, and so is {}",
+                                 options.output == "-" ? "the picture" : "what --stats says"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkTraceFile(options);
@@ -175,6 +179,10 @@ Stats laterStats(const std::string& command) {
 void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   const double ended = millisecondsSinceStart();
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats, ended));
+  if (!stats.hash.empty()) {
+    fmt::print("{}  {}\n", stats.hash, options.output);
+    std::fflush(stdout);  // a line a frame, as soon as it is done
+  }
   if (logsEvents()) return logPicture(options, stats, ended, frame);
   if (options.quiet) return;
   // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.

@@ -23,6 +23,7 @@
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/gbuffer_input.hpp"
 #include "image/exposure.hpp"
+#include "image/picture_hash.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/surface_ids.hpp"
@@ -150,6 +151,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
     });
   }
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+    if (options.hash) stats.hash = pictureHash(image);
     return writeImage(image, options.output, pictureMetadata(stats, &device), writeOptions(options, gbuffer));
   });
   reportHalves(options, limited, stats);

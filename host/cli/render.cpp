@@ -21,6 +21,7 @@
 #include "gbuffer/gbuffer_file.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "image/picture_hash.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/surface_ids.hpp"
@@ -69,16 +70,20 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   const Metadata mattes = surfaceIdTexts(scene, settings);
   how.exr.texts.insert(how.exr.texts.end(), mattes.begin(), mattes.end());
   std::optional<ImageWriter> writer;
+  std::optional<PictureHash> hash;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
                        pictureMetadata(stats, &device), how);
+      if (options.hash && !hash) hash.emplace(window.width, window.height, rows.channels);
+      if (hash) hash->add(rows);
       writer->write(rows);
     });
   };
   renderBands(device, scene, settings, write, stats, kept);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
+  if (hash) stats.hash = hash->digits();
   reportHalves(options, limited, stats);
   reportLightError(options, stats);
 }

@@ -77,6 +77,7 @@ std::string statsJson(const Stats& stats, double ended) {
   json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
   json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
+  if (!stats.hash.empty()) json["image"]["hash"] = stats.hash;
   if (stats.measured_exposure) json["image"]["measured_exposure"] = *stats.measured_exposure;
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();
