@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "base/machine_memory.hpp"
 #include "scene/gltf/gltf_accessor.hpp"
 #include "scene/gltf/gltf_material.hpp"
 #include "scene/gltf/gltf_mesh.hpp"
@@ -117,6 +118,14 @@ const RestMesh& restMesh(Source& source, const PlacedNode& placed) {
   return known->second;
 }
 
+/// At most what a mesh takes.
+double bytesOf(const Mesh& mesh) {
+  constexpr std::size_t kVertex =
+      2 * sizeof(glm::vec3) + 4 * sizeof(glm::vec2) + 2 * sizeof(glm::vec4) + sizeof(std::uint32_t);
+  return double(mesh.positions.size() * kVertex) +
+         double(mesh.triangles.size() * (sizeof(glm::uvec3) + sizeof(std::uint32_t)));
+}
+
 /// Adds a mesh of its own for a node that deforms it. Returns its index, or -1 where it has no triangle, and
 /// sets `frame`, of a skinned one its place in the world.
 int addDeforming(Source& source, const PlacedNode& placed, Scene& scene, glm::dmat4& frame) {
@@ -135,6 +144,8 @@ int addDeforming(Source& source, const PlacedNode& placed, Scene& scene, glm::dm
     still.world_to_mesh = glm::inverse(frame);
     if (!isFinite(still.world_to_mesh)) failGltf(source.model, place, "its skin's transform is not finite");
   }
+  requireMemory(bytesOf(known.mesh),
+                fmt::format("{}: {}: its own copy of a mesh that deforms", source.model.path, place));
   scene.meshes.push_back(known.mesh);
   Mesh& mesh = scene.meshes.back();
   Deformation moving = still;
