@@ -164,9 +164,8 @@ TEST_F(GltfLoader, EachUnknownExtensionInUseIsWarnedOfOnce) {
 TEST_F(GltfLoader, UnsupportedRequirementsAreNamedWithWhatIsKnown) {
   GltfFile file = triangleFile();
   file.root["extensionsRequired"] = {"KHR_materials_volume"};
-  EXPECT_THAT(error(file),
-              AllOf(HasSubstr("extensionsRequired: 'KHR_materials_volume' is not supported"),
-                    HasSubstr("KHR_lights_punctual"), HasSubstr("KHR_texture_transform")));
+  EXPECT_THAT(error(file), AllOf(HasSubstr("extensionsRequired: 'KHR_materials_volume' is not supported"),
+                                 HasSubstr("KHR_lights_punctual"), HasSubstr("KHR_texture_transform")));
   file.root.erase("extensionsRequired");
   file.root["asset"]["version"] = "1.0";
   EXPECT_THAT(error(file), HasSubstr("version is '1.0'"));
