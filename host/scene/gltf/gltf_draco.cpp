@@ -1,13 +1,18 @@
 #include "scene/gltf/gltf_draco.hpp"
 
-#include <draco/compression/decode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
+#include <draco/core/varint_decoding.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,16 +23,91 @@ namespace {
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
-std::unique_ptr<draco::Mesh> decode(const GltfModel& model, int view, const std::string& place) {
+/// How many numbers (corners of triangles, components of vertices) a byte may stand for. A flat grid takes
+/// the fewest bytes: Draco's encoder packs 1,700 numbers of one of 2,000 x 2,000 squares into each. A number
+/// takes the decoder some 16 bytes.
+constexpr double kMostNumbers = 4096;
+
+/// A decoder of the library that is told how many numbers it may decode: the library itself allocates for
+/// whatever the data say.
+template <typename Coder>
+class BoundedDecoder : public Coder {
+ public:
+  explicit BoundedDecoder(double most) : most_(most) {}
+
+  double numbers() const { return numbers_; }  ///< that were asked for, as far as it is known
+  bool wantsTooMany() const { return numbers_ > most_; }
+
+ protected:
+  bool DecodeConnectivity() override {
+    draco::DecoderBuffer ahead = *this->buffer();
+    return countConnectivity(ahead) && !wantsTooMany() && Coder::DecodeConnectivity();
+  }
+  bool DecodeAllAttributes() override {
+    const draco::PointCloud& points = *this->point_cloud();
+    for (int i = 0; i < points.num_attributes(); ++i)
+      numbers_ += double(points.num_points()) * std::uint8_t(points.attribute(i)->num_components());
+    return !wantsTooMany() && Coder::DecodeAllAttributes();
+  }
+
+ private:
+  /// Returns false where the data end before the counts do.
+  bool countConnectivity(draco::DecoderBuffer& ahead) {
+    std::uint32_t first = 0, second = 0;
+    if (!draco::DecodeVarint(&first, &ahead) || !draco::DecodeVarint(&second, &ahead)) return false;
+    numbers_ = 3.0 * first + second;  // faces, points
+    if constexpr (std::is_same_v<Coder, draco::MeshEdgebreakerDecoder>) {
+      std::uint8_t seamed_attributes = 0;  // each has a table of corners of its own
+      std::uint32_t symbols = 0, splits = 0;
+      if (!ahead.Decode(&seamed_attributes) || !draco::DecodeVarint(&symbols, &ahead) ||
+          !draco::DecodeVarint(&splits, &ahead))
+        return false;
+      numbers_ = first + 3.0 * second * (1 + seamed_attributes) + symbols + splits;  // vertices, faces
+    }
+    return true;
+  }
+
+  double most_, numbers_ = 0;
+};
+
+/// Decodes, and takes the numbers from those that the whole file may still decode.
+template <typename Coder>
+std::unique_ptr<draco::Mesh> decodeBy(const GltfModel& model, std::span<const std::byte> bytes, double& left,
+                                      const std::string& place) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  BoundedDecoder<Coder> decoder(std::min(left, kMostNumbers * double(bytes.size())));
+  auto mesh = std::make_unique<draco::Mesh>();
+  const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, mesh.get());
+  if (decoder.wantsTooMany())
+    failGltf(model, place,
+             fmt::format("{} bytes can't hold {:.0f} numbers", bytes.size(), decoder.numbers()));
+  if (!status.ok())
+    failGltf(model, place, fmt::format("can't be decoded: {}", forMessage(status.error_msg_string())));
+  left -= decoder.numbers();
+  return mesh;
+}
+
+std::unique_ptr<draco::Mesh> decode(const GltfModel& model, int view, double& left,
+                                    const std::string& place) {
   const std::span<const std::byte> bytes = viewBytes(model, view, place);
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  draco::Decoder decoder;
-  draco::StatusOr<std::unique_ptr<draco::Mesh>> decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok())
+  draco::DracoHeader header{};
+  const draco::Status status = draco::PointCloudDecoder::DecodeHeader(&buffer, &header);
+  if (!status.ok())
+    failGltf(model, place, fmt::format("can't be decoded: {}", forMessage(status.error_msg_string())));
+  if (header.encoder_type != draco::TRIANGULAR_MESH) failGltf(model, place, "is no mesh of triangles");
+  // Earlier ones have their counts elsewhere.
+  if (header.version_major != 2 || header.version_minor != 2)
     failGltf(model, place,
-             fmt::format("can't be decoded: {}", forMessage(decoded.status().error_msg_string())));
-  return std::move(decoded).value();
+             fmt::format("is of version {}.{} of Draco's format, expected 2.2", header.version_major,
+                         header.version_minor));
+  if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING)
+    return decodeBy<draco::MeshEdgebreakerDecoder>(model, bytes, left, place);
+  if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING)
+    return decodeBy<draco::MeshSequentialDecoder>(model, bytes, left, place);
+  failGltf(model, place, fmt::format("method {} is none of Draco's", header.encoder_method));
 }
 
 /// Adds what an accessor is to have in place of its own data. Returns the new accessor.
@@ -102,13 +182,14 @@ int addIndices(GltfModel& model, const draco::Mesh& mesh, const tinygltf::Access
   return addAccessor(model, std::move(accessor), std::move(bytes));
 }
 
-void decodePrimitive(GltfModel& model, tinygltf::Primitive& primitive, const std::string& place) {
+void decodePrimitive(GltfModel& model, tinygltf::Primitive& primitive, double& left,
+                     const std::string& place) {
   const tinygltf::Value extension = primitive.extensions.find(kDraco)->second;
   const bool is_strip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP;
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES && !is_strip)
     failGltf(model, place, fmt::format("mode {} is none of triangles", primitive.mode));
   const int view = extensionIndex(primitive.extensions, kDraco, "bufferView");
-  const std::unique_ptr<draco::Mesh> mesh = decode(model, view, place);
+  const std::unique_ptr<draco::Mesh> mesh = decode(model, view, left, place);
   if (mesh->num_faces() == 0 || mesh->num_points() == 0) failGltf(model, place, "has no triangles");
 
   tinygltf::Accessor indices;
@@ -141,14 +222,38 @@ void decodePrimitive(GltfModel& model, tinygltf::Primitive& primitive, const std
   }
 }
 
+/// Whether two primitives say the same of the same data. Their materials may differ.
+bool haveSameData(const tinygltf::Primitive& a, const tinygltf::Primitive& b) {
+  return a.mode == b.mode && a.indices == b.indices && a.attributes == b.attributes &&
+         a.extensions.at(kDraco) == b.extensions.at(kDraco);
+}
+
 }  // namespace
 
 void decodeDraco(GltfModel& model) {
+  double left = 0;  // buffer views may overlap, and so stand for more bytes than the file has
+  for (const tinygltf::Buffer& buffer : model.file.buffers) left += kMostNumbers * double(buffer.data.size());
+  struct Known {
+    tinygltf::Primitive written, decoded;
+  };
+  std::multimap<int, Known> all_known;  // by buffer view
   for (std::size_t m = 0; m < model.file.meshes.size(); ++m)
     for (std::size_t p = 0; p < model.file.meshes[m].primitives.size(); ++p) {
       tinygltf::Primitive& primitive = model.file.meshes[m].primitives[p];
-      if (primitive.extensions.count(kDraco))
-        decodePrimitive(model, primitive, fmt::format("meshes[{}].primitives[{}].{}", m, p, kDraco));
+      if (!primitive.extensions.count(kDraco)) continue;
+      const int view = extensionIndex(primitive.extensions, kDraco, "bufferView");
+      const auto [begin, end] = all_known.equal_range(view);
+      const auto known = std::find_if(
+          begin, end, [&](const auto& entry) { return haveSameData(entry.second.written, primitive); });
+      if (known != end) {
+        primitive.mode = known->second.decoded.mode;
+        primitive.indices = known->second.decoded.indices;
+        primitive.attributes = known->second.decoded.attributes;
+        continue;
+      }
+      const tinygltf::Primitive written = primitive;
+      decodePrimitive(model, primitive, left, fmt::format("meshes[{}].primitives[{}].{}", m, p, kDraco));
+      all_known.insert({view, {written, primitive}});
     }
 }
 

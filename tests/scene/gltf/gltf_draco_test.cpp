@@ -195,6 +195,115 @@ TEST_F(GltfDraco, WhatContradictsTheDataIsRefused) {
   refuses("mode 6 is none of triangles", [](GltfFile& f) { f.primitive()["mode"] = 6; });
 }
 
+/// Bytes of a number as Draco's headers have it: seven bits each, the lowest first.
+std::string varint(std::uint32_t number) {
+  std::string bytes;
+  for (; number > 127; number >>= 7) bytes += static_cast<char>(number % 128 + 128);
+  return bytes + static_cast<char>(number);
+}
+
+/// Data of 100 bytes that begin so: the header of Draco's format `version` with an encoder's type and method.
+std::vector<char> draco(int type, int method, const std::string& counts, char version = 2) {
+  std::string bytes = "DRACO";
+  bytes += {2, version, static_cast<char>(type), static_cast<char>(method), 0, 0};
+  bytes += counts;
+  bytes.resize(100);
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(GltfDraco, CountsThatFewBytesCannotHoldAreRefusedBeforeAnythingIsAllocated) {
+  const auto refusal = [&](const std::vector<char>& data) {
+    GltfFile file = compressed({});
+    extension(file)["bufferView"] = file.addView(data);
+    return error(file);
+  };
+  const std::string many = varint(300'000'000), some = varint(10);
+  const int mesh = draco::TRIANGULAR_MESH, edgebreaker = draco::MESH_EDGEBREAKER_ENCODING,
+            sequential = draco::MESH_SEQUENTIAL_ENCODING;
+  const std::string traversal(1, '\0'), no_seams(1, '\0');
+  // 200 vertices and 2,000 triangles are 6,000 corners, and as many again for each of 99 attributes.
+  const std::string seams = varint(200) + varint(2000) + "\x63" + varint(2000) + some;
+  EXPECT_THAT(refusal(draco(mesh, edgebreaker, traversal + seams)),
+              HasSubstr("100 bytes can't hold 602210 "));
+  EXPECT_THAT(refusal(draco(mesh, edgebreaker, traversal + some + many + no_seams + some + some)),
+              HasSubstr("can't hold 900000030 numbers"));
+  EXPECT_THAT(refusal(draco(mesh, edgebreaker, traversal + many + some + no_seams + some + some)),
+              HasSubstr("can't hold 300000050 numbers"));
+  EXPECT_THAT(refusal(draco(mesh, sequential, many + some)), HasSubstr("can't hold 900000010 numbers"));
+  EXPECT_THAT(refusal(draco(mesh, sequential, some + many)), HasSubstr("can't hold 300000030 numbers"));
+  EXPECT_THAT(refusal(draco(draco::POINT_CLOUD, 0, some)), HasSubstr("is no mesh of triangles"));
+  EXPECT_THAT(refusal(draco(mesh, 2, some)), HasSubstr("method 2"));
+  EXPECT_THAT(refusal(draco(mesh, sequential, some, 1)), HasSubstr("is of version 2.1"));
+}
+
+/// A flat grid of 128 x 128 squares and attributes of 100 zeros a vertex, which take nearly no bytes.
+std::vector<char> packedGrid(int attributes) {
+  constexpr std::uint32_t kPlaces = 129, kPoints = kPlaces * kPlaces;
+  draco::Mesh mesh;
+  mesh.set_num_points(kPoints);
+  draco::GeometryAttribute attribute;
+  attribute.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 12, 0);
+  const int position = mesh.AddAttribute(attribute, true, kPoints);
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    const std::uint32_t column = i % kPlaces, row = i / kPlaces;
+    const Corner place{float(column), float(row), 0};
+    mesh.attribute(position)->SetAttributeValue(draco::AttributeValueIndex(i), place.data());
+  }
+  attribute.Init(draco::GeometryAttribute::GENERIC, nullptr, 100, draco::DT_UINT8, false, 100, 0);
+  for (int i = 0; i < attributes; ++i) mesh.AddAttribute(attribute, true, kPoints);
+  for (std::uint32_t i = 0; i + kPlaces < kPoints; ++i) {
+    if (i % kPlaces + 1 == kPlaces) continue;
+    const draco::PointIndex a(i), b(i + 1), c(i + kPlaces), d(i + kPlaces + 1);
+    mesh.AddFace({a, b, c});
+    mesh.AddFace({c, b, d});
+  }
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+  encoder.SetSpeedOptions(3, 3);
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 7);
+  draco::EncoderBuffer buffer;
+  EXPECT_TRUE(encoder.EncodeMeshToBuffer(mesh, &buffer).ok());
+  return {buffer.data(), buffer.data() + buffer.size()};
+}
+
+TEST_F(GltfDraco, NeitherAttributesNorViewsThatOverlapHoldMoreThanTheBytesCan) {
+  // A byte of the grid stands for 3,260 numbers with one such attribute, and for 5,526 with two.
+  const auto fileOf = [&](int attributes) {
+    GltfFile file = compressed({});
+    file.data.clear();
+    file.root["bufferViews"] = json::array();
+    file.addView(packedGrid(attributes));
+    file.accessor(0)["count"] = 129 * 129;
+    file.primitive().erase("indices");
+    file.primitive()["attributes"].erase("COLOR_0");
+    extension(file)["attributes"] = {{"POSITION", 0}};
+    return file;
+  };
+  GltfFile file = fileOf(1);
+  EXPECT_EQ(load(file).meshes.at(0).triangles.size(), 2u * 128 * 128);
+  EXPECT_THAT(error(fileOf(2)), HasSubstr("bytes can't hold"));
+  file.root["bufferViews"].push_back(file.root["bufferViews"][0]);
+  file.root["meshes"][0]["primitives"].push_back(file.primitive());
+  EXPECT_EQ(load(file).meshes.at(0).triangles.size(), 2u * 2 * 128 * 128) << "shared";
+  file.root["meshes"][0]["primitives"][1]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = 1;
+  EXPECT_THAT(error(file), testing::ContainsRegex("primitives\\[1\\].*: [0-9]+ bytes can't hold"));
+}
+
+TEST_F(GltfDraco, PrimitivesOfTheSameDataShareIt) {
+  GltfFile file = compressed({});
+  file.root["materials"] = {json::object(), json::object()};
+  json second = file.primitive();
+  second["material"] = 1;
+  for (int i = 0; i < 3; ++i) file.root["meshes"][0]["primitives"].push_back(second);
+  const Mesh mesh = load(file).meshes.at(0);
+  ASSERT_EQ(mesh.triangles.size(), 4 * soup.size());
+  const std::size_t points = mesh.positions.size() / 4;
+  for (std::size_t i = 0; i < points; ++i) EXPECT_EQ(mesh.positions[i], mesh.positions[3 * points + i]) << i;
+  // Other accessors are not the same: COLOR_0 comes from one.
+  file.root["meshes"][0]["primitives"][3]["attributes"].erase("COLOR_0");
+  EXPECT_THAT(error(file), HasSubstr("primitives[3].KHR_draco_mesh_compression.COLOR_0: is no attribute"));
+}
+
 TEST_F(GltfDraco, AStripIsItsTriangles) {
   GltfFile file = compressed({});
   file.primitive()["mode"] = 5;
