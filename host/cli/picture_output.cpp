@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -28,13 +29,15 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
     logEvent(
         "stage",
         {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
-  logEvent("frame_done", {{"frame", frame},
-                          {"file", options.output},
-                          {"width", stats.width},
-                          {"height", stats.height},
-                          {"triangles", stats.triangles},
-                          {"lights", stats.lights},
-                          {"milliseconds", eventMilliseconds(ended - stats.began)}});
+  nlohmann::ordered_json done{{"frame", frame},
+                              {"file", options.output},
+                              {"width", stats.width},
+                              {"height", stats.height},
+                              {"triangles", stats.triangles},
+                              {"lights", stats.lights},
+                              {"milliseconds", eventMilliseconds(ended - stats.began)}};
+  if (!stats.sha256.empty()) done["sha256"] = stats.sha256;
+  logEvent("frame_done", done);
 }
 
 /// Throws InputError for a compression that changes `what`.
@@ -66,12 +69,17 @@ bool measuresExposure(const PictureOptions& options, const std::string& scene_pa
   return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
 }
 
-void checkTraceFile(const PictureOptions& options) {
-  if (options.trace.empty()) return;
-  if (options.trace == options.output)
+void checkOtherOutputs(const PictureOptions& options) {
+  if (!options.trace.empty() && options.trace == options.output)
     throw InputError(fmt::format("--trace {}: is the picture's own file", options.trace));
-  if (options.trace == options.stats)
+  if (!options.trace.empty() && options.trace == options.stats)
     throw InputError(fmt::format("--trace {}: is the file of --stats", options.trace));
+  if (options.hash)
+    for (const auto& [name, file] : {std::pair{"-o", options.output}, std::pair{"--stats", options.stats},
+                                     std::pair{"--trace", options.trace}})
+      if (file == "-")
+        throw InputError(
+            fmt::format("--hash: standard output can't take it and {} - together; name a file", name));
 }
 
 void checkOutput(const PictureOptions& options) {
@@ -102,7 +110,7 @@ void checkOutput(const PictureOptions& options) {
                         what, options.light_groups ? "--light-groups" : "these of --aov"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
-  checkTraceFile(options);
+  checkOtherOutputs(options);
 }
 
 void checkDataOutput(const PictureOptions& options, const std::string& what) {
@@ -175,6 +183,10 @@ Stats laterStats(const std::string& command) {
 void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   const double ended = millisecondsSinceStart();
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats, ended));
+  if (!stats.sha256.empty()) {
+    fmt::print("{}  {}\n", stats.sha256, options.output);
+    std::fflush(stdout);  // whoever waits for a frame's line gets it when the frame is done
+  }
   if (logsEvents()) return logPicture(options, stats, ended, frame);
   if (options.quiet) return;
   // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.

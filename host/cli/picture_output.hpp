@@ -20,8 +20,8 @@ bool measuresExposure(const PictureOptions& options, const std::string& scene_pa
 /// What the options say of the picture's file, apart from what part of which view it shows.
 WriteOptions fileOptions(const PictureOptions& options);
 
-/// Throws InputError where the trace would be written into another file of the picture's.
-void checkTraceFile(const PictureOptions& options);
+/// Throws InputError where the trace or the hash would be written into another file of the picture's.
+void checkOtherOutputs(const PictureOptions& options);
 
 /// Checks before any work what can be wrong with the output: extension, folder, layers, tone, and what else
 /// the format has no place for. Throws InputError.

@@ -23,6 +23,7 @@
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/gbuffer_input.hpp"
 #include "image/exposure.hpp"
+#include "image/picture_hash.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/surface_ids.hpp"
@@ -150,6 +151,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
     });
   }
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
+    if (options.hash) stats.sha256 = pictureHash(image);
     return writeImage(image, options.output, pictureMetadata(stats, &device), writeOptions(options, gbuffer));
   });
   reportHalves(options, limited, stats);
@@ -201,7 +203,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
       ->required();
   addPictureOptions(*command, *options,
-                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
+                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kHashOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);
@@ -253,7 +255,7 @@ void addRelightCommand(CLI::App& app, CommandContext& context) {
                     "Ks = specular (n + 2) / 2 pi");
   command->add_flag("--add", options->add, "add the light to IN's own picture");
   addPictureOptions(*command, *options,
-                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
+                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kHashOption);
   command->callback([&context, options] { relight(context, *options); });
 }
 

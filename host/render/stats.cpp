@@ -78,6 +78,7 @@ std::string statsJson(const Stats& stats, double ended) {
   json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
   if (stats.measured_exposure) json["image"]["measured_exposure"] = *stats.measured_exposure;
+  if (!stats.sha256.empty()) json["image"]["sha256"] = stats.sha256;
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();
   for (const auto& timed : stats.stages) {
