@@ -316,11 +316,15 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option(
         "--frames", options.frames,
         "which frame of a scene that moves (default: 1); # in the output's name become its number");
-  if (groups & kHashOption)
+  if (groups & kBitsOptions) {
     command.add_flag(
         "--hash", options.hash,
         "print the picture's SHA-256, of its linear colours as 32-bit floats before they are made "
         "into a file, and the file's name, a line a picture");
+    command.add_flag("--require-exact", options.require_exact,
+                     "make no picture on a device whose arithmetic differs from that of all others, which "
+                     "otherwise is a warning");
+  }
   if (groups & kDeviceOption)
     command.add_option("--device", options.device,
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");

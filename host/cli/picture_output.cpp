@@ -15,6 +15,7 @@
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
+#include "render/check_device.hpp"
 #include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 
@@ -29,13 +30,13 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
     logEvent(
         "stage",
         {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
-  nlohmann::ordered_json done{{"frame", frame},
-                              {"file", options.output},
-                              {"width", stats.width},
-                              {"height", stats.height},
-                              {"triangles", stats.triangles},
-                              {"lights", stats.lights},
-                              {"milliseconds", eventMilliseconds(ended - stats.began)}};
+  EventFields done{{"frame", frame},
+                   {"file", options.output},
+                   {"width", stats.width},
+                   {"height", stats.height},
+                   {"triangles", stats.triangles},
+                   {"lights", stats.lights},
+                   {"milliseconds", eventMilliseconds(ended - stats.began)}};
   if (!stats.sha256.empty()) done["sha256"] = stats.sha256;
   logEvent("frame_done", done);
 }
@@ -158,6 +159,8 @@ Metadata pictureMetadata(const Stats& stats, const Device* device) {
   Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
   if (stats.measured_exposure)
     metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));
+  if (device && !device->description.arithmetic.empty())
+    metadata.emplace_back("luciole:arithmetic", device->description.arithmetic);
   if (device)
     metadata.emplace_back(
         "luciole:device",
@@ -166,11 +169,34 @@ Metadata pictureMetadata(const Stats& stats, const Device* device) {
   return metadata;
 }
 
+void startCheckedDevice(const PictureOptions& options, CommandContext& context) {
+  startDevice(options.device, context.device,
+              [&context, require = options.require_exact, quiet = options.quiet] {
+                DeviceDescription& device = context.device.description;
+                std::vector<std::string> wrong;
+                try {
+                  const ArithmeticCheck check = knownArithmetic(context.device);
+                  device.arithmetic = check.sha256;
+                  wrong = check.wrong;
+                } catch (const MachineError& error) {
+                  wrong.emplace_back(error.what());
+                }
+                if (wrong.empty()) return;
+                const std::string what =
+                    fmt::format("{}: its pictures may have other bits than those of other devices: {}",
+                                device.name, wrong.front());
+                if (require) throw MachineError("--require-exact: " + what);
+                if (!quiet) tellWarnings({what + " (luciole devices --check tells all)"});
+              });
+}
+
 void logDevice(const DeviceDescription& device) {
-  logEvent("device", {{"name", device.name},
-                      {"platform", device.platform},
-                      {"driver", device.version},
-                      {"lanes", device.lanes}});
+  EventFields fields{{"name", device.name},
+                     {"platform", device.platform},
+                     {"driver", device.version},
+                     {"lanes", device.lanes}};
+  if (!device.arithmetic.empty()) fields["arithmetic"] = device.arithmetic;
+  logEvent("device", fields);
 }
 
 Stats laterStats(const std::string& command) {

@@ -244,7 +244,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       ->required();
   addPictureOptions(*command, *options,
                     kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption |
-                        kDeviceOption | kHashOption);
+                        kDeviceOption | kBitsOptions);
   command->add_option(
       "--frames", options->frames,
       "frame A, frames A-B, each Nth of them, A-BxN, or a list of these, 1,3,10-100x5, of a scene that moves "
@@ -283,7 +283,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     Device& device = context.device;
-    startDevice(options->device, device);
+    startCheckedDevice(*options, context);
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
