@@ -69,6 +69,17 @@ TEST_F(CheckedDevices, OneThatDiffersRendersWithAWarningUnlessExactnessIsRequire
                                                        "g.exr", "scene.json"}));
 }
 
+// Another compiler, and no vector instructions.
+TEST_F(CheckedDevices, HaveTheSameBitsUnderOclgrind) {
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
+  for (const char* lanes : {"1", "8"})
+    EXPECT_THAT(
+        succeed(std::string("oclgrind --build-options '-disable-llvm-passes -DSTANDARD_ONLY' '" LUCIOLE_BINARY
+                            "' devices --check --device ,lanes=") +
+                lanes),
+        HasSubstr("bits: same"));
+}
+
 // A device whose compiler makes another sum of one line of the kernels (mutate_kernels.c).
 TEST_F(CheckedDevices, OneThatDiffersIsToldWithTheOperation) {
   LUCIOLE_NEEDS_PROGRAM("cc", "gcc");
