@@ -15,6 +15,7 @@
 #include "cli/picture_output.hpp"
 #include "cli/suggest.hpp"
 #include "image/dilate.hpp"
+#include "image/picture_hash.hpp"
 #include "image/png_bytes.hpp"
 #include "image/srgb.hpp"
 #include "raster/lift.hpp"
@@ -178,6 +179,7 @@ void bake(CommandContext& context, BakeOptions& options) {
       writeBakedGltf(scene, shown, lightMapUvs(scene, scene.meshes[shown.mesh]),
                      pngBytes(map.width, map.height, codes), strength, options.gltf);
     }
+    if (options.hash) stats.hash = pictureHash(map);
     return writeImage(map, options.output, pictureMetadata(stats, &context.device),
                       writeOptions(options, space.gbuffer));
   });

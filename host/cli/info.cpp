@@ -236,6 +236,9 @@ Report sceneReport(InfoOptions options) {
   report.json["variants"] = scene.variants;
   if (!scene.variants.empty())
     addLine(report, "variants", printable(fmt::format("{}", fmt::join(scene.variants, ", "))));
+  report.json["animations"] = scene.animations;
+  if (!scene.animations.empty())
+    addLine(report, "animations", printable(fmt::format("{}", fmt::join(scene.animations, ", "))));
   report.json["ignored_extensions"] = scene.ignored_extensions;
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));

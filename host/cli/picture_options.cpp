@@ -191,8 +191,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             ? "one of the scene's cameras, by name or index, or all: a picture of each; {camera} in "
               "the output's name becomes the camera's"
             : "one of the scene's cameras, by name or index");
-    command.add_option("--variant", options.variant,
+    command.add_option("--variant", options.choice.variant,
                        "one of a glTF file's variants of materials, by name (info lists them)");
+    command.add_option("--animation", options.choice.animation,
+                       "the only one of a glTF file's animations that runs, by name or index (default: all "
+                       "together; info lists them)");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
     command
         .add_option("--shading", options.shading,
@@ -250,6 +253,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             "colours are multiplied by it in exr and in a tif of floats, not in png, tga and others");
     }
   }
+  if (is_one_picture && (groups & kShadeOptions))
+    command.add_flag(
+        "--hash", options.hash,
+        "print the SHA-256 of the picture's floats to standard output; equal hashes, equal bits");
   if (groups & kShadeOptions) {
     command
         .add_option("--culling", options.culling,
@@ -379,7 +386,7 @@ MissingTextures missingTexturesOf(const std::string& value) {
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
   Scene scene;
   const double milliseconds = millisecondsOf(
-      [&] { scene = loadScene(path, frame, missingTexturesOf(options.missing_textures), options.variant); });
+      [&] { scene = loadScene(path, frame, missingTexturesOf(options.missing_textures), options.choice); });
   logEvent("loaded", {{"scene", path},
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},

@@ -19,7 +19,8 @@ struct PictureOptions {
   std::string format;
   std::string size;
   std::string camera;
-  std::string variant;
+  GltfChoice choice;
+  bool hash = false;
   int camera_index = -1;  ///< replaces `camera`, see optionsOfCameras(); -1: doesn't
   int samples = 1;
   std::string samples_shading = "shared";

@@ -109,6 +109,9 @@ void checkOutput(const PictureOptions& options) {
                         "in each pixel; "
                         "leave out {}",
                         what, options.light_groups ? "--light-groups" : "these of --aov"));
+  if (options.hash && (options.output == "-" || options.stats == "-"))
+    throw InputError(fmt::format("--hash: is written to standard output, and so is {}",
+                                 options.output == "-" ? "the picture" : "what --stats says"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkOtherOutputs(options);

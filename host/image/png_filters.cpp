@@ -22,7 +22,7 @@ inline std::int16_t expected(std::int16_t left, std::int16_t above, std::int16_t
     const auto from_above = std::int16_t(std::abs(left - corner));
     const auto from_corner = std::int16_t(std::abs(left + above - 2 * corner));
     const std::int16_t one = from_above <= from_corner ? above : corner;
-    return (from_left <= from_above) & (from_left <= from_corner) ? left : one;
+    return ((from_left <= from_above) & (from_left <= from_corner)) ? left : one;
   }
   return 0;
 }

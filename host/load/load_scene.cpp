@@ -70,18 +70,18 @@ void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
 
 }  // namespace
 
-Scene loadScene(const std::string& path, double frame, MissingTextures missing, const std::string& variant) {
+Scene loadScene(const std::string& path, double frame, MissingTextures missing, const GltfChoice& choice) {
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
+  std::vector<LightField> light_fields;
   if (is_mesh_file) {
-    loadMeshFile(path, scene, variant);
+    loadMeshFile(path, scene, choice);
     scene.name = path;
-  } else if (!variant.empty()) {
-    throw InputError(path + ": has no variants, which only glTF files have");
   } else if (path == "-" || extensionOf(path) == ".json") {
+    checkIsGltf(path, choice);
     SceneFile read = loadJsonScene(path);
     scene = std::move(read.scene);
-    addLightFields(read.light_fields, scene);
+    light_fields = std::move(read.light_fields);
   } else {
     throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
                                  path, extensionOf(path)));
@@ -90,7 +90,8 @@ Scene loadScene(const std::string& path, double frame, MissingTextures missing, 
     throw InputError(scene.missing_textures.front());
   for (const std::string& texture : scene.missing_textures)
     scene.warnings.push_back(texture + "; drawn without");
-  addTangents(scene);
+  addTangents(scene);  // before any pose: deformations keep those at rest
+  addLightFields(light_fields, scene);
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);
   if (frame != 1) poseScene(scene, frame);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "scene/gltf/gltf.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
@@ -17,9 +18,9 @@ enum class MissingTextures : std::uint8_t {
 /// standard input for "-", completes it at frame 1 (see completeScene), so that all frames get the same
 /// camera and lights, and poses it at `frame` (see poseScene). Throws InputError, or MachineError where it
 /// doesn't fit into memory.
-/// `variant`: of a glTF file, by its name.
+/// choice: of a glTF file.
 Scene loadScene(const std::string& path, double frame = 1, MissingTextures missing = MissingTextures::kError,
-                const std::string& variant = "");
+                const GltfChoice& choice = {});
 
 /// Adds what a picture needs and the scene's file left out. That is a camera that frames the whole (from
 /// inside, for a closed hall); and where the file has no lights and doesn't ask for none: lights, some

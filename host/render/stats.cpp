@@ -78,6 +78,7 @@ std::string statsJson(const Stats& stats, double ended) {
   json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
   json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
+  if (!stats.hash.empty()) json["image"]["hash"] = stats.hash;
   if (stats.measured_exposure) json["image"]["measured_exposure"] = *stats.measured_exposure;
   if (!stats.sha256.empty()) json["image"]["sha256"] = stats.sha256;
   double cold_start = 0;

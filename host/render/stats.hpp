@@ -70,6 +70,7 @@ struct Stats {
   /// Of the stages, those that ran in threads of their own beside others
   std::vector<Stage> beside;
   double began = 0;  ///< when the picture was begun, in milliseconds since the program's start
+  std::string hash;  ///< of the picture, see PictureHash; empty: nobody asked
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   std::vector<std::pair<std::string, double>> errors;  ///< by name, if the command measures any
   LightErrorStats light_error;                         ///< without values where no light was stood for

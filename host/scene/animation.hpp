@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/curve.hpp"
+#include "scene/deformation.hpp"
 
 namespace luciole {
 
@@ -58,6 +59,7 @@ struct Animation {
   std::vector<Attachment> objects, attached_cameras, attached_lights;
   std::vector<CameraMotion> cameras;
   std::vector<LightMotion> lights;
+  std::vector<Deformation> deformations;
   int no_mesh = -1;  ///< in Scene::meshes: the empty mesh of flattened objects; -1: nothing is attached
 };
 

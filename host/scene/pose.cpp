@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <utility>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "scene/place_limits.hpp"
 
 namespace luciole {
@@ -59,6 +62,27 @@ std::vector<glm::dmat4> nodeTransforms(const Scene& scene, double frame) {
   return worlds;
 }
 
+/// The weights of a deformation's targets at a frame.
+std::vector<double> weightsAt(const Animation& animation, const Deformation& deformation, double frame) {
+  std::vector<double> weights = deformation.weights;
+  for (std::size_t i = 0; i < weights.size() && !deformation.weight_curves.empty(); i += 4) {
+    const glm::dvec4 four = valueOf(animation, deformation.weight_curves[i / 4], frame, glm::dvec4(0));
+    for (std::size_t j = i; j < std::min(i + 4, weights.size()); ++j) weights[j] = four[int(j - i)];
+  }
+  return weights;
+}
+
+/// Deforms a mesh, unless it shows this pose already.
+void poseMesh(Scene& scene, const std::vector<glm::dmat4>& worlds, double frame, Deformation& deformation) {
+  std::vector<double> pose = poseNumbers(deformation, worlds, weightsAt(scene.animation, deformation, frame));
+  if (pose == deformation.pose) return;
+  deformation.pose.clear();  // should there be no such shape
+  Mesh& mesh = scene.meshes[deformation.mesh];
+  const std::string fault = deform(deformation, pose, mesh);
+  if (!fault.empty()) fail(scene, frame, fmt::format("mesh '{}'", forMessage(mesh.name)), fault);
+  deformation.pose = std::move(pose);
+}
+
 }  // namespace
 
 glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
@@ -69,8 +93,9 @@ glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const 
 }
 
 void poseScene(Scene& scene, double frame) {
-  const Animation& animation = scene.animation;
+  Animation& animation = scene.animation;
   const std::vector<glm::dmat4> worlds = nodeTransforms(scene, frame);
+  for (Deformation& deformation : animation.deformations) poseMesh(scene, worlds, frame, deformation);
   const auto placeOf = [&](const Attachment& attachment) {
     const glm::dmat4 place = worlds[attachment.node] * attachment.after;
     if (!isFinite(place))

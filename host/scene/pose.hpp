@@ -11,8 +11,8 @@ namespace luciole {
 /// length but 0, not parallel to the view.
 glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
 
-/// Poses a scene at a frame, which may be fractional: sets the members of cameras, lights and objects that
-/// are animated, and nothing else. The result doesn't depend on earlier poses. Objects that a scale of 0
+/// Poses a scene at a frame, which may be fractional: sets the members of cameras, lights, objects and meshes
+/// that are animated, and nothing else. The result doesn't depend on earlier poses. Objects that a scale of 0
 /// flattens show an empty mesh. Throws InputError naming the frame where a pose doesn't exist (a camera whose
 /// up is parallel to its view, a spot at its target, a transform that isn't finite), and as checkPlaces()
 /// does.

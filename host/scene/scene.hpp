@@ -76,6 +76,7 @@ struct Mesh {
   std::vector<glm::vec4> colors;  ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles;
   std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
+  std::vector<std::uint32_t> sources;  ///< of a mesh that deforms: which vertex of the RestShape each is
   /// The same surface in smaller triangles, which takes its place where colours are lit at vertices (Gouraud
   /// shading). Null: the mesh itself.
   std::shared_ptr<const Mesh> divided;
@@ -164,7 +165,8 @@ struct Scene {
   std::vector<std::string> missing_textures;
   /// glTF extensions that a file uses and that are not supported, each once. There is a warning of each.
   std::vector<std::string> ignored_extensions;
-  std::vector<std::string> variants;  ///< of a glTF file, see loadGltf()
+  std::vector<std::string> variants;    ///< of a glTF file, see loadGltf()
+  std::vector<std::string> animations;  ///< of a glTF file: their names, or indices where they have none
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
@@ -180,7 +182,7 @@ struct Scene {
   bool adds_camera = false;  ///< its file has no camera: this one was chosen, see completeScene()
   bool adds_lights = false;  ///< its file says nothing of light: these lights were chosen
   bool lighting = true;      ///< false: every surface shows its emission + diffuse colour unlit
-  Animation animation;       ///< what moves: poseScene() sets cameras, lights and objects by it
+  Animation animation;       ///< what moves: poseScene() sets cameras, lights, objects and meshes by it
 };
 
 /// The models that materials choose whose surfaces the scene has. O(triangles) where a material chooses one.

@@ -34,9 +34,9 @@ void withFields(T& surface, Visit&& visit) {
 template <Is<Mesh> T, class Visit>
 void withFields(T& mesh, Visit&& visit) {
   auto& [name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, lightmap_uvs, colors, triangles,
-         triangle_materials, divided] = mesh;
+         triangle_materials, sources, divided] = mesh;
   visit(name, positions, normals, uvs, emission_uvs, tangents, normal_uvs, lightmap_uvs, colors, triangles,
-        triangle_materials, divided);
+        triangle_materials, sources, divided);
 }
 template <Is<Object> T, class Visit>
 void withFields(T& object, Visit&& visit) {
@@ -102,20 +102,41 @@ void withFields(T& motion, Visit&& visit) {
   visit(light, position, direction, target, color, intensity, range, ambient, diffuse, specular,
         own_intensity);
 }
+template <Is<MorphTarget> T, class Visit>
+void withFields(T& target, Visit&& visit) {
+  auto& [vertices, positions, normals, tangents] = target;
+  visit(vertices, positions, normals, tangents);
+}
+template <Is<RestShape> T, class Visit>
+void withFields(T& rest, Visit&& visit) {
+  auto& [positions, normals, targets, first_influence, influence_joints, influence_weights] = rest;
+  visit(positions, normals, targets, first_influence, influence_joints, influence_weights);
+}
+template <Is<Joint> T, class Visit>
+void withFields(T& joint, Visit&& visit) {
+  auto& [node, after] = joint;
+  visit(node, after);
+}
+template <Is<Deformation> T, class Visit>
+void withFields(T& deformation, Visit&& visit) {
+  auto& [mesh, rest, tangents, weights, weight_curves, joints, world_to_mesh, pose] = deformation;
+  visit(mesh, rest, tangents, weights, weight_curves, joints, world_to_mesh, pose);
+}
 template <Is<Animation> T, class Visit>
 void withFields(T& animation, Visit&& visit) {
-  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, no_mesh] =
-      animation;
-  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, no_mesh);
+  auto& [frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
+         no_mesh] = animation;
+  visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
+        no_mesh);
 }
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
-  auto& [name, warnings, missing_textures, ignored_extensions, variants, textures, materials, meshes, objects,
-         lights, light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
-         lighting, animation] = scene;
-  visit(name, warnings, missing_textures, ignored_extensions, variants, textures, materials, meshes, objects,
-        lights, light_groups, cameras, size, background, ambient, fog, says_light, adds_camera, adds_lights,
-        lighting, animation);
+  auto& [name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
+         meshes, objects, lights, light_groups, cameras, size, background, ambient, fog, says_light,
+         adds_camera, adds_lights, lighting, animation] = scene;
+  visit(name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
+        meshes, objects, lights, light_groups, cameras, size, background, ambient, fog, says_light,
+        adds_camera, adds_lights, lighting, animation);
 }
 
 }  // namespace luciole

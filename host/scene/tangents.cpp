@@ -174,6 +174,7 @@ std::uint32_t copyVertex(std::uint32_t from, Mesh& mesh) {
   copyElement(from, mesh.lightmap_uvs);
   copyElement(from, mesh.tangents);
   copyElement(from, mesh.colors);
+  copyElement(from, mesh.sources);
   return std::uint32_t(mesh.positions.size() - 1);
 }
 
@@ -234,6 +235,8 @@ void addTangents(Scene& scene) {
   }
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (!wanted[i].empty()) addTangents(wanted[i], scene.meshes[i]);
+  for (Deformation& deformation : scene.animation.deformations)
+    deformation.tangents = scene.meshes[deformation.mesh].tangents;
 }
 
 }  // namespace luciole

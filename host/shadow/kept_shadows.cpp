@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "scene/bounds.hpp"
 #include "shadow/frustum.hpp"
 
 namespace luciole {
@@ -25,13 +24,32 @@ bool sameView(const View& a, const View& b) {
   return a.world_to_view == b.world_to_view && a.projection == b.projection && a.size == b.size;
 }
 
-/// The boxes around all objects that moved, as they were and as they are.
-std::vector<Bounds> movedBounds(const Scene& scene, const std::vector<Object>& before) {
+ScenePoses posesOf(const Scene& scene) {
+  ScenePoses poses;
+  for (const Deformation& deformation : scene.animation.deformations) poses.push_back(deformation.pose);
+  return poses;
+}
+
+/// Whether each mesh deforms.
+std::vector<bool> deformingMeshes(const Scene& scene) {
+  std::vector<bool> deforms(scene.meshes.size());
+  for (const Deformation& deformation : scene.animation.deformations) deforms[deformation.mesh] = true;
+  return deforms;
+}
+
+/// The boxes around all objects that moved or deformed, as they were and as they are.
+std::vector<Bounds> movedBounds(const Scene& scene, const KeptShadows& kept) {
+  std::vector<bool> changed(scene.meshes.size());
+  const std::vector<Deformation>& deformations = scene.animation.deformations;
+  for (std::size_t i = 0; i < deformations.size(); ++i)
+    changed[deformations[i].mesh] = deformations[i].pose != kept.maps_poses[i];
+  const std::vector<bool> deforms = deformingMeshes(scene);
   std::vector<Bounds> result;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    if (sameObject(before[i], scene.objects[i])) continue;
-    result.push_back(objectBounds(scene, before[i]));
-    result.push_back(objectBounds(scene, scene.objects[i]));
+  for (std::size_t i = 0; i < kept.maps_objects.size(); ++i) {
+    const Object &before = kept.maps_objects[i], &now = scene.objects[i];
+    if (sameObject(before, now) && !changed[now.mesh]) continue;
+    result.push_back(deforms[before.mesh] ? kept.maps_bounds[i] : objectBounds(scene, before));
+    result.push_back(objectBounds(scene, now));
   }
   return result;
 }
@@ -55,9 +73,10 @@ std::vector<bool> sameFaces(const Scene& scene, const KeptShadows& kept, const S
                             const ShadowMaps& maps) {
   std::vector<bool> same(maps.planned.size());
   if (before.planned.size() != maps.planned.size() || before.method != maps.method ||
-      kept.maps_objects.size() != scene.objects.size() || kept.maps_ranges.size() != scene.lights.size())
+      kept.maps_objects.size() != scene.objects.size() || kept.maps_ranges.size() != scene.lights.size() ||
+      kept.maps_poses.size() != scene.animation.deformations.size())
     return same;
-  const std::vector<Bounds> moved = movedBounds(scene, kept.maps_objects);
+  const std::vector<Bounds> moved = movedBounds(scene, kept);
   for (std::size_t i = 0; i < same.size(); ++i) {
     const PlannedFace &old = before.planned[i], &face = maps.planned[i];
     same[i] = old.light == face.light && kept.maps_ranges[face.light] == scene.lights[face.light].range &&
@@ -70,9 +89,11 @@ std::vector<bool> sameFaces(const Scene& scene, const KeptShadows& kept, const S
 
 TreeWork updateTree(const Scene& scene, const glm::dvec3& origin, bool holes, KeptShadows& kept) {
   if (kept.tree && sameMeshes(kept.tree_objects, scene.objects) && (kept.masks || !holes)) {
-    const bool moved = !std::ranges::equal(kept.tree_objects, scene.objects, sameObject);
+    const bool moved = !std::ranges::equal(kept.tree_objects, scene.objects, sameObject) ||
+                       kept.tree_poses != posesOf(scene);
     if (!moved && isPlacedFor(scene, origin, *kept.tree)) return TreeWork::kNone;
     kept.tree_objects = scene.objects;
+    kept.tree_poses = posesOf(scene);
     refitTriangleTree(scene, origin, *kept.tree);
     if (areaOfBoxes(*kept.tree) <= kMostGrowth * kept.tree_area) return TreeWork::kRefitted;
   }
@@ -81,6 +102,7 @@ TreeWork updateTree(const Scene& scene, const glm::dvec3& origin, bool holes, Ke
   kept.tree = std::make_shared<TriangleTree>(buildTriangleTree(scene, origin));
   if (holes) kept.masks = std::make_shared<const HoleMasks>(makeHoleMasks(scene, *kept.tree));
   kept.tree_objects = scene.objects;
+  kept.tree_poses = posesOf(scene);
   kept.tree_area = areaOfBoxes(*kept.tree);
   return TreeWork::kBuilt;
 }
@@ -111,6 +133,11 @@ void takeMaps(const Scene& scene, KeptShadows& kept, ShadowMaps& maps) {
 void keepMaps(const Scene& scene, ShadowMaps maps, KeptShadows& kept) {
   kept.maps = std::move(maps);
   kept.maps_objects = scene.objects;
+  kept.maps_poses = posesOf(scene);
+  kept.maps_bounds.assign(scene.objects.size(), {});
+  const std::vector<bool> deforms = deformingMeshes(scene);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (deforms[scene.objects[i].mesh]) kept.maps_bounds[i] = objectBounds(scene, scene.objects[i]);
   kept.maps_ranges.clear();
   for (const Light& light : scene.lights) kept.maps_ranges.push_back(light.range);
 }

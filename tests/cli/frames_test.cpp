@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cli/program_test.hpp"
+#include "scene/gltf/gltf_file.hpp"
 
 namespace luciole::test {
 namespace {
@@ -71,6 +72,45 @@ TEST_F(Frames, EachOfARangeIsThatFrameRenderedAlone) {
     expectEqual(fmt::format("f.00{}.exr", frame), "alone.exr");
   }
   EXPECT_EQ(runLine(folder, "luciole compare f.001.exr f.002.exr --max-abs 0").status, 1);
+}
+
+TEST_F(Frames, AMeshThatDeformsHasTheShadowOfItsFrame) {
+  // A square above a floor, which a morph target slides aside: from x of -2 at frame 1 to 0 at frame 13.
+  GltfFile file;
+  const int position = file.addAccessor<float>("VEC3", kFloat, 3, {-3, 1, 1, -1, 1, 1, -1, 1, -1, -3, 1, -1});
+  const int indices = file.addAccessor<std::uint16_t>("SCALAR", kUnsignedShort, 1, {0, 1, 2, 0, 2, 3});
+  const int target = file.addAccessor<float>("VEC3", kFloat, 3, {4, 0, 0, 4, 0, 0, 4, 0, 0, 4, 0, 0});
+  const int times = file.addAccessor<float>("SCALAR", kFloat, 1, {0, 1});
+  const int weights = file.addAccessor<float>("SCALAR", kFloat, 1, {0, 1});
+  file.root["meshes"] = {{{"primitives",
+                           {{{"attributes", {{"POSITION", position}}},
+                             {"indices", indices},
+                             {"targets", {{{"POSITION", target}}}}}}}}};
+  file.root["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", weights}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  file.root["buffers"] = {{{"byteLength", file.data.size()}, {"uri", "data.bin"}}};
+  writeText(folder / "data.bin", file.data);
+  writeText(folder / "slide.gltf", file.root.dump());
+  writeText(folder / "slide.json", R"({"size": [64, 48], "camera": {"eye": [0, 3, 6], "target": [0, 0, 0]},
+      "objects": [{"mesh": "slide.gltf"}, {"primitive": "plane", "scale": 8}],
+      "lights": [{"type": "point", "position": [0.5, 4, 0], "shadow": true},
+                 {"type": "spot", "position": [3, 3, 1], "target": [0, 0, 0], "cutoff": 40, "shadow": true}]})");
+  for (const char* shadows : {"hard", "pcf", "exact", "auto"}) {
+    succeed(fmt::format("luciole render slide.json --frames 1-13x4 --shadows {} -o f.##.exr", shadows));
+    for (const int frame : {5, 13}) {
+      succeed(fmt::format("luciole render slide.json --frames {} --shadows {} -o alone.exr", frame, shadows));
+      expectEqual(fmt::format("f.{:02}.exr", frame), "alone.exr");
+    }
+  }
+  // Where it is at frame 13, a still one casts the same shadow.
+  file.root.erase("animations");
+  file.root["meshes"][0]["weights"] = {0.5};
+  writeText(folder / "slide.gltf", file.root.dump());
+  succeed("luciole render slide.json --shadows exact -o still.exr");
+  succeed("luciole render slide.json --shadows off -o off.exr");
+  EXPECT_EQ(runLine(folder, "luciole compare still.exr off.exr --max-abs 0.1").status, 1);
+  succeed("rm f.*");
 }
 
 TEST_F(Frames, OneIsTheSceneThatAHandHasPosed) {

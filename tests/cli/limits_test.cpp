@@ -90,10 +90,25 @@ TEST_F(Limits, WhatIsNeededAndWhatMayBeUsedIsTold) {
   writeText(folder / "many.json",
             R"({"light_fields": [{"count": 9000000, "min": [0, 0, 0], "max": [1, 1, 1]}]})");
   writeText(folder / "floor.json", R"({"objects": [{"name": "floor", "primitive": "plane"}]})");
-  for (const char* command : {"luciole gbuffer scene.json --size 8192x8192 -o out.exr",
-                              "luciole bake floor.json --object floor --size 16384x16384 -o out.exr",
-                              "luciole reference scene.json --size 8192x8192 -o out.exr",
-                              "luciole reference many.json -o out.exr"}) {
+  // A million vertices that no buffer holds, which 64 nodes deform.
+  std::string nodes = R"({"translation": [0, 0, 0]})", shown;
+  for (int i = 1; i <= 64; ++i) {
+    nodes += R"(, {"mesh": 0, "skin": 0})";
+    shown += fmt::format("{}{}", i == 1 ? "" : ", ", i);
+  }
+  writeText(folder / "crowd.gltf",
+            fmt::format(R"({{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0, {}]}}],
+      "nodes": [{}], "skins": [{{"joints": [0]}}],
+      "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}}}}]}}],
+      "accessors": [{{"componentType": 5126, "count": 1000000, "type": "VEC3"}},
+                    {{"componentType": 5121, "count": 1000000, "type": "VEC4"}},
+                    {{"componentType": 5126, "count": 1000000, "type": "VEC4"}}]}})",
+                        shown, nodes));
+  for (const char* command :
+       {"luciole info crowd.gltf", "luciole gbuffer scene.json --size 8192x8192 -o out.exr",
+        "luciole bake floor.json --object floor --size 16384x16384 -o out.exr",
+        "luciole reference scene.json --size 8192x8192 -o out.exr",
+        "luciole reference many.json -o out.exr"}) {
     const Outcome outcome = runLine(folder, std::string("ulimit -v 1400000 && ") + command);
     EXPECT_EQ(outcome.status, 3) << command << outcome.err;
     EXPECT_TRUE(isOneLine(outcome.err)) << outcome.err;

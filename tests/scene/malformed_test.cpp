@@ -121,7 +121,6 @@ TEST(MalformedMeshes, FilesBrokenOnPurposeAreRefused) {
            assimp / "glTF2/RecursiveNodes/RecursiveNodes.gltf",
            assimp / "glTF2/TestNoRootNode/NoScene.gltf",
            assimp / "glTF2/TestNoRootNode/SceneWithoutNodes.gltf",
-           assimp / "glTF2/draco/2CylinderEngine.gltf",
            assimp / "glTF2/wrongTypes/badArray.gltf",
            tinyobj / "invalid-face-definition.obj",
            tinyobj / "invalid-relative-texture-index.obj",

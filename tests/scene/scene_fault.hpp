@@ -47,6 +47,16 @@ inline std::string sceneFault(const Scene& scene) {
   for (const Object& object : scene.objects) {
     if (object.mesh >= scene.meshes.size()) return "an object's mesh is out of range";
   }
+  for (const Deformation& deformation : scene.animation.deformations) {
+    if (deformation.mesh >= scene.meshes.size()) return "a deformed mesh is out of range";
+    const Mesh& mesh = scene.meshes[deformation.mesh];
+    if (mesh.sources.size() != mesh.positions.size()) return "a source a vertex expected";
+    for (const std::uint32_t source : mesh.sources)
+      if (source >= deformation.rest->positions.size()) return "a vertex's source is out of range";
+    for (const Joint& joint : deformation.joints)
+      if (joint.node >= static_cast<int>(scene.animation.nodes.size()))
+        return "a joint's node is out of range";
+  }
   for (const Attachment& attachment : scene.animation.objects) {
     if (attachment.index >= scene.objects.size()) return "an attached object is out of range";
     if (attachment.node >= scene.animation.nodes.size()) return "an attached object's node is out of range";

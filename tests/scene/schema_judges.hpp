@@ -57,6 +57,8 @@ inline constexpr LoadersRule kLoadersRules[]{
      R"({"light_fields": [{"count": 100000000, "shape": "surface"}, {"count": 1, "shape": "surface"}]})"},
     {"no material is called", "looks a name up",
      R"({"objects": [{"primitive": "box", "material": "gold"}]})"},
+    {"has no variant", "reads another file", R"({"objects": [{"mesh": "t.gltf", "variant": "worn"}]})"},
+    {"has no animation", "reads another file", R"({"objects": [{"mesh": "t.gltf", "animation": "walk"}]})"},
     {"there is no file", "looks at the disk", R"({"objects": [{"mesh": "gone.obj"}]})"},
     {"is a folder; expected a file", "looks at the disk", R"({"light_fields": [{"csv": "."}]})"},
     {"lights, expected", "reads another file", R"({"light_fields": [{"csv": "lamps.csv", "count": 4}]})"},
@@ -116,6 +118,15 @@ class Judges {
   Judges() {
     for (const char* name : {"t.obj", "t.OBJ", ".obj", "t.obj.txt"})
       std::ofstream(folder_ / name) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    // Numbers that no buffer holds are 0: a triangle without area, and an animation with one key.
+    std::ofstream(folder_ / "t.gltf") << R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"componentType": 5126, "count": 1, "type": "SCALAR"},
+                      {"componentType": 5126, "count": 1, "type": "VEC3"}],
+        "animations": [{"name": "spin", "samplers": [{"input": 1, "output": 2}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        "extensions": {"KHR_materials_variants": {"variants": [{"name": "new"}]}}})";
     std::ofstream(folder_ / "lamps.csv") << "1,2,3,1,1,1,4\n5,6,7,1,1,1,\n8,9,10,1,1,1,\n";
     const json text = asSchemasSeeIt(schemaText());
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)

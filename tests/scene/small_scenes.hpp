@@ -50,6 +50,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
        "keys": [{"frame": 1, "rotate": [0, 0, 0], "scale": 2}, {"frame": 9, "rotate": [0, 360, 0]},
                 {"frame": 12, "translate": [0, 1, 0], "scale": [1, 2, 1]}]},
       {"primitive": "box"}, {"primitive": "cone", "segments": 3}, {"primitive": "sphere", "segments": 3},
+      {"mesh": "t.gltf", "variant": "new", "animation": "spin"},
       {"mesh": "t.obj", "material": "red", "translate": [1, 0, 0], "keys": [{"frame": 1, "translate": [2, 0, 0]}]}]})"},
     {"PointLights", R"({"lights": [
       {"type": "point", "position": [1, 2, 3], "color": [1, 0.8, 0.5], "intensity": 2, "attenuation": [1, 0, 0.5],

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
+#include "scene/pose.hpp"
 #include "shadow/draw_shadow_maps.hpp"
 #include "shadow/shadow_scenes.hpp"
 #include "shadow/texel_place.hpp"
@@ -45,6 +46,44 @@ TEST(KeptShadows, TheTreeIsKeptWhereNothingMovesAndRefittedWhereSomethingDoes) {
   scene.objects.back().object_to_world[3] = {0.1, 0.1, 0, 1};
   EXPECT_EQ(updateTree(scene, {1, 2, 3}, false, kept), TreeWork::kRefitted);
   expectTreeOf(scene, {1, 2, 3}, kept);
+}
+
+/// Lets a morph target lift the mesh of the last object by the frame's number less 1.
+void liftLastMesh(Scene& scene) {
+  Mesh& mesh = scene.meshes[scene.objects.back().mesh];
+  RestShape rest;
+  rest.positions = mesh.positions;
+  rest.normals = mesh.normals;
+  rest.first_influence.resize(mesh.positions.size() + 1, 0);
+  MorphTarget& target = rest.targets.emplace_back();
+  mesh.sources.resize(mesh.positions.size());
+  for (std::uint32_t i = 0; i < mesh.sources.size(); ++i) {
+    mesh.sources[i] = i;
+    target.vertices.push_back(i);
+  }
+  target.positions.assign(mesh.positions.size(), {0, 1, 0});
+  target.normals.assign(mesh.positions.size(), glm::vec3(0));
+  target.tangents = target.normals;
+  Deformation deformation;
+  deformation.mesh = scene.objects.back().mesh;
+  deformation.rest = std::make_shared<const RestShape>(std::move(rest));
+  deformation.weights = {0};
+  deformation.weight_curves = {int(scene.animation.curves.size())};
+  scene.animation.curves.push_back({Interpolation::kLinear, {{1, glm::dvec4(0)}, {101, glm::dvec4(100)}}});
+  scene.animation.deformations.push_back(std::move(deformation));
+}
+
+TEST(KeptShadows, TheTreeIsRefittedWhereAMeshDeforms) {
+  Scene scene = terrainScene();
+  liftLastMesh(scene);
+  poseScene(scene, 1);
+  KeptShadows kept;
+  EXPECT_EQ(updateTree(scene, glm::dvec3(0), false, kept), TreeWork::kBuilt);
+  poseScene(scene, 1.1);
+  EXPECT_EQ(updateTree(scene, glm::dvec3(0), false, kept), TreeWork::kRefitted);
+  expectTreeOf(scene, glm::dvec3(0), kept);
+  poseScene(scene, 1.1);
+  EXPECT_EQ(updateTree(scene, glm::dvec3(0), false, kept), TreeWork::kNone) << "the same pose";
 }
 
 TEST(KeptShadows, ALightThatChangesTheTreesScaleRefitsIt) {
@@ -139,6 +178,26 @@ TEST(KeptShadows, FacesThatShowAnObjectThatMovedAreDrawnAgain) {
   EXPECT_EQ(facesDrawn(maps), maps.planned.size());
   EXPECT_EQ(maps.texels.size(), maps.planned_texels) << "they lie where they lay";
   expectMapsOf(scene, maps);
+}
+
+TEST(KeptShadows, FacesThatShowAMeshThatDeformedAreDrawnAgain) {
+  Scene scene = terrainScene();
+  Object small = scene.objects.back();
+  small.mesh = std::uint32_t(scene.meshes.size());
+  scene.meshes.push_back(scene.meshes.back());
+  small.object_to_world = glm::scale(glm::dmat4(1), glm::dvec3(0.01));
+  small.object_to_world[3] = {-3, 0.5, 2, 1};  // below the lamp whose range is 5
+  scene.objects.push_back(small);
+  liftLastMesh(scene);
+  poseScene(scene, 1);
+  // 20 of its metres up: beyond the box where it was.
+  ShadowMaps maps = takenAfter(scene, [&] { poseScene(scene, 21); });
+  const std::size_t taken = facesDrawn(maps);
+  EXPECT_GT(taken, 0u);
+  EXPECT_LT(taken, maps.planned.size());
+  drawNeeded(scene, everything(maps), maps);
+  expectMapsOf(scene, maps);
+  EXPECT_EQ(facesDrawn(takenAfter(scene, [&] { poseScene(scene, 21); })), maps.planned.size()) << "same pose";
 }
 
 TEST(KeptShadows, OnlyTheFacesOfALightThatMovedAreDrawnAgain) {

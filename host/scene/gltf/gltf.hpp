@@ -6,11 +6,16 @@
 
 namespace luciole {
 
+/// Which of a glTF file's choices a scene shows.
+struct GltfChoice {
+  std::string variant{};    ///< of materials (KHR_materials_variants), by its name; "": the default materials
+  std::string animation{};  ///< the only one that runs, by its name or counted from 0; "": all run together
+};
+
 /// Appends everything the file's default scene shows to `scene`: meshes, materials, textures, objects, lights
-/// and cameras. Reads .gltf and .glb. `variant`: one of the file's, by its name (KHR_materials_variants); "":
-/// the default materials. Throws InputError; its message names a required extension that is not supported. An
-/// object may be mirrored: then the determinant of its transform is negative, and in world space the fronts
-/// of its triangles are clockwise.
-void loadGltf(const std::string& path, Scene& scene, const std::string& variant = "");
+/// and cameras. Reads .gltf and .glb. Meshes deform by morph targets and skins. Throws InputError; its
+/// message names a required extension that is not supported. An object may be mirrored: then the determinant
+/// of its transform is negative, and in world space the fronts of its triangles are clockwise.
+void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice = {});
 
 }  // namespace luciole

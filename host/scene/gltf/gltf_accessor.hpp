@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,6 +15,27 @@ namespace luciole {
 /// `place` names, for messages, what refers to the accessor. Throws InputError where there is no such
 /// accessor, it has another type, or it reaches past its data.
 std::vector<float> readFloats(const GltfModel& model, int accessor, int components, const std::string& place);
+
+/// The values of an accessor as vectors. Throws as readFloats does.
+template <typename Vector>
+std::vector<Vector> readVectors(const GltfModel& model, int accessor, const std::string& place) {
+  const std::vector<float> values = readFloats(model, accessor, Vector::length(), place);
+  std::vector<Vector> vectors(values.size() / Vector::length());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    vectors[i / Vector::length()][i % Vector::length()] = values[i];
+  return vectors;
+}
+
+/// Throws InputError where a number of the vectors isn't finite.
+template <typename Vector>
+void checkFinite(const GltfModel& model, const std::vector<Vector>& vectors, const std::string& place) {
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    for (int j = 0; j < Vector::length(); ++j) {
+      if (!std::isfinite(vectors[i][j]))
+        failGltf(model, place, "element " + std::to_string(i) + " is not finite");
+    }
+  }
+}
 
 /// The values of a scalar accessor of unsigned integers. Throws as readFloats does.
 std::vector<std::uint32_t> readIndices(const GltfModel& model, int accessor, const std::string& place);

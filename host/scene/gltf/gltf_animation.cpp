@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "base/text_file.hpp"
 #include "scene/gltf/gltf_accessor.hpp"
+#include "scene/gltf/gltf_rest.hpp"
 
 namespace luciole {
 namespace {
@@ -33,80 +35,108 @@ std::vector<float> readTimes(const GltfModel& model, int input, const std::strin
   return times;
 }
 
-/// Reads a sampler (glTF 2.0, 3.11 and appendix C). Times become frames, and slopes become changes per frame.
-Curve readSampler(const GltfModel& model, const tinygltf::AnimationSampler& sampler, bool is_rotation,
-                  double frame_rate, const std::string& place) {
-  Curve curve;
-  curve.interpolation = interpolationOf(model, sampler.interpolation, is_rotation, place);
+/// What a channel changes.
+struct Target {
+  bool is_rotation = false, is_weights = false;
+  std::size_t count = 3;  ///< of its numbers
+};
+
+/// Reads a sampler (glTF 2.0, 3.11 and appendix C) into curves of four of the target's numbers each. Times
+/// become frames, and slopes become changes per frame.
+std::vector<Curve> readSampler(const GltfModel& model, const tinygltf::AnimationSampler& sampler,
+                               const Target& target, double frame_rate, const std::string& place) {
+  const Interpolation interpolation =
+      interpolationOf(model, sampler.interpolation, target.is_rotation, place);
   const std::vector<float> times = readTimes(model, sampler.input, place);
-  const std::size_t components = is_rotation ? 4 : 3;
-  const std::vector<float> values =
-      readFloats(model, sampler.output, static_cast<int>(components), place + ".output");
-  const bool is_cubic = curve.interpolation == Interpolation::kCubic;
-  const std::size_t expected = times.size() * components * (is_cubic ? 3 : 1);
+  const std::vector<float> values = readFloats(
+      model, sampler.output, target.is_weights ? 1 : static_cast<int>(target.count), place + ".output");
+  const bool is_cubic = interpolation == Interpolation::kCubic;
+  const std::size_t expected = times.size() * target.count * (is_cubic ? 3 : 1);
   if (values.size() != expected)
     failGltf(
         model, place,
         fmt::format("{} times and {} numbers of output, expected {}", times.size(), values.size(), expected));
-  const auto vectorAt = [&](std::size_t element) {
-    glm::dvec4 vector(0);
-    for (std::size_t i = 0; i < components; ++i) {
-      vector[static_cast<int>(i)] = values[element * components + i];
-      if (!std::isfinite(values[element * components + i]))
-        failGltf(model, place, "a number of its output is not finite");
+  for (const float value : values)
+    if (!std::isfinite(value)) failGltf(model, place, "a number of its output is not finite");
+  std::vector<Curve> curves;
+  for (std::size_t first = 0; first < target.count; first += 4) {
+    const auto vectorAt = [&](std::size_t element) {
+      glm::dvec4 vector(0);
+      for (std::size_t i = first; i < std::min(first + 4, target.count); ++i)
+        vector[static_cast<int>(i - first)] = values[element * target.count + i];
+      return vector;
+    };
+    Curve& curve = curves.emplace_back();
+    curve.interpolation = interpolation;
+    curve.keys.reserve(times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      CurveKey key;
+      key.frame = 1 + times[i] * frame_rate;
+      key.value = vectorAt(is_cubic ? 3 * i + 1 : i);
+      if (is_cubic) {
+        key.slope_in = vectorAt(3 * i) / frame_rate;
+        key.slope_out = vectorAt(3 * i + 2) / frame_rate;
+      }
+      if (target.is_rotation && !(glm::length(key.value) > 0))
+        failGltf(model, place, "a rotation is 0, expected unit quaternions");
+      if (interpolation == Interpolation::kSlerp) key.value = glm::normalize(key.value);
+      curve.keys.push_back(key);
     }
-    return vector;
-  };
-  curve.keys.reserve(times.size());
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    CurveKey key;
-    key.frame = 1 + times[i] * frame_rate;
-    key.value = vectorAt(is_cubic ? 3 * i + 1 : i);
-    if (is_cubic) {
-      key.slope_in = vectorAt(3 * i) / frame_rate;
-      key.slope_out = vectorAt(3 * i + 2) / frame_rate;
-    }
-    if (is_rotation && !(glm::length(key.value) > 0))
-      failGltf(model, place, "a rotation is 0, expected unit quaternions");
-    if (curve.interpolation == Interpolation::kSlerp) key.value = glm::normalize(key.value);
-    curve.keys.push_back(key);
   }
-  return curve;
+  return curves;
+}
+
+Target targetOf(const GltfModel& model, const tinygltf::AnimationChannel& channel, const std::string& place) {
+  const std::string& path = channel.target_path;
+  if (path == "translation" || path == "scale") return {};
+  if (path == "rotation") return {.is_rotation = true, .count = 4};
+  if (path != "weights")
+    failGltf(model, place,
+             fmt::format("path '{}' is none of translation, rotation, scale, weights", forMessage(path)));
+  const int mesh = model.file.nodes[channel.target_node].mesh;
+  const std::size_t count = mesh < 0 ? 0 : targetCount(model, mesh);
+  if (count == 0) failGltf(model, place, "moves weights of a node without morph targets");
+  return {.is_weights = true, .count = count};
+}
+
+/// Reads an animation into the curves of nodes. What others move already they keep.
+void readAnimation(const GltfModel& model, std::size_t index, Animation& animation,
+                   std::map<int, NodeCurves>& nodes) {
+  const tinygltf::Animation& source = model.file.animations[index];
+  std::map<std::pair<int, std::string>, std::vector<int>> known;  // sampler, path -> Animation::curves
+  for (std::size_t c = 0; c < source.channels.size(); ++c) {
+    const tinygltf::AnimationChannel& channel = source.channels[c];
+    const std::string place = fmt::format("animations[{}].channels[{}]", index, c);
+    element(model, model.file.nodes, channel.target_node, place, "node");
+    const Target target = targetOf(model, channel, place);
+    const tinygltf::AnimationSampler& sampler =
+        element(model, source.samplers, channel.sampler, place, "sampler");
+    std::vector<int>& curves = known[{channel.sampler, channel.target_path}];
+    if (curves.empty())
+      for (Curve& curve : readSampler(model, sampler, target, animation.frame_rate,
+                                      fmt::format("animations[{}].samplers[{}]", index, channel.sampler))) {
+        curves.push_back(static_cast<int>(animation.curves.size()));
+        animation.curves.push_back(std::move(curve));
+      }
+    NodeCurves& node = nodes[channel.target_node];
+    if (target.is_weights) {
+      if (node.weights.empty()) node.weights = curves;
+      continue;
+    }
+    int& part = target.is_rotation                     ? node.rotation
+                : channel.target_path == "translation" ? node.translation
+                                                       : node.scale;
+    if (part < 0) part = curves.front();
+  }
 }
 
 }  // namespace
 
 std::map<int, NodeCurves> readGltfAnimations(const GltfModel& model, Animation& animation) {
   std::map<int, NodeCurves> nodes;
-  for (std::size_t a = 0; a < model.file.animations.size(); ++a) {
-    const tinygltf::Animation& source = model.file.animations[a];
-    std::map<std::pair<int, bool>, int> curves;  // sampler, whether of rotations -> Animation::curves
-    for (std::size_t c = 0; c < source.channels.size(); ++c) {
-      const tinygltf::AnimationChannel& channel = source.channels[c];
-      const std::string& path = channel.target_path;
-      if (path == "weights") continue;
-      const std::string place = fmt::format("animations[{}].channels[{}]", a, c);
-      element(model, model.file.nodes, channel.target_node, place, "node");
-      int NodeCurves::*part = path == "translation" ? &NodeCurves::translation
-                              : path == "rotation"  ? &NodeCurves::rotation
-                              : path == "scale"     ? &NodeCurves::scale
-                                                    : nullptr;
-      if (!part)
-        failGltf(model, place,
-                 fmt::format("path '{}' is none of translation, rotation, scale, weights", forMessage(path)));
-      const tinygltf::AnimationSampler& sampler =
-          element(model, source.samplers, channel.sampler, place, "sampler");
-      const auto [known, is_new] = curves.try_emplace({channel.sampler, path == "rotation"}, -1);
-      if (is_new) {
-        known->second = static_cast<int>(animation.curves.size());
-        animation.curves.push_back(
-            readSampler(model, sampler, path == "rotation", animation.frame_rate,
-                        fmt::format("animations[{}].samplers[{}]", a, channel.sampler)));
-      }
-      int& index = nodes[channel.target_node].*part;
-      if (index < 0) index = known->second;
-    }
-  }
+  for (std::size_t i = 0; i < model.file.animations.size(); ++i)
+    if (model.animation < 0 || i == static_cast<std::size_t>(model.animation))
+      readAnimation(model, i, animation, nodes);
   return nodes;
 }
 

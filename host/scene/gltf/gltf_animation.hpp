@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <vector>
 
 #include "scene/animation.hpp"
 #include "scene/gltf/gltf_model.hpp"
@@ -12,12 +13,17 @@ struct NodeCurves {
   int translation = -1;
   int rotation = -1;  ///< quaternions x, y, z, w
   int scale = -1;
+  std::vector<int> weights;  ///< of the morph targets of its mesh, four a curve; empty: none
 };
 
+/// Whether curves move the node itself.
+inline bool movesNode(const NodeCurves& curves) {
+  return curves.translation >= 0 || curves.rotation >= 0 || curves.scale >= 0;
+}
+
 /// Reads the animations of a glTF file into curves over frames (frame 1 is time 0, at animation.frame_rate).
-/// Returns the curves of each animated node by its index. All animations run together; where two move the
-/// same part of a node, the first one counts. Morph weights are left out. Throws InputError for invalid
-/// animations.
+/// Returns the curves of each animated node by its index. Where several run together and two move
+/// the same part of a node, the first one counts. Throws InputError for invalid animations.
 std::map<int, NodeCurves> readGltfAnimations(const GltfModel& model, Animation& animation);
 
 }  // namespace luciole

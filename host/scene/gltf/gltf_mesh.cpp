@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "scene/gltf/gltf_accessor.hpp"
+#include "scene/gltf/gltf_rest.hpp"
 #include "scene/gltf/gltf_uvs.hpp"
 #include "scene/normals.hpp"
 
@@ -45,21 +47,7 @@ std::vector<Vector> readAttribute(const GltfModel& model, const tinygltf::Primit
                                   const std::string& name, const std::string& place) {
   const auto found = primitive.attributes.find(name);
   if (found == primitive.attributes.end()) return {};
-  const std::string here = place + "." + name;
-  const std::vector<float> values = readFloats(model, found->second, Vector::length(), here);
-  std::vector<Vector> vectors(values.size() / Vector::length());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    vectors[i / Vector::length()][i % Vector::length()] = values[i];
-  return vectors;
-}
-
-template <typename Vector>
-void checkFinite(const GltfModel& model, const std::vector<Vector>& vectors, const std::string& place) {
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    for (int j = 0; j < Vector::length(); ++j) {
-      if (!std::isfinite(vectors[i][j])) failGltf(model, place, fmt::format("element {} is not finite", i));
-    }
-  }
+  return readVectors<Vector>(model, found->second, place + "." + name);
 }
 
 std::vector<glm::vec4> readColors(const GltfModel& model, const tinygltf::Primitive& primitive,
@@ -95,6 +83,7 @@ void makeFlat(Mesh& mesh) {
   mesh.lightmap_uvs = unshared(mesh.lightmap_uvs, mesh.triangles);
   mesh.tangents.clear();  // glTF: those of a file without normals are to be ignored
   mesh.colors = unshared(mesh.colors, mesh.triangles);
+  mesh.sources = unshared(mesh.sources, mesh.triangles);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
   mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
 }
@@ -161,7 +150,9 @@ void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const
   uvs = uvsOf(model, primitive, emission, place);
 }
 
-Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place) {
+/// rest: null, or what its shape at rest is appended to.
+Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
+                   RestShape* rest) {
   Mesh mesh;
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return mesh;
   if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
@@ -191,11 +182,14 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
   for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));
 
   mesh.triangles = readTriangles(model, primitive, mesh.positions.size(), place);
-  if (mesh.normals.empty()) {
-    makeFlat(mesh);
-  } else {
-    repairNormals(mesh);
+  const bool is_flat = mesh.normals.empty();
+  if (!is_flat) repairNormals(mesh);
+  if (rest) {
+    mesh.sources.resize(mesh.positions.size());
+    std::iota(mesh.sources.begin(), mesh.sources.end(), static_cast<std::uint32_t>(rest->positions.size()));
+    appendRest(model, primitive, mesh, place, *rest);
   }
+  if (is_flat) makeFlat(mesh);
   return mesh;
 }
 
@@ -227,6 +221,7 @@ void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
   appendOptional(mesh.colors, before, more.colors, added, glm::vec4(1));
   mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
   mesh.normals.insert(mesh.normals.end(), more.normals.begin(), more.normals.end());
+  mesh.sources.insert(mesh.sources.end(), more.sources.begin(), more.sources.end());
   for (const glm::uvec3& triangle : more.triangles) {
     mesh.triangles.push_back(triangle + static_cast<std::uint32_t>(before));
     mesh.triangle_materials.push_back(material);
@@ -236,7 +231,7 @@ void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
 }  // namespace
 
 Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials,
-                  std::uint32_t first_material) {
+                  std::uint32_t first_material, RestShape* rest) {
   const tinygltf::Mesh& source = model.file.meshes[index];
   Mesh mesh;
   mesh.name = source.name;
@@ -244,7 +239,7 @@ Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials
   if (source.primitives.empty()) failGltf(model, place, "has no primitives, expected at least one");
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const tinygltf::Primitive& primitive = source.primitives[i];
-    const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i));
+    const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i), rest);
     if (part.triangles.empty()) continue;
     const int material = materialOf(model, primitive);
     auto known = std::find(materials.begin(), materials.end(), material);

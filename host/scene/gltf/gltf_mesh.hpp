@@ -7,11 +7,12 @@
 
 namespace luciole {
 
-/// The triangles of all primitives of a glTF mesh as one mesh; points and lines are left out, and skins and
-/// morph targets keep their rest pose. `materials` lists the glTF materials in use, −1 for the default one;
-/// new ones are appended. Mesh::triangle_materials are positions in that list plus `first_material`. `index`
-/// must be in range. The mesh is empty where there is nothing to draw. Throws InputError.
+/// The triangles of all primitives of a glTF mesh as one mesh, at rest; points and lines are left out.
+/// `materials` lists the glTF materials in use, −1 for the default one; new ones are appended.
+/// Mesh::triangle_materials are positions in that list plus `first_material`. `index` must be in range. The
+/// mesh is empty where there is nothing to draw. `rest`: null, or where the shape at rest goes, with morph
+/// targets and influences of joints; then the mesh has `sources`. Throws InputError.
 Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials,
-                  std::uint32_t first_material);
+                  std::uint32_t first_material, RestShape* rest = nullptr);
 
 }  // namespace luciole

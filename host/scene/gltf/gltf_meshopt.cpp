@@ -6,43 +6,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace luciole {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
-constexpr std::size_t kGlbHeader = 20;  // of a GLB and its first chunk
-
-std::uint32_t wordAt(const std::string& bytes, std::size_t place) {
-  std::uint32_t word = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    word |= std::uint32_t{static_cast<unsigned char>(bytes[place + i])} << 8 * i;
-  return word;
-}
-
-void setWord(std::size_t place, std::uint32_t word, std::string& bytes) {
-  for (std::size_t i = 0; i < 4; ++i) bytes[place + i] = static_cast<char>(word >> 8 * i & 0xff);
-}
-
-/// Gives the buffers their bytes. Returns whether there are any such.
-bool fillPlaceholders(Json& file) {
-  if (!file.is_object() || !file.contains("buffers") || !file["buffers"].is_array()) return false;
-  bool any = false;
-  for (Json& buffer : file["buffers"]) {
-    if (!buffer.is_object() || buffer.contains("uri")) continue;
-    const Json fallback =
-        buffer.value(Json::json_pointer(std::string("/extensions/") + kMeshopt + "/fallback"), Json());
-    if (fallback != Json(true)) continue;
-    buffer["uri"] = "data:application/octet-stream;base64,AA==";
-    buffer["byteLength"] = 1;
-    any = true;
-  }
-  return any;
-}
 
 /// What the extension says of a buffer view.
 struct Compressed {
@@ -129,27 +98,6 @@ std::vector<std::byte> decode(const GltfModel& model, const Compressed& compress
 }
 
 }  // namespace
-
-std::string withPlaceholders(std::string bytes) {
-  if (bytes.find(kMeshopt) == std::string::npos) return bytes;
-  const bool is_binary = bytes.starts_with("glTF");
-  std::size_t begin = 0, end = bytes.size();
-  if (is_binary) {
-    if (bytes.size() < kGlbHeader || wordAt(bytes, 12) > bytes.size() - kGlbHeader) return bytes;
-    begin = kGlbHeader;
-    end = kGlbHeader + wordAt(bytes, 12);
-  }
-  Json file = Json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
-                          bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-  if (file.is_discarded() || !fillPlaceholders(file)) return bytes;
-  std::string text = file.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (!is_binary) return text;
-  text.append((4 - text.size() % 4) % 4, ' ');
-  bytes.replace(begin, end - begin, text);
-  setWord(8, static_cast<std::uint32_t>(wordAt(bytes, 8) + text.size() - (end - begin)), bytes);
-  setWord(12, static_cast<std::uint32_t>(text.size()), bytes);
-  return bytes;
-}
 
 void decodeMeshopt(GltfModel& model) {
   for (std::size_t i = 0; i < model.file.bufferViews.size(); ++i) {

@@ -18,24 +18,20 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/gltf/gltf_draco.hpp"
+#include "scene/gltf/gltf_fit.hpp"
 #include "scene/gltf/gltf_meshopt.hpp"
 #include "scene/gltf/gltf_uris.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr std::string_view kSupportedExtensions[] = {"EXT_mesh_gpu_instancing",
-                                                     "EXT_meshopt_compression",
-                                                     "EXT_texture_webp",
-                                                     "KHR_lights_punctual",
-                                                     "KHR_materials_emissive_strength",
-                                                     "KHR_materials_ior",
-                                                     "KHR_materials_specular",
-                                                     "KHR_materials_variants",
-                                                     "KHR_materials_unlit",
-                                                     "KHR_mesh_quantization",
-                                                     "KHR_node_visibility",
-                                                     "KHR_texture_transform"};
+constexpr std::string_view kSupportedExtensions[] = {
+    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
+    "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",  "KHR_materials_variants",
+    "KHR_materials_unlit",        "KHR_mesh_quantization",   "KHR_node_visibility",
+    "KHR_texture_transform"};
 
 bool isSupported(const std::string& extension) {
   const auto end = std::end(kSupportedExtensions);
@@ -89,7 +85,7 @@ void checkRequiredExtensions(const GltfModel& model) {
 void parse(GltfModel& model) {
   std::string bytes = readFile(model.path);
   checkNesting(model.path, jsonOf(bytes, bytes.starts_with("glTF")));
-  bytes = withPlaceholders(std::move(bytes));
+  bytes = fitForTinygltf(std::move(bytes));
   const bool is_binary = bytes.starts_with("glTF");
   const std::size_t size = bytes.size();
   if (size > std::numeric_limits<int>::max()) throw InputError(model.path + ": is larger than 2 GiB");
@@ -134,6 +130,7 @@ GltfModel readGltfModel(const std::string& path) {
              fmt::format("version is '{}', expected 2.0", forMessage(model.file.asset.version)));
   }
   decodeMeshopt(model);
+  decodeDraco(model);
   return model;
 }
 
@@ -180,6 +177,13 @@ std::vector<std::string> variantNames(const GltfModel& model) {
     if (!name.IsString()) failGltf(model, fmt::format("{}[{}]", place, i), "has no name");
     names.push_back(name.Get<std::string>());
   }
+  return names;
+}
+
+std::vector<std::string> animationNames(const GltfModel& model) {
+  std::vector<std::string> names;
+  for (const tinygltf::Animation& animation : model.file.animations)
+    names.push_back(animation.name.empty() ? std::to_string(names.size()) : animation.name);
   return names;
 }
 

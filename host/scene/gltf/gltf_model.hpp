@@ -16,14 +16,18 @@ struct GltfModel {
   std::string path;
   tinygltf::Model
       file;  ///< Image::image holds a picture file's bytes, not texels; empty where it lies in a buffer
-  /// What buffer views hold that are compressed, by their index (decodeMeshopt()).
+  /// What buffer views hold that are compressed, by their index (decodeMeshopt(), decodeDraco()).
   std::map<int, std::vector<std::byte>> decoded{};
-  int variant = -1;  ///< which of variantNames() materials are of; −1: the primitives' own
+  int variant = -1;    ///< which of variantNames() materials are of; −1: the primitives' own
+  int animation = -1;  ///< which of the file's runs; −1: all
 };
 
 /// The names of the file's variants (KHR_materials_variants). Throws InputError where they aren't a list of
 /// names.
 std::vector<std::string> variantNames(const GltfModel& model);
+
+/// What the file's animations are called: by name, or by index where they have none.
+std::vector<std::string> animationNames(const GltfModel& model);
 
 /// Parses a .gltf or .glb with its buffers and pictures. Throws InputError: among others for a glTF other
 /// than 2.x, a missing buffer, and a required extension that is not supported.

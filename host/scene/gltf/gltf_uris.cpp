@@ -16,12 +16,10 @@
 namespace luciole {
 namespace {
 
-using Json = nlohmann::json;
-
 bool isHexDigit(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
 
 /// A SAX handler that checks the URIs of a glTF file's buffers and images.
-class UriCheck : public nlohmann::json_sax<Json> {
+class UriCheck : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit UriCheck(const std::string& path) : path_(path) {}
 
@@ -35,7 +33,9 @@ class UriCheck : public nlohmann::json_sax<Json> {
   bool start_array(std::size_t) override { return open(); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
-  bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
+    return false;
+  }
 
   bool key(string_t& name) override {
     levels_.back().key = name;
@@ -104,7 +104,7 @@ class UriCheck : public nlohmann::json_sax<Json> {
 
 void checkUris(const std::string& path, std::string_view json) {
   UriCheck check(path);
-  Json::sax_parse(json, &check);
+  nlohmann::json::sax_parse(json, &check);
 }
 
 }  // namespace luciole

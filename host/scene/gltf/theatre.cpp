@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kStageRadius = 12.5, kStageHeight = 0.12, kRowWidth = 1.3, kRowHeight = 0.6;
 constexpr int kRows = 19;
-constexpr double kTop = kRows * kRowHeight, kLastRow = kStageRadius + kRows * kRowWidth, kBack = 41.0;
+constexpr double kTop = kRows * kRowHeight, kBack = 41.0;
 constexpr double kTempleFloor = 0.6;
 /// Steps of a full turn, and those of the rows: five eighths of it around −z.
 constexpr int kSteps = 256;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <vector>
 
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/text_file.hpp"
 
@@ -31,22 +31,6 @@ std::string describe(const Json& json) {
 
 [[noreturn]] void expected(const JsonNode& node, const std::string& what) {
   refuse(node, fmt::format("expected {}, got {}", what, describe(*node.json)));
-}
-
-/// Levenshtein's distance: the fewest letters to insert, delete or replace.
-std::size_t editDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -29,10 +30,10 @@ struct LoadedFile {
 
 /// What has been loaded so far, by its key, so that nothing is loaded twice.
 struct Loaded {
-  std::uint32_t plain_material = 0;               ///< of primitives that name none
-  std::map<std::string, int> materials;           ///< name -> index in Scene::materials
-  std::map<std::string, LoadedFile> mesh_files;   ///< by path
-  std::map<Primitive, std::uint32_t> primitives;  ///< -> index in Scene::meshes
+  std::uint32_t plain_material = 0;                             ///< of primitives that name none
+  std::map<std::string, int> materials;                         ///< name -> index in Scene::materials
+  std::map<std::array<std::string, 3>, LoadedFile> mesh_files;  ///< by path, variant and animation
+  std::map<Primitive, std::uint32_t> primitives;                ///< -> index in Scene::meshes
 };
 
 /// No texture where the file is missing.
@@ -93,6 +94,12 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
   if (const auto n = find(node, "double_sided")) material.double_sided = readBool(*n);
   if (const auto n = find(node, "model")) material.model = readModel(*n);
   return material;
+}
+
+std::string readName(const JsonNode& node) {
+  const std::string name = readText(node);
+  if (name.empty()) refuse(node, "expected a name, got \"\"");
+  return name;
 }
 
 Primitive readPrimitive(const JsonNode& object) {
@@ -179,17 +186,22 @@ std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
 }
 
 /// The objects of a mesh file. At its first use it is loaded into the scene, without its lights and cameras.
-const LoadedFile& loadedFile(const std::string& path, Loaded& loaded, Scene& scene) {
-  const auto [it, is_new] = loaded.mesh_files.try_emplace(path);
+const LoadedFile& loadedFile(const std::string& path, const GltfChoice& choice, Loaded& loaded,
+                             Scene& scene) {
+  const auto [it, is_new] = loaded.mesh_files.try_emplace({path, choice.variant, choice.animation});
   if (!is_new) return it->second;
   Animation& animation = scene.animation;
   const std::size_t first_object = scene.objects.size(), first_node = animation.nodes.size();
   const std::size_t light_count = scene.lights.size(), camera_count = scene.cameras.size();
   const std::size_t first_attached = animation.objects.size();
-  loadMeshFile(path, scene);
+  const std::size_t deformations = animation.deformations.size();
+  loadMeshFile(path, scene, choice);
   LoadedFile& file = it->second;
   file.objects = cutFrom(scene.objects, first_object);
   file.nodes = cutFrom(animation.nodes, first_node);
+  // All placements show meshes of one shape, which joints give it where the file itself has them.
+  if (animation.deformations.size() > deformations)
+    animation.nodes.insert(animation.nodes.end(), file.nodes.begin(), file.nodes.end());
   file.attachments = cutFrom(animation.objects, first_attached);
   for (MovingNode& node : file.nodes) node.parent -= node.parent < 0 ? 0 : static_cast<int>(first_node);
   for (Attachment& attachment : file.attachments) {
@@ -242,8 +254,8 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
 }
 
 void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded, Scene& scene) {
-  allowKeys(node, {"mesh", "primitive", "translate", "rotate", "scale", "material", "segments",
-                   "minor_radius", "uv_scale", "keys", "interpolation", "name"});
+  allowKeys(node, {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
+                   "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name"});
   const Placement placement = readPlacement(node, scene.animation);
   int material = -1;
   if (const auto n = find(node, "material")) {
@@ -257,8 +269,12 @@ void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded,
     refuseKeys(node, {"primitive", "segments", "minor_radius", "uv_scale"}, "beside mesh");
     const std::string path = readPath(*n, folder);
     if (!isMeshFile(path)) refuse(*n, fmt::format("expected a .obj, .gltf or .glb file, got {}", path));
-    parts = &loadedFile(path, loaded, scene);
+    GltfChoice choice;
+    if (const auto variant = find(node, "variant")) choice.variant = readName(*variant);
+    if (const auto animation = find(node, "animation")) choice.animation = readName(*animation);
+    parts = &loadedFile(path, choice, loaded, scene);
   } else if (find(node, "primitive")) {
+    refuseKeys(node, {"variant", "animation"}, "beside primitive");
     const Primitive primitive = readPrimitive(node);
     const auto [it, is_new] =
         loaded.primitives.try_emplace(primitive, static_cast<std::uint32_t>(scene.meshes.size()));

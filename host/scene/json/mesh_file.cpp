@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "scene/gltf/gltf.hpp"
 #include "scene/obj/obj.hpp"
 
 namespace luciole {
@@ -21,13 +20,21 @@ bool isMeshFile(const std::string& path) {
   return extension == ".obj" || extension == ".gltf" || extension == ".glb";
 }
 
-void loadMeshFile(const std::string& path, Scene& scene, const std::string& variant) {
+void loadMeshFile(const std::string& path, Scene& scene, const GltfChoice& choice) {
   if (extensionOf(path) == ".obj") {
-    if (!variant.empty()) throw InputError(path + ": has no variants, which only glTF files have");
+    checkIsGltf(path, choice);
     loadObj(path, scene);
   } else {
-    loadGltf(path, scene, variant);
+    loadGltf(path, scene, choice);
   }
+}
+
+void checkIsGltf(const std::string& path, const GltfChoice& choice) {
+  const std::string extension = extensionOf(path);
+  if (extension == ".gltf" || extension == ".glb") return;
+  if (!choice.variant.empty()) throw InputError(path + ": has no variants, which only glTF files have");
+  if (!choice.animation.empty())
+    throw InputError(path + ": has no animations by name, which only glTF files have");
 }
 
 }  // namespace luciole

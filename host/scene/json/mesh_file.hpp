@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "scene/gltf/gltf.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
@@ -9,8 +10,11 @@ namespace luciole {
 /// Whether the name ends in .obj, .gltf or .glb, case ignored.
 bool isMeshFile(const std::string& path);
 
-/// Appends a mesh file to `scene`, as loadObj or loadGltf do. An OBJ file has no variants. Throws InputError.
-void loadMeshFile(const std::string& path, Scene& scene, const std::string& variant = "");
+/// Appends a mesh file to `scene`, as loadObj or loadGltf do. An OBJ file has no choices. Throws InputError.
+void loadMeshFile(const std::string& path, Scene& scene, const GltfChoice& choice = {});
+
+/// Throws InputError where a choice is made for a file that isn't glTF.
+void checkIsGltf(const std::string& path, const GltfChoice& choice);
 
 /// A file name's extension with its dot, in lower case; "" where there is none.
 std::string extensionOf(const std::string& path);

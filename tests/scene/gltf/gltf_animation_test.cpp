@@ -28,7 +28,7 @@ GltfFile animatedFile(const std::string& path, const std::string& interpolation,
   return file;
 }
 
-glm::dvec3 placeAt(Scene& scene, double frame) {
+glm::dvec3 placeAt(Scene scene, double frame) {
   poseScene(scene, frame);
   return glm::dvec3(scene.objects.at(0).object_to_world[3]);
 }
@@ -115,16 +115,61 @@ TEST_F(GltfAnimation, AnAnimatedNodeKeepsWhatNoChannelMoves) {
 
 TEST_F(GltfAnimation, AllAnimationsRunAndTheFirstWins) {
   GltfFile file = animatedFile("translation", "LINEAR", {0, 1}, {0, 0, 0, 24, 0, 0});
-  json other = file.root["animations"][0], scale = other, weights = other;
+  json other = file.root["animations"][0], scale = other;
   const int output = file.addAccessor<float>("VEC3", kFloat, 3, {9, 9, 9, 9, 9, 9});
   other["samplers"][0]["output"] = output;
   scale["samplers"][0]["output"] = output;
   scale["channels"][0]["target"]["path"] = "scale";
-  weights["channels"][0]["target"]["path"] = "weights";
-  for (const json& more : {other, scale, weights}) file.root["animations"].push_back(more);
+  for (const json& more : {other, scale}) file.root["animations"].push_back(more);
   Scene scene = load(file);
   EXPECT_EQ(placeAt(scene, 2), glm::dvec3(1, 0, 0));
+  poseScene(scene, 2);
   EXPECT_EQ(scene.objects[0].object_to_world[0][0], 9);
+}
+
+TEST_F(GltfAnimation, OneIsChosenByItsNameOrNumber) {
+  GltfFile file = animatedFile("translation", "LINEAR", {0, 1}, {0, 0, 0, 24, 0, 0});
+  json other = file.root["animations"][0];
+  other["samplers"][0]["output"] = file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 0, 0, 48, 0});
+  for (const char* name : {"walk", "", "walk", "rest"}) {
+    if (*name) other["name"] = name;
+    file.root["animations"].push_back(other);
+    other.erase("name");
+  }
+  load(file);
+  const auto open = [&](const std::string& animation) {
+    return loadScene(folder / "a.gltf", 2, MissingTextures::kError, {.animation = animation});
+  };
+  EXPECT_EQ(open("").animations, (std::vector<std::string>{"0", "walk", "2", "walk", "rest"}));
+  EXPECT_EQ(placeAt(open("0"), 2), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(placeAt(open("rest"), 2), glm::dvec3(0, 2, 0));
+  EXPECT_EQ(placeAt(open("3"), 2), glm::dvec3(0, 2, 0)) << "a number of one with a name";
+  const auto refusal = [&](const std::string& animation) {
+    try {
+      open(animation);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(refusal("walk"), HasSubstr("has several animations 'walk'; expected a number"));
+  EXPECT_THAT(refusal("rast"), HasSubstr("has no animation 'rast'; did you mean rest?; it has 0, walk, 2"));
+  EXPECT_THAT(refusal("5"), HasSubstr("has no animation '5'"));
+  EXPECT_THAT(refusal("-1"), HasSubstr("has no animation '-1'"));
+}
+
+TEST_F(GltfAnimation, ASceneFileNamesTheOneThatAnObjectHas) {
+  GltfFile file = animatedFile("translation", "LINEAR", {0, 1}, {0, 0, 0, 24, 0, 0});
+  json other = file.root["animations"][0];
+  other["samplers"][0]["output"] = file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 0, 0, 24, 0});
+  other["name"] = "rise";
+  file.root["animations"].push_back(other);
+  load(file);
+  std::ofstream(folder / "scene.json")
+      << R"({"objects": [{"mesh": "a.gltf"}, {"mesh": "a.gltf", "animation": "rise"}]})";
+  const Scene scene = loadScene(folder / "scene.json", 2);
+  EXPECT_EQ(glm::dvec3(scene.objects.at(0).object_to_world[3]), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(glm::dvec3(scene.objects.at(1).object_to_world[3]), glm::dvec3(0, 1, 0));
 }
 
 TEST_F(GltfAnimation, AnimatedFilesMoveWhereASceneFilePlacesThem) {

@@ -53,7 +53,7 @@ TEST_F(GltfLoader, VariantsChooseMaterials) {
   const auto materialOf = [&](const char* variant) {
     load(file);
     Scene scene;
-    loadGltf(folder / "a.gltf", scene, variant);
+    loadGltf(folder / "a.gltf", scene, {.variant = variant});
     EXPECT_EQ(scene.variants, (std::vector<std::string>{"day", "dusk", "night"}));
     return scene.materials.at(scene.meshes.at(0).triangle_materials.at(0)).name;
   };

@@ -1,0 +1,179 @@
+#include "scene/gltf/gltf_nodes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/pose.hpp"
+
+namespace luciole {
+namespace {
+
+/// A node's own transform: given as a matrix, or as its three parts.
+struct LocalTransform {
+  bool is_matrix = false;
+  glm::dmat4 matrix{1.0};
+  glm::dvec3 translate{0.0}, scale{1.0};
+  glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};
+};
+
+LocalTransform localTransform(const GltfModel& model, int index) {
+  const tinygltf::Node& node = model.file.nodes[index];
+  const auto has = [&](const std::vector<double>& values, std::size_t count, const char* name) {
+    if (values.empty() || values.size() == count) return !values.empty();
+    failGltf(model, nodePlace(index),
+             fmt::format("{} has {} numbers, expected {}", name, values.size(), count));
+  };
+  LocalTransform local;
+  if (has(node.matrix, 16, "matrix")) {
+    local.is_matrix = true;
+    for (int i = 0; i < 16; ++i) local.matrix[i / 4][i % 4] = node.matrix[i];
+    const glm::dvec4 last_row(local.matrix[0].w, local.matrix[1].w, local.matrix[2].w, local.matrix[3].w);
+    if (last_row != glm::dvec4(0, 0, 0, 1))
+      failGltf(model, nodePlace(index), "matrix must have 0 0 0 1 as last row");
+    return local;
+  }
+  for (int i = 0; has(node.translation, 3, "translation") && i < 3; ++i)
+    local.translate[i] = node.translation[i];
+  for (int i = 0; has(node.rotation, 4, "rotation") && i < 4; ++i) local.rotation[i] = node.rotation[i];
+  for (int i = 0; has(node.scale, 3, "scale") && i < 3; ++i) local.scale[i] = node.scale[i];
+  if (!(glm::length(local.rotation) > 0))
+    failGltf(model, nodePlace(index), "rotation must be a unit quaternion");
+  local.matrix = placementByQuaternion(local.translate, local.rotation, local.scale);
+  return local;
+}
+
+/// The MovingNode of an animated node. Parts that no curve moves keep the node's own value.
+MovingNode movingNode(const LocalTransform& local, const NodeCurves& curves, Animation& animation) {
+  const auto orConstant = [&](int curve, const glm::dvec4& value) {
+    if (curve >= 0) return curve;
+    animation.curves.push_back(constantCurve(value));
+    return static_cast<int>(animation.curves.size()) - 1;
+  };
+  MovingNode moving;
+  moving.quaternion = true;
+  moving.translate = orConstant(curves.translation, glm::dvec4(local.translate, 0));
+  moving.rotate = orConstant(curves.rotation, local.rotation);
+  moving.scale = orConstant(curves.scale, glm::dvec4(local.scale, 0));
+  return moving;
+}
+
+/// The nodes at the top of the scene to show: the default one, else the first, else every node without a
+/// parent.
+std::vector<int> rootNodes(const GltfModel& model) {
+  const tinygltf::Model& file = model.file;
+  if (!file.scenes.empty()) {
+    return element(model, file.scenes, std::max(file.defaultScene, 0), "scene", "scene").nodes;
+  }
+  std::vector<bool> is_child(file.nodes.size(), false);
+  for (const tinygltf::Node& node : file.nodes) {
+    for (const int child : node.children) {
+      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) is_child[child] = true;
+    }
+  }
+  std::vector<int> roots;
+  for (std::size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+/// Whether a node hides itself and all below it (KHR_node_visibility).
+bool isHidden(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  if (found == node.extensions.end()) return false;
+  const tinygltf::Value& visible = memberOf(found->second, "visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
+/// Of each node the one that it is a child of; -1: none. Throws InputError unless every node has one parent
+/// at most, and roots have none.
+std::vector<int> parentsOf(const GltfModel& model, const std::vector<int>& roots) {
+  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  std::vector<int> parents(nodes.size(), -1), uses(nodes.size(), 0);
+  const auto use = [&](int node, const std::string& place) {
+    element(model, nodes, node, place, "node");
+    if (++uses[node] > 1)
+      failGltf(model, nodePlace(node), "has two parents or contains itself, expected a tree");
+  };
+  for (const int root : roots) use(root, "scene");
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const int child : nodes[i].children) {
+      use(child, nodePlace(static_cast<int>(i)));
+      parents[child] = static_cast<int>(i);
+    }
+  return parents;
+}
+
+/// The node above all others that a node lies below. Throws InputError where it lies below itself.
+int topOf(const GltfModel& model, const std::vector<int>& parents, int node) {
+  int top = node;
+  for (std::size_t steps = 0; parents[top] >= 0; ++steps) {
+    if (steps > parents.size()) failGltf(model, nodePlace(node), "contains itself, expected a tree");
+    top = parents[top];
+  }
+  return top;
+}
+
+/// Appends a tree of nodes, parents first. `shown`: as PlacedNode has it. with_hidden: also those that are
+/// hidden.
+void placeTree(const GltfModel& model, int root, bool shown, bool with_hidden,
+               const std::map<int, NodeCurves>& curves, Animation& animation,
+               std::vector<PlacedNode>& placed) {
+  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  std::vector<PlacedNode> stack{{.node = root, .shown = shown}};
+  while (!stack.empty()) {
+    PlacedNode next = stack.back();
+    stack.pop_back();
+    if (isHidden(nodes[next.node])) next.shown = false;
+    if (!next.shown && !with_hidden) continue;
+    const LocalTransform local = localTransform(model, next.node);
+    next.to_world = next.to_world * local.matrix;
+    if (!isFinite(next.to_world)) failGltf(model, nodePlace(next.node), "transform is not finite");
+    const auto animated = curves.find(next.node);
+    if (animated != curves.end() && movesNode(animated->second)) {
+      if (local.is_matrix) failGltf(model, nodePlace(next.node), "is animated, so it must have no matrix");
+      MovingNode moving = movingNode(local, animated->second, animation);
+      moving.parent = next.moving;
+      moving.before = next.since;
+      next.moving = static_cast<int>(animation.nodes.size());
+      next.since = glm::dmat4(1.0);
+      animation.nodes.push_back(moving);
+    } else {
+      next.since = next.since * local.matrix;
+    }
+    placed.push_back(next);
+    const std::vector<int>& children = nodes[next.node].children;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      stack.push_back(next);
+      stack.back().node = *child;
+    }
+  }
+}
+
+}  // namespace
+
+std::string nodePlace(int node) { return fmt::format("nodes[{}]", node); }
+
+std::vector<PlacedNode> placedNodes(const GltfModel& model, const std::map<int, NodeCurves>& curves,
+                                    Animation& animation) {
+  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  const std::vector<int> roots = rootNodes(model), parents = parentsOf(model, roots);
+  const bool has_skins = std::ranges::any_of(nodes, [](const auto& node) { return node.skin >= 0; });
+  std::vector<PlacedNode> placed;
+  for (const int root : roots) placeTree(model, root, true, has_skins, curves, animation, placed);
+  if (!has_skins) return placed;
+  std::vector<bool> is_placed(nodes.size(), false);
+  for (const PlacedNode& node : placed) is_placed[node.node] = true;
+  for (std::size_t i = 0; i < model.file.skins.size(); ++i)
+    for (const int joint : model.file.skins[i].joints) {
+      element(model, nodes, joint, fmt::format("skins[{}]", i), "node");
+      if (is_placed[joint]) continue;
+      const std::size_t first = placed.size();
+      placeTree(model, topOf(model, parents, joint), false, true, curves, animation, placed);
+      for (std::size_t n = first; n < placed.size(); ++n) is_placed[placed[n].node] = true;
+    }
+  return placed;
+}
+
+}  // namespace luciole

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/animation.hpp"
+#include "scene/gltf/gltf_animation.hpp"
+#include "scene/gltf/gltf_model.hpp"
+
+namespace luciole {
+
+/// A node with its place in the world.
+struct PlacedNode {
+  int node = 0;
+  glm::dmat4 to_world{1.0};  ///< without animation
+  int moving = -1;           ///< the node of Animation::nodes that it is attached to; -1: none
+  glm::dmat4 since{1.0};     ///< from the node's space to that of `moving`, or to world space
+  bool shown = true;         ///< false: only skins may need it
+};
+
+/// "nodes[index]", for messages.
+std::string nodePlace(int node);
+
+/// Every node of the scene that isn't hidden (KHR_node_visibility), parents first; where the file has skins
+/// also those that are, and the trees of joints outside the scene. Nodes that curves move are added to the
+/// animation. Throws InputError unless the nodes form trees (roots without a parent, other nodes with at most
+/// one), and where a transform isn't finite.
+std::vector<PlacedNode> placedNodes(const GltfModel& model, const std::map<int, NodeCurves>& curves,
+                                    Animation& animation);
+
+}  // namespace luciole
