@@ -69,7 +69,7 @@ enum OptionGroup : unsigned {
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
-  kBitsOptions = 512,  ///< --hash, --require-exact
+  kExactOption = 512,  ///< --require-exact
   kColorOptions =
       256,  ///< instead of all others, for pictures that aren't of a scene: what a file holds of
             ///< colours (--exposure in stops, --dither, --tone, --bits, --half), without --stats and --trace

@@ -37,7 +37,7 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
                    {"triangles", stats.triangles},
                    {"lights", stats.lights},
                    {"milliseconds", eventMilliseconds(ended - stats.began)}};
-  if (!stats.sha256.empty()) done["sha256"] = stats.sha256;
+  if (!stats.hash.empty()) done["hash"] = stats.hash;
   logEvent("frame_done", done);
 }
 
@@ -109,9 +109,6 @@ void checkOutput(const PictureOptions& options) {
                         "in each pixel; "
                         "leave out {}",
                         what, options.light_groups ? "--light-groups" : "these of --aov"));
-  if (options.hash && (options.output == "-" || options.stats == "-"))
-    throw InputError(fmt::format("--hash: is written to standard output, and so is {}",
-                                 options.output == "-" ? "the picture" : "what --stats says"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkOtherOutputs(options);
@@ -212,8 +209,8 @@ Stats laterStats(const std::string& command) {
 void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   const double ended = millisecondsSinceStart();
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats, ended));
-  if (!stats.sha256.empty()) {
-    fmt::print("{}  {}\n", stats.sha256, options.output);
+  if (!stats.hash.empty()) {
+    fmt::print("{}  {}\n", stats.hash, options.output);
     std::fflush(stdout);  // whoever waits for a frame's line gets it when the frame is done
   }
   if (logsEvents()) return logPicture(options, stats, ended, frame);

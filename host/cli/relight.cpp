@@ -151,7 +151,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
     });
   }
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
-    if (options.hash) stats.sha256 = pictureHash(image);
+    if (options.hash) stats.hash = pictureHash(image);
     return writeImage(image, options.output, pictureMetadata(stats, &device), writeOptions(options, gbuffer));
   });
   reportHalves(options, limited, stats);
@@ -204,7 +204,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
       ->required();
   addPictureOptions(
       *command, *options,
-      kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kBitsOptions);
+      kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kExactOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);
@@ -257,7 +257,7 @@ void addRelightCommand(CLI::App& app, CommandContext& context) {
   command->add_flag("--add", options->add, "add the light to IN's own picture");
   addPictureOptions(
       *command, *options,
-      kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kBitsOptions);
+      kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kExactOption);
   command->callback([&context, options] { relight(context, *options); });
 }
 

@@ -85,7 +85,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   };
   renderBands(device, scene, settings, write, stats, kept);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
-  if (hash) stats.sha256 = hash->hex();
+  if (hash) stats.hash = hash->hex();
   reportHalves(options, limited, stats);
   reportLightError(options, stats);
 }
@@ -246,7 +246,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       ->required();
   addPictureOptions(*command, *options,
                     kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption |
-                        kDeviceOption | kBitsOptions);
+                        kDeviceOption | kExactOption);
   command->add_option(
       "--frames", options->frames,
       "frame A, frames A-B, each Nth of them, A-BxN, or a list of these, 1,3,10-100x5, of a scene that moves "

@@ -80,7 +80,6 @@ std::string statsJson(const Stats& stats, double ended) {
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};
   if (!stats.hash.empty()) json["image"]["hash"] = stats.hash;
   if (stats.measured_exposure) json["image"]["measured_exposure"] = *stats.measured_exposure;
-  if (!stats.sha256.empty()) json["image"]["sha256"] = stats.sha256;
   double cold_start = 0;
   json["stages"] = nlohmann::ordered_json::array();
   for (const auto& timed : stats.stages) {

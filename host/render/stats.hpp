@@ -64,7 +64,6 @@ struct Stats {
   std::vector<std::string> warnings;  ///< see Scene::warnings
   int width = 0, height = 0, samples = 1;
   std::optional<double> measured_exposure;  ///< stops, if the picture's exposure was measured
-  std::string sha256;                       ///< of the picture (PictureHash), if it was asked for
   std::vector<std::pair<Stage, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
   /// Of the stages, those that ran in threads of their own beside others

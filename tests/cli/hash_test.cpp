@@ -56,6 +56,11 @@ TEST_F(Hashes, ShadeAndRelightHaveThemToo) {
   EXPECT_EQ(pictureHash(readImage(folder / "c.exr")), relit);
 }
 
+TEST_F(Hashes, ALightMapHasOne) {
+  const std::string hash = hashOf("luciole bake scene.json --object plane --size 32x32", "map.exr");
+  EXPECT_EQ(pictureHash(readImage(folder / "map.exr")), hash);
+}
+
 TEST_F(Hashes, EachFrameAndCameraHasALineAndCropsTheirOwn) {
   const std::string two = succeed("luciole render scene.json --frames 3,5 --hash --quiet -o f.##.exr");
   const std::string hash = hashOf("luciole render scene.json --frames 5", "f.exr");
@@ -67,11 +72,11 @@ TEST_F(Hashes, EachFrameAndCameraHasALineAndCropsTheirOwn) {
 TEST_F(Hashes, StatisticsAndEventsTellThem) {
   const Outcome outcome = run("luciole render scene.json --hash --stats stats.json --log json -o a.exr");
   const auto stats = nlohmann::json::parse(readText(folder / "stats.json"));
-  const std::string hash = stats["image"]["sha256"];
+  const std::string hash = stats["image"]["hash"];
   EXPECT_EQ(outcome.out, hash + "  a.exr\n");
-  EXPECT_THAT(outcome.err, HasSubstr("\"sha256\":\"" + hash + "\""));
+  EXPECT_THAT(outcome.err, HasSubstr("\"hash\":\"" + hash + "\""));
   succeed("luciole render scene.json --stats stats.json --quiet -o a.exr");
-  EXPECT_FALSE(nlohmann::json::parse(readText(folder / "stats.json"))["image"].contains("sha256"));
+  EXPECT_FALSE(nlohmann::json::parse(readText(folder / "stats.json"))["image"].contains("hash"));
 }
 
 TEST_F(Hashes, StandardOutputIsNotShared) {
