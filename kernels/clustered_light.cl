@@ -19,6 +19,7 @@
 #include "lobes.clh"
 #include "long_sum.clh"
 #include "math.clh"
+#include "quotient.clh"
 #include "shared.h"
 
 enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
@@ -122,8 +123,8 @@ INLINE PixelGroup bound_group(const GroupPixels *pixels, uint first, uint end, u
   for (uint axis = 0; axis < 6; ++axis) {
     float low = INFINITY, high = -INFINITY;
     for (uint i = first; i < end; i += LANES) {
-      low = min(low, least_lane(pixel_values(pixels, axis, i)));
-      high = max(high, greatest_lane(pixel_values(pixels, axis, i)));
+      low = lesser(low, least_lane(pixel_values(pixels, axis, i)));
+      high = greater(high, greatest_lane(pixel_values(pixels, axis, i)));
     }
     float middle = 0.5f * low + 0.5f * high;
     if (axis < 3) group.middle[axis] = middle;
@@ -134,16 +135,16 @@ INLINE PixelGroup bound_group(const GroupPixels *pixels, uint first, uint end, u
     vec3L position = pixel_vector(pixels, kPosition, i), normal = pixel_vector(pixels, kNormal, i), color = pixel_vector(pixels, colors, i);
     vec3L from = {position.x - group.middle[0], position.y - group.middle[1], position.z - group.middle[2]};
     vec3L turn = {normal.x - group.normal[0], normal.y - group.normal[1], normal.z - group.normal[2]};
-    radius2 = max(radius2, greatest_lane(dot3(from, from)));
-    spread2 = max(spread2, greatest_lane(dot3(turn, turn)));
-    thickness = max(thickness, greatest_lane(abs_lanes(dot3(from, normal))));
-    brightest = max(brightest, greatest_lane(max_lanes(color.x, max_lanes(color.y, color.z))));
+    radius2 = greater(radius2, greatest_lane(dot3(from, from)));
+    spread2 = greater(spread2, greatest_lane(dot3(turn, turn)));
+    thickness = greater(thickness, greatest_lane(abs_lanes(dot3(from, normal))));
+    brightest = greater(brightest, greatest_lane(max_lanes(color.x, max_lanes(color.y, color.z))));
   }
   // More than the rounding of each.
-  group.radius = 1.00001f * sqrt(radius2);
-  group.spread = 1.00001f * sqrt(spread2);
+  group.radius = 1.00001f * square_root(radius2);
+  group.spread = 1.00001f * square_root(spread2);
   group.thickness = thickness + 0x1p-20f * group.radius;
-  group.gain = brightest / light_error;
+  group.gain = quotient(brightest, light_error);
   return group;
 }
 
@@ -197,7 +198,7 @@ INLINE void add_listed(const ClusterWalk *walk, const GroupPixels *pixels, const
 }
 
 INLINE floatL share_of(floatL light, floatL bound, float light_error) {
-  floatL share = bound / (light_error * max_lanes(light, (floatL)(1.0f)));
+  floatL share = quotient_lanes(bound, light_error * max_lanes(light, (floatL)(1.0f)));
   return share <= 1e30f ? share : (floatL)(1e30f);
 }
 
@@ -223,7 +224,7 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
                  COSINE_ROUNDING * 0x1p-24f * weight[c];
       // The factor is more than the rounding of sums of so many bounds. Colours, products and the sum of the parts are rounded, too.
       bound[c] = fma_lanes((floatL)(0x1p-21f), light[c], 1.001f * albedo[c] * bound[c]);
-      worst = max(worst, greatest_lane(share_of(light[c], bound[c], light_error)));
+      worst = greater(worst, greatest_lane(share_of(light[c], bound[c], light_error)));
     }
     for (uint lane = 0; lane < LANES && i + lane < pixels->count; ++lane)
       for (uint c = 0; c < 3; ++c) {
@@ -236,7 +237,7 @@ INLINE float finish_group(const GroupPixels *pixels, FieldSums *sums, const Pixe
 
 // Errors grow somewhat slower than what is accepted. However little groups ask for that are nearly dark, the next one must not need all its tries
 // to come back from there.
-INLINE float next_share(float share, float worst) { return min(share * min(max(0.7f / worst, 0.125f), 4.0f), MOST_SHARE); }
+INLINE float next_share(float share, float worst) { return lesser(share * lesser(greater(quotient(0.7f, worst), 0.125f), 4.0f), MOST_SHARE); }
 
 // Sets the diffuse light of a group's pixels in `out`.
 INLINE void light_group(GroupPixels *pixels, const ClusterTree *tree, float light_error, float *share, float out[6][kTilePixels],
@@ -297,8 +298,8 @@ INLINE HighlightGroup bound_highlights(const GroupPixels *pixels, uint first, ui
     vec3L axis = lobe_axis(&row, group.model);
     floatL value[3] = {axis.x, axis.y, axis.z};
     for (uint c = 0; c < 3; ++c) {
-      low[c] = min(low[c], least_lane(value[c]));
-      high[c] = max(high[c], greatest_lane(value[c]));
+      low[c] = lesser(low[c], least_lane(value[c]));
+      high[c] = greater(high[c], greatest_lane(value[c]));
     }
   }
   vec3L middle = {(floatL)(0.5f * (low[0] + high[0])), (floatL)(0.5f * (low[1] + high[1])), (floatL)(0.5f * (low[2] + high[2]))};
@@ -315,10 +316,10 @@ INLINE HighlightGroup bound_highlights(const GroupPixels *pixels, uint first, ui
     HighlightPixels row = highlight_pixels(pixels, i, frame);
     vec3L of_row = lobe_axis(&row, group.model);
     vec3L turned = {of_row.x - group.axis[0], of_row.y - group.axis[1], of_row.z - group.axis[2]};
-    turn2 = max(turn2, greatest_lane(dot3(turned, turned)));
+    turn2 = greater(turn2, greatest_lane(dot3(turned, turned)));
   }
   // More than the rounding of axes.
-  group.turn = 1.00001f * sqrt(turn2) + 0x1p-19f;
+  group.turn = 1.00001f * square_root(turn2) + 0x1p-19f;
   return group;
 }
 
@@ -351,8 +352,8 @@ INLINE float finish_highlights(const GroupPixels *pixels, uint first, uint end, 
         float all = had[c][place] + of_light, bound_of_all = 1.00001f * (had[3 + c][place] + of_bound + 0x1p-24f * all);
         result[c][i + lane - first] = all;
         result[3 + c][i + lane - first] = bound_of_all;
-        float share = bound_of_all / (light_error * max(all, 1.0f));
-        worst = max(worst, share <= 1e30f ? share : 1e30f);
+        float share = quotient(bound_of_all, light_error * greater(all, 1.0f));
+        worst = greater(worst, share <= 1e30f ? share : 1e30f);
       }
     }
   }

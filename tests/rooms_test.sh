@@ -99,6 +99,7 @@ OnlyTheirRoomsKnowLibraries() {
   allow tiny_obj_loader scene/obj
   allow tiny_gltf scene/gltf
   allow CL/ cl
+  allow nettle base
   return $status
 }
 

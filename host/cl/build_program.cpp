@@ -46,33 +46,6 @@ cl::Program compile(const Device& device, const std::string& source, const std::
   return built(device, source, options);
 }
 
-/// All that the bits of a built program may depend on, as text.
-std::string describe(const Device& device, const std::string& source, const std::string& options) {
-  const cl::Platform platform(device.device.getInfo<CL_DEVICE_PLATFORM>());
-  std::ostringstream text;
-  text << "Luciole " LUCIOLE_VERSION "\n"
-       << platform.getInfo<CL_PLATFORM_NAME>() << '\n'
-       << platform.getInfo<CL_PLATFORM_VERSION>() << '\n'
-       << device.device.getInfo<CL_DEVICE_VENDOR>() << '\n'
-       << device.device.getInfo<CL_DEVICE_NAME>() << '\n'
-       << device.device.getInfo<CL_DEVICE_VERSION>() << '\n'
-       << device.device.getInfo<CL_DRIVER_VERSION>() << '\n'
-       << device.device.getInfo<CL_DEVICE_EXTENSIONS>()
-       << '\n'
-       // Devices of one name may differ in their instructions, as a virtual machine may be denied some.
-       << device.device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_CHAR>() << ' '
-       << device.device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() << ' '
-       << device.device.getInfo<CL_DEVICE_ADDRESS_BITS>() << '\n';
-  std::vector<std::string> settings;
-  for (char** setting = environ; *setting; ++setting)
-    for (const std::string_view beginning : kCompilerSettings)
-      if (std::string_view(*setting).starts_with(beginning)) settings.push_back(*setting);
-  std::sort(settings.begin(), settings.end());
-  for (const std::string& setting : settings) text << setting << '\n';
-  text << options << '\n' << source;
-  return text.str();
-}
-
 /// The program of a kept binary. Empty if the driver doesn't take it, or makes other kernels of it than those
 /// that were kept with it.
 std::optional<Program> restored(const Device& device, KeptProgram kept, const std::string& options) {
@@ -107,6 +80,32 @@ std::optional<KeptProgram> toKeep(const cl::Program& program) {
 
 }  // namespace
 
+std::string describeProgram(const Device& device, const std::string& source, const std::string& options) {
+  const cl::Platform platform(device.device.getInfo<CL_DEVICE_PLATFORM>());
+  std::ostringstream text;
+  text << "Luciole " LUCIOLE_VERSION "\n"
+       << platform.getInfo<CL_PLATFORM_NAME>() << '\n'
+       << platform.getInfo<CL_PLATFORM_VERSION>() << '\n'
+       << device.device.getInfo<CL_DEVICE_VENDOR>() << '\n'
+       << device.device.getInfo<CL_DEVICE_NAME>() << '\n'
+       << device.device.getInfo<CL_DEVICE_VERSION>() << '\n'
+       << device.device.getInfo<CL_DRIVER_VERSION>() << '\n'
+       << device.device.getInfo<CL_DEVICE_EXTENSIONS>()
+       << '\n'
+       // Devices of one name may differ in their instructions, as a virtual machine may be denied some.
+       << device.device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_CHAR>() << ' '
+       << device.device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() << ' '
+       << device.device.getInfo<CL_DEVICE_ADDRESS_BITS>() << '\n';
+  std::vector<std::string> settings;
+  for (char** setting = environ; *setting; ++setting)
+    for (const std::string_view beginning : kCompilerSettings)
+      if (std::string_view(*setting).starts_with(beginning)) settings.push_back(*setting);
+  std::sort(settings.begin(), settings.end());
+  for (const std::string& setting : settings) text << setting << '\n';
+  text << options << '\n' << source;
+  return text.str();
+}
+
 std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
   std::vector<DeclaredArgument> arguments;
   const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
@@ -123,7 +122,7 @@ std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
 
 Program buildProgram(const Device& device, const std::string& source, const std::string& options) {
   if (device.program_cache.empty()) return {compile(device, source, options), {}};
-  const std::string description = describe(device, source, options);
+  const std::string description = describeProgram(device, source, options);
   if (std::optional<KeptProgram> kept = findProgram(device.program_cache, description))
     if (std::optional<Program> program = restored(device, std::move(*kept), options)) return *program;
   Program program{compile(device, source, options), {}};

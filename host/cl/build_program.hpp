@@ -11,6 +11,10 @@ namespace luciole {
 /// cl::Error as OpenCL does (cl::BuildError with the compiler's log) and MachineError if memory is short.
 Program buildProgram(const Device& device, const std::string& source, const std::string& options);
 
+/// All that the bits of a program may depend on, as text: its source and options, the device with its driver,
+/// what the environment tells compilers, and this program's version. Throws cl::Error.
+std::string describeProgram(const Device& device, const std::string& source, const std::string& options);
+
 /// What OpenCL tells of a kernel's arguments. Throws cl::Error if it doesn't tell.
 std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel);
 

@@ -139,6 +139,10 @@ void openDevice(const std::string& selector, Device& device) {
         cl::CommandQueue(device.context, chosen.device, is_profiled ? CL_QUEUE_PROFILING_ENABLE : 0);
     if (is_profiled)
       device.trace = std::make_shared<CommandTrace>(CommandTrace{deviceTrack(device.description.name)});
+    const bool rounds_quotients =
+        (chosen.device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    device.arithmetic = std::string("-cl-denorms-are-zero ") +
+                        (rounds_quotients ? "-cl-fp32-correctly-rounded-divide-sqrt" : "-DOWN_QUOTIENTS");
     device.shares_host_memory = (chosen.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
@@ -148,10 +152,11 @@ void openDevice(const std::string& selector, Device& device) {
   traceEvent("open device", kTraceStage, begin, end);
 }
 
-void startDevice(const std::string& selector, Device& device) {
-  device.opening = std::async(std::launch::async, [selector, &device] {
+void startDevice(const std::string& selector, Device& device, std::function<void()> then) {
+  device.opening = std::async(std::launch::async, [selector, &device, then = std::move(then)] {
                      const TraceThread thread("device opener");
                      openDevice(selector, device);
+                     if (then) then();
                    }).share();
 }
 

@@ -3,6 +3,7 @@
 #include <CL/opencl.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -24,6 +25,8 @@ struct DeviceDescription {
   std::string version;  ///< the driver's
   int lanes = 1;        ///< pixels a work-item shades: 16, 8, 4 or 1, by the device's native vector width
   unsigned compute_units = 0;  ///< work-groups that run at once; on a CPU, the device's threads
+  /// The hash of what it makes of hard numbers (see ArithmeticCheck). Empty: nobody has asked.
+  std::string arithmetic = {};
 };
 
 /// Bytes that buffers have copied and allocated. A device that shares the host's memory copies nothing.
@@ -41,6 +44,9 @@ struct Device {
   cl::Context context;
   cl::CommandQueue queue;           ///< in order; profiled only if a trace is recorded
   bool shares_host_memory = false;  ///< true on a CPU; not to be changed once a buffer is made
+  /// The compiler's options by which it computes: what denormals are, and who rounds quotients
+  /// (quotient.clh).
+  std::string arithmetic;
 
   /// Programs built so far, by options and file or source; guarded by `programs_mutex`.
   std::map<std::string, Program> programs;
@@ -76,10 +82,11 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
 /// 4, 8 and 16, and MachineError if the device fails.
 void openDevice(const std::string& selector, Device& device);
 
-/// openDevice() in a thread of its own. Nobody else may use `device` until awaitDevice() has returned.
-void startDevice(const std::string& selector, Device& device);
+/// openDevice(), and then `then` if there is one, in a thread of its own. Nobody else may use `device` until
+/// awaitDevice() has returned.
+void startDevice(const std::string& selector, Device& device, std::function<void()> then = {});
 
-/// Waits until the device is open. Throws what openDevice() threw. For a device that no thread opens it does
+/// Waits until the device is open. Throws what that thread threw. For a device that no thread opens it does
 /// nothing.
 void awaitDevice(const Device& device);
 

@@ -20,9 +20,8 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
                     Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
-    const std::string options =
-        fmt::format("-cl-std=CL1.2 -cl-denorms-are-zero -cl-kernel-arg-info -DLANES={} {}",
-                    device.description.lanes, defines);
+    const std::string options = fmt::format("-cl-std=CL1.2 {} -cl-kernel-arg-info -DLANES={} {}",
+                                            device.arithmetic, device.description.lanes, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {
       const TraceSpan span("build program", {{"kernel", name}, {"defines", defines}});

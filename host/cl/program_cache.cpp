@@ -97,14 +97,16 @@ void removeOldest(const std::string& folder, std::uintmax_t most_bytes) {
 
 }  // namespace
 
-std::string userProgramCache() {
+std::string userCache(const char* kind) {
   const char* const cache = std::getenv("XDG_CACHE_HOME");
   // A relative path there doesn't count (XDG Base Directory Specification 0.8).
-  if (cache && files::path(cache).is_absolute()) return files::path(cache) / "luciole" / "programs";
+  if (cache && files::path(cache).is_absolute()) return files::path(cache) / "luciole" / kind;
   const char* const home = std::getenv("HOME");
-  if (home && *home) return files::path(home) / ".cache" / "luciole" / "programs";
+  if (home && *home) return files::path(home) / ".cache" / "luciole" / kind;
   return "";
 }
+
+std::string userProgramCache() { return userCache("programs"); }
 
 std::optional<KeptProgram> findProgram(const std::string& folder, const std::string& description) {
   const files::path place = placeOf(folder, description);

@@ -17,8 +17,10 @@ struct KeptProgram {
   KernelArguments arguments;  ///< of all its kernels
 };
 
-/// Where the user's programs are kept: luciole/programs in $XDG_CACHE_HOME or, without that, in
-/// $HOME/.cache. Empty if there is neither.
+/// luciole/`kind` in $XDG_CACHE_HOME or, without that, in $HOME/.cache. Empty if there is neither.
+std::string userCache(const char* kind);
+
+/// Where the user's programs are kept: userCache("programs").
 std::string userProgramCache();
 
 /// The program kept under this description, and marks it as used. Empty if there is none, or if its file is

@@ -25,10 +25,11 @@ constexpr const char* kManualParagraphs[] = {
     "option "
     "or choice gets a suggestion."};
 
-const Terms kManualStatuses{{"0", "done"},
-                            {"1", "a comparison failed: a limit of compare was passed"},
-                            {"2", "the input or the arguments are wrong"},
-                            {"3", "the machine can't: no OpenCL device, no more memory, a full disk"}};
+const Terms kManualStatuses{
+    {"0", "done"},
+    {"1", "a comparison failed: a limit of compare was passed, or devices --check found other bits"},
+    {"2", "the input or the arguments are wrong"},
+    {"3", "the machine can't: no OpenCL device, no more memory, a full disk"}};
 
 const Terms kManualVariables{
     {"SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT, SLURM_ARRAY_TASK_MIN, SLURM_ARRAY_TASK_MAX, "
@@ -46,6 +47,7 @@ const Terms kManualVariables{
 const Terms kManualFiles{
     {"~/.cache/pocl/kcache", "kernels that PoCL compiled; without them the next start takes a second longer"},
     {"~/.cache/luciole/programs", "kernels of platforms that don't keep them themselves, at most 64 MiB"},
+    {"~/.cache/luciole/checks", "for each device and driver, whether it computes as every other does"},
     {".NAME.lock",
      "beside frames that several runs share: which frames are being made; the last run to end removes it"}};
 

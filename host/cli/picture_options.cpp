@@ -254,9 +254,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     }
   }
   if (is_one_picture && (groups & kShadeOptions))
-    command.add_flag(
-        "--hash", options.hash,
-        "print the SHA-256 of the picture's floats to standard output; equal hashes, equal bits");
+    command.add_flag("--hash", options.hash,
+                     "print the SHA-256 of the picture's linear colours, 32-bit floats before they are made "
+                     "into a file, and "
+                     "the file's name, a line a picture: equal hashes, equal bits");
   if (groups & kShadeOptions) {
     command
         .add_option("--culling", options.culling,
@@ -323,6 +324,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     command.add_option(
         "--frames", options.frames,
         "which frame of a scene that moves (default: 1); # in the output's name become its number");
+  if (groups & kExactOption)
+    command.add_flag("--require-exact", options.require_exact,
+                     "make no picture on a device whose arithmetic differs from that of all others, which "
+                     "otherwise is a warning");
   if (groups & kDeviceOption)
     command.add_option("--device", options.device,
                        "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");

@@ -46,6 +46,8 @@ struct PictureOptions {
   bool half = false;
   std::string compression;  ///< empty: kExrCompression
   bool alpha = false;
+  bool hash = false;
+  bool require_exact = false;
   std::string device;
   std::string missing_textures = "error";
   std::string stats;
@@ -67,6 +69,7 @@ enum OptionGroup : unsigned {
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames
   kCastOption = 128,   ///< --cast-shadows
+  kExactOption = 512,  ///< --require-exact
   kColorOptions =
       256,  ///< instead of all others, for pictures that aren't of a scene: what a file holds of
             ///< colours (--exposure in stops, --dither, --tone, --bits, --half), without --stats and --trace

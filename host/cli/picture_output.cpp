@@ -15,6 +15,7 @@
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
+#include "render/check_device.hpp"
 #include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 
@@ -29,13 +30,15 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
     logEvent(
         "stage",
         {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
-  logEvent("frame_done", {{"frame", frame},
-                          {"file", options.output},
-                          {"width", stats.width},
-                          {"height", stats.height},
-                          {"triangles", stats.triangles},
-                          {"lights", stats.lights},
-                          {"milliseconds", eventMilliseconds(ended - stats.began)}});
+  EventFields done{{"frame", frame},
+                   {"file", options.output},
+                   {"width", stats.width},
+                   {"height", stats.height},
+                   {"triangles", stats.triangles},
+                   {"lights", stats.lights},
+                   {"milliseconds", eventMilliseconds(ended - stats.began)}};
+  if (!stats.hash.empty()) done["hash"] = stats.hash;
+  logEvent("frame_done", done);
 }
 
 /// Throws InputError for a compression that changes `what`.
@@ -67,12 +70,17 @@ bool measuresExposure(const PictureOptions& options, const std::string& scene_pa
   return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
 }
 
-void checkTraceFile(const PictureOptions& options) {
-  if (options.trace.empty()) return;
-  if (options.trace == options.output)
+void checkOtherOutputs(const PictureOptions& options) {
+  if (!options.trace.empty() && options.trace == options.output)
     throw InputError(fmt::format("--trace {}: is the picture's own file", options.trace));
-  if (options.trace == options.stats)
+  if (!options.trace.empty() && options.trace == options.stats)
     throw InputError(fmt::format("--trace {}: is the file of --stats", options.trace));
+  if (options.hash)
+    for (const auto& [name, file] : {std::pair{"-o", options.output}, std::pair{"--stats", options.stats},
+                                     std::pair{"--trace", options.trace}})
+      if (file == "-")
+        throw InputError(
+            fmt::format("--hash: standard output can't take it and {} - together; name a file", name));
 }
 
 void checkOutput(const PictureOptions& options) {
@@ -101,12 +109,9 @@ void checkOutput(const PictureOptions& options) {
                         "in each pixel; "
                         "leave out {}",
                         what, options.light_groups ? "--light-groups" : "these of --aov"));
-  if (options.hash && (options.output == "-" || options.stats == "-"))
-    throw InputError(fmt::format("--hash: is written to standard output, and so is {}",
-                                 options.output == "-" ? "the picture" : "what --stats says"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
-  checkTraceFile(options);
+  checkOtherOutputs(options);
 }
 
 void checkDataOutput(const PictureOptions& options, const std::string& what) {
@@ -154,6 +159,8 @@ Metadata pictureMetadata(const Stats& stats, const Device* device) {
   Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
   if (stats.measured_exposure)
     metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));
+  if (device && !device->description.arithmetic.empty())
+    metadata.emplace_back("luciole:arithmetic", device->description.arithmetic);
   if (device)
     metadata.emplace_back(
         "luciole:device",
@@ -162,11 +169,34 @@ Metadata pictureMetadata(const Stats& stats, const Device* device) {
   return metadata;
 }
 
+void startCheckedDevice(const PictureOptions& options, CommandContext& context) {
+  startDevice(options.device, context.device,
+              [&context, require = options.require_exact, quiet = options.quiet] {
+                DeviceDescription& device = context.device.description;
+                std::vector<std::string> wrong;
+                try {
+                  const ArithmeticCheck check = knownArithmetic(context.device);
+                  device.arithmetic = check.sha256;
+                  wrong = check.wrong;
+                } catch (const MachineError& error) {
+                  wrong.emplace_back(error.what());
+                }
+                if (wrong.empty()) return;
+                const std::string what =
+                    fmt::format("{}: its pictures may have other bits than those of other devices: {}",
+                                device.name, wrong.front());
+                if (require) throw MachineError("--require-exact: " + what);
+                if (!quiet) tellWarnings({what + " (luciole devices --check tells all)"});
+              });
+}
+
 void logDevice(const DeviceDescription& device) {
-  logEvent("device", {{"name", device.name},
-                      {"platform", device.platform},
-                      {"driver", device.version},
-                      {"lanes", device.lanes}});
+  EventFields fields{{"name", device.name},
+                     {"platform", device.platform},
+                     {"driver", device.version},
+                     {"lanes", device.lanes}};
+  if (!device.arithmetic.empty()) fields["arithmetic"] = device.arithmetic;
+  logEvent("device", fields);
 }
 
 Stats laterStats(const std::string& command) {
@@ -181,7 +211,7 @@ void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats, ended));
   if (!stats.hash.empty()) {
     fmt::print("{}  {}\n", stats.hash, options.output);
-    std::fflush(stdout);  // a line a frame, as soon as it is done
+    std::fflush(stdout);  // whoever waits for a frame's line gets it when the frame is done
   }
   if (logsEvents()) return logPicture(options, stats, ended, frame);
   if (options.quiet) return;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cl/device.hpp"
+#include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
@@ -20,8 +21,8 @@ bool measuresExposure(const PictureOptions& options, const std::string& scene_pa
 /// What the options say of the picture's file, apart from what part of which view it shows.
 WriteOptions fileOptions(const PictureOptions& options);
 
-/// Throws InputError where the trace would be written into another file of the picture's.
-void checkTraceFile(const PictureOptions& options);
+/// Throws InputError where the trace or the hash would be written into another file of the picture's.
+void checkOtherOutputs(const PictureOptions& options);
 
 /// Checks before any work what can be wrong with the output: extension, folder, layers, tone, and what else
 /// the format has no place for. Throws InputError.
@@ -54,6 +55,10 @@ Stats laterStats(const std::string& command);
 /// error that says what was made and what it cost. In an event log that is an event for each stage of the
 /// frame, and one for the frame.
 void reportStats(const PictureOptions& options, const Stats& stats, int frame);
+
+/// Opens the device that --device names in a thread of its own (see startDevice), which also looks whether it
+/// computes as every device should. If not, it warns, or with --require-exact throws MachineError.
+void startCheckedDevice(const PictureOptions& options, CommandContext& context);
 
 /// In an event log, tells which device is used.
 void logDevice(const DeviceDescription& device);

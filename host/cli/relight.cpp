@@ -181,7 +181,7 @@ void relight(CommandContext& context, RelightOptions& options) {
         fmt::format("--albedo: the lights of {} are divided by pi already, as every glTF's", options.scene));
   Stats stats;
   stats.command = context.command_line;
-  startDevice(options.device, context.device);
+  startCheckedDevice(options, context);
   Scene scene = timed(stats, Stage::kLoadScene, [&] { return openScene(options.scene, frame, options); });
   if (scene.adds_lights) throw InputError(options.scene + ": no lights, expected a scene that has some");
   GBufferInput input = timed(stats, Stage::kReadGBuffer,
@@ -202,15 +202,16 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
       ->required();
   command->add_option("--scene", *scene_path, "the scene whose lights, ambient, fog and shadow casters count")
       ->required();
-  addPictureOptions(*command, *options,
-                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
+  addPictureOptions(
+      *command, *options,
+      kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kExactOption);
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);
     refuseSurfaceIds(*options);
     Stats stats;
     stats.command = context.command_line;
-    startDevice(options->device, context.device);
+    startCheckedDevice(*options, context);
     const Scene scene =
         timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
     const GBufferInput input =
@@ -254,8 +255,9 @@ void addRelightCommand(CLI::App& app, CommandContext& context) {
                     "diffuse is an albedo and lights are in watts a steradian: Kd = albedo / pi, and "
                     "Ks = specular (n + 2) / 2 pi");
   command->add_flag("--add", options->add, "add the light to IN's own picture");
-  addPictureOptions(*command, *options,
-                    kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption);
+  addPictureOptions(
+      *command, *options,
+      kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kExactOption);
   command->callback([&context, options] { relight(context, *options); });
 }
 

@@ -73,6 +73,8 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   std::optional<PictureHash> hash;
   const auto write = [&](const Image& rows) {
     timed(stats, Stage::kWrite, [&] {
+      if (options.hash && !hash) hash.emplace(window.width, window.height, rows.channels);
+      if (hash) hash->add(rows);
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
                        pictureMetadata(stats, &device), how);
@@ -83,7 +85,7 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
   };
   renderBands(device, scene, settings, write, stats, kept);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
-  if (hash) stats.hash = hash->digits();
+  if (hash) stats.hash = hash->hex();
   reportHalves(options, limited, stats);
   reportLightError(options, stats);
 }
@@ -206,7 +208,7 @@ void checkFilmOptions(const RenderOptions& options) {
   checkFilm(frameFile(options.output, 1), options.format);
   if (options.resume)
     throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
-  checkTraceFile(options);
+  checkOtherOutputs(options);
   if (options.bits == 16 || options.half || options.alpha || !options.compression.empty())
     throw InputError(fmt::format(
         "{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
@@ -242,9 +244,9 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command
       ->add_option("SCENE", options->scene, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
-  addPictureOptions(
-      *command, *options,
-      kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kDeviceOption);
+  addPictureOptions(*command, *options,
+                    kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption |
+                        kDeviceOption | kExactOption);
   command->add_option(
       "--frames", options->frames,
       "frame A, frames A-B, each Nth of them, A-BxN, or a list of these, 1,3,10-100x5, of a scene that moves "
@@ -283,7 +285,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     Device& device = context.device;
-    startDevice(options->device, device);
+    startCheckedDevice(*options, context);
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });

@@ -11,6 +11,7 @@
 #include "cli/progress.hpp"
 #include "cli/scale_plan.hpp"
 #include "cli/shard.hpp"
+#include "render/check_device.hpp"
 #include "scale/page.hpp"
 #include "scale/scale.hpp"
 #include "scale/scale_files.hpp"
@@ -24,6 +25,7 @@ namespace {
 struct MergeOptions {
   std::vector<std::string> folders;
   std::string output, plot;
+  bool mixes_devices = false;
 };
 
 /// Throws before any work what writing the page and the plot would throw.
@@ -70,6 +72,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
         experiment.too_exact);
   Device device;
   openDevice(options.picture.device, device);
+  device.description.arithmetic = knownArithmetic(device).sha256;
   ScaleLog log(options.output, experiment.description);
   log.append(describeMachine(device));
   std::vector<std::size_t> mine;
@@ -163,10 +166,14 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   merge->add_option("FOLDER", merging->folders, "the shards' folders")->required();
   merge->add_option("-o,--output", merging->output, "a new folder")->required()->type_name("FOLDER");
   merge->add_option("--plot", merging->plot, "as for scale");
+  merge->add_flag(
+      "--mix-devices", merging->mixes_devices,
+      "also merge folders of devices whose arithmetic differs, so that pictures of the same point "
+      "would");
   merge->callback([&context, merging] {
     checkDrawing(merging->plot);
-    context.status = writeResults(mergeScaleLogs(merging->folders, merging->output), merging->output,
-                                  merging->plot, context.command_line, false);
+    context.status = writeResults(mergeScaleLogs(merging->folders, merging->output, merging->mixes_devices),
+                                  merging->output, merging->plot, context.command_line, false);
   });
   command->callback([&context, command, merge, options] {
     if (!merge->parsed()) context.status = scale(*command, *options, context.command_line);

@@ -1,34 +1,38 @@
 #include "image/picture_hash.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace luciole {
 
+static_assert(std::endian::native == std::endian::little, "hashes are of little-endian numbers");
+
 PictureHash::PictureHash(int width, int height, const std::vector<std::string>& channels) {
-  const std::string head = fmt::format("{}x{} {}\n", width, height, fmt::join(channels, " "));
-  sha256_init(&state_);
-  sha256_update(&state_, head.size(), reinterpret_cast<const std::uint8_t*>(head.data()));
+  for (const char* name : {"R", "G", "B", "A"})
+    if (const auto place = std::find(channels.begin(), channels.end(), name); place != channels.end())
+      places_.push_back(std::size_t(place - channels.begin()));
+  const std::uint32_t head[] = {std::uint32_t(width), std::uint32_t(height), std::uint32_t(places_.size())};
+  hash_.add(head, sizeof head);
 }
 
 void PictureHash::add(const Image& rows) {
-  static_assert(std::endian::native == std::endian::little, "floats are hashed as they lie in memory");
-  sha256_update(&state_, rows.pixels.size() * sizeof(float),
-                reinterpret_cast<const std::uint8_t*>(rows.pixels.data()));
-}
-
-std::string PictureHash::digits() {
-  std::uint8_t bytes[SHA256_DIGEST_SIZE];
-  sha256_digest(&state_, sizeof bytes, bytes);
-  return fmt::format("{:02x}", fmt::join(bytes, ""));
+  const std::size_t channels = rows.channels.size();
+  std::vector<float> row(std::size_t(rows.width) * places_.size());
+  for (int y = 0; y < rows.height; ++y) {
+    const float* pixel = rows.pixels.data() + std::size_t(y) * rows.width * channels;
+    float* next = row.data();
+    for (int x = 0; x < rows.width; ++x, pixel += channels)
+      for (const std::size_t place : places_) *next++ = pixel[place];
+    hash_.add(row.data(), row.size() * sizeof(float));
+  }
 }
 
 std::string pictureHash(const Image& image) {
   PictureHash hash(image.width, image.height, image.channels);
   hash.add(image);
-  return hash.digits();
+  return hash.hex();
 }
 
 }  // namespace luciole

@@ -1,32 +1,36 @@
 #pragma once
 
-#include <nettle/sha2.h>
-
 #include <string>
+#include <vector>
 
+#include "base/sha256.hpp"
 #include "image/image.hpp"
 
 namespace luciole {
 
-/// The SHA-256 (FIPS 180-4) of a picture's floats, which says of two pictures whether they have the same
-/// bits. What is hashed: the line "WIDTHxHEIGHT CHANNEL CHANNEL …" with a line feed, then the pixels in rows
-/// from the top down, their channels in that order, each in the four bytes of a float, the lowest first.
+/// The SHA-256 by which pictures of several machines are compared: of linear light as floats, before a file's
+/// format, its tone curve or its rounding changes it. Layers don't count. Hashed are, all little-endian,
+/// - width, height and number of channels, 3 or 4, as unsigned integers of 32 bits;
+/// - R, G, B, and A where the picture has it, of each pixel as IEEE floats of 32 bits, row by row from the
+///   top, each row from the left.
+/// A zero's sign counts.
 class PictureHash {
  public:
-  /// Of a picture of so many rows. width, channels: as those of the rows to come.
+  /// channels: of the rows to come, R, G and B among them.
   PictureHash(int width, int height, const std::vector<std::string>& channels);
 
-  /// The next rows.
+  /// The next rows, from the top down.
   void add(const Image& rows);
 
-  /// After the last row: 64 digits of base 16.
-  std::string digits();
+  /// After the last row.
+  std::string hex() { return hash_.hex(); }
 
  private:
-  sha256_ctx state_;
+  Sha256 hash_;
+  std::vector<std::size_t> places_;  ///< of R, G, B and A among a pixel's channels
 };
 
-/// The hash of a whole picture.
+/// The same of a whole picture.
 std::string pictureHash(const Image& image);
 
 }  // namespace luciole

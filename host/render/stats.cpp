@@ -74,6 +74,7 @@ std::string statsJson(const Stats& stats, double ended) {
                     {"driver", stats.device.version},
                     {"lanes", stats.device.lanes},
                     {"compute_units", stats.device.compute_units}};
+  if (!stats.device.arithmetic.empty()) json["device"]["arithmetic"] = stats.device.arithmetic;
   json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
   json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};

@@ -106,11 +106,11 @@ Json growthRows(const ScaleSummary& summary) {
 }
 
 Json machineJson(const Machine& machine) {
-  return {{"processor", machine.processor},       {"threads", machine.threads},
-          {"memory_bytes", machine.memory_bytes}, {"system", machine.system},
-          {"device", machine.device.name},        {"platform", machine.device.platform},
-          {"driver", machine.device.version},     {"lanes", machine.device.lanes},
-          {"compiler", machine.compiler}};
+  return {{"processor", machine.processor},          {"threads", machine.threads},
+          {"memory_bytes", machine.memory_bytes},    {"system", machine.system},
+          {"device", machine.device.name},           {"platform", machine.device.platform},
+          {"driver", machine.device.version},        {"lanes", machine.device.lanes},
+          {"arithmetic", machine.device.arithmetic}, {"compiler", machine.compiler}};
 }
 
 Json settingsJson(const ScaleDescription& description) {

@@ -100,6 +100,7 @@ Json toJson(const Machine& machine) {
             {"device", machine.device.name},
             {"driver", machine.device.version},
             {"lanes", machine.device.lanes},
+            {"arithmetic", machine.device.arithmetic},
             {"compiler", machine.compiler}}}};
 }
 
@@ -110,7 +111,8 @@ Machine machineOf(const Json& line) {
           .memory_bytes = wholeMember<std::uint64_t>(json, "memory_bytes"),
           .system = json.at("system").get<std::string>(),
           .device = {json.at("platform").get<std::string>(), json.at("device").get<std::string>(),
-                     json.at("driver").get<std::string>(), wholeMember<int>(json, "lanes")},
+                     json.at("driver").get<std::string>(), wholeMember<int>(json, "lanes"), 0,
+                     json.value("arithmetic", std::string())},
           .compiler = json.at("compiler").get<std::string>()};
 }
 
@@ -259,6 +261,26 @@ std::string difference(const ScaleDescription& a, const ScaleDescription& b) {
   return "with other variants";
 }
 
+/// Throws InputError if two of the machines' devices are known to compute differently.
+void refuseOtherArithmetic(const std::vector<ScaleResults>& parts, const std::vector<std::string>& folders) {
+  const std::string* first_folder = nullptr;
+  const DeviceDescription* first = nullptr;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (const Machine& machine : parts[i].machines) {
+      if (machine.device.arithmetic.empty()) continue;
+      if (!first) {
+        first = &machine.device;
+        first_folder = &folders[i];
+      } else if (first->arithmetic != machine.device.arithmetic) {
+        throw InputError(fmt::format(
+            "{} and {}: the bits of their devices, {} and {}, differ (see luciole devices --check); "
+            "--mix-devices merges them all the same",
+            *first_folder, folders[i], first->name, machine.device.name));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Json toJson(const KeptBounds& bounds) {
@@ -367,12 +389,14 @@ std::string pictureFile(const std::string& folder, const std::string& file) {
   return path;
 }
 
-ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged) {
+ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged,
+                            bool mixes_devices) {
   std::vector<ScaleResults> parts;
   for (const std::string& folder : folders) parts.push_back(readScaleLog(folder));
   std::error_code none;
   if (fs::exists(merged + kFile, none))
     throw InputError(fmt::format("{}: holds an experiment already; expected a new folder", merged));
+  if (!mixes_devices) refuseOtherArithmetic(parts, folders);
   std::map<std::string, std::string> folder_of_check;
   std::map<std::pair<std::string, int>, std::string> folder_of_run;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -62,9 +62,10 @@ std::string pictureFile(const std::string& folder, const std::string& file);
 
 /// Merges the logs of an experiment's shards, and their pictures, in a new folder, and returns the results.
 /// Throws InputError if they aren't of the same experiment, if two contain the same check or run, if a
-/// picture is missing or isn't a file in its shard's folder, and if `merged` holds a log already;
-/// MachineError.
-ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged);
+/// picture is missing or isn't a file in its shard's folder, if `merged` holds a log already, and unless
+/// `mixes_devices` if devices are known to compute differently (ArithmeticCheck); MachineError.
+ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::string& merged,
+                            bool mixes_devices = false);
 
 /// As the log and results.json write a number: null where it is not finite, for JSON has no infinity.
 nlohmann::ordered_json finiteOrNull(double number);

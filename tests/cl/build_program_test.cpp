@@ -72,8 +72,8 @@ __kernel void probe(__global const float *in, __global uint *out) {
   out[3] = clz(i) + 100 * clz((uchar)i) + 10000 * clz((ulong)i) + 1000000 * popcount(u);
   out[4] = max((char)(i - 400), (char)5) + 1000 * max((uchar)(i - 400), (uchar)5);
   out[5] = min(-i, 3) + 1000 * (int)min(0u - u, 3u);
-  out[6] = as_uint(max(x, 100.0f));
-  out[7] = as_uint(min((float4)(x), 5.5f).w);
+  out[6] = max((short)(i - 400), (short)-7);
+  out[7] = min((long4)(i), (long)55).w;
   out[8] = max((int8)(i), 1000).s7 + min((uint2)(u), (uint2)(7u, 8u)).y;
   out[9] = as_uint(convert_float16((int16)(i)).sf + convert_float4((uint4)(u)).x);
   out[10] = convert_int4((float4)(-x)).y;

@@ -43,6 +43,8 @@ constexpr NotRun kNotRun[] = {
     {"tests/mutate_kernels.py", "takes hours"},
     {"tests/tidy.sh", "takes clang-tidy 14 and minutes"},
     {"tests/cli/other_programs_test.sh", "takes PyPI, a gigabyte and minutes; ctest runs it where it can"},
+    {"tests/cli/intel_opencl_test.sh", "takes PyPI, a gigabyte and minutes; ctest runs it where it can"},
+    {"tests/cli/make_hashes.sh", "writes into the sources"},
     {"sbatch ", "takes Slurm: tests/cli/slurm_test.sh runs such an array"},
     {"scontrol ", "takes Slurm: tests/cli/slurm_test.sh says it"},
     {"oiiotool ", "reads what an array of 50 tasks made"},

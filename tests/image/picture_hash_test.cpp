@@ -2,29 +2,52 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace luciole::test {
 namespace {
 
-TEST(PictureHash, IsTheSha256OfItsLineAndItsFloats) {
-  // By coreutils: printf '2x1 R G\n' and the floats 0, 1, -0, 0.5 in bytes, | sha256sum.
-  const Image image{2, 1, {"R", "G"}, {0.0f, 1.0f, -0.0f, 0.5f}};
-  EXPECT_EQ(pictureHash(image), "d1999d5956e5b1fc00dae91e29910340d9b04dc376625cff70ad9b0ed37f57fa");
+Image smallPicture() { return {2, 2, {"R", "G", "B"}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}}; }
+
+// Of Python's struct.pack("<3I12f", 2, 2, 3, *range(12)), by its hashlib.
+TEST(PictureHash, IsOfTheBytesThatAreTold) {
+  EXPECT_EQ(pictureHash(smallPicture()), "0fbd8d157092b6d9ae71805eca02a3fe7f39ce3e8188ba594143f12385f26a64");
 }
 
-TEST(PictureHash, IsTheSameInPieces) {
-  const Image whole{1, 3, {"Y"}, {1.0f, 2.0f, 3.0f}}, first{1, 1, {"Y"}, {1.0f}},
-      rest{1, 2, {"Y"}, {2.0f, 3.0f}};
-  PictureHash hash(1, 3, {"Y"});
-  hash.add(first);
-  hash.add(rest);
-  EXPECT_EQ(hash.digits(), pictureHash(whole));
+TEST(PictureHash, RowsAddUp) {
+  const Image picture = smallPicture();
+  PictureHash hash(2, 2, picture.channels);
+  for (int y = 0; y < 2; ++y)
+    hash.add(
+        {2, 1, picture.channels, {picture.pixels.begin() + 6 * y, picture.pixels.begin() + 6 * (y + 1)}});
+  EXPECT_EQ(hash.hex(), pictureHash(picture));
 }
 
-TEST(PictureHash, TellsShapesChannelsAndSignsOfZeroApart) {
-  const std::string one = pictureHash({2, 1, {"Y"}, {0.0f, 1.0f}});
-  EXPECT_NE(one, pictureHash({1, 2, {"Y"}, {0.0f, 1.0f}}));
-  EXPECT_NE(one, pictureHash({2, 1, {"A"}, {0.0f, 1.0f}}));
-  EXPECT_NE(one, pictureHash({2, 1, {"Y"}, {-0.0f, 1.0f}}));
+TEST(PictureHash, LayersDontCountWhereverTheyLie) {
+  Image layered = smallPicture();
+  layered.channels = {"depth.Z", "R", "G", "B", "normal.X"};
+  layered.pixels.clear();
+  for (int pixel = 0; pixel < 4; ++pixel)
+    for (const float value : {-1.0f, 3.0f * pixel, 3.0f * pixel + 1, 3.0f * pixel + 2, -2.0f})
+      layered.pixels.push_back(value);
+  EXPECT_EQ(pictureHash(layered), pictureHash(smallPicture()));
+}
+
+TEST(PictureHash, ShapeChannelsSignsAndEachBitCount) {
+  const std::string hash = pictureHash(smallPicture());
+  Image wide = smallPicture();
+  wide.width = 4;
+  wide.height = 1;
+  EXPECT_NE(pictureHash(wide), hash);
+  Image with_alpha{3, 1, {"R", "G", "B", "A"}, smallPicture().pixels};
+  Image without{4, 1, {"R", "G", "B"}, smallPicture().pixels};
+  EXPECT_NE(pictureHash(with_alpha), pictureHash(without));
+  Image negative = smallPicture();
+  negative.pixels[0] = -0.0f;
+  EXPECT_NE(pictureHash(negative), hash);
+  Image last_bit = smallPicture();
+  last_bit.pixels[11] = 11 + 0x1p-20f;
+  EXPECT_NE(pictureHash(last_bit), hash);
 }
 
 }  // namespace

@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -39,21 +43,35 @@ std::string filesIn(const char* folder, const std::vector<std::string>& extensio
   return joined;
 }
 
-/// Compiles each file alone, without writing anything. A header's functions are unused there.
-void expectClean(const std::string& clang, const std::string& options) {
-  const std::string command = clang +
-                              " -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -Xclang "
-                              "-fdeclare-opencl-builtins -fsyntax-only" +
-                              " -Wall -Wextra -Werror -Wno-unused-parameter -Wno-unused-function -I " +
+struct Compiled {
+  bool succeeded = false;
+  std::string output;
+};
+
+/// What clang says of OpenCL C, with these options and files.
+Compiled compile(const std::string& clang, const std::string& options) {
+  const std::string command = clang + " -x cl -cl-std=CL1.2 -I " +
                               quoted(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels") + " " + options +
                               " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::string output;
+  if (!pipe) return {};
+  Compiled compiled;
   char buffer[4096];
-  for (std::size_t got; (got = fread(buffer, 1, sizeof buffer, pipe)) > 0;) output.append(buffer, got);
+  for (std::size_t got; (got = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+    compiled.output.append(buffer, got);
   const int status = pclose(pipe);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << options << "\n" << output;
+  compiled.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return compiled;
+}
+
+/// Compiles each file alone, without writing anything. A header's functions are unused there.
+void expectClean(const std::string& clang, const std::string& options) {
+  const Compiled compiled = compile(
+      clang,
+      "-Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only -Wall -Wextra "
+      "-Werror -Wno-unused-parameter -Wno-unused-function " +
+          options);
+  EXPECT_TRUE(compiled.succeeded) << options << "\n" << compiled.output;
 }
 
 TEST(KernelLint, EachFileAloneWithoutWarningsAtEveryWidth) {
@@ -74,6 +92,159 @@ TEST(KernelLint, EachFeatureAloneAndNoneWithoutWarnings) {
     features.set(static_cast<Feature>(i));
     expectClean(clang, "-DLANES=8 " + featureDefines(features) + files);
   }
+}
+
+// Arithmetic. Only what OpenCL and IEEE 754 fix to the bit may be computed; everything else is a vendor's
+// choice. It is looked for in what the compiler makes of the kernels before it optimizes, where each function
+// still stands by itself.
+
+/// Functions of others that may be called, by their mangled names: work-items and bits; integers; conversions
+/// between float and int; what IEEE 754 rounds.
+const std::regex kFixedFunctions(
+    "_Z13get_global_idj|_Z(3clz|8popcount)[jm]|_Z3(min|max)(ii|jj|mm)|_Z10atomic_min.*jj"
+    "|_Z\\d+convert_(float\\d*(i|j|Dv\\d+_[ij])|int\\d*(f|Dv\\d+_f))|_Z3fma(fff|Dv\\d+_fS_S_)"
+    "|llvm\\.(lifetime\\.|memcpy\\.|memset\\.|prefetch\\.|vector\\.reduce\\.(or|smin|smax)\\.|ctlz\\.|"
+    "ctpop\\.).*"
+    "|llvm\\.x86\\.(avx512\\.mask\\.(gather\\.dpq|compress)\\.|avx\\.movmsk\\.ps\\.|sse\\.movmsk\\.ps).*");
+
+/// What only these functions may do: fma_lanes() says where a product and a sum are one operation, and those
+/// of quotient.clh know whether the device rounds.
+const std::map<std::string, std::regex> kAlsoFixed{{"fma_lanes", std::regex("llvm\\.fmuladd\\..*")},
+                                                   {"quotient", std::regex("fdiv")},
+                                                   {"quotient_lanes", std::regex("fdiv")},
+                                                   {"square_root", std::regex("fdiv|_Z4sqrtf")}};
+
+/// Of a program in LLVM's text what isn't fixed, a line each: the function, and what it does.
+std::set<std::string> looseArithmetic(const std::string& program) {
+  const std::regex defined("define .*@([\\w.]+)\\(.*"), called(".*\\bcall .*@([\\w.]+)\\(.*");
+  const std::regex inexact(".* (fdiv|frem) (<|float|double).*"),
+      loosened(".* (fast|nnan|ninf|nsz|arcp|contract|afn|reassoc) .*"), indirect(".*\\bcall [^@]*%\\w+\\(.*");
+  std::set<std::string> own, loose;
+  std::istringstream first(program), second(program);
+  std::smatch match;
+  for (std::string line; std::getline(first, line);)
+    if (line.starts_with("define ") && std::regex_match(line, match, defined)) own.insert(match[1]);
+  std::string function;
+  for (std::string line; std::getline(second, line);) {
+    if (line.starts_with("define ") && std::regex_match(line, match, defined)) function = match[1];
+    if (!line.starts_with("  ")) continue;
+    const auto also = kAlsoFixed.find(function);
+    const auto judge = [&](const std::string& what) {
+      if (also != kAlsoFixed.end() && std::regex_match(what, also->second)) return;
+      loose.insert(function + ": " + what);
+    };
+    if (line.find("call ") != std::string::npos && std::regex_match(line, match, called)) {
+      if (!own.count(match[1]) && !std::regex_match(match[1].str(), kFixedFunctions)) judge(match[1]);
+    } else if (std::regex_match(line, match, inexact)) {
+      judge(match[1]);
+    } else if (std::regex_match(line, match, loosened)) {
+      judge(match[1]);
+    } else if (std::regex_match(line, indirect)) {
+      judge("a pointer to a function");
+    }
+  }
+  return loose;
+}
+
+/// LLVM's text of a file, before any pass, with what the standard's header declares.
+Compiled programOf(const std::string& clang, const std::string& options) {
+  return compile(clang,
+                 "-Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -S -emit-llvm -Xclang "
+                 "-disable-llvm-passes -O1 -o - " +
+                     options);
+}
+
+std::string joined(const std::set<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
+  const std::string clang = findClang();
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
+  for (const int lanes : kAllLanes)
+    for (const char* machine :
+         {"", "-march=x86-64-v3", "-march=x86-64-v4", "-DOWN_QUOTIENTS", "-DSTANDARD_ONLY"}) {
+      for (const auto& entry :
+           std::filesystem::directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
+        if (entry.path().extension() != ".cl") continue;
+        const std::string options = fmt::format("-DLANES={} {} {}", lanes, machine, quoted(entry.path()));
+        const Compiled program = programOf(clang, options);
+        ASSERT_TRUE(program.succeeded) << options << "\n" << program.output;
+        EXPECT_EQ(joined(looseArithmetic(program.output)), "") << options;
+      }
+    }
+}
+
+TEST(KernelLint, LooseArithmeticIsFound) {
+  const std::string clang = findClang();
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
+  const TemporaryFolder folder;
+  const auto judged = [&](const std::string& body, const std::string& options = "") {
+    writeText(folder / "loose.cl",
+              "#include \"quotient.clh\"\n__kernel void probe(__global float *x, __global int *i) { " + body +
+                  " }\n");
+    const Compiled program =
+        programOf(clang, "-DLANES=4 " + options + " " + quoted(folder.path() / "loose.cl"));
+    EXPECT_TRUE(program.succeeded) << body << "\n" << program.output;
+    return joined(looseArithmetic(program.output));
+  };
+  for (const char* call : {"native_sqrt(x[0])",
+                           "native_recip(x[0])",
+                           "half_rsqrt(x[0])",
+                           "rsqrt(x[0])",
+                           "sqrt(x[0])",
+                           "exp2(x[0])",
+                           "exp(x[0])",
+                           "log(x[0])",
+                           "pow(x[0], x[1])",
+                           "sin(x[0])",
+                           "tan(x[0])",
+                           "mad(x[0], x[1], x[2])",
+                           "mix(x[0], x[1], x[2])",
+                           "max(x[0], x[1])",
+                           "min(x[0], x[1])",
+                           "fmin(x[0], x[1])",
+                           "fmod(x[0], x[1])",
+                           "step(x[0], x[1])",
+                           "clamp(x[0], x[1], x[2])",
+                           "length((float2)(x[0], x[1]))",
+                           "dot((float2)(x[0], x[1]), (float2)(x[2], x[3]))",
+                           "normalize((float2)(x[0], x[1])).x",
+                           "ldexp(x[0], i[0])",
+                           "convert_int_sat(x[0])",
+                           "convert_int_rte(x[0])",
+                           "mad24(i[0], i[1], i[2])"}) {
+    const std::string name = std::string(call).substr(0, std::string(call).find('('));
+    const std::string found = judged(fmt::format("x[0] = {};", call));
+    EXPECT_NE(found.find(name), std::string::npos) << call << "\n" << found;
+  }
+  EXPECT_EQ(judged("x[0] = x[1] / x[2];"), "probe: fdiv\n");
+  EXPECT_EQ(judged("x[0] += 2.0f * x[1];"), "") << "contraction is off below lanes.clh";
+  EXPECT_EQ(judged("{\n#pragma OPENCL FP_CONTRACT ON\nx[0] = x[1] * x[2] + x[3]; }"),
+            "probe: llvm.fmuladd.f32\n");
+  EXPECT_NE(judged("x[0] = x[1] + x[2];", "-cl-fast-relaxed-math"), "");
+  EXPECT_EQ(
+      judged(
+          "x[0] = quotient(fma(x[1], x[2], x[3]), square_root(x[4])); i[0] = min(i[1], convert_int(x[0]));"),
+      "");
+}
+
+// PoCL takes these alone for a start that reads little (build_program.cpp).
+TEST(KernelLint, BuiltinsDeclareNoMoreThanIsFixed) {
+  const std::string clang = findClang();
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
+  const TemporaryFolder folder;
+  const auto compiles = [&](const std::string& body) {
+    writeText(folder / "call.cl",
+              "#include \"builtins.clh\"\n__kernel void probe(__global float *x) { " + body + " }\n");
+    return compile(clang, "-D_OPENCL_H_ -cl-no-stdinc -fsyntax-only " + quoted(folder.path() / "call.cl"))
+        .succeeded;
+  };
+  EXPECT_TRUE(compiles("x[0] = fma(x[0], x[1], sqrt(x[2]));"));
+  for (const char* call : {"max(x[0], x[1])", "exp2(x[0])", "rsqrt(x[0])", "mad(x[0], x[1], x[2])"})
+    EXPECT_FALSE(compiles(fmt::format("x[0] = {};", call))) << call;
 }
 
 }  // namespace

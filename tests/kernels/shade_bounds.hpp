@@ -71,13 +71,13 @@ inline Interval attenuationInterval(const Light& light, const WayToLight& way) {
       .widened(20 * kUnit);
 }
 
-/// cosⁿ, by pow_one_plus within (|log2 cosⁿ|·5.6 + 3) units, and 0 below 2^-125.5.
+/// cosⁿ, by pow_one_plus within (|log2 cosⁿ|·5.6 + 3) units, and 0 below 2^-63.5 (a spot's: 2^-125.5).
 inline Interval powerInterval(double cosine, double error, double exponent) {
   const Interval power =
       growing(cosine, error, [&](double c) { return std::pow(std::clamp(c, 0.0, 1.0), exponent); });
   const double log2 = -std::log2(std::clamp(cosine - error, 1e-300, 1.0));
   const Interval result = power.widened(std::min((exponent * log2 * 6 + 4) * kUnit, 1.0));
-  return {std::max(result.low - 0x1p-125, 0.0), result.high};
+  return {std::max(result.low - 0x1p-63, 0.0), result.high};
 }
 
 inline Interval spotInterval(const Light& light, const glm::dmat4& to_view, const WayToLight& way) {

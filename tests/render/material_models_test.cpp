@@ -52,18 +52,18 @@ std::vector<int> surfacesSeen(const GBuffer& gbuffer) {
   return seen;
 }
 
-struct Case {
+struct LitCase {
   const char* name;
   Shading shading;
   int lights;
   ShadowMethod shadows;
 };
 
-class MaterialModels : public testing::TestWithParam<std::tuple<int, Case>> {};
+class MaterialModels : public testing::TestWithParam<std::tuple<int, LitCase>> {};
 
 TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
   const int lanes = std::get<0>(GetParam());
-  const Case of = std::get<1>(GetParam());
+  const LitCase of = std::get<1>(GetParam());
   Device& device = deviceWithLanes(lanes);
   const auto settingsOf = [&](const Scene& scene) {
     RenderSettings settings = settingsFor(scene, kBallsSize);
@@ -96,9 +96,9 @@ TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
 INSTANTIATE_TEST_SUITE_P(
     Lanes, MaterialModels,
     testing::Combine(testing::ValuesIn(kAllLanes),
-                     testing::Values(Case{"Lists", Shading::kPhong, 20, ShadowMethod::kExact},
-                                     Case{"Tiles", Shading::kPhong, 200, ShadowMethod::kOff},
-                                     Case{"Vertices", Shading::kGouraud, 20, ShadowMethod::kOff})),
+                     testing::Values(LitCase{"Lists", Shading::kPhong, 20, ShadowMethod::kExact},
+                                     LitCase{"Tiles", Shading::kPhong, 200, ShadowMethod::kOff},
+                                     LitCase{"Vertices", Shading::kGouraud, 20, ShadowMethod::kOff})),
     [](const auto& test) {
       return std::string(std::get<1>(test.param).name) + std::to_string(std::get<0>(test.param));
     });

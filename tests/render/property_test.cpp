@@ -243,6 +243,57 @@ TEST(Property, LanesChangeNothing) {
   EXPECT_FALSE(failure) << *failure;
 }
 
+/// PoCL as devices compute that differ from it in what OpenCL leaves open: quotients that aren't rounded
+/// right, denormals that aren't flushed, and what an integer becomes that a float doesn't fit into.
+Device& otherDevice(std::size_t which) {
+  static const char* const kArithmetic[] = {
+      "-cl-denorms-are-zero -DOWN_QUOTIENTS", "-cl-fp32-correctly-rounded-divide-sqrt",
+      "-cl-denorms-are-zero -cl-fp32-correctly-rounded-divide-sqrt -DSATURATING"};
+  static Device devices[std::size(kArithmetic)];
+  Device& device = devices[which];
+  if (!device.context()) {
+    openDevice("", device);
+    device.arithmetic = kArithmetic[which];
+  }
+  return device;
+}
+
+TEST(Property, WhatOpenCLLeavesOpenChangesNothing) {
+  for (const ShadowMethod shadows : {ShadowMethod::kPcf, ShadowMethod::kExact}) {
+    const auto failure =
+        hunt({"Arithmetic", "(as for Lanes, on a device whose arithmetic is another's)",
+              [&](const SceneJson& json) -> Failure {
+                const Case made = caseOf(json, shadows);
+                const Image usual = pictureOf(made);
+                for (const std::size_t which : {0, 1, 2})
+                  if (const auto different = unequal(usual, pictureOf(made, otherDevice(which))))
+                    return fmt::format("arithmetic {}: {}", which, *different);
+                return std::nullopt;
+              }},
+             firstSeed(), 12);
+    EXPECT_FALSE(failure) << *failure;
+  }
+}
+
+// Light so faint that its products leave the range of floats: where they are flushed must not show beside
+// what is visible, and colours down to 2^-40 are.
+TEST(Property, FaintLightIsTheSameWhereDenormalsAreKept) {
+  for (const int exponent : {0, -20, -40}) {
+    const auto failure = hunt({"Faint", "(as for Lanes, on a device that keeps denormals)",
+                               [&](const SceneJson& json) -> Failure {
+                                 Case made = caseOf(json, ShadowMethod::kPcf);
+                                 for (Light& light : made.scene.lights)
+                                   for (glm::vec3* color : {&light.ambient, &light.diffuse, &light.specular})
+                                     *color *= std::ldexp(1.0f, exponent);
+                                 made.scene.ambient = made.scene.background = made.scene.fog.color =
+                                     glm::vec3(0);
+                                 return unequal(pictureOf(made), pictureOf(made, otherDevice(1)));
+                               }},
+                              firstSeed(), 12);
+    EXPECT_FALSE(failure) << "lights of 2^" << exponent << "\n" << *failure;
+  }
+}
+
 Failure shadowsAreWrong(const SceneJson& json) {
   const Image lit = pictureOf(json, ShadowMethod::kOff), shadowed = pictureOf(json, ShadowMethod::kPcf);
   if (const auto bad =

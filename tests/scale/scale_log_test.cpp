@@ -213,6 +213,28 @@ TEST(ScaleLog, MergedShardsHoldMapsOfBounds) {
   EXPECT_EQ(readText(folder / "merged/pictures/0-bounds.png"), "bounds");
 }
 
+TEST(ScaleLog, MergeRefusesDevicesOfOtherBitsUnlessTold) {
+  const TemporaryFolder folder;
+  const ScaleDescription description = madeUpExperiment();
+  const char* arithmetic[] = {"aa", "aa", "", "bb"};  // of none it isn't known
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i < 3) makeShard(folder / std::to_string(i), description, i, "one");
+    ScaleLog log(folder / std::to_string(i), description);
+    Machine machine = madeUpMachine("with hash");
+    machine.device.arithmetic = arithmetic[i];
+    log.append(machine);
+  }
+  EXPECT_EQ(readScaleLog(folder / "3").machines[0].device.arithmetic, "bb");
+  const auto merge = [&](std::vector<std::string> names, const char* to, bool mixes) {
+    for (std::string& name : names) name = folder / name;
+    return refusal([&] { mergeScaleLogs(names, folder / to, mixes); });
+  };
+  EXPECT_EQ(merge({"0", "1", "2"}, "alike", false), "");
+  EXPECT_THAT(merge({"0", "3"}, "other", false), HasSubstr("--mix-devices"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "other"));
+  EXPECT_EQ(merge({"0", "3"}, "other", true), "");
+}
+
 TEST(ScaleLog, MergeRefusesWhatIsNotOneExperiment) {
   const TemporaryFolder folder;
   const ScaleDescription description = madeUpExperiment();
