@@ -46,7 +46,6 @@ struct PictureOptions {
   bool half = false;
   std::string compression;  ///< empty: kExrCompression
   bool alpha = false;
-  bool hash = false;
   bool require_exact = false;
   std::string device;
   std::string missing_textures = "error";

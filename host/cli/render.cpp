@@ -78,8 +78,6 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
                        pictureMetadata(stats, &device), how);
-      if (options.hash && !hash) hash.emplace(window.width, window.height, rows.channels);
-      if (hash) hash->add(rows);
       writer->write(rows);
     });
   };
