@@ -61,11 +61,22 @@ std::pair<Column, Column> hardPairs() {
     const double middle = (double(q) + 0x1p-24) * b;
     const float near = float(middle);
     for (const float a : {std::nextafter(near, 0.0f), near, std::nextafter(near, 4.0f)}) add(a, b);
-    add(std::bit_cast<float>(std::uint32_t(nextBits(state) >> 32)),
-        std::bit_cast<float>(std::uint32_t(nextBits(state) >> 32)));
     add(q * q, 1.0f);  // of which the root is near a float, and of what is below near a middle
     add(float((double(q) + 0x1p-24) * (double(q) + 0x1p-24)), 1.0f);
   }
+  // Where an inverse is hardest to get right: denominators just below 2, by numerators of any sign, and zeroes.
+  for (int i = 1; i <= 4096; ++i)
+    for (const float sign : {1.0f, -1.0f}) {
+      const float b = 2 - float(i) * 0x1p-23f;
+      add(sign * mantissa(), b);
+      add(mantissa(), -sign * b);
+      add(sign * 0.0f, b);
+      add(sign * 0.0f, -b);
+    }
+  // Last, for the numbers before are usual ones to their vectors' last lanes.
+  for (int i = 0; i < 200000; ++i)
+    add(std::bit_cast<float>(std::uint32_t(nextBits(state) >> 32)),
+        std::bit_cast<float>(std::uint32_t(nextBits(state) >> 32)));
   return pairs;
 }
 
