@@ -331,7 +331,7 @@ WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const fl
 // G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no
 // shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT
 // only: of pixels that a light of a size may reach; 0 for other lights.
-__kernel void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
+KERNEL void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
                            float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
                            __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
                            __global const int *children, __global const float *blocks, __global const uint *block_bits, __global const uchar *hole_texels,

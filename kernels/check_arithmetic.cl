@@ -2,7 +2,7 @@
 // order there. Columns are `stride` elements apart.
 #include "check_arithmetic.clh"
 
-__kernel void check_arithmetic(__global const float *in, __global int *out, uint stride) {
+KERNEL void check_arithmetic(__global const float *in, __global int *out, uint stride) {
   uint first = get_global_id(0) * LANES, at = first;
   floatL a = load_lanes(in + first), b = load_lanes(in + first + stride), c = load_lanes(in + first + 2 * stride);
   intL i = as_intL(a), j = as_intL(b);

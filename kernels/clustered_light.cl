@@ -463,7 +463,7 @@ WORK void light_run(Tile tile, const Scene *scene, uint tiles, __global float *l
 }
 
 // rows, light_rows: of the tree of diffuse light; highlight_rows, highlight_light_rows: of that of specular light, which has the same places.
-__kernel void clustered_light(ShadeFrame frame, __global const float *position, __global const float *normal, __global const float *diffuse,
+KERNEL void clustered_light(ShadeFrame frame, __global const float *position, __global const float *normal, __global const float *diffuse,
                               __global const float *specular, __global const float *rows, __global const float *light_rows,
                               __global const float *highlight_rows, __global const float *highlight_light_rows, uint light_count,
                               uint levels, float light_error, uint tiles_x, uint run, __global float *light, __global float *bound,

@@ -9,7 +9,7 @@
 #include "shared.h"
 
 // list_starts, list: see cull.cl.
-__kernel void count_in_range(__global const float *position, uint plane_stride, __global const ShadeLight *lights,
+KERNEL void count_in_range(__global const float *position, uint plane_stride, __global const ShadeLight *lights,
                              __global const uint *list_starts, __global const ListEntry *list, __global float *counts) {
   uint first = get_global_id(0) * LANES;
   vec3L p = load_vec3(position + first, plane_stride);

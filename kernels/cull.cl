@@ -134,7 +134,7 @@ WORK uint list_lights(Tiles tile, uint squares_per_group, __global const float *
 //   kFoundPerTile entries for each tile.
 // - fill 1: writes the lists to the places that `starts` tells: copied from `found` where that holds all of a list, otherwise found
 //   again.
-__kernel void find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
+KERNEL void find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
                           __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
                           uint tests, uint fill, __global ListEntry *found, __global uint *starts,
                           __global ListEntry *all_lists) {
@@ -166,7 +166,7 @@ __kernel void find_lights(__global const float *position, __global const float *
 
 // Exclusive prefix sum in place, by one work-item. starts: tiles + 1; in: the counts; out: where each list starts, then the total.
 // Sums saturate at 2³² − 1, a total that the host refuses.
-__kernel void scan_lists(uint tiles, __global uint *starts) {
+KERNEL void scan_lists(uint tiles, __global uint *starts) {
   ulong sum = 0;
   for (uint tile = 0; tile < tiles; ++tile) {
     uint count = starts[tile];

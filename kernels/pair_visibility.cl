@@ -11,7 +11,7 @@
 
 // position, normal: planes x y z of `stride` floats. geometric_normal, lift: see shading.clh. map_of_row: an index into `maps` for each
 // row. texel_count: ≥ 1.
-__kernel void pair_visibility(uint stride, __global const float *position, __global const float *normal,
+KERNEL void pair_visibility(uint stride, __global const float *position, __global const float *normal,
                               __global const uint *geometric_normal, __global const float *lift, __global const uint *map_of_row, __global const ShadowMap *maps,
                               __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,
                               __global float *visibility) {

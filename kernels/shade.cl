@@ -76,7 +76,7 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight 
 // lift: metres; model: see load_models(). list_starts, list: see cull.cl; without LIGHT_LISTS every pixel meets all frame.light_count lights.
 // image: planes r, g, b, and with OUTPUT_SHADOW a fourth: the mean visibility, in [0, 1], of the lights with shadows that reach the
 // pixel's front.
-__kernel void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
+KERNEL void shade(ShadeFrame frame, __global const float *position, __global const float *normal,
                     __global const float *diffuse, __global const float *specular, __global const float *ambient,
                     __global const float *emission, __global const uint *geometric_normal, __global const float *lift,
                     __global const uint *model, __global const ShadeLight *lights, __global const uint *list_starts,

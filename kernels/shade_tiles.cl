@@ -241,7 +241,7 @@ WORK void shade_block(ShadeFrame frame, Planes planes, __global const float *tre
 // There is a work-item for each block, up to a multiple of kBlockRun. Blocks side by side follow each other in runs, whose planes lie
 // together; stride, which has no factor in common with their number, spreads the runs over the picture, because a device may share
 // them out many at a time. counts: two for each tile, see shade_tile().
-__kernel void shade_tiles(ShadeFrame frame, __global const float *position, __global const float *normal,
+KERNEL void shade_tiles(ShadeFrame frame, __global const float *position, __global const float *normal,
                           __global const float *diffuse, __global const float *specular, __global const float *ambient,
                           __global const float *emission, __global const uint *geometric_normal, __global const uint *model, __global const float *tree, uint tree_stride,
                           __global const ShadeLight *lights, uint tiles_x, uint tiles_y, uint width, uint height,

@@ -106,6 +106,8 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
       if (devices[i].platform == "Portable Computing Language") return i;
     return 0;
   }
+  if (wanted == kAllDevices)
+    throw InputError(fmt::format("--device {}: only render takes several devices", selector));
   if (const auto number = parseNumber(wanted)) {
     if (*number < devices.size()) return *number;
     throw InputError(fmt::format("--device {}: there are {} devices, counted from 0 (see luciole devices)",

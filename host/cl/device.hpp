@@ -82,6 +82,9 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
 /// 4, 8 and 16, and MachineError if the device fails.
 void openDevice(const std::string& selector, Device& device);
 
+/// The selector that means all devices, where a command takes several.
+constexpr const char* kAllDevices = "all";
+
 /// openDevice(), and then `then` if there is one, in a thread of its own. Nobody else may use `device` until
 /// awaitDevice() has returned.
 void startDevice(const std::string& selector, Device& device, std::function<void()> then = {});

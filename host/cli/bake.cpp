@@ -11,6 +11,7 @@
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
+#include "cli/open_devices.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/suggest.hpp"

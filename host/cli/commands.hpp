@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,9 +16,10 @@ enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3
 
 /// What the program and a command know of each other.
 struct CommandContext {
-  std::string command_line;  ///< as typed, for metadata and statistics
-  int status = kDone;        ///< where the command leaves the exit status
-  Device device{};           ///< for the command to open; the end of the process closes it
+  std::string command_line;    ///< as typed, for metadata and statistics
+  int status = kDone;          ///< where the command leaves the exit status
+  Device device{};             ///< for the command to open; the end of the process closes it
+  std::list<Device> others{};  ///< that --device all opens beside it
 };
 
 /// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see

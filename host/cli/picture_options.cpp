@@ -329,8 +329,12 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                      "make no picture on a device whose arithmetic differs from that of all others, which "
                      "otherwise is a warning");
   if (groups & kDeviceOption)
-    command.add_option("--device", options.device,
-                       "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
+    command.add_option(
+        "--device", options.device,
+        is_one_picture && (groups & kSampleOption)
+            ? "an index or part of a name from luciole devices, or all: each makes some of the "
+              "rows, [,lanes=1|4|8|16]"
+            : "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   if (is_one_picture && !(groups & kColorOptions)) {
     command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
     addTraceOption(command, options.trace);

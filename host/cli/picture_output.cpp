@@ -15,7 +15,6 @@
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
-#include "render/check_device.hpp"
 #include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 
@@ -167,36 +166,6 @@ Metadata pictureMetadata(const Stats& stats, const Device* device) {
         fmt::format("{}, {}, driver {}, {} lanes", device->description.name, device->description.platform,
                     device->description.version, device->description.lanes));
   return metadata;
-}
-
-void startCheckedDevice(const PictureOptions& options, CommandContext& context) {
-  startDevice(options.device, context.device,
-              [&context, require = options.require_exact, quiet = options.quiet] {
-                DeviceDescription& device = context.device.description;
-                std::vector<std::string> wrong;
-                try {
-                  const ArithmeticCheck check = knownArithmetic(context.device);
-                  device.arithmetic = check.sha256;
-                  wrong = check.wrong;
-                } catch (const MachineError& error) {
-                  wrong.emplace_back(error.what());
-                }
-                if (wrong.empty()) return;
-                const std::string what =
-                    fmt::format("{}: its pictures may have other bits than those of other devices: {}",
-                                device.name, wrong.front());
-                if (require) throw MachineError("--require-exact: " + what);
-                if (!quiet) tellWarnings({what + " (luciole devices --check tells all)"});
-              });
-}
-
-void logDevice(const DeviceDescription& device) {
-  EventFields fields{{"name", device.name},
-                     {"platform", device.platform},
-                     {"driver", device.version},
-                     {"lanes", device.lanes}};
-  if (!device.arithmetic.empty()) fields["arithmetic"] = device.arithmetic;
-  logEvent("device", fields);
 }
 
 Stats laterStats(const std::string& command) {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "cl/device.hpp"
-#include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
@@ -55,12 +54,5 @@ Stats laterStats(const std::string& command);
 /// error that says what was made and what it cost. In an event log that is an event for each stage of the
 /// frame, and one for the frame.
 void reportStats(const PictureOptions& options, const Stats& stats, int frame);
-
-/// Opens the device that --device names in a thread of its own (see startDevice), which also looks whether it
-/// computes as every device should. If not, it warns, or with --require-exact throws MachineError.
-void startCheckedDevice(const PictureOptions& options, CommandContext& context);
-
-/// In an event log, tells which device is used.
-void logDevice(const DeviceDescription& device);
 
 }  // namespace luciole

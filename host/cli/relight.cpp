@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
+#include "cli/open_devices.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/suggest.hpp"

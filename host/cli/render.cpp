@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <list>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "cli/event_log.hpp"
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
+#include "cli/open_devices.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/progress.hpp"
@@ -24,6 +26,7 @@
 #include "image/picture_hash.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
+#include "render/share_picture.hpp"
 #include "render/surface_ids.hpp"
 #include "scene/pose.hpp"
 
@@ -58,9 +61,9 @@ std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene,
 }
 
 /// Renders the scene at its frame, with the exposure that was measured or that the options say, and writes
-/// the picture, to the film unless that is null. kept: see renderBands.
-void renderPicture(Device& device, const Scene& scene, const PictureOptions& options, Film* film,
-                   const std::function<void(int, int)>& on_pass, KeptShadows* kept, Stats& stats) {
+/// the picture, to the film unless that is null. keeps: see renderShared.
+void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options, Film* film,
+                   const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
   if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
@@ -77,11 +80,15 @@ void renderPicture(Device& device, const Scene& scene, const PictureOptions& opt
       if (hash) hash->add(rows);
       if (!writer)
         writer.emplace(options.output, window.width, window.height, rows.channels,
-                       pictureMetadata(stats, &device), how);
+                       pictureMetadata(stats, sharers.front().device), how);
       writer->write(rows);
     });
   };
-  renderBands(device, scene, settings, write, stats, kept);
+  renderShared(sharers, scene, settings, write, stats, keeps);
+  if (!options.quiet)
+    for (const DeviceShare& share : stats.shares)
+      if (!share.error.empty())
+        tellWarnings({fmt::format("{}; the other devices made its rows", share.error)});
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
   if (hash) stats.hash = hash->hex();
   reportHalves(options, limited, stats);
@@ -123,14 +130,13 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
 /// file each. claims: null unless other runs may be at work beside this one. started: the cost of loading and
 /// measuring, which goes into the first frame's statistics. Returns the exit status of the first failure.
 /// Throws InputError for a frame that another run has claimed.
-int renderFrames(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-                 const std::vector<std::optional<double>>& exposures, Film* film, FrameClaims* claims,
-                 Stats started) {
+int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& options,
+                 const std::vector<int>& frames, const std::vector<std::optional<double>>& exposures,
+                 Film* film, FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);
   const std::string command = started.command;
   int status = kDone;
   std::vector<int> failed;
-  KeptShadows kept;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (claims) claims->claim(frames[i]);
     const auto showPass = [&](int done, int passes) {
@@ -155,7 +161,7 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
-        renderPicture(device, scene, picture, film, showPass, &kept, stats);
+        renderPicture(sharers, scene, picture, film, showPass, true, stats);
         progress.clear();
         reportStats(picture, stats, frames[i]);
       }
@@ -174,15 +180,16 @@ int renderFrames(Device& device, Scene& scene, const RenderOptions& options, con
 }
 
 /// Renders all frames into one film. Returns the exit status.
-int renderFilm(Device& device, Scene& scene, const RenderOptions& options, const std::vector<int>& frames,
-               const std::vector<std::optional<double>>& exposures, Stats started) {
+int renderFilm(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& options,
+               const std::vector<int>& frames, const std::vector<std::optional<double>>& exposures,
+               Stats started) {
   const PictureOptions picture = optionsOfCameras(options, scene).front();
   const Crop window = windowOf(renderSettings(picture, scene));
   const double rate = options.frames_per_second.value_or(kFramesPerSecond);
   const std::string path = frameFile(picture.output, frames.front());
   Film film(path, options.format, window.width, window.height, rate);
   const int status =
-      renderFrames(device, scene, options, frames, exposures, &film, nullptr, std::move(started));
+      renderFrames(sharers, scene, options, frames, exposures, &film, nullptr, std::move(started));
   if (status != kDone) return status;
   film.close();
   if (logsEvents())
@@ -282,8 +289,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     }
     Stats stats;
     stats.command = context.command_line;
-    Device& device = context.device;
-    startCheckedDevice(*options, context);
+    std::list<Sharer> sharers = startSharers(*options, context);
+    Device& device = *sharers.front().device;
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
@@ -295,11 +302,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
         throw InputError(
             fmt::format("--camera all: a film is of one camera, and {} has {}", scene.name, pictures.size()));
       awaitDevice(device);
-      logDevice(device.description);
+      for (const Sharer& sharer : sharers) logDevice(sharer.device->description);
       // By the first frame of all, also of those that aren't made here: every shard measures the same.
       const auto exposures = chooseExposures(device, scene, choice.frames.front(), *options, pictures, stats);
-      context.status = is_film ? renderFilm(device, scene, *options, frames, exposures, std::move(stats))
-                               : renderFrames(device, scene, *options, frames, exposures, nullptr,
+      context.status = is_film ? renderFilm(sharers, scene, *options, frames, exposures, std::move(stats))
+                               : renderFrames(sharers, scene, *options, frames, exposures, nullptr,
                                               claims ? &*claims : nullptr, std::move(stats));
       return;
     }
@@ -314,12 +321,13 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       progress.frame = frame;
       const auto showPass = [&](int done, int passes) {
         // The first pass needed it.
-        if (!std::exchange(device_is_told, true)) logDevice(device.description);
+        if (!std::exchange(device_is_told, true))
+          for (const Sharer& sharer : sharers) logDevice(sharer.device->description);
         progress.show(std::filesystem::path(pictures[i].output).filename(), std::size_t(done),
                       std::size_t(passes));
       };
       stats.measured_exposure = exposures[i];
-      renderPicture(device, scene, pictures[i], nullptr, showPass, nullptr, stats);
+      renderPicture(sharers, scene, pictures[i], nullptr, showPass, false, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);

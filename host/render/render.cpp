@@ -13,6 +13,7 @@
 #include "base/trace.hpp"
 #include "culling/fog_cull.hpp"
 #include "gbuffer/planes.hpp"
+#include "raster/bins.hpp"
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
 #include "render/assemble.hpp"
@@ -171,8 +172,15 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
   stats.features = featureNames(features);
 }
 
-void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
-                 Stats& stats, KeptShadows* kept) {
+int bandEnd(int first, const BandLimits& limits) {
+  const int end = first + limits.tallest;
+  if (end >= limits.bottom) return limits.bottom;
+  const int whole_bins = limits.origin + (end - limits.origin) / kBinSize * kBinSize;
+  return whole_bins > first ? whole_bins : end;
+}
+
+void renderChosenBands(Device& device, const Scene& scene, const RenderSettings& settings,
+                       const NextBand& next, const BandSink& take, Stats& stats, KeptShadows* kept) {
   const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const TraceSpan span("picture", {{"width", view.crop_size.x},
@@ -213,19 +221,17 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   requireMemory(double(pixel_bytes) * view.crop_size.x * tallest,
                 fmt::format("a band of {}x{} pixels", view.crop_size.x, tallest));
   const bool shared = sharesSamples(settings);
-  // The row from which bands are counted. Points of a bin are lit by the same clusters, so there no band may
-  // end within a bin. Bins are counted from the picture's corner, and other pixels' tiles from the crop's.
-  const bool whole_bins = shared && prepared.features.has(Feature::kClusteredLights);
-  const int top = view.crop_origin.y, bottom = top + view.crop_size.y, origin = whole_bins ? 0 : top;
-  const int bands = (bottom - 1 - origin) / height - (top - origin) / height + 1;
-  Progress progress{settings.on_pass, bands * (shared ? 1 : settings.samples)};
+  Progress progress{settings.on_pass, view.crop_size.y * (shared ? 1 : settings.samples)};
   RasterCounts triangles;
   const MatteIds matte_ids = matteIds(scene, settings);
-  View band = view;
-  for (int y = top; y < bottom; y += band.crop_size.y) {
-    const int end = std::min(origin + ((y - origin) / height + 1) * height, bottom);
-    band.crop_origin.y = y;
-    band.crop_size.y = end - y;
+  // Points of a bin are lit by the same clusters, so there no band may end within a bin. Bins are counted
+  // from the picture's corner, and other pixels' tiles from the crop's.
+  const bool whole_bins = shared && prepared.features.has(Feature::kClusteredLights);
+  const BandLimits limits{height, whole_bins ? 0 : view.crop_origin.y, view.crop_origin.y + view.crop_size.y};
+  while (const std::optional<Band> rows = next(limits)) {
+    View band = view;
+    band.crop_origin.y = rows->first;
+    band.crop_size.y = rows->height;
     const TraceSpan of_band("band", {{"first_row", band.crop_origin.y},
                                      {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
     const auto render = shared ? renderSharedSamples : renderAllSamples;
@@ -233,7 +239,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
     if (wantsSurfaceIds(settings))
       timed(stats, Stage::kRasterize,
             [&] { setSurfaceIds(scene, band, settings, matte_ids, prepared.used.picture); });
-    take(prepared.used.picture);
+    take(*rows, prepared.used.picture);
   }
   countLightUses(scene, shade, prepared.lighting, stats);
   countShadows(prepared.lighting, stats);
@@ -243,6 +249,19 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
   giveBack(prepared.lighting.shadow_faces);
   giveBack(prepared.lighting.shadow_texels);
   keepMaps(scene, std::move(prepared.lighting.host_shadows), *kept);
+}
+
+void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
+                 Stats& stats, KeptShadows* kept) {
+  std::optional<int> begun;
+  const auto next = [&](const BandLimits& limits) -> std::optional<Band> {
+    const int first = begun.value_or(settings.crop ? settings.crop->y : 0);
+    if (first == limits.bottom) return std::nullopt;
+    begun = bandEnd(first, limits);
+    return Band{first, *begun - first};
+  };
+  renderChosenBands(
+      device, scene, settings, next, [&](const Band&, const Image& rows) { take(rows); }, stats, kept);
 }
 
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {

@@ -73,10 +73,11 @@ struct RenderSettings {
   bool alpha = false;
   /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
   bool count_lights = false;
-  /// Rows that are rendered at a time; 0: as bandHeight() says. The picture's colours don't depend on it,
-  /// with a light error as long as it is a multiple of kBinSize.
+  /// Rows that are rendered at a time, at most; 0: as bandHeight() says. The picture's colours don't depend
+  /// on it, with a light error as long as it is a multiple of kBinSize.
   int band_height = 0;
-  std::function<void(int done, int passes)> on_pass;  ///< called after each pass over a band, if set
+  /// Called after each pass over a band, if set: how many rows are done, of how many, in all passes together.
+  std::function<void(int done, int rows)> on_pass;
 };
 
 /// How to light the scene's whole picture: the settings' `shade`, and what follows for it from the layers,
@@ -96,6 +97,31 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 
 /// Takes the next rows of a picture, from the top down. `rows` lasts until it returns.
 using RowSink = std::function<void(const Image& rows)>;
+
+/// Rows of a picture, counted from the whole picture's top.
+struct Band {
+  int first, height;
+};
+
+/// What holds for the bands of a picture.
+struct BandLimits {
+  int tallest;  ///< the most rows that fit into memory
+  int origin;   ///< bands end at this row plus a multiple of kBinSize, but for the last, and for lower ones
+  int bottom;   ///< where the picture, or its crop, ends
+};
+
+/// Where a band ends that begins at row `first`: as far down as may be.
+int bandEnd(int first, const BandLimits& limits);
+
+/// Says which band to make next; none: the picture is done.
+using NextBand = std::function<std::optional<Band>(const BandLimits& limits)>;
+
+/// Takes a band's pixels, which last until it returns.
+using BandSink = std::function<void(const Band& band, const Image& rows)>;
+
+/// Makes the bands of a scene's picture that `next` asks for. All else: see renderBands().
+void renderChosenBands(Device& device, const Scene& scene, const RenderSettings& settings,
+                       const NextBand& next, const BandSink& take, Stats& stats, KeptShadows* kept = nullptr);
 
 /// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
 /// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. kept: for pictures

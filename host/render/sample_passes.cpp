@@ -178,7 +178,7 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
       });
     }
     used.gbuffer = std::move(gbuffer);
-    progress.step();
+    progress.step(view.crop_size.y);
   }
   used.color = std::move(sums.color);
   return picture;
@@ -236,7 +236,7 @@ Image renderSharedSamples(Device& device, const Scene& scene, const RenderSettin
     return cutOut(std::move(picture), sampled.inner.first - sampled.view.crop_origin,
                   sampled.inner.end - sampled.inner.first);
   });
-  progress.step();
+  progress.step(view.crop_size.y);
   return cut;
 }
 

@@ -32,15 +32,15 @@ struct Prepared {
   UsedMemory used;
 };
 
-/// Counts passes, and reports each.
+/// Counts the rows of passes, and reports each pass.
 struct Progress {
   const std::function<void(int, int)>& report;
-  int passes;
+  int rows;
   int done = 0;
 
-  void step() {
-    ++done;
-    if (report) report(done, passes);
+  void step(int rows_done) {
+    done += rows_done;
+    if (report) report(done, rows);
   }
 };
 

@@ -59,6 +59,40 @@ std::uint64_t countOf(const Stats& stats, std::string_view name) {
   return 0;
 }
 
+void addPart(const Stats& part, Stats& whole) {
+  if (whole.width == 0 && part.width > 0) {
+    whole.device = part.device;
+    whole.triangles = part.triangles;
+    whole.lights = part.lights;
+    whole.features = part.features;
+    whole.warnings = part.warnings;
+    whole.width = part.width;
+    whole.height = part.height;
+    whole.samples = part.samples;
+    whole.beside = part.beside;
+  }
+  for (const auto& [stage, milliseconds] : part.stages) addStage(whole, stage, milliseconds);
+  for (const auto& [name, count] : part.counts) {
+    // What is counted of the scene, and not of its pixels, every device counts.
+    const bool is_of_scene =
+        name.starts_with("lights_") || name.starts_with("shadow_lights") || name.starts_with("objects_");
+    const auto known = std::find_if(whole.counts.begin(), whole.counts.end(),
+                                    [&](const auto& one) { return one.first == name; });
+    if (known == whole.counts.end())
+      whole.counts.emplace_back(name, count);
+    else
+      known->second = is_of_scene ? std::max(known->second, count) : known->second + count;
+  }
+  whole.light_error.largest = std::max(whole.light_error.largest, part.light_error.largest);
+  whole.light_error.sum += part.light_error.sum;
+  whole.light_error.least = std::max(whole.light_error.least, part.light_error.least);
+  whole.light_error.values += part.light_error.values;
+  whole.device_bytes += part.device_bytes;
+  whole.traffic.bytes_up += part.traffic.bytes_up;
+  whole.traffic.bytes_down += part.traffic.bytes_down;
+  whole.traffic.bytes_made += part.traffic.bytes_made;
+}
+
 double endStage(Stage stage, std::int64_t begin) {
   const std::int64_t end = nanosecondsSinceStart();
   traceEvent(stageName(stage), kTraceStage, begin, end);
@@ -75,6 +109,15 @@ std::string statsJson(const Stats& stats, double ended) {
                     {"lanes", stats.device.lanes},
                     {"compute_units", stats.device.compute_units}};
   if (!stats.device.arithmetic.empty()) json["device"]["arithmetic"] = stats.device.arithmetic;
+  for (const DeviceShare& share : stats.shares) {
+    json["devices"].push_back({{"platform", share.device.platform},
+                               {"name", share.device.name},
+                               {"driver", share.device.version},
+                               {"lanes", share.device.lanes},
+                               {"rows", share.rows},
+                               {"milliseconds", share.milliseconds}});
+    if (!share.error.empty()) json["devices"].back()["error"] = share.error;
+  }
   json["scene"] = {{"triangles", stats.triangles}, {"lights", stats.lights}, {"features", stats.features}};
   json["warnings"] = stats.warnings;
   json["image"] = {{"width", stats.width}, {"height", stats.height}, {"samples", stats.samples}};

@@ -54,10 +54,19 @@ struct LightErrorStats {
   std::uint64_t values = 0;
 };
 
+/// What one of several devices did for a picture.
+struct DeviceShare {
+  DeviceDescription device;
+  std::uint64_t rows = 0;   ///< of the picture that it made
+  double milliseconds = 0;  ///< that it took for them
+  std::string error;        ///< why it was left out in the middle; empty: it wasn't
+};
+
 /// What a picture cost: the content of --stats.
 struct Stats {
   std::string command;
   DeviceDescription device;
+  std::vector<DeviceShare> shares;  ///< where several devices made the picture
   std::uint64_t triangles = 0;
   std::uint64_t lights = 0;
   std::vector<std::string> features;
@@ -80,6 +89,10 @@ struct Stats {
 
 /// Adds `milliseconds` to the stage, which starts at 0.
 void addStage(Stats& stats, Stage stage, double milliseconds);
+
+/// Adds what one of several devices cost that made parts of a picture, and what it says of the scene where
+/// nobody has said that yet. Times are sums over devices that worked side by side.
+void addPart(const Stats& part, Stats& whole);
 
 /// Ends a stage that began at `begin` (nanosecondsSinceStart()): records it for a trace, and returns the
 /// milliseconds that it took.

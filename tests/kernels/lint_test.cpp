@@ -112,6 +112,7 @@ const std::regex kFixedFunctions(
 const std::map<std::string, std::regex> kAlsoFixed{{"fma_lanes", std::regex("llvm\\.fmuladd\\..*")},
                                                    {"quotient", std::regex("fdiv")},
                                                    {"quotient_lanes", std::regex("fdiv")},
+                                                   {"quotient_of_any", std::regex("fdiv")},
                                                    {"square_root", std::regex("fdiv|_Z4sqrtf")}};
 
 /// Of a program in LLVM's text what isn't fixed, a line each: the function, and what it does.

@@ -64,7 +64,8 @@ std::pair<Column, Column> hardPairs() {
     add(q * q, 1.0f);  // of which the root is near a float, and of what is below near a middle
     add(float((double(q) + 0x1p-24) * (double(q) + 0x1p-24)), 1.0f);
   }
-  // Where an inverse is hardest to get right: denominators just below 2, by numerators of any sign, and zeroes.
+  // Where an inverse is hardest to get right: denominators just below 2, by numerators of any sign, and
+  // zeroes.
   for (int i = 1; i <= 4096; ++i)
     for (const float sign : {1.0f, -1.0f}) {
       const float b = 2 - float(i) * 0x1p-23f;

@@ -116,12 +116,13 @@ TEST(Bands, ComeFromTheTopDownAndEachPassIsReported) {
   renderBands(
       testDevice(), scene, settings, [&](const Image& rows) { heights.push_back(rows.height); }, stats);
   EXPECT_EQ(heights, (std::vector<int>{64, 64, 22}));
-  EXPECT_EQ(passes, (std::vector<std::pair<int, int>>{{1, 3}, {2, 3}, {3, 3}}));
+  EXPECT_EQ(passes, (std::vector<std::pair<int, int>>{{64, 150}, {128, 150}, {150, 150}}));
   passes.clear();
   settings.sample_shading = SampleShading::kAll;
   renderBands(
       testDevice(), scene, settings, [](const Image&) {}, stats);
-  EXPECT_EQ(passes, (std::vector<std::pair<int, int>>{{1, 6}, {2, 6}, {3, 6}, {4, 6}, {5, 6}, {6, 6}}));
+  EXPECT_EQ(passes, (std::vector<std::pair<int, int>>{
+                        {64, 300}, {128, 300}, {192, 300}, {256, 300}, {278, 300}, {300, 300}}));
 }
 
 TEST(BandHeight, IsAsFewBandsOfWholeBinsAsFitTheBudget) {

@@ -1,0 +1,207 @@
+#include "render/share_picture.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/trace.hpp"
+#include "raster/bins.hpp"
+#include "raster/view.hpp"
+
+namespace luciole {
+namespace {
+
+/// A device's first bands, before anybody knows how fast it is, are together this part of the picture.
+constexpr int kFirstPart = 8;
+/// Of the rows that are left a device takes half of its share, so that those that turn out slower have less
+/// to do in the end.
+constexpr double kShareTaken = 0.5;
+/// How many of its tallest bands a device may be ahead of the rows that were taken: what waits is memory.
+constexpr int kMostAhead = 4;
+
+/// The rows of a picture, as devices take them and give them back.
+struct SharedRows {
+  int bottom;  ///< where the picture ends
+  int next;    ///< the first row that no device has taken yet
+  int taken;   ///< the rows before it were handed on
+  int working;
+  std::vector<Band> returned = {};  ///< by devices that failed
+  std::map<int, Image> done = {};   ///< by first row
+  std::exception_ptr failure = {};  ///< that ends all work
+  std::mutex mutex = {};
+  std::condition_variable changed = {};
+};
+
+/// How many of the rows that are left a device should take. rows.mutex is held.
+double wantedRows(const std::list<Sharer>& sharers, const Sharer& mine, const SharedRows& rows, int height) {
+  double rates = 0;
+  int count = 0;
+  bool all_known = true;
+  for (const Sharer& sharer : sharers) {
+    if (!sharer.error.empty()) continue;
+    ++count;
+    all_known &= sharer.milliseconds > 0;
+    rates += sharer.milliseconds > 0 ? sharer.rows / sharer.milliseconds : 0;
+  }
+  if (!all_known || !(rates > 0)) return double(height) / (kFirstPart * count);
+  return kShareTaken * (rows.bottom - rows.next) * (mine.rows / mine.milliseconds) / rates;
+}
+
+/// What one device does, in a thread of its own.
+struct Worker {
+  std::list<Sharer>& sharers;
+  Sharer& mine;
+  SharedRows& rows;
+  int height;  ///< of the picture
+  std::optional<Band> band = {};
+  double begun = 0;
+  Stats stats = {};
+  std::uint64_t rows_made = 0;
+  double milliseconds = 0;
+
+  /// NextBand: waits where there may still be something to do.
+  std::optional<Band> nextBand(const BandLimits& limits) {
+    std::unique_lock lock(rows.mutex);
+    const auto isAhead = [&] { return rows.next - rows.taken > kMostAhead * limits.tallest; };
+    rows.changed.wait(lock, [&] {
+      return rows.failure || rows.taken == rows.bottom || !rows.returned.empty() ||
+             (rows.next < rows.bottom && !isAhead());
+    });
+    if (rows.failure || rows.taken == rows.bottom) return std::nullopt;
+    if (!rows.returned.empty()) {
+      band = rows.returned.back();
+      rows.returned.pop_back();
+      // Its device may have had more memory.
+      const int bottom = band->first + band->height;
+      const int end = bandEnd(band->first, {limits.tallest, limits.origin, bottom});
+      if (end < bottom) rows.returned.push_back({end, bottom - end});
+      band->height = end - band->first;
+    } else {
+      const double wanted = wantedRows(sharers, mine, rows, height);
+      const int most = std::clamp(int(wanted), std::min(kBinSize, limits.tallest), limits.tallest);
+      band = Band{rows.next, bandEnd(rows.next, {most, limits.origin, rows.bottom}) - rows.next};
+      rows.next += band->height;
+    }
+    begun = millisecondsSinceStart();
+    return band;
+  }
+
+  /// BandSink.
+  void takeBand(const Image& image) {
+    const double took = millisecondsSinceStart() - begun;
+    const std::lock_guard lock(rows.mutex);
+    mine.rows += band->height;
+    mine.milliseconds += took;
+    rows_made += std::uint64_t(band->height);
+    milliseconds += took;
+    rows.done.emplace(band->first, image);
+    band.reset();
+    rows.changed.notify_all();
+  }
+
+  void run(const Scene& scene, const RenderSettings& settings, bool keeps) {
+    const TraceThread thread(mine.device->description.name.c_str());
+    std::exception_ptr failure;
+    std::string error;
+    try {
+      renderChosenBands(
+          *mine.device, scene, settings, [&](const BandLimits& limits) { return nextBand(limits); },
+          [&](const Band&, const Image& image) { takeBand(image); }, stats, keeps ? &mine.kept : nullptr);
+    } catch (const MachineError& problem) {
+      failure = std::current_exception();
+      error = problem.what();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(rows.mutex);
+    --rows.working;
+    mine.error = error;
+    if (band) rows.returned.push_back(*band);
+    // Without a message the input is wrong, which no other device mends.
+    if (failure && (error.empty() || rows.working == 0)) rows.failure = failure;
+    rows.changed.notify_all();
+  }
+};
+
+/// Hands on what is done, from the top down, until all is.
+void takeRows(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
+  while (true) {
+    Image image;
+    {
+      std::unique_lock lock(rows.mutex);
+      if (rows.taken == rows.bottom) return;
+      rows.changed.wait(lock, [&] { return rows.failure || rows.done.count(rows.taken) > 0; });
+      if (rows.failure) std::rethrow_exception(rows.failure);
+      image = std::move(rows.done.extract(rows.taken).mapped());
+    }
+    take(image);
+    int taken = 0;
+    {
+      const std::lock_guard lock(rows.mutex);
+      taken = rows.taken += image.height;
+      rows.changed.notify_all();
+    }
+    if (settings.on_pass) settings.on_pass(taken - top, rows.bottom - top);
+  }
+}
+
+/// Joins threads, also where an exception leaves.
+struct Joiner {
+  SharedRows& rows;
+  std::vector<std::thread> threads = {};
+
+  void join() {
+    for (std::thread& thread : threads) thread.join();
+    threads.clear();
+  }
+  ~Joiner() {
+    {
+      const std::lock_guard lock(rows.mutex);
+      if (!threads.empty() && !rows.failure)
+        rows.failure = std::make_exception_ptr(MachineError("left before its end"));
+      rows.changed.notify_all();
+    }
+    join();
+  }
+};
+
+}  // namespace
+
+void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSettings& settings,
+                  const RowSink& take, Stats& stats, bool keeps) {
+  if (sharers.size() == 1) {
+    Sharer& only = sharers.front();
+    renderBands(*only.device, scene, settings, take, stats, keeps ? &only.kept : nullptr);
+    return;
+  }
+  const View view = cameraView(settings.camera, settings.size, settings.crop);
+  const int top = view.crop_origin.y, bottom = top + view.crop_size.y;
+  SharedRows rows{bottom, top, top, 0};
+  RenderSettings without_report = settings;
+  without_report.on_pass = nullptr;
+  std::list<Worker> workers;
+  for (Sharer& sharer : sharers)
+    if (sharer.error.empty()) workers.push_back({sharers, sharer, rows, view.crop_size.y});
+  if (workers.empty()) throw MachineError(sharers.front().error);
+  rows.working = int(workers.size());
+  Joiner joiner{rows};
+  for (Worker& worker : workers)
+    joiner.threads.emplace_back([&] { worker.run(scene, without_report, keeps); });
+  takeRows(rows, top, settings, take);
+  joiner.join();
+  for (const Worker& worker : workers) {
+    addPart(worker.stats, stats);
+    stats.shares.push_back(
+        {worker.mine.device->description, worker.rows_made, worker.milliseconds, worker.mine.error});
+  }
+}
+
+}  // namespace luciole
