@@ -77,7 +77,7 @@ DeviceMemory make(Device& device, std::size_t size) {
       memory.handle.setDestructorCallback(freeOwnArray, array.get());
       static_cast<void>(array.release());  // freeOwnArray() has it now
     } catch (const std::bad_alloc&) {
-      throw MachineError(fmt::format("{}: out of memory", device.description.name));
+      throw DeviceError(fmt::format("{}: out of memory", device.description.name), true);
     } catch (const cl::Error& error) {
       throw deviceError(error, device.description.name);
     }

@@ -11,6 +11,7 @@
 
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
+#include "cl/device_error.hpp"
 #include "culling/fog_cull.hpp"
 #include "gbuffer/planes.hpp"
 #include "raster/bins.hpp"
@@ -227,19 +228,41 @@ void renderChosenBands(Device& device, const Scene& scene, const RenderSettings&
   // Points of a bin are lit by the same clusters, so there no band may end within a bin. Bins are counted
   // from the picture's corner, and other pixels' tiles from the crop's.
   const bool whole_bins = shared && prepared.features.has(Feature::kClusteredLights);
-  const BandLimits limits{height, whole_bins ? 0 : view.crop_origin.y, view.crop_origin.y + view.crop_size.y};
-  while (const std::optional<Band> rows = next(limits)) {
+  BandLimits limits{height, whole_bins ? 0 : view.crop_origin.y, view.crop_origin.y + view.crop_size.y};
+  const auto makeBand = [&](const Band& rows) {
     View band = view;
-    band.crop_origin.y = rows->first;
-    band.crop_size.y = rows->height;
+    band.crop_origin.y = rows.first;
+    band.crop_size.y = rows.height;
     const TraceSpan of_band("band", {{"first_row", band.crop_origin.y},
                                      {"pixels", std::int64_t(band.crop_size.x) * band.crop_size.y}});
     const auto render = shared ? renderSharedSamples : renderAllSamples;
-    prepared.used.picture = render(device, scene, settings, prepared, band, triangles, progress, stats);
+    Image picture = render(device, scene, settings, prepared, band, triangles, progress, stats);
     if (wantsSurfaceIds(settings))
-      timed(stats, Stage::kRasterize,
-            [&] { setSurfaceIds(scene, band, settings, matte_ids, prepared.used.picture); });
-    take(*rows, prepared.used.picture);
+      timed(stats, Stage::kRasterize, [&] { setSurfaceIds(scene, band, settings, matte_ids, picture); });
+    return picture;
+  };
+  while (const std::optional<Band> asked = next(limits)) {
+    for (Band left = *asked; left.height > 0;) {
+      const Band rows{left.first,
+                      bandEnd(left.first, {limits.tallest, limits.origin, left.first + left.height}) -
+                          left.first};
+      const Stats stats_before = stats;
+      const RasterCounts triangles_before = triangles;
+      const int done_before = progress.done;
+      try {
+        prepared.used.picture = makeBand(rows);
+      } catch (const DeviceError& error) {
+        // How long light lists are only turns out while they are made. Fewer rows have shorter ones.
+        if (!error.is_out_of_memory || rows.height <= kBinSize) throw;
+        stats = stats_before;
+        triangles = triangles_before;
+        progress.done = done_before;
+        limits.tallest = std::max(rows.height / 2, kBinSize);
+        continue;
+      }
+      take(rows, prepared.used.picture);
+      left = {rows.first + rows.height, left.height - rows.height};
+    }
   }
   countLightUses(scene, shade, prepared.lighting, stats);
   countShadows(prepared.lighting, stats);

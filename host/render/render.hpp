@@ -116,7 +116,8 @@ int bandEnd(int first, const BandLimits& limits);
 /// Says which band to make next; none: the picture is done.
 using NextBand = std::function<std::optional<Band>(const BandLimits& limits)>;
 
-/// Takes a band's pixels, which last until it returns.
+/// Takes the pixels of a band, or of the next of its rows where the device had no memory for all of them at
+/// once. They last until it returns.
 using BandSink = std::function<void(const Band& band, const Image& rows)>;
 
 /// Makes the bands of a scene's picture that `next` asks for. All else: see renderBands().

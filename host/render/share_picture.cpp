@@ -61,7 +61,7 @@ struct Worker {
   Sharer& mine;
   SharedRows& rows;
   int height;  ///< of the picture
-  std::optional<Band> band = {};
+  std::optional<Band> band = {};  ///< what is left of the one it makes
   double begun = 0;
   Stats stats = {};
   std::uint64_t rows_made = 0;
@@ -95,15 +95,16 @@ struct Worker {
   }
 
   /// BandSink.
-  void takeBand(const Image& image) {
-    const double took = millisecondsSinceStart() - begun;
+  void takeRows(const Band& made, const Image& image) {
+    const double now = millisecondsSinceStart();
     const std::lock_guard lock(rows.mutex);
-    mine.rows += band->height;
-    mine.milliseconds += took;
-    rows_made += std::uint64_t(band->height);
-    milliseconds += took;
-    rows.done.emplace(band->first, image);
-    band.reset();
+    mine.rows += made.height;
+    mine.milliseconds += now - begun;
+    rows_made += std::uint64_t(made.height);
+    milliseconds += now - begun;
+    begun = now;
+    rows.done.emplace(made.first, image);
+    band = Band{made.first + made.height, band->height - made.height};
     rows.changed.notify_all();
   }
 
@@ -114,7 +115,7 @@ struct Worker {
     try {
       renderChosenBands(
           *mine.device, scene, settings, [&](const BandLimits& limits) { return nextBand(limits); },
-          [&](const Band&, const Image& image) { takeBand(image); }, stats, keeps ? &mine.kept : nullptr);
+          [&](const Band& made, const Image& image) { takeRows(made, image); }, stats, keeps ? &mine.kept : nullptr);
     } catch (const MachineError& problem) {
       failure = std::current_exception();
       error = problem.what();
@@ -124,7 +125,7 @@ struct Worker {
     const std::lock_guard lock(rows.mutex);
     --rows.working;
     mine.error = error;
-    if (band) rows.returned.push_back(*band);
+    if (band && band->height > 0) rows.returned.push_back(*band);
     // Without a message the input is wrong, which no other device mends.
     if (failure && (error.empty() || rows.working == 0)) rows.failure = failure;
     rows.changed.notify_all();
@@ -132,7 +133,7 @@ struct Worker {
 };
 
 /// Hands on what is done, from the top down, until all is.
-void takeRows(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
+void handOn(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
   while (true) {
     Image image;
     {
@@ -195,7 +196,7 @@ void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSe
   Joiner joiner{rows};
   for (Worker& worker : workers)
     joiner.threads.emplace_back([&] { worker.run(scene, without_report, keeps); });
-  takeRows(rows, top, settings, take);
+  handOn(rows, top, settings, take);
   joiner.join();
   for (const Worker& worker : workers) {
     addPart(worker.stats, stats);
