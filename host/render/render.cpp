@@ -243,9 +243,9 @@ void renderChosenBands(Device& device, const Scene& scene, const RenderSettings&
   };
   while (const std::optional<Band> asked = next(limits)) {
     for (Band left = *asked; left.height > 0;) {
-      const Band rows{left.first,
-                      bandEnd(left.first, {limits.tallest, limits.origin, left.first + left.height}) -
-                          left.first};
+      const Band rows{
+          left.first,
+          bandEnd(left.first, {limits.tallest, limits.origin, left.first + left.height}) - left.first};
       const Stats stats_before = stats;
       const RasterCounts triangles_before = triangles;
       const int done_before = progress.done;

@@ -60,7 +60,7 @@ struct Worker {
   std::list<Sharer>& sharers;
   Sharer& mine;
   SharedRows& rows;
-  int height;  ///< of the picture
+  int height;                     ///< of the picture
   std::optional<Band> band = {};  ///< what is left of the one it makes
   double begun = 0;
   Stats stats = {};
@@ -115,7 +115,8 @@ struct Worker {
     try {
       renderChosenBands(
           *mine.device, scene, settings, [&](const BandLimits& limits) { return nextBand(limits); },
-          [&](const Band& made, const Image& image) { takeRows(made, image); }, stats, keeps ? &mine.kept : nullptr);
+          [&](const Band& made, const Image& image) { takeRows(made, image); }, stats,
+          keeps ? &mine.kept : nullptr);
     } catch (const MachineError& problem) {
       failure = std::current_exception();
       error = problem.what();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # intel_opencl_test.sh LUCIOLE FOLDER CLI_TEST: on Intel's OpenCL for CPUs, as PyPI has it, LUCIOLE's check finds the same bits, and so do
-# CLI_TEST's hashes of the shipped scenes. It is installed into FOLDER unless it is there, and the kernels are kept there. Exit status 77
+# CLI_TEST's hashes of the shipped scenes, and the picture that it makes together with PoCL. It is installed into FOLDER unless it is there, and the kernels are kept there. Exit status 77
 # where it is neither there nor to be had.
 set -euo pipefail
 
@@ -32,3 +32,18 @@ export OCL_ICD_VENDORS=$place/vendors XDG_CACHE_HOME=$place/cache LD_LIBRARY_PAT
 
 "$luciole" devices --check
 "$cli_test" --gtest_filter='Scenes/SceneHashes.*'
+
+# With PoCL beside it, where that is.
+icds=(/etc/OpenCL/vendors/pocl*.icd)
+[[ -e ${icds[0]} ]] || exit 0
+cp "${icds[0]}" "$place/vendors/pocl.icd"
+trap 'rm -rf "$place/vendors/pocl.icd" "$folder"' EXIT
+folder=$(mktemp -d "${TMPDIR:-/tmp}/luciole-test-XXXXXX")
+scene=$(dirname "${BASH_SOURCE[0]}")/../../scenes/city.json
+hashOf() {
+  "$luciole" render "$scene" --size 96x540 --shadows hard --hash --quiet --device "$1" --stats "$folder/stats.json" -o "$folder/a.exr" | cut -c1-64
+}
+"$luciole" devices
+one=$(hashOf 0) other=$(hashOf 1) both=$(hashOf all)
+echo "Intel and PoCL: $one $other, together: $both"
+[[ $one == "$other" && $one == "$both" && $(grep -c '"rows"' "$folder/stats.json") == 2 ]]

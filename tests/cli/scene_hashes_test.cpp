@@ -30,13 +30,18 @@ std::vector<std::string> pictures() {
 class SceneHashes : public ProgramTest, public testing::WithParamInterface<std::string> {
  protected:
   /// Expects the hash of a picture that the program makes with these options, and notes that it is so.
-  void expectHash(const std::string& options) {
+  void expectHash(const std::string& options) { expectHash(options, succeed("luciole " + line(options))); }
+
+  void expectHash(const std::string& options, const std::string& out) {
+    EXPECT_EQ(out.substr(0, 64), hashes()[GetParam()].get<std::string>()) << GetParam() << " " << options;
+  }
+
+  static std::string line(const std::string& options) {
     const std::string picture = GetParam();
     const std::size_t blank = picture.find(' ');
-    const std::string out = succeed("luciole render '" LUCIOLE_SOURCE_DIR "/scenes/" +
-                                    picture.substr(0, blank) + ".json' --size 96x54 " + "--shadows " +
-                                    picture.substr(blank + 1) + " " + options + " --hash --quiet -o a.exr");
-    EXPECT_EQ(out.substr(0, 64), hashes()[picture].get<std::string>()) << picture << " " << options;
+    return "render '" LUCIOLE_SOURCE_DIR "/scenes/" + picture.substr(0, blank) +
+           ".json' --size 96x54 --shadows " + picture.substr(blank + 1) + " " + options +
+           " --hash --quiet -o a.exr";
   }
 };
 
@@ -52,11 +57,28 @@ TEST_P(SceneHashes, AreThoseOfEveryDeviceWidthThreadAndWayOfCulling) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SceneHashes, testing::ValuesIn(pictures()), [](const auto& test) {
+// An interpreter of OpenCL: those that it makes in seconds.
+class SceneHashesUnderOclgrind : public SceneHashes {};
+
+TEST_P(SceneHashesUnderOclgrind, AreTheSame) {
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
+  for (const char* lanes : {"1", "16"}) {
+    const std::string options = std::string("--device ,lanes=") + lanes;
+    expectHash(options, underOclgrind(line(options)));
+  }
+}
+
+std::string nameOf(const testing::TestParamInfo<std::string>& test) {
   std::string name = test.param;
   name.replace(name.find(' '), 1, "_");
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneHashesUnderOclgrind,
+                         testing::Values("cornell hard", "cornell exact", "spheres hard", "underwater hard",
+                                         "colonnade hard"),
+                         nameOf);
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneHashes, testing::ValuesIn(pictures()), nameOf);
 
 }  // namespace
 }  // namespace luciole::test

@@ -1,4 +1,5 @@
-// What holds for GPUs: memory of their own, buffers of a limited size, small groups. Tried on a processor that says that it is one.
+// What holds for GPUs: memory of their own, buffers of a limited size, small groups. Tried on a processor
+// that says that it is one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
