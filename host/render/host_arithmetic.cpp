@@ -14,11 +14,12 @@
 #undef __ARM_FEATURE_FMA
 #define STANDARD_ONLY
 #define LANES 1
-#define __global
+#define __global  // NOLINT(bugprone-reserved-identifier): a word of OpenCL C
 
 namespace luciole {
 namespace {
 
+// NOLINTBEGIN(readability-identifier-naming): functions of OpenCL C
 using std::fma;
 using std::sqrt;
 inline int as_int(float value) { return std::bit_cast<int>(value); }
@@ -26,6 +27,7 @@ inline float as_float(int bits) { return std::bit_cast<float>(bits); }
 inline float convert_float(int value) { return float(value); }
 inline int convert_int(float value) { return int(value); }
 inline uint clz(uint bits) { return uint(std::countl_zero(bits)); }
+// NOLINTEND(readability-identifier-naming)
 
 #include "kernels/check_arithmetic.clh"
 

@@ -72,7 +72,9 @@ void addPart(const Stats& part, Stats& whole) {
     whole.beside = part.beside;
   }
   for (const auto& [stage, milliseconds] : part.stages) addStage(whole, stage, milliseconds);
-  for (const auto& [name, count] : part.counts) {
+  for (const auto& counted : part.counts) {
+    const std::string& name = counted.first;
+    const std::uint64_t count = counted.second;
     // What is counted of the scene, and not of its pixels, every device counts.
     const bool is_of_scene =
         name.starts_with("lights_") || name.starts_with("shadow_lights") || name.starts_with("objects_");

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/program_test.hpp"
+#include "image/image.hpp"
 
 namespace luciole::test {
 namespace {

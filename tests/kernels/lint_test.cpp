@@ -136,9 +136,7 @@ std::set<std::string> looseArithmetic(const std::string& program) {
     };
     if (line.find("call ") != std::string::npos && std::regex_match(line, match, called)) {
       if (!own.count(match[1]) && !std::regex_match(match[1].str(), kFixedFunctions)) judge(match[1]);
-    } else if (std::regex_match(line, match, inexact)) {
-      judge(match[1]);
-    } else if (std::regex_match(line, match, loosened)) {
+    } else if (std::regex_match(line, match, inexact) || std::regex_match(line, match, loosened)) {
       judge(match[1]);
     } else if (std::regex_match(line, indirect)) {
       judge("a pointer to a function");
