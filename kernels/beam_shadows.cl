@@ -332,11 +332,11 @@ WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const fl
 // shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT
 // only: of pixels that a light of a size may reach; 0 for other lights.
 KERNEL void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
-                           float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
-                           __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
-                           __global const int *children, __global const float *blocks, __global const uint *block_bits, __global const uchar *hole_texels,
-                           __global const HoleTriangle *hole_triangles, __global const uint *first_hole_triangle, int root, float4 tree_most, uint tiles, __global uint *lit, __global uint *unsure,
-                           __global uint *receivers) {
+                         float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
+                         __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
+                         __global const int *children, __global const float *blocks, __global const uint *block_bits, __global const uchar *hole_texels,
+                         __global const HoleTriangle *hole_triangles, __global const uint *first_hole_triangle, int root, float4 tree_most, uint tiles, __global uint *lit, __global uint *unsure,
+                         __global uint *receivers) {
   Memory memory;
   for (uint i = 0; i < kLightsRemembered; ++i) memory.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.

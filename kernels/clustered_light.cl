@@ -464,10 +464,10 @@ WORK void light_run(Tile tile, const Scene *scene, uint tiles, __global float *l
 
 // rows, light_rows: of the tree of diffuse light; highlight_rows, highlight_light_rows: of that of specular light, which has the same places.
 KERNEL void clustered_light(ShadeFrame frame, __global const float *position, __global const float *normal, __global const float *diffuse,
-                              __global const float *specular, __global const float *rows, __global const float *light_rows,
-                              __global const float *highlight_rows, __global const float *highlight_light_rows, uint light_count,
-                              uint levels, float light_error, uint tiles_x, uint run, __global float *light, __global float *bound,
-                              __global uint *counts) {
+                            __global const float *specular, __global const float *rows, __global const float *light_rows,
+                            __global const float *highlight_rows, __global const float *highlight_light_rows, uint light_count,
+                            uint levels, float light_error, uint tiles_x, uint run, __global float *light, __global float *bound,
+                            __global uint *counts) {
   Scene scene = {frame, {rows, light_rows, light_count, levels}, {highlight_rows, highlight_light_rows, light_count, levels}, light_error};
   uint runs = (tiles_x + run - 1) / run, item = get_global_id(0), column = item % runs * run;
   uint first_tile = item / runs * tiles_x + column, first = first_tile * kTilePixels;

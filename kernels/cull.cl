@@ -135,9 +135,9 @@ WORK uint list_lights(Tiles tile, uint squares_per_group, __global const float *
 // - fill 1: writes the lists to the places that `starts` tells: copied from `found` where that holds all of a list, otherwise found
 //   again.
 KERNEL void find_lights(__global const float *position, __global const float *normal, uint plane_stride, uint group_log2,
-                          __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
-                          uint tests, uint fill, __global ListEntry *found, __global uint *starts,
-                          __global ListEntry *all_lists) {
+                        __global const float *tree, uint tree_stride, __global const ShadeLight *lights, uint light_count,
+                        uint tests, uint fill, __global ListEntry *found, __global uint *starts,
+                        __global ListEntry *all_lists) {
   uint tile = get_global_id(0), room = kFoundPerTile;
   __global ListEntry *list = found + tile * kFoundPerTile;
   if (fill) {

@@ -72,9 +72,9 @@ WORK void note_tile(uint tile, uint plane_stride, __global const float *position
 // position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
 // needed: a bin's least depth ≥ 0 as a float's bits, at ShadowFace::first_bin and on. It has to start as kNotNeeded everywhere.
 KERNEL void find_needed(uint plane_stride, __global const float *position, __global const float *normal,
-                          __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
-                          __global const ListEntry *list, __global const ShadowMap *shadow_maps,
-                          __global const ShadowFace *shadow_faces, __global uint *needed) {
+                        __global const float *lift, __global const ShadeLight *lights, uint light_count, __global const uint *list_starts,
+                        __global const ListEntry *list, __global const ShadowMap *shadow_maps,
+                        __global const ShadowFace *shadow_faces, __global uint *needed) {
   if (!SHADOW_MAPS) return;
   note_tile(get_global_id(0), plane_stride, position, normal, lift, lights, light_count, list_starts, list, shadow_maps, shadow_faces,
             needed);

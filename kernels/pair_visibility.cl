@@ -12,9 +12,9 @@
 // position, normal: planes x y z of `stride` floats. geometric_normal, lift: see shading.clh. map_of_row: an index into `maps` for each
 // row. texel_count: ≥ 1.
 KERNEL void pair_visibility(uint stride, __global const float *position, __global const float *normal,
-                              __global const uint *geometric_normal, __global const float *lift, __global const uint *map_of_row, __global const ShadowMap *maps,
-                              __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,
-                              __global float *visibility) {
+                            __global const uint *geometric_normal, __global const float *lift, __global const uint *map_of_row, __global const ShadowMap *maps,
+                            __global const ShadowFace *faces, __global const ShadowTexel *texels, uint texel_count,
+                            __global float *visibility) {
   if (!SHADOW_MAPS) return;
   uint row = get_global_id(0), first = row * LANES;
   MapPoint point = receiver_point(maps + map_of_row[row], faces, load_vec3(position + first, stride),

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # intel_opencl_test.sh LUCIOLE FOLDER CLI_TEST: on Intel's OpenCL for CPUs, as PyPI has it, LUCIOLE's check finds the same bits, and so do
-# CLI_TEST's hashes of the shipped scenes, and the picture that it makes together with PoCL. It is installed into FOLDER unless it is there, and the kernels are kept there. Exit status 77
-# where it is neither there nor to be had.
+# CLI_TEST's hashes of the shipped scenes, and a picture that Intel's and PoCL make together. It is installed into FOLDER unless it is
+# there, and the kernels are kept there. Exit status 77 where it is neither there nor to be had.
 set -euo pipefail
 
 luciole=$(realpath "$1")

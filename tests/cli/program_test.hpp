@@ -24,9 +24,9 @@ class ProgramTest : public testing::Test {
   /// The same, only its standard error.
   std::string told(const std::string& line) { return run(line).err; }
 
-  /// The program's standard output under Oclgrind, which interprets OpenCL: `luciole` begins the line. Tried
-  /// again where Oclgrind itself aborts: it frees buffers of several threads at once
-  /// (Memory::deallocateBuffer).
+  /// The program's standard output under Oclgrind, which interprets OpenCL; `line` is what follows "luciole".
+  /// Tried again where a signal ends it: Oclgrind 21.10 makes and frees buffers of several threads at once
+  /// without a lock.
   std::string underOclgrind(const std::string& line) {
     Outcome outcome;
     for (int tries = 0; tries < 4; ++tries) {

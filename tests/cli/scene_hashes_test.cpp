@@ -29,13 +29,15 @@ std::vector<std::string> pictures() {
 
 class SceneHashes : public ProgramTest, public testing::WithParamInterface<std::string> {
  protected:
-  /// Expects the hash of a picture that the program makes with these options, and notes that it is so.
+  /// Expects the hash of a picture that the program makes with these options.
   void expectHash(const std::string& options) { expectHash(options, succeed("luciole " + line(options))); }
 
+  /// The same of what the program has printed.
   void expectHash(const std::string& options, const std::string& out) {
     EXPECT_EQ(out.substr(0, 64), hashes()[GetParam()].get<std::string>()) << GetParam() << " " << options;
   }
 
+  /// What follows "luciole" on the command line.
   static std::string line(const std::string& options) {
     const std::string picture = GetParam();
     const std::size_t blank = picture.find(' ');
