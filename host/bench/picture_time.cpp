@@ -101,7 +101,7 @@ std::vector<double> pictureFigures(const SpeedInput& input, const std::string& s
 
 /// Whether the copy of a scene can be read and has no textures.
 bool isUntextured(const std::string& path) {
-  return loadScene(path, 1, MissingTextures::kWarn).textures.empty();
+  return loadScene(path, 1, {.missing = MissingTextures::kWarn}).textures.empty();
 }
 
 /// Writes a copy of a Luciole scene, without fog or without the textures of its own materials, to `copy`.

@@ -105,7 +105,7 @@ void judgeOverlap(const BakeOptions& options, const TextureSpace& space) {
   if (double(space.overlapping) > kMostOverlap * double(space.covered))
     throw InputError(some +
                      ": its charts overlap, expected texture coordinates of which no two places share one");
-  if (space.overlapping > 0 && !options.quiet) tellWarnings({some});
+  if (space.overlapping > 0 && !options.quiet) tellWarning(some);
 }
 
 /// The map as sRGB codes of its share of the brightest, which is returned.

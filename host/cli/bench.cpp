@@ -62,7 +62,7 @@ int bench(const BenchOptions& options) {
                      .named_scene = !options.scene.empty(),
                      .program = std::filesystem::read_symlink("/proc/self/exe")};
   choice.scene_path = options.scene;
-  choice.picture_options = {"--missing-textures", options.picture.missing_textures};
+  choice.picture_options = typedLoadOptions(options.picture.load);
   if (!options.picture.cast_shadows.empty())
     for (const std::string& word : {std::string("--cast-shadows"), options.picture.cast_shadows})
       choice.picture_options.push_back(word);
@@ -122,7 +122,7 @@ void addBenchCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--device", options->picture.device,
                       "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   addCastShadowsOption(*command, options->picture);
-  addMissingTexturesOption(*command, options->picture.missing_textures);
+  addLoadOptions(*command, options->picture.load);
   addThreadsOption(*command);
   command->add_flag("--quiet", options->picture.quiet, "no progress line");
   command->callback([&context, options] { context.status = bench(*options); });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "scene/warning.hpp"
 
 namespace luciole {
 
@@ -29,8 +30,12 @@ int tellFailure(std::optional<int> frame = std::nullopt);
 /// Writes to standard error what is wrong, as a line or an event. status: the exit status that it leads to.
 void tellError(const std::string& message, int status);
 
-/// Writes warnings to standard error, a line or an event each.
-void tellWarnings(const std::vector<std::string>& warnings);
+/// Writes a warning to standard error, as a line or an event.
+void tellWarning(const std::string& text);
+/// Lines for people: of each kind of warning ten at most, in order, then how many more there are.
+std::vector<std::string> shownWarnings(const std::vector<Warning>& warnings);
+/// Writes a scene's warnings to standard error: the lines above, or all of them as events.
+void tellWarnings(const std::vector<Warning>& warnings);
 
 // Each adds a command to the program. The command's work runs while the command line is parsed, if it is
 // named there, and throws InputError and MachineError.

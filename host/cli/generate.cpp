@@ -32,7 +32,7 @@ struct LightsOptions {
   std::optional<double> radius, offset, density, cutoff;
   double intensity = 1;
   bool no_range = false, shadow = false;
-  std::string missing_textures = "error";
+  LoadSettings load;
 };
 
 constexpr std::uint64_t kDefaultCount = 1000;
@@ -143,7 +143,7 @@ void generateLights(const LightsOptions& options) {
   Scene scene;
   std::vector<glm::dvec3> seen;
   if (!options.scene.empty()) {
-    scene = loadScene(options.scene, 1, missingTexturesOf(options.missing_textures));
+    scene = loadScene(options.scene, 1, options.load);
     std::erase(scene.warnings, nothingLights(scene));
     tellWarnings(scene.warnings);
     scene.lights.clear();
@@ -259,7 +259,7 @@ void addLightsCommand(CLI::App& command) {
       ->allow_extra_args(false)
       ->check(not_negative);
   lights->add_flag("--shadow", options->shadow, "all lights cast shadows");
-  addMissingTexturesOption(*lights, options->missing_textures);
+  addLoadOptions(*lights, options->load);
   addThreadsOption(*lights);
   lights->add_option("-o,--output", options->output, "scene file (- : standard output)")
       ->capture_default_str();

@@ -54,9 +54,10 @@ std::string counted(std::size_t count, const std::string& thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-void addWarnings(Report& report, const std::vector<std::string>& warnings) {
-  report.json["warnings"] = warnings;
-  for (const std::string& warning : warnings) addLine(report, "warning", printable(warning));
+void addWarnings(Report& report, const std::vector<Warning>& warnings) {
+  report.json["warnings"] = Json::array();
+  for (const Warning& warning : warnings) report.json["warnings"].push_back(warning.text);
+  for (const std::string& line : shownWarnings(warnings)) addLine(report, "warning", printable(line));
 }
 
 Json cameraJson(const Camera& camera) {
@@ -243,8 +244,8 @@ Report sceneReport(InfoOptions options) {
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));
   const std::string obstacle = addRender(scene, settings, report);
-  std::vector<std::string> warnings = scene.warnings;
-  if (!obstacle.empty()) warnings.push_back("the picture can't be made: " + obstacle);
+  std::vector<Warning> warnings = scene.warnings;
+  if (!obstacle.empty()) warnings.push_back({"the picture can't be made: " + obstacle, "obstacle"});
   addWarnings(report, warnings);
   return report;
 }
@@ -345,7 +346,7 @@ Report pictureReport(const std::string& file) {
     report.json[key] = text;
     addLine(report, key, printable(text));
   }
-  addWarnings(report, fault.empty() ? std::vector<std::string>{} : std::vector{fault});
+  addWarnings(report, fault.empty() ? std::vector<Warning>{} : std::vector<Warning>{{fault, "fault"}});
   return report;
 }
 

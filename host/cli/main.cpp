@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <map>
 #include <new>
 #include <optional>
 #include <string>
@@ -76,13 +77,30 @@ int luciole::tellFailure(std::optional<int> frame) {
   }
 }
 
-void luciole::tellWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    if (logsEvents())
-      logEvent("warning", {{"message", warning}});
-    else
-      fmt::print(stderr, "luciole: warning: {}\n", warning);
-  }
+void luciole::tellWarning(const std::string& text) {
+  if (logsEvents())
+    logEvent("warning", {{"message", text}});
+  else
+    fmt::print(stderr, "luciole: warning: {}\n", text);
+}
+
+std::vector<std::string> luciole::shownWarnings(const std::vector<Warning>& warnings) {
+  constexpr std::size_t kMostOfAKind = 10;
+  std::vector<std::string> lines;
+  std::map<std::string, std::size_t> counts;
+  for (const Warning& warning : warnings)
+    if (++counts[warning.kind] <= kMostOfAKind) lines.push_back(warning.text);
+  for (const auto& [kind, count] : counts)
+    if (count > kMostOfAKind)
+      lines.push_back(fmt::format("{}: {} more, which --stats lists", kind, count - kMostOfAKind));
+  return lines;
+}
+
+void luciole::tellWarnings(const std::vector<Warning>& warnings) {
+  if (logsEvents())
+    for (const Warning& warning : warnings) tellWarning(warning.text);
+  else
+    for (const std::string& line : shownWarnings(warnings)) tellWarning(line);
 }
 
 namespace {

@@ -83,7 +83,8 @@ std::list<Sharer> openAllDevices(const PictureOptions& options, CommandContext& 
     sharers.push_back({candidate.device});
   }
   if (sharers.empty()) throw MachineError(candidates.front().failure);
-  if (!options.quiet) tellWarnings(told);
+  if (!options.quiet)
+    for (const std::string& warning : told) tellWarning(warning);
   return sharers;
 }
 
@@ -95,7 +96,7 @@ void startCheckedDevice(const PictureOptions& options, CommandContext& context) 
                 const std::string difference = checkDevice(context.device);
                 if (difference.empty()) return;
                 if (require) throw MachineError("--require-exact: " + difference);
-                if (!quiet) tellWarnings({difference + kTellsAll});
+                if (!quiet) tellWarning(difference + kTellsAll);
               });
 }
 

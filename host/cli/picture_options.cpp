@@ -75,7 +75,7 @@ void castShadows(const PictureOptions& options, Scene& scene) {
     for (Light& light : scene.lights) light.shadow = all;
   if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
     scene.warnings.push_back(
-        fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows));
+        {fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows), "no shadows"});
 }
 
 /// The stops that --exposure names. Nothing for another text.
@@ -191,9 +191,9 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
             ? "one of the scene's cameras, by name or index, or all: a picture of each; {camera} in "
               "the output's name becomes the camera's"
             : "one of the scene's cameras, by name or index");
-    command.add_option("--variant", options.choice.variant,
+    command.add_option("--variant", options.load.choice.variant,
                        "one of a glTF file's variants of materials, by name (info lists them)");
-    command.add_option("--animation", options.choice.animation,
+    command.add_option("--animation", options.load.choice.animation,
                        "the only one of a glTF file's animations that runs, by name or index (default: all "
                        "together; info lists them)");
     if (is_one_picture) command.add_option("--crop", options.crop, "X,Y,W,H: only this part of the picture");
@@ -319,7 +319,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
     }
   }
   if (groups & kCastOption) addCastShadowsOption(command, options);
-  if (!(groups & kColorOptions)) addMissingTexturesOption(command, options.missing_textures);
+  if (!(groups & kColorOptions)) addLoadOptions(command, options.load);
   if (groups & kFrameOption)
     command.add_option(
         "--frames", options.frames,
@@ -361,13 +361,34 @@ void addCastShadowsOption(CLI::App& command, PictureOptions& options) {
       ->check(oneOf({"all", "marked", "none"}));
 }
 
-void addMissingTexturesOption(CLI::App& command, std::string& value) {
+void addLoadOptions(CLI::App& command, LoadSettings& settings) {
   command
-      .add_option("--missing-textures", value,
-                  "a picture that the scene names and that isn't there is an error, or a warning and its "
-                  "materials are drawn without it")
+      .add_option_function<std::string>(
+          "--missing-textures",
+          [&settings](const std::string& value) {
+            settings.missing = value == "warn" ? MissingTextures::kWarn : MissingTextures::kError;
+          },
+          "a picture that the scene names and that isn't there is an error, or a warning and its "
+          "materials are drawn without it")
       ->check(oneOf({"error", "warn"}))
-      ->capture_default_str();
+      ->default_str("error");
+  command.add_flag(
+      "--strict", settings.strict,
+      "refuse a file that breaks its format's rules, instead of taking what viewers take and a warning");
+  command
+      .add_option(
+          "--search", settings.search,
+          "a folder in which files are looked for that aren't where the scene says; may stand several times")
+      ->expected(1)
+      ->take_all();
+}
+
+std::vector<std::string> typedLoadOptions(const LoadSettings& settings) {
+  std::vector<std::string> words{"--missing-textures",
+                                 settings.missing == MissingTextures::kWarn ? "warn" : "error"};
+  if (settings.strict) words.push_back("--strict");
+  for (const std::string& folder : settings.search) words.insert(words.end(), {"--search", folder});
+  return words;
 }
 
 void addThreadsOption(CLI::App& command) {
@@ -379,14 +400,9 @@ void addThreadsOption(CLI::App& command) {
       ->check(CLI::Range(1, 1024));
 }
 
-MissingTextures missingTexturesOf(const std::string& value) {
-  return value == "warn" ? MissingTextures::kWarn : MissingTextures::kError;
-}
-
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
   Scene scene;
-  const double milliseconds = millisecondsOf(
-      [&] { scene = loadScene(path, frame, missingTexturesOf(options.missing_textures), options.choice); });
+  const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, options.load); });
   logEvent("loaded", {{"scene", path},
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},
@@ -402,10 +418,12 @@ Scene openLitScene(const std::string& path, double frame, const PictureOptions& 
   const double width = options.shading == "gouraud" ? coarseTriangleWidth(scene) : 0;
   if (width == 0) return scene;
   scene.warnings.push_back(
-      fmt::format("{}: --shading gouraud lights the corners of triangles, and some, up to {:.3g} m wide, are "
-                  "much larger than what lights shine on between them; divide them, or take --shading phong",
-                  scene.name, width));
-  if (!options.quiet) tellWarnings({scene.warnings.back()});
+      {fmt::format(
+           "{}: --shading gouraud lights the corners of triangles, and some, up to {:.3g} m wide, are "
+           "much larger than what lights shine on between them; divide them, or take --shading phong",
+           scene.name, width),
+       "gouraud"});
+  if (!options.quiet) tellWarning(scene.warnings.back().text);
   return scene;
 }
 

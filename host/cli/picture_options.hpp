@@ -19,7 +19,7 @@ struct PictureOptions {
   std::string format;
   std::string size;
   std::string camera;
-  GltfChoice choice;
+  LoadSettings load;
   bool hash = false;
   int camera_index = -1;  ///< replaces `camera`, see optionsOfCameras(); -1: doesn't
   int samples = 1;
@@ -48,7 +48,6 @@ struct PictureOptions {
   bool alpha = false;
   bool require_exact = false;
   std::string device;
-  std::string missing_textures = "error";
   std::string stats;
   std::string trace;
   std::string frames;
@@ -83,12 +82,13 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options);
 /// Adds the option --shadows, whose values depend on the command.
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values);
-/// Add the options --cast-shadows and --missing-textures.
 void addCastShadowsOption(CLI::App& command, PictureOptions& options);
-void addMissingTexturesOption(CLI::App& command, std::string& value);
+/// Adds the options of how a scene's files are read: --missing-textures, --strict, --search.
+void addLoadOptions(CLI::App& command, LoadSettings& settings);
+/// These options as they would be typed.
+std::vector<std::string> typedLoadOptions(const LoadSettings& settings);
 /// Adds the option --threads, which limits the process's threads before the command runs.
 void addThreadsOption(CLI::App& command);
-MissingTextures missingTexturesOf(const std::string& value);
 
 /// Loads the scene at a frame (see loadScene). Shadows are cast by the lights that --cast-shadows says;
 /// without it by those that the scene marks, or if it marks none, by all if --shadows asks for shadows.

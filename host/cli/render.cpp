@@ -87,8 +87,7 @@ void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const Picture
   renderShared(sharers, scene, settings, write, stats, keeps);
   if (!options.quiet)
     for (const DeviceShare& share : stats.shares)
-      if (!share.error.empty())
-        tellWarnings({fmt::format("{}; the other devices made its rows", share.error)});
+      if (!share.error.empty()) tellWarning(fmt::format("{}; the other devices made its rows", share.error));
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
   if (hash) stats.hash = hash->hex();
   reportHalves(options, limited, stats);

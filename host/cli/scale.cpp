@@ -59,8 +59,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   checkDrawing(options.plot);
   if (options.shard.empty() && shard.count > 1 && !options.picture.quiet)
     fmt::print(stderr, "shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count);
-  Scene scene = loadScene(options.scene, 1, missingTexturesOf(options.picture.missing_textures),
-                          options.picture.choice);
+  Scene scene = loadScene(options.scene, 1, options.picture.load);
   if (modelOf(options.picture) == Model::kCookTorrance) takeFacets(scene);
   std::erase(scene.warnings, nothingLights(scene));
   if (!options.picture.quiet) tellWarnings(scene.warnings);

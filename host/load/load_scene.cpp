@@ -68,28 +68,47 @@ void addLightFields(const std::vector<LightField>& fields, Scene& scene) {
   expandLightFields(fields, scene);
 }
 
+/// Several faults of a scene's files as one line: ten of them at most, then how many more there are.
+std::string joinFaults(const std::vector<std::string>& faults) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t told = std::min(faults.size(), kMost);
+  std::string line =
+      fmt::format("{}", fmt::join(faults.begin(), faults.begin() + std::ptrdiff_t(told), "; "));
+  if (faults.size() > told) line += fmt::format("; and {} more", faults.size() - told);
+  return line;
+}
+
+/// Throws InputError for what the settings don't let pass.
+void refuseFaults(const Scene& scene, const LoadSettings& settings) {
+  std::vector<std::string> faults;
+  for (const Warning& warning : scene.warnings)
+    if (settings.strict && warning.repaired) faults.push_back(warning.text);
+  if (settings.missing == MissingTextures::kError)
+    faults.insert(faults.end(), scene.missing_textures.begin(), scene.missing_textures.end());
+  if (!faults.empty()) throw InputError(joinFaults(faults));
+}
+
 }  // namespace
 
-Scene loadScene(const std::string& path, double frame, MissingTextures missing, const GltfChoice& choice) {
+Scene loadScene(const std::string& path, double frame, const LoadSettings& settings) {
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
   std::vector<LightField> light_fields;
   if (is_mesh_file) {
-    loadMeshFile(path, scene, choice);
+    loadMeshFile(path, scene, settings.choice, settings.search);
     scene.name = path;
   } else if (path == "-" || extensionOf(path) == ".json") {
-    checkIsGltf(path, choice);
-    SceneFile read = loadJsonScene(path);
+    checkIsGltf(path, settings.choice);
+    SceneFile read = loadJsonScene(path, settings.search);
     scene = std::move(read.scene);
     light_fields = std::move(read.light_fields);
   } else {
     throw InputError(fmt::format("{}: unknown kind of scene \"{}\"; expected .json, .obj, .gltf or .glb",
                                  path, extensionOf(path)));
   }
-  if (missing == MissingTextures::kError && !scene.missing_textures.empty())
-    throw InputError(scene.missing_textures.front());
+  refuseFaults(scene, settings);
   for (const std::string& texture : scene.missing_textures)
-    scene.warnings.push_back(texture + "; drawn without");
+    scene.warnings.push_back({texture + "; drawn without", "missing texture"});
   addTangents(scene);  // before any pose: deformations keep those at rest
   addLightFields(light_fields, scene);
   poseScene(scene, 1);
@@ -98,7 +117,9 @@ Scene loadScene(const std::string& path, double frame, MissingTextures missing, 
   return scene;
 }
 
-std::string nothingLights(const Scene& scene) { return scene.name + ": nothing lights this scene"; }
+Warning nothingLights(const Scene& scene) {
+  return {scene.name + ": nothing lights this scene", "nothing lights"};
+}
 
 void completeScene(Scene& scene, bool is_mesh_file) {
   const bool is_bare = is_mesh_file || !scene.objects.empty();

@@ -14,13 +14,19 @@ enum class MissingTextures : std::uint8_t {
   kWarn,   ///< its materials are drawn without it, and Scene::warnings say so
 };
 
+/// How a scene's files are read.
+struct LoadSettings {
+  MissingTextures missing = MissingTextures::kError;
+  bool strict = false;                ///< what breaks a format's rules is refused, not repaired
+  std::vector<std::string> search{};  ///< folders of files that aren't where the scene says, see findFile()
+  GltfChoice choice{};                ///< of a glTF file
+};
+
 /// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from
 /// standard input for "-", completes it at frame 1 (see completeScene), so that all frames get the same
 /// camera and lights, and poses it at `frame` (see poseScene). Throws InputError, or MachineError where it
 /// doesn't fit into memory.
-/// choice: of a glTF file.
-Scene loadScene(const std::string& path, double frame = 1, MissingTextures missing = MissingTextures::kError,
-                const GltfChoice& choice = {});
+Scene loadScene(const std::string& path, double frame = 1, const LoadSettings& settings = {});
 
 /// Adds what a picture needs and the scene's file left out. That is a camera that frames the whole (from
 /// inside, for a closed hall); and where the file has no lights and doesn't ask for none: lights, some
@@ -28,7 +34,7 @@ Scene loadScene(const std::string& path, double frame = 1, MissingTextures missi
 /// `is_mesh_file`: the scene came from .obj, .gltf or .glb rather than from a Luciole scene.
 void completeScene(Scene& scene, bool is_mesh_file);
 
-/// The text of the warning for a scene that nothing lights. Commands that replace a scene's lights remove it.
-std::string nothingLights(const Scene& scene);
+/// The warning for a scene that nothing lights. Commands that replace a scene's lights remove it.
+Warning nothingLights(const Scene& scene);
 
 }  // namespace luciole

@@ -169,7 +169,7 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
   stats.triangles = 0;
   for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
   stats.lights = scene.lights.size();
-  stats.warnings = scene.warnings;
+  for (const Warning& warning : scene.warnings) stats.warnings.push_back(warning.text);
   stats.features = featureNames(features);
 }
 

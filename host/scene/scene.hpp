@@ -12,6 +12,7 @@
 #include "image/texture.hpp"
 #include "scene/animation.hpp"
 #include "scene/model.hpp"
+#include "scene/warning.hpp"
 
 namespace luciole {
 
@@ -156,10 +157,8 @@ struct Camera {
 /// Everything a picture is made of: the output of the loaders, and the input of every later stage.
 /// Indices are checked by the loaders; every number is finite unless its comment says otherwise.
 struct Scene {
-  std::string name;  ///< the file, for messages and metadata
-  /// What a file asks for and the picture won't show: a line each, which begins with the file's name. The
-  /// command line prints them.
-  std::vector<std::string> warnings;
+  std::string name;               ///< the file, for messages and metadata
+  std::vector<Warning> warnings;  ///< all of them; the command line prints them
   /// Picture files that the scene names and that don't exist, a line each as above. Materials are loaded
   /// without them; loadScene() decides whether that is an error.
   std::vector<std::string> missing_textures;

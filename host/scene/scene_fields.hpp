@@ -129,6 +129,11 @@ void withFields(T& animation, Visit&& visit) {
   visit(frame_rate, curves, nodes, objects, attached_cameras, attached_lights, cameras, lights, deformations,
         no_mesh);
 }
+template <Is<Warning> T, class Visit>
+void withFields(T& warning, Visit&& visit) {
+  auto& [text, kind, repaired] = warning;
+  visit(text, kind, repaired);
+}
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
   auto& [name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "scene/warning_texts.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
@@ -51,7 +52,7 @@ TEST_F(LoadScene, ASceneFileThatSaysNothingOfLightIsLitAsABareMesh) {
   }
   EXPECT_EQ(scene.ambient, mesh.ambient);
   EXPECT_EQ(scene.background, glm::vec3(0)) << "which has a default of its own";
-  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(textsOf(scene.warnings), IsEmpty());
 }
 
 TEST_F(LoadScene, WhatASceneFileSaysOfLightIsKept) {
@@ -62,7 +63,7 @@ TEST_F(LoadScene, WhatASceneFileSaysOfLightIsKept) {
         R"(, "lights": [], "ambient": 0.5)"}) {
     const Scene scene = load(members);
     EXPECT_LE(scene.lights.size(), 1u) << members;
-    EXPECT_THAT(scene.warnings, IsEmpty()) << members;
+    EXPECT_THAT(textsOf(scene.warnings), IsEmpty()) << members;
   }
 }
 
@@ -73,11 +74,12 @@ TEST_F(LoadScene, ASceneThatNothingLightsIsWarnedOf) {
         R"(, "ambient": 0)"}) {
     const Scene scene = load(members);
     EXPECT_THAT(scene.lights, IsEmpty()) << members;
-    EXPECT_THAT(scene.warnings, ElementsAre(EndsWith("scene.json: nothing lights this scene"))) << members;
+    EXPECT_THAT(textsOf(scene.warnings), ElementsAre(EndsWith("scene.json: nothing lights this scene")))
+        << members;
   }
   const Scene empty = loadScene(write("scene.json", R"({"fog": {"mode": "exp"}})"));
   EXPECT_THAT(empty.lights, IsEmpty()) << "there is nothing to frame, but a G-buffer may be lit by it";
-  EXPECT_THAT(empty.warnings, ElementsAre(EndsWith("scene.json: nothing lights this scene")));
+  EXPECT_THAT(textsOf(empty.warnings), ElementsAre(EndsWith("scene.json: nothing lights this scene")));
 }
 
 TEST_F(LoadScene, AMissingTextureIsAnErrorOrAWarning) {
@@ -87,7 +89,7 @@ TEST_F(LoadScene, AMissingTextureIsAnErrorOrAWarning) {
       fmt::format("{}: materials.m.diffuse_map: there is no file {}", path, folder / "gone.png");
   EXPECT_EQ(refusal(path), fault);
   const Scene scene = loadScene(path, 1, MissingTextures::kWarn);
-  EXPECT_THAT(scene.warnings, ElementsAre(fault + "; drawn without"));
+  EXPECT_THAT(textsOf(scene.warnings), ElementsAre(fault + "; drawn without"));
   EXPECT_EQ(scene.objects.size(), 1u);
 }
 

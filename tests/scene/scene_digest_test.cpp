@@ -90,7 +90,7 @@ Scene fullScene() {
   scene.lights.resize(2);
   scene.cameras.resize(1);
   scene.size = glm::ivec2(3, 4);
-  scene.warnings = {"a warning"};
+  scene.warnings = {{"a warning", "a kind", false}};
   scene.missing_textures = {"a texture"};
   Animation& animation = scene.animation;
   const Curve curve = constantCurve({1, 2, 3, 4});

@@ -138,7 +138,7 @@ class Judges {
     return validator_.validate(schema_, valijson::adapters::NlohmannJsonAdapter(scene), nullptr);
   }
   SceneFile load(const std::string& text) const {
-    return parseJsonScene(text, "scene.json", folder_.path().string());
+    return parseJsonScene(text, "scene.json", {folder_.path().string()});
   }
   /// What the loader says against a text; empty: nothing.
   std::string refusal(const std::string& text) const {

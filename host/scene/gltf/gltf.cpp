@@ -64,7 +64,7 @@ std::uint32_t groupOf(const GltfModel& model, int node, const tinygltf::Light& l
     const std::string fault = faultOfGroupName(name);
     if (fault.empty()) return lightGroupNumber(name, groups, scene);
     scene.warnings.push_back(
-        fmt::format("{}: {}: extras.group: {}; left out", model.path, nodePlace(node), fault));
+        {fmt::format("{}: {}: extras.group: {}; left out", model.path, nodePlace(node), fault), "group"});
   }
   return 0;
 }
@@ -153,7 +153,8 @@ int findAnimation(const std::string& path, const std::vector<std::string>& names
 
 }  // namespace
 
-void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice) {
+void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice,
+              const std::vector<std::string>& /*search*/) {
   GltfModel model = readGltfModel(path);
   scene.variants = variantNames(model);
   scene.animations = animationNames(model);
@@ -161,7 +162,8 @@ void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice) {
   if (!choice.animation.empty()) model.animation = findAnimation(path, scene.animations, choice.animation);
   for (const std::string& extension : ignoredExtensions(model)) {
     scene.warnings.push_back(
-        fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path, forMessage(extension)));
+        {fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path, forMessage(extension)),
+         "extension"});
     std::vector<std::string>& all = scene.ignored_extensions;
     if (std::find(all.begin(), all.end(), extension) == all.end()) all.push_back(extension);
   }

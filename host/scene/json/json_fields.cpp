@@ -142,8 +142,10 @@ std::string readText(const JsonNode& node) {
   return node.json->get<std::string>();
 }
 
-std::string pathOf(const JsonNode& node, const std::string& folder) {
-  return (std::filesystem::path(folder) / readText(node)).lexically_normal().string();
+std::string pathOf(const JsonNode& node, const SearchFolders& where) {
+  const std::string name = readText(node);
+  return findFile(name, where)
+      .value_or((std::filesystem::path(where.folder) / name).lexically_normal().string());
 }
 
 std::string faultOfPath(const std::string& path) {
@@ -154,8 +156,8 @@ std::string faultOfPath(const std::string& path) {
   return "";
 }
 
-std::string readPath(const JsonNode& node, const std::string& folder) {
-  const std::string path = pathOf(node, folder), fault = faultOfPath(path);
+std::string readPath(const JsonNode& node, const SearchFolders& where) {
+  const std::string path = pathOf(node, where), fault = faultOfPath(path);
   if (!fault.empty()) refuse(node, fault);
   return path;
 }

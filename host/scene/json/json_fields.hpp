@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "scene/find_file.hpp"
 #include "scene/place_limits.hpp"
 
 namespace luciole {
@@ -70,12 +71,12 @@ std::uint64_t readCount(const JsonNode& node, std::uint64_t largest);
 /// A boolean, and a text.
 bool readBool(const JsonNode& node);
 std::string readText(const JsonNode& node);
-/// The name of a file, relative to `folder`.
-std::string pathOf(const JsonNode& node, const std::string& folder);
+/// The path of the file that is named, see findFile(); where there is none, where it was expected first.
+std::string pathOf(const JsonNode& node, const SearchFolders& where);
 /// Why no file can be read there, or "".
 std::string faultOfPath(const std::string& path);
-/// The name of a file that exists, relative to `folder`.
-std::string readPath(const JsonNode& node, const std::string& folder);
+/// The same of a file that exists. Throws InputError.
+std::string readPath(const JsonNode& node, const SearchFolders& where);
 /// [x,y,z], each of magnitude at most kLargestNumber.
 glm::dvec3 readVector(const JsonNode& node);
 /// A vector's direction, unit. Refuses a vector shorter than 1 / kLargestNumber.

@@ -157,7 +157,7 @@ void readShape(const JsonNode& node, LightField& field) {
   }
 }
 
-void readList(const JsonNode& csv, const JsonNode& node, const std::string& folder, LightField& field) {
+void readList(const JsonNode& csv, const JsonNode& node, const SearchFolders& where, LightField& field) {
   refuseKeys(node,
              {"shape", "min", "max", "center", "radius", "offset", "clusters", "points", "color", "colors",
               "no_range"},
@@ -165,7 +165,7 @@ void readList(const JsonNode& csv, const JsonNode& node, const std::string& fold
   std::optional<std::uint64_t> count;
   if (const auto n = find(node, "count")) count = readCount(*n, kMostLights);
   field.shape = FieldShape::kList;
-  field.list = readLightList(readPath(csv, folder), count);
+  field.list = readLightList(readPath(csv, where), count);
   field.count = field.list.size();
 }
 
@@ -257,7 +257,7 @@ void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
   scene.lights.push_back(light);
 }
 
-LightField readLightField(const JsonNode& node, const std::string& folder, LightGroupNumbers& groups,
+LightField readLightField(const JsonNode& node, const SearchFolders& where, LightGroupNumbers& groups,
                           Scene& scene) {
   allowKeys(node, {"count",  "seed",   "shape",       "min",      "max",    "center", "radius",
                    "offset", "points", "clusters",    "csv",      "color",  "colors", "intensity",
@@ -266,7 +266,7 @@ LightField readLightField(const JsonNode& node, const std::string& folder, Light
   if (const auto n = find(node, "seed"))
     field.seed = readCount(*n, std::numeric_limits<std::uint64_t>::max());
   if (const auto csv = find(node, "csv")) {
-    readList(*csv, node, folder, field);
+    readList(*csv, node, where, field);
   } else {
     field.count = readCount(need(node, "count"), kMostLights);
     readShape(node, field);

@@ -37,10 +37,10 @@ struct Loaded {
 };
 
 /// No texture where the file is missing.
-TextureUse readMap(const JsonNode& node, const std::string& folder, Scene& scene,
+TextureUse readMap(const JsonNode& node, const SearchFolders& where, Scene& scene,
                    TextureKind kind = TextureKind::kColor) {
   TextureUse use;
-  const std::string path = pathOf(node, folder), fault = faultOfPath(path);
+  const std::string path = pathOf(node, where), fault = faultOfPath(path);
   if (fault.empty())
     use.texture = addTexture(scene, path, kind);
   else
@@ -55,7 +55,7 @@ Model readModel(const JsonNode& node) {
   refuse(node, fmt::format("no model \"{}\"; expected \"{}\"", name, fmt::join(kModelNames, "\", \"")));
 }
 
-Material readMaterial(const JsonNode& node, const std::string& folder, Scene& scene) {
+Material readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene) {
   allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
                    "normal_map", "bump_map", "normal_scale", "alpha_map", "alpha", "alpha_cutoff",
                    "double_sided", "model"});
@@ -68,9 +68,9 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
   if (const auto n = find(node, "shininess")) {
     material.shininess = static_cast<float>(readNumber(*n, 0, kLargestNumber));
   }
-  if (const auto n = find(node, "diffuse_map")) material.diffuse_map = readMap(*n, folder, scene);
+  if (const auto n = find(node, "diffuse_map")) material.diffuse_map = readMap(*n, where, scene);
   if (const auto n = find(node, "emission_map")) {
-    material.emission_map = readMap(*n, folder, scene);
+    material.emission_map = readMap(*n, where, scene);
     material.emission = glm::vec3(1);  // the map's factor: black would hide it
   }
   if (const auto n = find(node, "emission")) material.emission = readColor(*n);
@@ -78,14 +78,14 @@ Material readMaterial(const JsonNode& node, const std::string& folder, Scene& sc
   if (find(node, "emission_map") && material.emission_map.texture < 0) material.emission = glm::vec3(0);
   if (const auto n = find(node, "normal_map")) {
     refuseKeys(node, {"bump_map"}, "beside normal_map");
-    material.normal_map = readMap(*n, folder, scene, TextureKind::kNormals);
+    material.normal_map = readMap(*n, where, scene, TextureKind::kNormals);
   }
   if (const auto n = find(node, "bump_map"))
-    material.normal_map = readMap(*n, folder, scene, TextureKind::kBump);
+    material.normal_map = readMap(*n, where, scene, TextureKind::kBump);
   if (const auto n = find(node, "normal_scale"))
     material.normal_scale = static_cast<float>(readNumber(*n, -kMostNormalScale, kMostNormalScale));
   if (const auto n = find(node, "alpha_map")) {
-    material.alpha_map = readMap(*n, folder, scene);
+    material.alpha_map = readMap(*n, where, scene);
     if (material.alpha_map.texture >= 0) material.alpha_cutoff = 0.5f;
   }
   if (const auto n = find(node, "alpha")) material.alpha = static_cast<float>(readNumber(*n, 0, 1));
@@ -186,8 +186,8 @@ std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
 }
 
 /// The objects of a mesh file. At its first use it is loaded into the scene, without its lights and cameras.
-const LoadedFile& loadedFile(const std::string& path, const GltfChoice& choice, Loaded& loaded,
-                             Scene& scene) {
+const LoadedFile& loadedFile(const std::string& path, const GltfChoice& choice,
+                             const std::vector<std::string>& search, Loaded& loaded, Scene& scene) {
   const auto [it, is_new] = loaded.mesh_files.try_emplace({path, choice.variant, choice.animation});
   if (!is_new) return it->second;
   Animation& animation = scene.animation;
@@ -195,7 +195,7 @@ const LoadedFile& loadedFile(const std::string& path, const GltfChoice& choice, 
   const std::size_t light_count = scene.lights.size(), camera_count = scene.cameras.size();
   const std::size_t first_attached = animation.objects.size();
   const std::size_t deformations = animation.deformations.size();
-  loadMeshFile(path, scene, choice);
+  loadMeshFile(path, scene, choice, search);
   LoadedFile& file = it->second;
   file.objects = cutFrom(scene.objects, first_object);
   file.nodes = cutFrom(animation.nodes, first_node);
@@ -253,7 +253,7 @@ void placeObjects(const LoadedFile& file, const Placement& placement, int materi
   }
 }
 
-void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded, Scene& scene) {
+void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded, Scene& scene) {
   allowKeys(node, {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
                    "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name"});
   const Placement placement = readPlacement(node, scene.animation);
@@ -267,12 +267,12 @@ void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded,
   const LoadedFile* parts = &single;
   if (const auto n = find(node, "mesh")) {
     refuseKeys(node, {"primitive", "segments", "minor_radius", "uv_scale"}, "beside mesh");
-    const std::string path = readPath(*n, folder);
+    const std::string path = readPath(*n, where);
     if (!isMeshFile(path)) refuse(*n, fmt::format("expected a .obj, .gltf or .glb file, got {}", path));
     GltfChoice choice;
     if (const auto variant = find(node, "variant")) choice.variant = readName(*variant);
     if (const auto animation = find(node, "animation")) choice.animation = readName(*animation);
-    parts = &loadedFile(path, choice, loaded, scene);
+    parts = &loadedFile(path, choice, where.others, loaded, scene);
   } else if (find(node, "primitive")) {
     refuseKeys(node, {"variant", "animation"}, "beside primitive");
     const Primitive primitive = readPrimitive(node);
@@ -299,7 +299,7 @@ void readObject(const JsonNode& node, const std::string& folder, Loaded& loaded,
 
 }  // namespace
 
-void readObjects(const JsonNode& top, const std::string& folder, Scene& scene) {
+void readObjects(const JsonNode& top, const SearchFolders& where, Scene& scene) {
   Loaded loaded;
   Material plain;
   plain.ambient = plain.diffuse;
@@ -309,14 +309,14 @@ void readObjects(const JsonNode& top, const std::string& folder, Scene& scene) {
     needObject(*materials);
     for (const auto& [name, value] : materials->json->items()) {
       loaded.materials[name] = static_cast<int>(scene.materials.size());
-      scene.materials.push_back(readMaterial(*find(*materials, name), folder, scene));
+      scene.materials.push_back(readMaterial(*find(*materials, name), where, scene));
     }
   }
   decodeTextures(scene);
   if (const auto objects = find(top, "objects")) {
     needArray(*objects);
     for (std::size_t i = 0; i < objects->json->size(); ++i)
-      readObject(element(*objects, i), folder, loaded, scene);
+      readObject(element(*objects, i), where, loaded, scene);
   }
 }
 

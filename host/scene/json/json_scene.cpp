@@ -153,14 +153,14 @@ glm::ivec2 readSize(const JsonNode& node) {
   return size;
 }
 
-std::vector<LightField> readLightFields(const JsonNode& node, const std::string& folder,
+std::vector<LightField> readLightFields(const JsonNode& node, const SearchFolders& where,
                                         LightGroupNumbers& groups, Scene& scene) {
   needArray(node);
   std::uint64_t lights = scene.lights.size();
   std::vector<LightField> fields;
   for (std::size_t i = 0; i < node.json->size(); ++i) {
     const JsonNode field = element(node, i);
-    fields.push_back(readLightField(field, folder, groups, scene));
+    fields.push_back(readLightField(field, where, groups, scene));
     lights += fields.back().count;
     if (lights > kMostLights) {
       refuse(field, fmt::format("{} lights up to here; a scene may have {} at most", lights, kMostLights));
@@ -178,12 +178,12 @@ void checkPictureSize(glm::ivec2 size, const std::string& where) {
   }
 }
 
-SceneFile loadJsonScene(const std::string& path) {
-  if (path == "-") return parseJsonScene(readWhole(path), "standard input", "");
-  return parseJsonScene(readWhole(path), path, std::filesystem::path(path).parent_path().string());
+SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search) {
+  if (path == "-") return parseJsonScene(readWhole(path), "standard input", {"", search});
+  return parseJsonScene(readWhole(path), path, {std::filesystem::path(path).parent_path().string(), search});
 }
 
-SceneFile parseJsonScene(const std::string& text, const std::string& file, const std::string& folder) {
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where) {
   SceneFile read;
   Scene& scene = read.scene;
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
@@ -221,9 +221,8 @@ SceneFile parseJsonScene(const std::string& text, const std::string& file, const
   if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
   if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
   scene.name = file;
-  if (const auto n = find(top, "light_fields"))
-    read.light_fields = readLightFields(*n, folder, groups, scene);
-  readObjects(top, folder, scene);
+  if (const auto n = find(top, "light_fields")) read.light_fields = readLightFields(*n, where, groups, scene);
+  readObjects(top, where, scene);
   scene.says_light = saysLight(top);
   return read;
 }

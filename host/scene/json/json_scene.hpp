@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/find_file.hpp"
 #include "scene/lights/light_field.hpp"
 #include "scene/scene.hpp"
 
@@ -17,10 +18,12 @@ struct SceneFile {
 
 /// Reads a Luciole scene, from standard input for "-", and every mesh and texture it names. Throws InputError
 /// "file: place: what is wrong".
-SceneFile loadJsonScene(const std::string& path);
+/// Files that aren't where it says are looked for in `search`, too.
+SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search = {});
 
-/// The same of a file's text. `file` is its name for messages; relative paths in it start at `folder`.
-SceneFile parseJsonScene(const std::string& text, const std::string& file, const std::string& folder);
+/// The same of a file's text. `file` is its name for messages; the files it names are looked for as
+/// findFile() does.
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where);
 
 /// Throws InputError "where: …" unless each side is from 1 to kLargestSide pixels.
 void checkPictureSize(glm::ivec2 size, const std::string& where);

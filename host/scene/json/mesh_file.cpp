@@ -20,12 +20,13 @@ bool isMeshFile(const std::string& path) {
   return extension == ".obj" || extension == ".gltf" || extension == ".glb";
 }
 
-void loadMeshFile(const std::string& path, Scene& scene, const GltfChoice& choice) {
+void loadMeshFile(const std::string& path, Scene& scene, const GltfChoice& choice,
+                  const std::vector<std::string>& search) {
   if (extensionOf(path) == ".obj") {
     checkIsGltf(path, choice);
-    loadObj(path, scene);
+    loadObj(path, scene, search);
   } else {
-    loadGltf(path, scene, choice);
+    loadGltf(path, scene, choice, search);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/gltf/gltf.hpp"
 #include "scene/scene.hpp"
@@ -11,7 +12,8 @@ namespace luciole {
 bool isMeshFile(const std::string& path);
 
 /// Appends a mesh file to `scene`, as loadObj or loadGltf do. An OBJ file has no choices. Throws InputError.
-void loadMeshFile(const std::string& path, Scene& scene, const GltfChoice& choice = {});
+void loadMeshFile(const std::string& path, Scene& scene, const GltfChoice& choice = {},
+                  const std::vector<std::string>& search = {});
 
 /// Throws InputError where a choice is made for a file that isn't glTF.
 void checkIsGltf(const std::string& path, const GltfChoice& choice);

@@ -233,7 +233,7 @@ Mesh makeMesh(ObjFile& file, std::vector<Triangle>& triangles) {
 
 }  // namespace
 
-std::uint32_t loadObj(const std::string& path, Scene& scene) {
+std::uint32_t loadObj(const std::string& path, Scene& scene, const std::vector<std::string>& /*search*/) {
   ObjFile file = readObjFile(path);
   const std::vector<MtlEntry> entries = readEntries(path, file.material_files);
   std::vector<Triangle> triangles = cutFaces(file, entries);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/scene.hpp"
 
@@ -11,6 +12,7 @@ namespace luciole {
 /// linear. Missing normals are smooth within a smoothing group, and everywhere in a file without any "s".
 /// Triangles that face away from the file's normals are reversed. Where the .mtl or a material is missing,
 /// the default material is used. Materials are double-sided. Lines, points and curves are left out.
-std::uint32_t loadObj(const std::string& path, Scene& scene);
+/// Files that aren't where it says are looked for in the folders `search`, too (see findFile).
+std::uint32_t loadObj(const std::string& path, Scene& scene, const std::vector<std::string>& search = {});
 
 }  // namespace luciole

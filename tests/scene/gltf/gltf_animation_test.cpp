@@ -138,7 +138,7 @@ TEST_F(GltfAnimation, OneIsChosenByItsNameOrNumber) {
   }
   load(file);
   const auto open = [&](const std::string& animation) {
-    return loadScene(folder / "a.gltf", 2, MissingTextures::kError, {.animation = animation});
+    return loadScene(folder / "a.gltf", 2, {.choice = {.animation = animation}});
   };
   EXPECT_EQ(open("").animations, (std::vector<std::string>{"0", "walk", "2", "walk", "rest"}));
   EXPECT_EQ(placeAt(open("0"), 2), glm::dvec3(1, 0, 0));

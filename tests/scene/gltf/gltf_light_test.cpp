@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "scene/gltf/gltf_loader.hpp"
+#include "scene/warning_texts.hpp"
 
 namespace luciole::test {
 namespace {
@@ -65,7 +66,8 @@ TEST_F(GltfLoader, ExtrasOfANodeOrItsLightNameTheLightsGroup) {
   EXPECT_EQ(groupName(), "of the light");
   node["extras"]["group"] = "a.b";
   EXPECT_EQ(groupName(), "of the light");
-  EXPECT_THAT(load(file).warnings, ElementsAre(HasSubstr("nodes[0]: extras.group: expected a group's name")));
+  EXPECT_THAT(textsOf(load(file).warnings),
+              ElementsAre(HasSubstr("nodes[0]: extras.group: expected a group's name")));
   node.erase("extras");
   lights[0].erase("extras");
   EXPECT_EQ(groupName(), "default");

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/warning.hpp"
+
+namespace luciole::test {
+
+inline std::vector<std::string> textsOf(const std::vector<Warning>& warnings) {
+  std::vector<std::string> texts;
+  for (const Warning& warning : warnings) texts.push_back(warning.text);
+  return texts;
+}
+
+}  // namespace luciole::test
