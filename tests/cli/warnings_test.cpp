@@ -82,6 +82,23 @@ TEST_F(Warnings, AMalformedAddressInAGltfIsWrongInput) {
   EXPECT_THAT(outcome.err, HasSubstr("escape.gltf: images[0].uri: '%!Q'"));
 }
 
+TEST_F(Warnings, AreTenOfAKindAtMostAndThenACount) {
+  std::string materials;
+  for (int i = 0; i < 14; ++i)
+    materials += (i ? ", \"m" : "\"m") + std::to_string(i) + R"(": {"diffuse_map": "gone.png"})";
+  writeText(folder / "many.json", R"({"ambient": 1, "camera": {"eye": [0, 3, 3], "target": [0, 0, 0]},
+      "objects": [{"primitive": "plane"}], "materials": {)" +
+                                      materials + "}}");
+  const std::string line =
+      "luciole render many.json --size 16x9 --missing-textures warn --stats s.json -o a.png";
+  const std::string words = told(line);
+  EXPECT_EQ(countOf(words, "there is no file gone.png"), 10u);
+  EXPECT_THAT(words, HasSubstr("luciole: warning: missing texture: 4 more, which --stats lists\n"));
+  EXPECT_EQ(nlohmann::json::parse(readText(folder / "s.json"))["warnings"].size(), 14u);
+  EXPECT_EQ(countOf(told(line + " --log json"), "there is no file gone.png"), 14u);
+  EXPECT_EQ(countOf(run("luciole info many.json --missing-textures warn").out, "there is no file"), 10u);
+}
+
 TEST_F(Warnings, AreNoneWhereThereIsNothingToSay) {
   writeText(folder / "plain.json", kSmallScene);
   EXPECT_THAT(told("luciole render plain.json --size 16x9 --stats s.json -o a.png"),

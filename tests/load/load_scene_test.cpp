@@ -14,6 +14,7 @@
 namespace luciole {
 namespace {
 
+using test::textsOf;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -82,13 +83,24 @@ TEST_F(LoadScene, ASceneThatNothingLightsIsWarnedOf) {
   EXPECT_THAT(textsOf(empty.warnings), ElementsAre(EndsWith("scene.json: nothing lights this scene")));
 }
 
+TEST_F(LoadScene, AllThatIsMissingIsToldAtOnce) {
+  std::string materials;
+  for (int i = 0; i < 12; ++i)
+    materials += fmt::format(R"({}"m{}": {{"diffuse_map": "gone{}.png"}})", i ? ", " : "", i, i);
+  const std::string path = write("scene.json", R"({"materials": {)" + materials + "}}");
+  const std::string told = refusal(path);
+  EXPECT_THAT(told, HasSubstr("gone0.png"));
+  EXPECT_THAT(told, HasSubstr("gone7.png"));
+  EXPECT_THAT(told, EndsWith("; and 2 more"));
+}
+
 TEST_F(LoadScene, AMissingTextureIsAnErrorOrAWarning) {
   const std::string path = write("scene.json", R"({"lights": [{"type": "directional", "direction": [0,-1,0]}],
       "materials": {"m": {"diffuse_map": "gone.png"}}, "objects": [{"primitive": "box", "material": "m"}]})");
   const std::string fault =
       fmt::format("{}: materials.m.diffuse_map: there is no file {}", path, folder / "gone.png");
   EXPECT_EQ(refusal(path), fault);
-  const Scene scene = loadScene(path, 1, MissingTextures::kWarn);
+  const Scene scene = loadScene(path, 1, {.missing = MissingTextures::kWarn});
   EXPECT_THAT(textsOf(scene.warnings), ElementsAre(fault + "; drawn without"));
   EXPECT_EQ(scene.objects.size(), 1u);
 }
