@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/utf8.hpp"
 
 namespace luciole {
 
@@ -35,7 +36,13 @@ std::string readFile(const std::string& path) {
 
 std::string forMessage(std::string_view words) {
   constexpr std::size_t kLongest = 200;
-  std::string line(words.substr(0, kLongest));
+  std::string line;
+  while (!words.empty()) {
+    const std::string character = utf8Of(words.substr(0, std::max<std::size_t>(utf8Length(words), 1)));
+    if (line.size() + character.size() > kLongest) break;
+    line += character;
+    words.remove_prefix(std::max<std::size_t>(utf8Length(words), 1));
+  }
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
   }

@@ -15,7 +15,7 @@ bool isFile(const std::filesystem::path& path);
 std::string readFile(const std::string& path);
 
 /// Text from a file or a library, made fit for a one-line message: control characters become blanks, trailing
-/// blanks are removed, and at most 200 bytes are kept.
+/// blanks are removed, at most 200 bytes are kept, and what isn't UTF-8 is taken as Latin-1.
 std::string forMessage(std::string_view words);
 
 /// Whether two texts are equal if the case of ASCII letters is ignored.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/dump_utf8.hpp"
 #include "figures/text_table.hpp"
 
 namespace luciole {
@@ -208,7 +209,7 @@ std::string benchJson(const BenchResult& result) {
     json["speed"].push_back({{"name", table.name}, {"measured", table.measured}, {"rows", std::move(rows)}});
     if (!table.failures.empty()) json["speed"].back()["failures"] = table.failures;
   }
-  return json.dump(2) + "\n";
+  return dumpUtf8(std::move(json), 2) + "\n";
 }
 
 }  // namespace luciole

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/dump_utf8.hpp"
 #include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
@@ -120,7 +121,7 @@ void printFigures(const ImageDifference& d) {
 void compareTwo(const CompareOptions& options, CommandContext& context) {
   checkOptions(options);
   const ImageDifference d = comparePictures(options, context.command_line);
-  if (!options.json.empty()) writeTextFile(options.json, differenceJson(d).dump(2) + "\n");
+  if (!options.json.empty()) writeTextFile(options.json, dumpUtf8(differenceJson(d), 2) + "\n");
   const auto outputs = {&options.difference, &options.error_map, &options.side_by_side, &options.json};
   if (std::none_of(outputs.begin(), outputs.end(), [](const std::string* path) { return *path == "-"; }))
     printFigures(d);
@@ -220,7 +221,7 @@ void compareSequences(const CompareOptions& options, CommandContext& context) {
     compared.back().difference.of_pixel = std::vector<double>();
   }
   progress.clear();
-  if (!options.json.empty()) writeTextFile(options.json, sequenceJson(compared).dump(2) + "\n");
+  if (!options.json.empty()) writeTextFile(options.json, dumpUtf8(sequenceJson(compared), 2) + "\n");
   const ComparedFrame& worst = worstOf(compared);
   if (options.json != "-") fmt::print("{}{}\n", sequenceTable(compared), worstLine(worst));
   const auto over = std::count_if(compared.begin(), compared.end(),

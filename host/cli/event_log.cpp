@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/dump_utf8.hpp"
 #include "cli/suggest.hpp"
 
 namespace luciole {
@@ -69,7 +70,7 @@ void logEvent(const char* name, const EventFields& fields) {
   if (!is_logging) return;
   EventFields event{{"time", timeText().data()}, {"event", name}};
   event.update(fields);
-  writeError(event.dump(-1, ' ', false, EventFields::error_handler_t::replace) + "\n");
+  writeError(dumpUtf8(std::move(event)) + "\n");
 }
 
 double eventMilliseconds(double milliseconds) { return std::round(milliseconds * 1000) / 1000; }

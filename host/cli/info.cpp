@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "base/dump_utf8.hpp"
 #include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/write_file.hpp"
@@ -105,6 +107,20 @@ void addShape(const Scene& scene, const SceneInfo& info, Report& report) {
     addLine(report, "frames",
             fmt::format("moves from {:.6g} to {:.6g}", info.moves->first, info.moves->last));
   }
+}
+
+/// The names that objects have, each once.
+void addNames(const Scene& scene, Report& report) {
+  constexpr std::size_t kMost = 10;
+  std::set<std::string> known;
+  std::vector<std::string> names;
+  for (const Object& object : scene.objects)
+    if (!object.name.empty() && known.insert(object.name).second) names.push_back(object.name);
+  report.json["object_names"] = names;
+  const std::size_t shown = std::min(names.size(), kMost);
+  std::string line = fmt::format("{}", fmt::join(names.begin(), names.begin() + std::ptrdiff_t(shown), ", "));
+  if (names.size() > shown) line += fmt::format(" and {} more", names.size() - shown);
+  if (!names.empty()) addLine(report, "names", printable(line));
 }
 
 void addMaterials(const Scene& scene, const SceneInfo& info, Report& report) {
@@ -230,6 +246,7 @@ Report sceneReport(InfoOptions options) {
   report.json["kind"] = "scene";
   report.text = printable(options.file) + "\n";
   addShape(scene, info, report);
+  addNames(scene, report);
   addMaterials(scene, info, report);
   addCameras(scene, report);
   addLights(scene, info.lights, report);
@@ -355,9 +372,7 @@ void showInfo(const InfoOptions& options) {
   const bool is_scene =
       options.file == "-" || extensionOf(options.file) == ".json" || isMeshFile(options.file);
   const Report report = is_scene ? sceneReport(options) : pictureReport(options.file);
-  // Texts of other programs' files may be no UTF-8, which JSON is.
-  if (!options.json.empty())
-    writeTextFile(options.json, report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (!options.json.empty()) writeTextFile(options.json, dumpUtf8(report.json, 2) + "\n");
   if (options.json != "-" && !options.quiet) fmt::print("{}", report.text);
 }
 

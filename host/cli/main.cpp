@@ -14,6 +14,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/utf8.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/suggest.hpp"
@@ -25,7 +26,7 @@ using namespace luciole;
 
 std::string joinedArguments(int count, char** arguments) {
   std::string line = "luciole";
-  for (int i = 1; i < count; ++i) line += std::string(" ") + arguments[i];
+  for (int i = 1; i < count; ++i) line += " " + utf8Of(arguments[i]);
   return line;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/dump_utf8.hpp"
 #include "base/embedded_files.hpp"
 #include "base/page_text.hpp"
 
@@ -21,10 +22,9 @@ std::string mixPage(const std::string& path, const std::vector<MixerTerm>& terms
   const nlohmann::json data{{"file", path},         {"width", small.width}, {"height", small.height},
                             {"exposure", exposure}, {"groups", shown},      {"halves", base64(bytes)}};
   const std::vector<EmbeddedFile>& files = mixPageFiles();
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;  // names in other encodings than UTF-8
   return fillIn(embeddedText(files, "mix.html"),
                 {{"mix.css", std::string(embeddedText(files, "mix.css"))},
-                 {"data", embeddableJson(data.dump(-1, ' ', false, kReplace))},
+                 {"data", embeddableJson(dumpUtf8(data))},
                  {"mix.js", embeddableScript(std::string(embeddedText(files, "mix.js")))}});
 }
 

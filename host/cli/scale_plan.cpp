@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 #include "cli/suggest.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/bounds.hpp"
@@ -317,7 +318,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
   ScaleExperiment experiment;
   ScaleDescription& description = experiment.description;
   description.version = LUCIOLE_VERSION;
-  description.scene = options.scene;
+  description.scene = utf8Of(options.scene);
   description.digest = sceneDigest(scene);
   description.lights = parseLights(options.lights);
   description.axes = parseAxes(options.vary);

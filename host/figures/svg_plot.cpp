@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
+#include "base/utf8.hpp"
 #include "figures/labels.hpp"
 #include "figures/log_axis.hpp"
 
@@ -27,9 +27,7 @@ std::string number(double value) {
 
 /// Text escaped for use between tags or in an attribute.
 std::string escaped(const std::string& text) {
-  using Json = nlohmann::json;
-  const std::string valid =
-      Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+  const std::string valid = utf8Of(text);
   constexpr const char* kReplacement = "\uFFFD";
   std::string out;
   for (std::size_t i = 0; i < valid.size(); ++i) {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "base/dump_utf8.hpp"
+
 namespace luciole {
 
 std::vector<std::string> cryptomatteChannels(const std::string& type_name) {
@@ -47,7 +49,7 @@ Metadata cryptomatteTexts(const std::string& type_name, const std::vector<std::s
   return {{key + "name", type_name},
           {key + "hash", "MurmurHash3_32"},
           {key + "conversion", "uint32_to_float32"},
-          {key + "manifest", manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}};
+          {key + "manifest", dumpUtf8(std::move(manifest))}};
 }
 
 }  // namespace luciole

@@ -21,6 +21,7 @@
 
 #include "base/error.hpp"
 #include "base/output_file.hpp"
+#include "base/utf8.hpp"
 #include "image/exr_threads.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
@@ -102,7 +103,8 @@ Imf::Header makeHeader(int width, int height, const std::vector<std::string>& ch
     header.channels().insert(name,
                              Imf::Channel(options.half && isColorChannel(name) ? Imf::HALF : Imf::FLOAT));
   const auto addTexts = [&](const Metadata& texts) {
-    for (const auto& [name, text] : texts) header.insert(attributeName(name), Imf::StringAttribute(text));
+    for (const auto& [name, text] : texts)
+      header.insert(attributeName(name), Imf::StringAttribute(utf8Of(text)));
   };
   addTexts(metadata);
   addTexts({{"capDate", timeOfDay()}});

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,21 +20,13 @@
 #include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/threads.hpp"
+#include "base/utf8.hpp"
 #include "image/deflate.hpp"
 #include "image/png_filters.hpp"
 #include "image/row_file.hpp"
 
 namespace luciole {
 namespace {
-
-bool isUtf8(const std::string& text) {
-  try {
-    nlohmann::json(text).dump();
-    return true;
-  } catch (const nlohmann::json::type_error&) {
-    return false;
-  }
-}
 
 bool isAscii(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
@@ -69,13 +60,12 @@ class PngHeader {
 
  private:
   /// ASCII goes into a tEXt chunk, which every reader knows; its text is Latin-1, which agrees with UTF-8 on
-  /// ASCII. Other UTF-8 goes into iTXt. Bytes that are no UTF-8 go into tEXt unchanged.
+  /// ASCII. All else goes into iTXt, as UTF-8.
   void addText(const std::string& name, const std::string& value) {
     std::string key = name == "ImageDescription" ? "Description" : name;  // PNG's own word for it
-    std::string content = value;
+    std::string content = utf8Of(value);
     png_text text{};
-    text.compression =
-        !isAscii(value) && isUtf8(value) ? PNG_ITXT_COMPRESSION_NONE : PNG_TEXT_COMPRESSION_NONE;
+    text.compression = isAscii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
     text.key = key.data();
     text.text = content.data();
     call([&] { png_set_text(png_, info_, &text, 1); });

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "base/dump_utf8.hpp"
 #include "base/peak_memory.hpp"
 #include "base/threads.hpp"
 #include "base/trace.hpp"
@@ -153,7 +154,7 @@ std::string statsJson(const Stats& stats, double ended) {
   if (!compiled) json["reasons"]["kernels_compiled"] = "only PoCL tells";
   json["picture_milliseconds"] = ended - stats.began;
   json["wall_milliseconds"] = ended;
-  return json.dump(2) + "\n";
+  return dumpUtf8(std::move(json), 2) + "\n";
 }
 
 }  // namespace luciole

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "base/utf8.hpp"
 #include "image/cryptomatte.hpp"
 #include "raster/shading_points.hpp"
 #include "render/assemble.hpp"
@@ -72,7 +73,7 @@ std::vector<std::string> objectNames(const Scene& scene) {
   for (const Object& object : scene.objects) {
     names.push_back(object.name);
     if (!object.name.empty()) continue;
-    names.back() = std::filesystem::path(scene.meshes[object.mesh].name).stem().string();
+    names.back() = utf8Of(std::filesystem::path(scene.meshes[object.mesh].name).stem().string());
     ++unnamed[names.back()];
   }
   for (std::size_t i = 0; i < names.size(); ++i)

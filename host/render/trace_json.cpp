@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "base/dump_utf8.hpp"
+
 namespace luciole {
 namespace {
 
@@ -52,7 +54,7 @@ std::string traceJson(const Trace& trace, const std::string& command) {
   json["traceEvents"] = std::move(events);
   json["displayTimeUnit"] = "ms";
   json["otherData"] = {{"version", LUCIOLE_VERSION}, {"command", command}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return dumpUtf8(std::move(json)) + "\n";
 }
 
 }  // namespace luciole

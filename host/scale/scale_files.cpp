@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/dump_utf8.hpp"
 #include "base/page_text.hpp"
 
 namespace luciole {
@@ -224,7 +225,7 @@ std::string growthJson(const ScaleSummary& summary) {
   for (const Machine& machine : summary.machines) json["machines"].push_back(machineJson(machine));
   json["model"] = "milliseconds = a + b * lights^c; c_low to c_high: 95 % confidence; null: see reason";
   json["growth"] = growthRows(summary);
-  return json.dump(2) + "\n";
+  return dumpUtf8(std::move(json), 2) + "\n";
 }
 
 std::string pageData(const ScaleSummary& summary, const std::string& folder, const std::string& command) {
@@ -257,8 +258,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   json["pictures"] = pictures.urls();
   json["incomplete"] = summary.incomplete;
   json["violations"] = summary.violations;
-  // Names of files and scenes may be in any encoding: what isn't UTF-8 is replaced.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return dumpUtf8(std::move(json));
 }
 
 }  // namespace luciole

@@ -4,10 +4,13 @@
 #include <filesystem>
 
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 
 namespace luciole {
 
-std::optional<std::string> findFile(const std::string& name, const SearchFolders& where) {
+namespace {
+
+std::optional<std::string> findByBytes(const std::string& name, const SearchFolders& where) {
   std::string with_slashes = name;
   std::replace(with_slashes.begin(), with_slashes.end(), '\\', '/');
   const std::filesystem::path whole(with_slashes), last = whole.filename(), folder(where.folder);
@@ -19,6 +22,13 @@ std::optional<std::string> findFile(const std::string& name, const SearchFolders
   const auto found = std::find_if(places.begin(), places.end(), isFile);
   if (found == places.end()) return std::nullopt;
   return found->lexically_normal().string();
+}
+
+}  // namespace
+
+std::optional<std::string> findFile(const std::string& name, const SearchFolders& where) {
+  const std::optional<std::string> found = findByBytes(name, where);
+  return found || isUtf8(name) ? found : findByBytes(utf8Of(name), where);
 }
 
 }  // namespace luciole

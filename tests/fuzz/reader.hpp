@@ -35,7 +35,9 @@ inline void readStrangersScene(const std::string& path) {
 /// Every material of the file, as an OBJ that uses them all has it read.
 inline void readStrangersMaterials(const std::string& path) {
   Scene scene;
-  for (const MtlEntry& entry : readMtl(path)) scene.materials.push_back(readMaterial(entry, scene));
+  MtlReading reading{scene};
+  for (const MtlEntry& entry : readMtl(path, scene.warnings))
+    scene.materials.push_back(readMaterial(entry, reading).material);
   decodeTextures(scene);
   for (Material& material : scene.materials) cutHoles(material, scene);
   if (const std::string fault = sceneFault(scene); !fault.empty()) throw std::logic_error(fault);

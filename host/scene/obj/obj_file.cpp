@@ -16,17 +16,37 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "scene/obj/obj_text.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr int kMostCorners = 255;  // triangulating a polygon of n corners takes up to n³ steps
+/// Faults that are repaired.
+enum Repair { kUvNoNumber, kNormalNoNumber, kColorNoNumber, kNoSuchUv, kNoSuchNormal, kFewCorners };
+struct RepairWords {
+  const char* kind;
+  const char* outcome;
+};
+constexpr RepairWords kRepairs[] = {{"texture coordinate without number", "taken as 0"},
+                                    {"normal without number", "taken from the faces"},
+                                    {"vertex colour without number", "taken as white"},
+                                    {"missing texture coordinate", "drawn without"},
+                                    {"missing normal", "drawn without"},
+                                    {"face of few corners", "left out"}};
+
+/// The faults of one kind: how many, and the first.
+struct Repaired {
+  std::int64_t count = 0;
+  int line = 0;
+  std::string what = {};
+};
 
 /// One of the three numbered lists of an OBJ file, and the largest index of it that a face uses.
 struct List {
   const char* name;
-  std::int64_t before = 0;  ///< how many come before the part
-  std::int64_t count = 0;   ///< how many the part has so far
+  std::int64_t before = 0;                                        ///< how many come before the part
+  std::int64_t count = 0;                                         ///< how many the part has so far
+  std::int64_t total = std::numeric_limits<std::int64_t>::max();  ///< how many the file has, once known
   std::int64_t furthest = 0;
   int furthest_line = 0;
 };
@@ -36,6 +56,8 @@ struct Fault {
   int line;
   std::string what;
 };
+
+constexpr glm::vec3 kNoColor(-1);
 
 /// Reads a part of the file, of whole statements. Lines, corners and materials are counted from its start.
 struct Reader {
@@ -49,98 +71,113 @@ struct Reader {
   std::optional<unsigned> smoothing = {};  ///< of the statements so far
   std::size_t faces_before_smoothing = 0;  ///< they are of the group that the part before ends with
   std::optional<Fault> fault = {};
+  std::array<Repaired, std::size(kRepairs)> repaired = {};
 
+  /// Counts a fault; `say` tells what it is.
+  template <class Say>
+  void repair(Repair kind, const Say& say) {
+    if (repaired[kind].count++ == 0) repaired[kind] = {1, line, say()};
+  }
   [[noreturn]] void fail(const std::string& what) const { throw Fault{line, what}; }
 };
 
-bool isBlank(char c) { return c == ' ' || c == '\t'; }
-
-std::string_view trimmed(std::string_view words) {
-  while (!words.empty() && isBlank(words.front())) words.remove_prefix(1);
-  while (!words.empty() && isBlank(words.back())) words.remove_suffix(1);
-  return words;
-}
-
-/// Takes the next word off the front of `rest`; empty at the end.
-std::string_view takeWord(std::string_view& rest) {
-  const char* begin = std::find_if_not(rest.begin(), rest.end(), isBlank);
-  const char* end = std::find_if(begin, rest.end(), isBlank);
-  rest = {end, rest.end()};
-  return {begin, end};
-}
-
-/// Takes the next line off the front of `rest`. Lines end with \n, \r or \r\n.
-std::string_view takeLine(std::string_view& rest) {
-  const char* end = std::find_if(rest.begin(), rest.end(), [](char c) { return c == '\n' || c == '\r'; });
-  const std::string_view line{rest.begin(), end};
-  const std::size_t taken = line.size() + (rest.substr(line.size(), 2) == "\r\n" ? 2 : 1);
-  rest.remove_prefix(std::min(taken, rest.size()));
-  return trimmed(line);
-}
-
-/// Takes the next line off the front of `rest`, with those that a backslash at its end continues. `joined`
-/// keeps the characters of a statement of several lines.
-std::string_view takeStatement(std::string_view& rest, std::string& joined, int& lines) {
-  std::string_view statement = takeLine(rest);
-  for (lines = 1; statement.ends_with('\\') && !statement.starts_with('#'); ++lines) {
-    if (lines == 1) joined = statement;
-    joined.back() = ' ';
-    joined += takeLine(rest);
-    statement = joined;
-  }
-  return statement;
-}
-
-std::optional<float> finiteNumber(std::string_view word) {
-  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  const bool is_number = error == std::errc() && end == word.data() + word.size();
-  if (!is_number || !(std::abs(value) <= std::numeric_limits<float>::max())) return std::nullopt;
-  return static_cast<float>(value);
-}
-
-/// The numbers of a v, vt or vn: at least `required`, at most `most`; missing ones are 0.
-glm::vec3 takeNumbers(Reader& reader, List& list, std::string_view& rest, int required, int most) {
-  glm::vec3 numbers(0);
-  for (int found = 0; found < most; ++found) {
+glm::vec3 takePosition(Reader& reader, std::string_view& rest) {
+  glm::vec3 position;
+  for (int i = 0; i < 3; ++i) {
     const std::string_view word = takeWord(rest);
-    if (word.empty() && found >= required) break;
-    if (word.empty()) reader.fail(fmt::format("a {} needs {} numbers, found {}", list.name, required, found));
+    if (word.empty()) reader.fail(fmt::format("a vertex needs 3 numbers, found {}", i));
     const std::optional<float> number = finiteNumber(word);
     if (!number) reader.fail(fmt::format("'{}' is not a finite number", forMessage(word)));
-    numbers[found] = *number;
+    position[i] = *number;
   }
-  ++list.count;
-  return numbers;
+  ++reader.positions.count;
+  return position;
 }
 
-/// The three numbers after a position; empty where they are missing.
-std::optional<glm::vec3> takeColor(std::string_view& rest) {
-  glm::vec3 color;
+/// The colour behind a position, if there is one: three numbers, or four of which the first is a weight.
+void readColor(Reader& reader, std::string_view rest) {
+  std::array<std::string_view, 4> words;
+  int count = 0;
+  while (count < 4 && !(words[count] = takeWord(rest)).empty()) ++count;
+  if (count < 3) return;
+  glm::vec3 color(0);
   for (int i = 0; i < 3; ++i) {
-    const std::optional<float> number = finiteNumber(takeWord(rest));
-    if (!number) return std::nullopt;
-    color[i] = *number;
+    const std::string_view word = words[count - 3 + i];
+    const std::optional<float> number = finiteNumber(word);
+    if (!number) {
+      reader.repair(kColorNoNumber, [&] {
+        return fmt::format("'{}' in a vertex's colour is not a finite number", forMessage(word));
+      });
+      return;
+    }
+    color[i] = std::max(*number, 0.0f);
   }
-  return color;
+  ObjFile& file = reader.file;
+  file.colors.resize(file.positions.size() - 1, kNoColor);
+  file.colors.push_back(color);
+}
+
+/// v is 0 where it is missing.
+glm::vec2 takeUv(Reader& reader, std::string_view rest) {
+  glm::vec2 uv(0);
+  for (int i = 0; i < 2; ++i) {
+    const std::string_view word = takeWord(rest);
+    if (word.empty() && i == 1) break;
+    const std::optional<float> number = finiteNumber(word);
+    if (!number)
+      reader.repair(kUvNoNumber, [&] {
+        return fmt::format("'{}' of a texture coordinate is not a finite number", forMessage(word));
+      });
+    uv[i] = number.value_or(0.0f);
+  }
+  ++reader.uvs.count;
+  return uv;
+}
+
+glm::vec3 takeNormal(Reader& reader, std::string_view rest) {
+  ++reader.normals.count;
+  glm::vec3 normal(0);
+  for (int i = 0; i < 3; ++i) {
+    const std::string_view word = takeWord(rest);
+    const std::optional<float> number = finiteNumber(word);
+    if (!number) {
+      reader.repair(kNormalNoNumber,
+                    [&] { return fmt::format("'{}' of a normal is not a finite number", forMessage(word)); });
+      return glm::vec3(0);
+    }
+    normal[i] = *number;
+  }
+  return normal;
 }
 
 /// Converts an index from 1, or a negative one from the end, to one from 0. It may refer to what comes later
-/// in the file.
-int readIndex(Reader& reader, std::string_view word, List& list) {
+/// in the file. -1 where the list doesn't have it and that can be repaired.
+int readIndex(Reader& reader, std::string_view word, List& list, std::optional<Repair> repair) {
   std::int64_t index = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
   if (error != std::errc() || end != word.data() + word.size()) {
     reader.fail(fmt::format("'{}' is not an index of a face", forMessage(word)));
   }
-  if (index == 0) reader.fail("index 0 in a face, but indices start at 1");
+  const auto refuse = [&](const auto& say) {
+    if (!repair) reader.fail(say());
+    reader.repair(*repair, say);
+    return -1;
+  };
+  if (index == 0)
+    return refuse([&] { return fmt::format("a face refers to {} 0, but indices start at 1", list.name); });
   const std::int64_t count = list.before + list.count;
   if (index < 0 && !reader.knows_before) {
     reader.counts_back = true;
-  } else if (index < -count) {
-    reader.fail(fmt::format("a face refers to {} {}, but only {} come before it", list.name, index, count));
+    return -1;
   }
+  if (index < -count)
+    return refuse([&] {
+      return fmt::format("a face refers to {} {}, but only {} come before it", list.name, index, count);
+    });
+  if (index > list.total)
+    return refuse([&] {
+      return fmt::format("a face refers to {} {}, but the file has only {}", list.name, index, list.total);
+    });
   if (index > list.furthest) {
     list.furthest = index;
     list.furthest_line = reader.line;
@@ -160,22 +197,35 @@ ObjCorner readCorner(Reader& reader, std::string_view rest) {
     rest.remove_prefix(slash + 1);
   }
   ObjCorner corner;
-  corner.position = readIndex(reader, words[0], reader.positions);
-  if (!words[1].empty()) corner.uv = readIndex(reader, words[1], reader.uvs);
-  if (!words[2].empty()) corner.normal = readIndex(reader, words[2], reader.normals);
+  corner.position = readIndex(reader, words[0], reader.positions, std::nullopt);
+  if (!words[1].empty()) corner.uv = readIndex(reader, words[1], reader.uvs, kNoSuchUv);
+  if (!words[2].empty()) corner.normal = readIndex(reader, words[2], reader.normals, kNoSuchNormal);
   return corner;
 }
 
 void readFace(Reader& reader, std::string_view rest) {
   ObjFile& file = reader.file;
   ObjFace face{file.corners.size(), 0, static_cast<int>(file.material_names.size()) - 1,
-               reader.smoothing.value_or(0)};
-  for (std::string_view word; !(word = takeWord(rest)).empty(); ++face.corner_count) {
-    if (face.corner_count == kMostCorners)
-      reader.fail(fmt::format("a face has more than {} corners", kMostCorners));
+               static_cast<int>(file.parts.size()) - 1, reader.smoothing.value_or(0)};
+  for (std::string_view word; !(word = takeWord(rest)).empty(); ++face.corner_count)
     file.corners.push_back(readCorner(reader, word));
+  if (face.corner_count >= 3) {
+    file.faces.push_back(face);
+    return;
   }
-  file.faces.push_back(face);
+  file.corners.resize(face.first_corner);
+  reader.repair(kFewCorners, [&] {
+    return fmt::format("a face has {} {}, expected 3 or more", face.corner_count,
+                       face.corner_count == 1 ? "corner" : "corners");
+  });
+}
+
+void readPartName(Reader& reader, std::string_view rest, bool is_object) {
+  std::string name;
+  rest = nameWithoutComment(trimmed(rest));
+  for (std::string_view word; !(word = takeWord(rest)).empty(); name += word)
+    if (!name.empty()) name += ' ';
+  reader.file.parts.push_back({std::move(name), is_object});
 }
 
 /// "on" is group 1; "off" and other words are no group.
@@ -188,29 +238,39 @@ void readSmoothing(Reader& reader, std::string_view group) {
   reader.smoothing = number;
 }
 
+/// Statements other than those of points and faces.
+void readOther(Reader& reader, std::string_view keyword, std::string_view rest) {
+  ObjFile& file = reader.file;
+  const auto is = [&](std::string_view lower) { return isKeyword(keyword, lower); };
+  if (is("usemtl")) {
+    file.material_names.emplace_back(trimmed(rest));
+  } else if (is("mtllib")) {
+    file.material_files.emplace_back(trimmed(rest));
+  } else if (is("o") || is("g")) {
+    readPartName(reader, rest, is("o"));
+  } else if (is("s")) {
+    std::string_view words = withoutComment(rest);
+    readSmoothing(reader, takeWord(words));
+  } else if (is("l") || is("p")) {
+    file.has_lines = true;
+  }
+}
+
 void readStatement(Reader& reader, std::string_view rest) {
   const std::string_view keyword = takeWord(rest);
   ObjFile& file = reader.file;
-  if (keyword == "usemtl") {
-    file.material_names.emplace_back(trimmed(rest));
-    return;
-  }
-  if (keyword == "mtllib") {
-    file.material_files.emplace_back(trimmed(rest));
-    return;
-  }
-  rest = rest.substr(0, rest.find('#'));
-  if (keyword == "v") {
-    file.positions.push_back(takeNumbers(reader, reader.positions, rest, 3, 3));
-    if (const std::optional<glm::vec3> color = takeColor(rest)) file.colors.push_back(*color);
-  } else if (keyword == "vt") {
-    file.uvs.emplace_back(takeNumbers(reader, reader.uvs, rest, 1, 2));
-  } else if (keyword == "vn") {
-    file.normals.push_back(takeNumbers(reader, reader.normals, rest, 3, 3));
-  } else if (keyword == "f") {
-    readFace(reader, rest);
-  } else if (keyword == "s") {
-    readSmoothing(reader, takeWord(rest));
+  if (isKeyword(keyword, "v")) {
+    rest = withoutComment(rest);
+    file.positions.push_back(takePosition(reader, rest));
+    if (!rest.empty()) readColor(reader, rest);
+  } else if (isKeyword(keyword, "vt")) {
+    file.uvs.push_back(takeUv(reader, withoutComment(rest)));
+  } else if (isKeyword(keyword, "vn")) {
+    file.normals.push_back(takeNormal(reader, withoutComment(rest)));
+  } else if (isKeyword(keyword, "f")) {
+    readFace(reader, withoutComment(rest));
+  } else {
+    readOther(reader, keyword, rest);
   }
 }
 
@@ -224,6 +284,7 @@ void readPart(Reader& reader) {
     reader.fault = std::move(fault);
   }
   if (!reader.smoothing) reader.faces_before_smoothing = reader.file.faces.size();
+  if (!reader.file.colors.empty()) reader.file.colors.resize(reader.file.positions.size(), kNoColor);
 }
 
 /// Cuts the text into parts of `part_bytes` bytes and some more, so that no statement is cut.
@@ -243,16 +304,24 @@ std::vector<Reader> cutIntoParts(std::string_view text, std::size_t part_bytes) 
 
 constexpr List Reader::*kLists[] = {&Reader::positions, &Reader::uvs, &Reader::normals};
 
-/// Reads those parts again that have negative indices.
-void readCountingBack(std::vector<Reader>& parts) {
+/// Reads those parts again that have negative indices, or refer to what the file doesn't have.
+void readKnowingLists(std::vector<Reader>& parts) {
   for (std::size_t i = 1; i < parts.size(); ++i) {
     for (List Reader::*const list : kLists)
       (parts[i].*list).before = (parts[i - 1].*list).before + (parts[i - 1].*list).count;
   }
+  std::array<std::int64_t, std::size(kLists)> totals{};
+  for (std::size_t i = 0; i < totals.size(); ++i)
+    totals[i] = (parts.back().*kLists[i]).before + (parts.back().*kLists[i]).count;
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
-    if (!parts[i].counts_back) return;
+    bool refers_past = false;  // which may be repaired, other than of positions
+    for (std::size_t j = 1; j < totals.size(); ++j) refers_past |= (parts[i].*kLists[j]).furthest > totals[j];
+    if (!parts[i].counts_back && !refers_past) return;
     Reader again{parts[i].text};
-    for (List Reader::*const list : kLists) (again.*list).before = (parts[i].*list).before;
+    for (std::size_t j = 0; j < totals.size(); ++j) {
+      (again.*kLists[j]).before = (parts[i].*kLists[j]).before;
+      if (j > 0) (again.*kLists[j]).total = totals[j];
+    }
     again.knows_before = true;
     readPart(again);
     parts[i] = std::move(again);
@@ -269,21 +338,38 @@ void checkParts(const std::string& path, const std::vector<Reader>& parts) {
     if (part.fault) fail(lines + part.fault->line, part.fault->what);
     lines += part.line - 1;
   }
-  for (List Reader::*const which : kLists) {
-    std::int64_t furthest = 0, count = 0;
-    int line = 0;
-    lines = 0;
+  std::int64_t furthest = 0, count = 0;
+  int line = 0;
+  lines = 0;
+  for (const Reader& part : parts) {
+    const List& list = part.positions;
+    count += list.count;
+    if (list.furthest > furthest) line = lines + list.furthest_line;
+    furthest = std::max(furthest, list.furthest);
+    lines += part.line - 1;
+  }
+  if (furthest > count)
+    fail(line, fmt::format("a face refers to vertex {}, but the file has only {}", furthest, count));
+}
+
+/// What was repaired in all parts.
+std::vector<Warning> repairsOf(const std::string& path, const std::vector<Reader>& parts) {
+  std::vector<Warning> warnings;
+  for (std::size_t kind = 0; kind < std::size(kRepairs); ++kind) {
+    Repaired all;
+    int lines = 0;
     for (const Reader& part : parts) {
-      const List& list = part.*which;
-      count += list.count;
-      if (list.furthest > furthest) line = lines + list.furthest_line;
-      furthest = std::max(furthest, list.furthest);
+      const Repaired& its = part.repaired[kind];
+      if (all.count == 0) all = {0, lines + its.line, its.what};
+      all.count += its.count;
       lines += part.line - 1;
     }
-    if (furthest > count)
-      fail(line, fmt::format("a face refers to {} {}, but the file has only {}", (parts.front().*which).name,
-                             furthest, count));
+    if (all.count == 0) continue;
+    warnings.push_back({fmt::format("{}: line {}: {}; {}{}", path, all.line, all.what, kRepairs[kind].outcome,
+                                    all.count > 1 ? fmt::format(", as {} more are", all.count - 1) : ""),
+                        kRepairs[kind].kind, true});
   }
+  return warnings;
 }
 
 template <class T>
@@ -296,7 +382,7 @@ void append(std::vector<T>& list, std::vector<T>& whole) {
 ObjFile joinParts(std::vector<Reader>& parts) {
   ObjFile whole;
   std::size_t positions = 0, uvs = 0, normals = 0, corners = 0, faces = 0;
-  bool has_smoothing = false;
+  bool has_smoothing = false, has_colors = false;
   for (const Reader& part : parts) {
     positions += part.file.positions.size();
     uvs += part.file.uvs.size();
@@ -304,6 +390,8 @@ ObjFile joinParts(std::vector<Reader>& parts) {
     corners += part.file.corners.size();
     faces += part.file.faces.size();
     has_smoothing |= part.has_smoothing;
+    has_colors |= !part.file.colors.empty();
+    whole.has_lines |= part.file.has_lines;
   }
   whole.positions.reserve(positions);
   whole.uvs.reserve(uvs);
@@ -317,10 +405,12 @@ ObjFile joinParts(std::vector<Reader>& parts) {
       ObjFace& face = file.faces[i];
       face.first_corner += whole.corners.size();
       face.material += static_cast<int>(whole.material_names.size());
+      face.part += static_cast<int>(whole.parts.size());
       if (i < part.faces_before_smoothing) face.smoothing = smoothing;
       if (!has_smoothing) face.smoothing = 1;
     }
     smoothing = part.smoothing.value_or(smoothing);
+    if (has_colors) file.colors.resize(file.positions.size(), kNoColor);
     append(file.positions, whole.positions);
     append(file.colors, whole.colors);
     append(file.uvs, whole.uvs);
@@ -329,8 +419,8 @@ ObjFile joinParts(std::vector<Reader>& parts) {
     append(file.faces, whole.faces);
     append(file.material_names, whole.material_names);
     append(file.material_files, whole.material_files);
+    append(file.parts, whole.parts);
   }
-  if (whole.colors.size() < whole.positions.size()) whole.colors.clear();
   return whole;
 }
 
@@ -342,15 +432,16 @@ ObjFile readObjFile(const std::string& path, std::size_t part_bytes) {
     throw InputError(path +
                      ": holds zero bytes, expected OBJ as ASCII or UTF-8 text (UTF-16 is not supported)");
   }
-  std::string_view text = bytes;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-
-  std::vector<Reader> parts = cutIntoParts(text, part_bytes);
-  if (!parts.empty()) parts.front().knows_before = true;
+  std::vector<Reader> parts = cutIntoParts(withoutMark(bytes), part_bytes);
+  if (parts.empty()) return {};
+  parts.front().knows_before = true;
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) { readPart(parts[i]); });
-  readCountingBack(parts);
+  readKnowingLists(parts);
   checkParts(path, parts);
-  return joinParts(parts);
+  std::vector<Warning> repairs = repairsOf(path, parts);
+  ObjFile whole = joinParts(parts);
+  whole.warnings = std::move(repairs);
+  return whole;
 }
 
 }  // namespace luciole

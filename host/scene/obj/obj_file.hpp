@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/warning.hpp"
+
 namespace luciole {
 
 /// A corner of a face: indices into the file's lists, counted from 0; -1: the file gives none.
@@ -16,26 +18,41 @@ struct ObjCorner {
 
 struct ObjFace {
   std::size_t first_corner;  ///< index in ObjFile::corners
-  int corner_count;          ///< 0 to 255
+  int corner_count;          ///< at least 3
   int material;              ///< index in ObjFile::material_names, -1: none
+  int part;                  ///< index in ObjFile::parts, -1: none
   unsigned smoothing;        ///< group; 0: flat
+};
+
+/// An o or g statement. Its faces are those up to the next one.
+struct ObjPart {
+  std::string name;  ///< words joined by one blank; may be empty
+  bool is_object;    ///< o, rather than g
 };
 
 /// The surfaces of an OBJ file. Every number is finite, every index is in range.
 struct ObjFile {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> colors;  ///< one a position, or none
-  std::vector<glm::vec2> uvs;     ///< v grows upwards
+  /// One a position, or none at all. As written, but at least 0; those of positions without one are −1.
+  std::vector<glm::vec3> colors;
+  std::vector<glm::vec2> uvs;  ///< v grows upwards
   std::vector<glm::vec3> normals;
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
   std::vector<std::string> material_names;  ///< one a usemtl statement
   std::vector<std::string> material_files;  ///< arguments of the mtllib statements, as written
+  std::vector<ObjPart> parts;               ///< one an o or g statement
+  bool has_lines = false;                   ///< or points, which are left out
+  std::vector<Warning> warnings;            ///< what was repaired: one of each kind
 };
 
-/// Reads the statements v, vt, vn, f, s, usemtl and mtllib, and leaves out all others. In a file without any
-/// "s", all faces are of smoothing group 1. Throws InputError naming the line. O(bytes of the file), on all
-/// cores: parts of about `part_bytes` are read at the same time, and the result doesn't depend on it.
+/// Reads the statements v, vt, vn, f, o, g, s, usemtl and mtllib in any case, and leaves out all others. In a
+/// file without any "s", all faces are of smoothing group 1. Texture coordinates that are no numbers are 0,
+/// such normals (0,0,0). A face that refers to a texture coordinate or a normal that isn't there has none,
+/// and one of fewer than 3 corners is left out; each kind of these with one warning of its first place and
+/// its number. Throws InputError naming the line where a position is no number or isn't there. O(bytes of
+/// the file), on all cores: parts of about `part_bytes` are read at the same time, and the result doesn't
+/// depend on it.
 ObjFile readObjFile(const std::string& path, std::size_t part_bytes = std::size_t(1) << 20);
 
 }  // namespace luciole
