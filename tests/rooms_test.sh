@@ -97,7 +97,6 @@ OnlyTheirRoomsKnowLibraries() {
   allow OpenImageIO image
   allow embree rays
   allow tiny_obj_loader scene/obj
-  allow tiny_gltf scene/gltf
   allow CL/ cl
   allow nettle base
   return $status
