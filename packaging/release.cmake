@@ -22,7 +22,7 @@ foreach(room base image scene gbuffer raster rays load cl shadow culling render 
   file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/host host/${room}/*.hpp)
   list(APPEND headers ${found})
 endforeach()
-set(inner "<(Imf|OpenImageIO|isa-l|nlohmann|png|tbb|tiny_gltf)")
+set(inner "<(Imf|OpenImageIO|isa-l|nlohmann|png|tbb)")
 set(before "")
 while(NOT headers STREQUAL before)
   set(before ${headers})

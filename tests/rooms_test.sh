@@ -96,7 +96,6 @@ OnlyTheirRoomsKnowLibraries() {
   }
   allow OpenImageIO image
   allow embree rays
-  allow tiny_gltf scene/gltf
   allow CL/ cl
   allow nettle base
   return $status

@@ -82,6 +82,17 @@ std::string cameraText(const Camera& camera) {
                      vectorText(place[3]), vectorText(glm::dvec3(0) - glm::dvec3(place[2])));
 }
 
+/// JSON has no infinity: null.
+void addPlanes(const Camera& camera, Json& json) {
+  json["near"] = camera.near;
+  json["far"] = std::isfinite(camera.far) ? Json(camera.far) : Json();
+}
+
+std::string planesText(const Camera& camera) {
+  return std::isfinite(camera.far) ? fmt::format("sees from {:.6g} to {:.6g} m", camera.near, camera.far)
+                                   : fmt::format("sees from {:.6g} m on", camera.near);
+}
+
 std::string openingText(const Camera& camera) {
   return camera.orthographic ? fmt::format("parallel, {:.6g} m high", 2 * camera.half_height)
                              : fmt::format("{:.4g} degrees high", glm::degrees(camera.fov_y));
@@ -162,9 +173,9 @@ void addCameras(const Scene& scene, Report& report) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const Camera& camera = scene.cameras[i];
     Json& json = cameras.emplace_back(cameraJson(camera));
-    json["near"] = camera.near;
-    json["far"] = camera.far;
+    addPlanes(camera, json);
     addLine(report, "", fmt::format("{} {}, {}", i, cameraText(camera), openingText(camera)));
+    addLine(report, "", "  " + planesText(camera));
   }
 }
 
@@ -334,11 +345,11 @@ std::string addCamera(const std::string& file, const PicturePart& part, Report& 
     const bool knows_opening = header->half_extent.has_value();
     if (!knows_opening) json.erase("fov_y_degrees");
     if (header->is_exact) {
-      json["near"] = header->camera.near;
-      json["far"] = header->camera.far;
+      addPlanes(header->camera, json);
     }
     addLine(report, "camera",
             cameraText(header->camera) + (knows_opening ? ", " + openingText(header->camera) : ""));
+    if (header->is_exact) addLine(report, "", planesText(header->camera));
     return "";
   } catch (const InputError& error) {
     return error.what();

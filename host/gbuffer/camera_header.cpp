@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
-#include <locale>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -45,7 +46,7 @@ glm::dmat4 cameraToNdc(const Camera& camera, const glm::dvec2& half_extent) {
   m[homogeneous][0] = 0.5;
   m[homogeneous][1] = 0.5;
   m[homogeneous][3] = 1.0;
-  m[2][2] = (camera.orthographic ? 1.0 : camera.far) / depth;
+  m[2][2] = camera.orthographic ? 1.0 / depth : std::isfinite(depth) ? camera.far / depth : 1.0;
   m[3][2] = -camera.near * m[2][2];
   return m;
 }
@@ -68,15 +69,20 @@ std::string findText(const ExrAttributes& attributes, std::string_view name) {
   return findNamed(attributes.texts, name).value_or("");
 }
 
-/// `count` finite numbers and nothing else.
+/// `count` finite numbers and nothing else, but that the last may be "inf" where `may_be_infinite`.
 std::vector<double> parseNumbers(std::istringstream text, std::size_t count, const std::string& path,
-                                 const char* attribute) {
-  text.imbue(std::locale::classic());
+                                 const char* attribute, bool may_be_infinite = false) {
   std::vector<double> numbers;
-  for (double number; text >> number;) numbers.push_back(number);
-  const bool all_finite =
-      std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
-  if (!text.eof() || numbers.size() != count || !all_finite) {
+  bool all_finite = true;
+  for (std::string word; text >> word;) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const bool is_last_infinity = may_be_infinite && numbers.size() + 1 == count && word == "inf";
+    all_finite = all_finite && error == std::errc() && end == word.data() + word.size() &&
+                 (std::isfinite(number) || is_last_infinity);
+    numbers.push_back(number);
+  }
+  if (numbers.size() != count || !all_finite) {
     throw InputError(fmt::format("{}: attribute {}: expected {} finite numbers", path, attribute, count));
   }
   return numbers;
@@ -103,7 +109,8 @@ Camera parseOwn(const ExrAttributes& attributes, const std::string& path) {
     throw InputError(
         fmt::format("{}: attribute {}: '{}', expected perspective or parallel", path, kProjection, kind));
   }
-  const std::vector<double> numbers = parseNumbers(std::move(projection), 3, path, kProjection);
+  const std::vector<double> numbers =
+      parseNumbers(std::move(projection), 3, path, kProjection, !camera.orthographic);
   (camera.orthographic ? camera.half_height : camera.fov_y) = numbers[0];
   camera.near = numbers[1];
   camera.far = numbers[2];

@@ -69,7 +69,7 @@ Texture readTexture(const std::string& path) {
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {
   const TraceSpan span("read texture", {{"file", name}, {"bytes", std::int64_t(file.size())}});
-  std::optional<Texture> texture = readQuickly(file, name);
+  std::optional<Texture> texture = readQuickly(file, name, false);
   return texture ? std::move(*texture) : functions().read_texture_in_memory(file, name);
 }
 

@@ -36,9 +36,10 @@ bool canHold(std::size_t file_bytes, std::uint64_t width, std::uint64_t height, 
 /// over no object that has a destructor. Its warnings are left to the reader that tells what is wrong.
 class PngRows {
  public:
-  explicit PngRows(std::span<const std::byte> file)
+  PngRows(std::span<const std::byte> file, bool knows_space)
       : file_(file),
         rest_(file),
+        knows_space_(knows_space),
         png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, onError,
                                     [](png_structp, png_const_charp) {})),
         info_(png_ ? png_create_info_struct(png_) : nullptr) {}
@@ -80,11 +81,12 @@ class PngRows {
   }
 
  private:
-  /// Of at most 8 bits, not interlaced, and not said to be linear.
+  /// Of at most 8 bits, not interlaced, and not said to be linear, where that counts.
   bool isPlain() const {
     constexpr std::uint64_t kMostCompression = 1040;  // deflate reaches 1 : 1032
     double gamma = 0;
-    const bool may_be_linear = png_get_gAMA(png_, info_, &gamma) && gamma > 0.98 && gamma < 1.02;
+    const bool may_be_linear =
+        knows_space_ && png_get_gAMA(png_, info_, &gamma) && gamma > 0.98 && gamma < 1.02;
     return png_get_bit_depth(png_, info_) <= 8 && png_get_interlace_type(png_, info_) == PNG_INTERLACE_NONE &&
            !may_be_linear &&
            canHold(file_.size(), width(), height(), png_get_rowbytes(png_, info_), kMostCompression);
@@ -107,6 +109,7 @@ class PngRows {
   }
 
   std::span<const std::byte> file_, rest_;
+  bool knows_space_;
   png_structp png_;
   png_infop info_;
 };
@@ -115,7 +118,7 @@ class PngRows {
 /// call(), over no object that has a destructor.
 class JpegRows {
  public:
-  explicit JpegRows(std::span<const std::byte> file) : file_(file) {
+  JpegRows(std::span<const std::byte> file, bool) : file_(file) {
     jpeg_.err = jpeg_std_error(&errors_);
     errors_.error_exit = onError;
     errors_.output_message = [](j_common_ptr) {};
@@ -190,8 +193,9 @@ class JpegRows {
 };
 
 template <class Rows>
-std::optional<MipLevel> readLevel(std::span<const std::byte> file, const std::string& name) {
-  Rows rows(file);
+std::optional<MipLevel> readLevel(std::span<const std::byte> file, const std::string& name,
+                                  bool knows_space) {
+  Rows rows(file, knows_space);
   if (!rows.begin()) return std::nullopt;
   const std::size_t pixels = rows.width() * rows.height();
   // The texels, and a third more for the mip chain.
@@ -208,10 +212,11 @@ std::optional<MipLevel> readLevel(std::span<const std::byte> file, const std::st
 
 }  // namespace
 
-std::optional<Texture> readQuickly(std::span<const std::byte> file, const std::string& name) {
+std::optional<Texture> readQuickly(std::span<const std::byte> file, const std::string& name,
+                                   bool knows_space) {
   std::optional<MipLevel> level;
-  if (PngRows::isOne(file)) level = readLevel<PngRows>(file, name);
-  if (JpegRows::isOne(file)) level = readLevel<JpegRows>(file, name);
+  if (PngRows::isOne(file)) level = readLevel<PngRows>(file, name, knows_space);
+  if (JpegRows::isOne(file)) level = readLevel<JpegRows>(file, name, knows_space);
   if (!level) return std::nullopt;
   Texture texture{name, {}};
   texture.levels.push_back(std::move(*level));
@@ -230,7 +235,7 @@ std::optional<Texture> readQuickly(const std::string& path) {
   requireMemory(double(size), path);
   const std::unique_ptr<std::byte[]> bytes(new std::byte[size]);
   if (std::fread(bytes.get(), 1, size, file.get()) != size) return std::nullopt;
-  return readQuickly(std::span<const std::byte>(bytes.get(), size), path);
+  return readQuickly(std::span<const std::byte>(bytes.get(), size), path, true);
 }
 
 }  // namespace luciole

@@ -78,11 +78,12 @@ Texels texelsOfCodes(OIIO::ImageInput& input, const std::string& name, const std
   return bytes ? texelsOf<std::uint8_t>(input, name, places) : texelsOf<std::uint16_t>(input, name, places);
 }
 
-Texture read(const std::string& path, const std::string& name) {
+/// knows_space: whether what the file says of its colour space counts.
+Texture read(const std::string& path, const std::string& name, bool knows_space) {
   const auto input = openPicture(path, name);
   const OIIO::ImageSpec& spec = input->spec();
   const std::array<int, 4> places = channelPlaces(spec, name);
-  const bool linear = isLinear(spec);
+  const bool linear = knows_space ? isLinear(spec) : spec.format.is_floating_point();
   // The file's values, its texels, and a third more for the mip chain.
   requireMemory(double(spec.width) * spec.height * (spec.nchannels * sizeof(float) + 4 * sizeof(float)),
                 name);
@@ -97,12 +98,12 @@ Texture read(const std::string& path, const std::string& name) {
 
 }  // namespace
 
-Texture readTexture(const std::string& path) { return read(path, path); }
+Texture readTexture(const std::string& path) { return read(path, path, true); }
 
 Texture readTexture(std::span<const std::byte> file, const std::string& name) {
   const MemoryFile in_memory(file);
   try {
-    return read(in_memory.path(), name);
+    return read(in_memory.path(), name, false);
   } catch (const InputError& error) {
     // Some decoders name the file that they read.
     throw InputError(OIIO::Strutil::replace(error.what(), in_memory.path(), name, true));

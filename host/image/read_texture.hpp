@@ -13,7 +13,8 @@ namespace luciole {
 /// float pictures are clamped to [0,1] and sRGB-encoded. Throws InputError naming the file, or MachineError.
 Texture readTexture(const std::string& path);
 
-/// The same for a file's bytes in memory, such as an image inside a GLB. `name` is for messages.
+/// The same for a glTF file's image in memory. `name` is for messages. What the file says of its colour space
+/// is ignored, as glTF wants it: codes of integers are sRGB.
 Texture readTexture(std::span<const std::byte> file, const std::string& name);
 
 }  // namespace luciole

@@ -45,6 +45,12 @@ inline Neighbours neighbours(double wrapped, std::int32_t size, Wrap wrap) {
   return {first < 0 ? before : not_beyond, first < last ? first + 1 : after, float(place - below)};
 }
 
+/// Both are the texel that a point lies in.
+inline Neighbours snapped(const Neighbours& around) {
+  const std::int32_t nearest = around.share < 0.5f ? around.first : around.second;
+  return {nearest, nearest, 0.0f};
+}
+
 /// Gives exactly a where both are equal.
 inline float mix(float a, float b, float share) { return a + (b - a) * share; }
 
@@ -55,11 +61,15 @@ inline float decode(const std::uint16_t* texel, int channel, bool finest) {
   return finest ? linearOfSrgb16()[code] : linearOfRoot16(code);
 }
 
-float sampleLevel(const Texture& texture, int level, Wrap wrap_u, Wrap wrap_v, double u, double v,
+float sampleLevel(const Texture& texture, int level, const TextureUse& use, bool nearest, double u, double v,
                   int channel) {
   const MipLevel& mip = texture.levels[std::size_t(level)];
-  const Neighbours column = neighbours(u, mip.width, wrap_u);
-  const Neighbours row = neighbours(v, mip.height, wrap_v);
+  Neighbours column = neighbours(u, mip.width, use.wrap_u);
+  Neighbours row = neighbours(v, mip.height, use.wrap_v);
+  if (nearest) {
+    column = snapped(column);
+    row = snapped(row);
+  }
   const auto value = [&](int x, int y) {
     return decode(&mip.texels[(std::size_t(y) * mip.width + x) * 4], channel, level == 0);
   };
@@ -93,6 +103,12 @@ inline float levelOf(float size, float coarsest) {
   return size > 1.0f ? std::min(0.5f * log2OfPositive(size), coarsest) : 0.0f;
 }
 
+/// The level that is looked up in place of `level`. One of two that are as near is the finer.
+inline float chosenLevel(float level, Mips mips) {
+  if (mips == Mips::kBlended) return level;
+  return mips == Mips::kNone ? 0.0f : std::ceil(level - 0.5f);
+}
+
 /// Where a square's points lie between the texels of a level: the four around each, counted in texels from
 /// the level's first, and the shares of the right and lower ones.
 struct SquareTexels {
@@ -122,6 +138,19 @@ bool any(const LaneMask& mask) {
   std::int32_t found = 0;
   for (int i = 0; i < kSquarePixels; ++i) found |= mask[i];
   return found != 0;
+}
+
+/// Puts the points of some pixels on the texels that they lie in.
+void snap(const LaneMask& mask, SquareTexels& texels) {
+  for (int i = 0; i < kSquarePixels; ++i) {
+    if (!mask[i]) continue;
+    const bool right = texels.across[i] >= 0.5f, lower = texels.down[i] >= 0.5f;
+    const std::uint32_t top = right ? texels.top_right[i] : texels.top_left[i];
+    const std::uint32_t bottom = right ? texels.bottom_right[i] : texels.bottom_left[i];
+    texels.top_left[i] = texels.top_right[i] = texels.bottom_left[i] = texels.bottom_right[i] =
+        lower ? bottom : top;
+    texels.across[i] = texels.down[i] = 0.0f;
+  }
 }
 
 SquareTexels findTexels(const MipLevel& level, const TextureUse& use, const Lanes<double>& u,
@@ -157,14 +186,19 @@ void findMap(const Texture& texture, const TextureUse& use, const SquareFootprin
   for (int i = 0; i < kSquarePixels; ++i) u[i] = wrapCoordinate(footprints.u[i], use.wrap_u);
   for (int i = 0; i < kSquarePixels; ++i) v[i] = wrapCoordinate(footprints.v[i], use.wrap_v);
   Lanes<std::int32_t> finer, coarser;
-  LaneMask is_finest;
-  Lanes<float> share;
+  LaneMask is_finest, is_magnified;
+  Lanes<float> share, level;
   for (int i = 0; i < kSquarePixels; ++i) {
     const float size = footprintSize(width, height, {footprints.du_dx[i], footprints.dv_dx[i]},
                                      {footprints.du_dy[i], footprints.dv_dy[i]});
-    const float level = levelOf(size, coarsest);
-    finer[i] = std::int32_t(level);
-    share[i] = level - float(finer[i]);
+    level[i] = levelOf(size, coarsest);
+    is_magnified[i] = size <= 1.0f;
+  }
+  if (use.mips != Mips::kBlended)
+    for (float& l : level) l = chosenLevel(l, use.mips);
+  for (int i = 0; i < kSquarePixels; ++i) {
+    finer[i] = std::int32_t(level[i]);
+    share[i] = level[i] - float(finer[i]);
     coarser[i] = finer[i] + (share[i] != 0.0f);
     is_finest[i] = finer[i] == 0;
   }
@@ -175,18 +209,24 @@ void findMap(const Texture& texture, const TextureUse& use, const SquareFootprin
   }
   blend(share, wanted, lookup.share);
   blend(is_finest, wanted, lookup.is_finest);
-  for (std::int32_t level = least; level <= most; ++level) {
+  for (std::int32_t l = least; l <= most; ++l) {
     LaneMask as_finer, as_coarser;
     for (int i = 0; i < kSquarePixels; ++i) {
-      as_finer[i] = wanted[i] & (finer[i] == level);
-      as_coarser[i] = wanted[i] & (coarser[i] == level);
+      as_finer[i] = wanted[i] & (finer[i] == l);
+      as_coarser[i] = wanted[i] & (coarser[i] == l);
     }
     const bool any_finer = any(as_finer), any_coarser = any(as_coarser);
     if (!any_finer && !any_coarser) continue;
-    const SquareTexels texels = findTexels(texture.levels[std::size_t(level)], use, u, v);
+    const SquareTexels texels = findTexels(texture.levels[std::size_t(l)], use, u, v);
     if (any_finer) put(texels, as_finer, lookup.finer);
     if (any_coarser) put(texels, as_coarser, lookup.coarser);
   }
+  if (!use.nearest_magnified && !use.nearest_minified) return;
+  LaneMask nearest;
+  for (int i = 0; i < kSquarePixels; ++i)
+    nearest[i] = wanted[i] & (is_magnified[i] ? use.nearest_magnified : use.nearest_minified);
+  snap(nearest, lookup.finer);
+  snap(nearest, lookup.coarser);
 }
 
 /// Asks for the cache lines of the left texels. (Inlined first, or else GCC takes it for a function without
@@ -251,18 +291,19 @@ inline void readTexels(const SquareTexels& at, int lane, Color& color) {
 
 }  // namespace
 
-float sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 uv, glm::vec2 duv_dx,
+float sampleTexture(const Texture& texture, const TextureUse& use, glm::vec2 uv, glm::vec2 duv_dx,
                     glm::vec2 duv_dy, int channel) {
-  const double u = wrapCoordinate(uv.x, wrap_u);
-  const double v = wrapCoordinate(uv.y, wrap_v);
+  const double u = wrapCoordinate(uv.x, use.wrap_u);
+  const double v = wrapCoordinate(uv.y, use.wrap_v);
   const MipLevel& finest = texture.levels.front();
-  const float level =
-      levelOf(footprintSize(finest.width, finest.height, duv_dx, duv_dy), float(texture.levels.size() - 1));
+  const float size = footprintSize(finest.width, finest.height, duv_dx, duv_dy);
+  const float level = chosenLevel(levelOf(size, float(texture.levels.size() - 1)), use.mips);
+  const bool nearest = size <= 1.0f ? use.nearest_magnified : use.nearest_minified;
   const int finer = int(level);
   const float share = level - float(finer);
-  const float fine = sampleLevel(texture, finer, wrap_u, wrap_v, u, v, channel);
+  const float fine = sampleLevel(texture, finer, use, nearest, u, v, channel);
   if (share == 0.0f) return fine;
-  return mix(fine, sampleLevel(texture, finer + 1, wrap_u, wrap_v, u, v, channel), share);
+  return mix(fine, sampleLevel(texture, finer + 1, use, nearest, u, v, channel), share);
 }
 
 Lanes3<float> sampleTextures(std::span<const Texture> textures, const Lanes<const TextureUse*>& uses,

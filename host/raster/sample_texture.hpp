@@ -8,10 +8,11 @@
 
 namespace luciole {
 
-/// Trilinear lookup of one channel: linear red (0), green or blue, or alpha (3), at `uv`, filtered over the
-/// footprint of a pixel, whose sides in texture coordinates are duv_dx and duv_dy (any finite size; zero: the
-/// finest level). The level follows the longer side, as OpenGL does. Non-finite coordinates read as 0.
-float sampleTexture(const Texture& texture, Wrap wrap_u, Wrap wrap_v, glm::vec2 uv, glm::vec2 duv_dx,
+/// Lookup of one channel, trilinear unless `use` says otherwise: linear red (0), green or blue, or alpha (3),
+/// at `uv`, filtered over the footprint of a pixel, whose sides in texture coordinates are duv_dx and duv_dy
+/// (any finite size; zero: the finest level). The level follows the longer side, as OpenGL does. Non-finite
+/// coordinates read as 0.
+float sampleTexture(const Texture& texture, const TextureUse& use, glm::vec2 uv, glm::vec2 duv_dx,
                     glm::vec2 duv_dy, int channel);
 
 /// Texture coordinates and footprints of a square's pixels, as above.

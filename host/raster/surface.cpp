@@ -112,8 +112,7 @@ TexturePlace texturePlace(const Surface& surface, const ViewPlane& plane, double
 }
 
 float lookUp(const Scene& scene, const TextureUse& map, const TexturePlace& place, int channel) {
-  return sampleTexture(scene.textures[map.texture], map.wrap_u, map.wrap_v, place.uv, place.duv_dx,
-                       place.duv_dy, channel);
+  return sampleTexture(scene.textures[map.texture], map, place.uv, place.duv_dx, place.duv_dy, channel);
 }
 
 glm::dvec4 tangentAt(const Surface& surface, const Weights& weights) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 
@@ -15,7 +16,7 @@ glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, doubl
   projection[1][1] = scale;
   projection[2][2] = near / (far - near);
   projection[2][3] = -1.0;
-  projection[3][2] = near * far / (far - near);
+  projection[3][2] = far < std::numeric_limits<double>::infinity() ? near * far / (far - near) : near;
   return projection;
 }
 

@@ -23,7 +23,8 @@ struct View {
 };
 
 /// Reversed-depth projections (see View::projection). `fov_y` in radians, `aspect` width / height, lengths in
-/// metres; `near` and `far` are distances ahead.
+/// metres; `near` and `far` are distances ahead, and the far plane of a perspective one may be infinitely
+/// far.
 glm::dmat4 perspectiveProjection(double fov_y, double aspect, double near, double far);
 glm::dmat4 orthographicProjection(double left, double right, double bottom, double top, double near,
                                   double far);

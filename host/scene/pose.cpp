@@ -105,8 +105,8 @@ void poseScene(Scene& scene, double frame) {
   for (const Attachment& attachment : animation.objects) {
     Object& object = scene.objects[attachment.index];
     object.object_to_world = placeOf(attachment);
-    object.mesh =
-        isFlat(object.object_to_world) ? static_cast<std::uint32_t>(animation.no_mesh) : attachment.mesh;
+    object.mesh = hidesObjects(object.object_to_world) ? static_cast<std::uint32_t>(animation.no_mesh)
+                                                       : attachment.mesh;
   }
   for (const Attachment& attachment : animation.attached_cameras) {
     const std::string fault = attachCamera(placeOf(attachment), scene.cameras[attachment.index]);
@@ -232,6 +232,10 @@ bool isFinite(const glm::dmat4& matrix) {
   return true;
 }
 
-bool isFlat(const glm::dmat4& matrix) { return glm::determinant(glm::dmat3(matrix)) == 0; }
+bool hidesObjects(const glm::dmat4& matrix) {
+  const glm::dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]);
+  return glm::cross(x, y) == glm::dvec3(0) && glm::cross(y, z) == glm::dvec3(0) &&
+         glm::cross(z, x) == glm::dvec3(0);
+}
 
 }  // namespace luciole

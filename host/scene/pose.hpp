@@ -13,9 +13,9 @@ glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const 
 
 /// Poses a scene at a frame, which may be fractional: sets the members of cameras, lights, objects and meshes
 /// that are animated, and nothing else. The result doesn't depend on earlier poses. Objects that a scale of 0
-/// flattens show an empty mesh. Throws InputError naming the frame where a pose doesn't exist (a camera whose
-/// up is parallel to its view, a spot at its target, a transform that isn't finite), and as checkPlaces()
-/// does.
+/// along two axes hides show an empty mesh. Throws InputError naming the frame where a pose doesn't exist (a
+/// camera whose up is parallel to its view, a spot at its target, a transform that isn't finite), and as
+/// checkPlaces() does.
 void poseScene(Scene& scene, double frame);
 
 /// Attaches an object to a node, from the next poseScene() on.
@@ -49,7 +49,8 @@ std::string attachLight(const glm::dmat4& node_to_world, Light& light);
 
 /// Whether all 16 elements are finite.
 bool isFinite(const glm::dmat4& matrix);
-/// Whether a transform's determinant is 0: it flattens objects, so nothing of them shows.
-bool isFlat(const glm::dmat4& matrix);
+/// Whether a transform makes every object a line or a point, so that nothing of it shows. One that flattens
+/// them along one axis alone doesn't.
+bool hidesObjects(const glm::dmat4& matrix);
 
 }  // namespace luciole

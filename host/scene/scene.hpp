@@ -18,11 +18,22 @@ namespace luciole {
 
 enum class Wrap : std::int32_t { kRepeat, kMirroredRepeat, kClampToEdge };  // as wide as vector lanes
 
+/// Which levels of a texture's mip chain a pixel that holds several texels mixes.
+enum class Mips : std::uint8_t {
+  kBlended,  ///< the two that are nearest in size, by their distance
+  kNearest,  ///< the nearest
+  kNone,     ///< the finest one
+};
+
 /// How a material looks a texture up. `texture` indexes Scene::textures; -1: no texture.
 struct TextureUse {
   int texture = -1;
   Wrap wrap_u = Wrap::kRepeat;
   Wrap wrap_v = Wrap::kRepeat;
+  /// The nearest texel instead of a mix of the four around a point, where a texel is larger than a pixel …
+  bool nearest_magnified = false;
+  bool nearest_minified = false;  ///< … and where it is smaller
+  Mips mips = Mips::kBlended;
 };
 
 /// A limit of Material::normal_scale.
@@ -151,7 +162,7 @@ struct Camera {
   double fov_y = 0.7853981633974483;  ///< radians, perspective only
   double half_height = 1.0;           ///< metres, orthographic only
   double near = 0.1;                  ///< metres, > 0
-  double far = 1000.0;                ///< metres, > near
+  double far = 1000.0;                ///< metres, > near; of a perspective camera it may be infinite
 };
 
 /// Everything a picture is made of: the output of the loaders, and the input of every later stage.

@@ -15,8 +15,8 @@ concept Is = std::same_as<std::remove_const_t<T>, Struct>;
 /// Calls `visit` once, with all members of a struct that a scene is made of.
 template <Is<TextureUse> T, class Visit>
 void withFields(T& use, Visit&& visit) {
-  auto& [texture, wrap_u, wrap_v] = use;
-  visit(texture, wrap_u, wrap_v);
+  auto& [texture, wrap_u, wrap_v, nearest_magnified, nearest_minified, mips] = use;
+  visit(texture, wrap_u, wrap_v, nearest_magnified, nearest_minified, mips);
 }
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {

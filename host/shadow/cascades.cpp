@@ -15,7 +15,7 @@ constexpr double kCascadeRatio = 3.0;
 
 /// A sphere around the part of a view from `near` to `far` metres ahead.
 Sphere sphereAround(const View& view, double near, double far) {
-  const Corners corners = viewCorners(view);
+  const Corners corners = viewCorners(view, far);
   // Corners i and i + 4 are the far and the near end of an edge.
   const double view_near = -(view.world_to_view * glm::dvec4(corners[4], 1)).z;
   const double view_far = -(view.world_to_view * glm::dvec4(corners[0], 1)).z;
@@ -48,7 +48,10 @@ Sphere sphereAround(const View& view, double near, double far) {
 /// How far ahead the camera sees anything of the scene, in metres: nearest and farthest.
 glm::dvec2 seenDepths(const View& camera, const Bounds& scene) {
   const Corners box = boxCorners(scene);
-  std::vector<glm::dvec3> points = commonCorners(viewCorners(camera), box);
+  double farthest = kSmallestLength;
+  for (const glm::dvec3& corner : box)
+    farthest = std::max(farthest, -(camera.world_to_view * glm::dvec4(corner, 1)).z);
+  std::vector<glm::dvec3> points = commonCorners(viewCorners(camera, 2 * farthest), box);
   if (points.empty()) points.assign(box.begin(), box.end());  // nothing to see: any depths will do
   glm::dvec2 depths(1e300, kSmallestLength);
   for (const glm::dvec3& point : points) {

@@ -55,11 +55,14 @@ Corners boxCorners(const Bounds& box) {
   return corners;
 }
 
-Corners viewCorners(const View& view) {
+Corners viewCorners(const View& view, double farthest) {
+  // Where the far plane is infinitely far, what lies d metres ahead has z = near / d.
+  const bool is_infinite = view.projection[2][3] != 0 && view.projection[2][2] == 0;
+  const double far_z = is_infinite ? view.projection[3][2] / farthest : 0;
   const glm::dmat4 clip_to_world = glm::inverse(view.projection * view.world_to_view);
   Corners corners;
   for (int i = 0; i < 8; ++i) {
-    const glm::dvec4 p = clip_to_world * glm::dvec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : 0, 1);
+    const glm::dvec4 p = clip_to_world * glm::dvec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : far_z, 1);
     corners[i] = glm::dvec3(p) / p.w;
   }
   return corners;

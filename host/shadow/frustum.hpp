@@ -17,8 +17,9 @@ using Corners = std::array<glm::dvec3, 8>;
 Corners boxCorners(const Bounds& box);
 
 /// The view volume, whatever the crop; its axes are those of normalized device coordinates. Depth is
-/// reversed, so corners 0 to 3 lie on the far plane and i + 4 on the near plane before i.
-Corners viewCorners(const View& view);
+/// reversed, so corners 0 to 3 lie on the far plane and i + 4 on the near plane before i. Of a view without
+/// end that plane is taken for `farthest` metres away.
+Corners viewCorners(const View& view, double farthest);
 
 /// The intersection of two hexahedra, as points whose convex hull it is. Points may repeat; there are none
 /// where the hexahedra don't intersect.

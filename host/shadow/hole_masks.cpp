@@ -63,6 +63,8 @@ MaterialHoles holesOf(const Scene& scene, const Material& material) {
     holes.map = &material.alpha_map;
     holes.channel = scene.textures[std::size_t(material.alpha_map.texture)].alpha_varies ? 3 : 0;
   }
+  // Masks are made for texels that are mixed.
+  if (holes.map && holes.map->nearest_magnified) return holes.map = nullptr, holes;
   if (!holes.map) holes.all = judge(holes.factor, holes.factor, cutoff);
   return holes;
 }

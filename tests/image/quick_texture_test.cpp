@@ -126,7 +126,7 @@ TEST(QuickTexture, TheTexturesOfSponzaAreAllReadAndHaveTheTexelsThatOpenImageIOG
 TEST(QuickTexture, LeavesRareKindsAndDamagedFilesToTheOtherReader) {
   const TemporaryFolder folder;
   const auto isRead = [&](const std::string& bytes) {
-    return readQuickly(std::as_bytes(std::span(bytes)), "it").has_value();
+    return readQuickly(std::as_bytes(std::span(bytes)), "it", true).has_value();
   };
   const std::string rows("\0\x10\0\x20", 4);
   const std::string png = pngFile(1, 2, 8, 0, false, "", rows);
@@ -158,7 +158,7 @@ TEST(QuickTexture, LeavesRareKindsAndDamagedFilesToTheOtherReader) {
 TEST(QuickTexture, AHeaderThatClaimsMoreThanTheFileCanHoldAllocatesNothing) {
   // A picture of 2³⁰ pixels would take 8 GiB.
   const std::string png = pngFile(32768, 32768, 8, 2, false, "", std::string(4, '\0'));
-  EXPECT_FALSE(readQuickly(std::as_bytes(std::span(png)), "it"));
+  EXPECT_FALSE(readQuickly(std::as_bytes(std::span(png)), "it", true));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Texture chain(int width, int height, Red red) {
 }
 
 float redAt(const Texture& texture, Wrap wrap, glm::vec2 uv, glm::vec2 dx = {}, glm::vec2 dy = {}) {
-  return sampleTexture(texture, wrap, wrap, uv, dx, dy, 0);
+  return sampleTexture(texture, {0, wrap, wrap}, uv, dx, dy, 0);
 }
 
 constexpr Wrap kWraps[] = {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge};
@@ -43,7 +43,7 @@ TEST(SampleTexture, OneTexelIsTheSameEverywhere) {
   for (const Wrap wrap : kWraps)
     for (const float u : {-7.3f, 0.0f, 0.5f, 1.0f, 1e30f, -1e30f, std::numeric_limits<float>::max()}) {
       const auto value = [&](int channel) {
-        return sampleTexture(texture, wrap, wrap, {u, -u}, {3.0f, 0.0f}, {}, channel);
+        return sampleTexture(texture, {0, wrap, wrap}, {u, -u}, {3.0f, 0.0f}, {}, channel);
       };
       EXPECT_EQ(value(0), 1.0f);
       // sRGB 188/255 decodes to 0.5028865 (IEC 61966-2-1); alpha is linear.
@@ -95,8 +95,8 @@ TEST(SampleTexture, WrapModes) {
 
 TEST(SampleTexture, EachAxisHasItsOwnMode) {
   const Texture texture = chain(2, 2, [](int, int x, int y) { return x == 0 && y == 1; });
-  EXPECT_EQ(sampleTexture(texture, Wrap::kRepeat, Wrap::kClampToEdge, {1.25f, 1.25f}, {}, {}, 0), 1.0f);
-  EXPECT_EQ(sampleTexture(texture, Wrap::kClampToEdge, Wrap::kRepeat, {1.25f, 1.25f}, {}, {}, 0), 0.0f);
+  EXPECT_EQ(sampleTexture(texture, {0, Wrap::kRepeat, Wrap::kClampToEdge}, {1.25f, 1.25f}, {}, {}, 0), 1.0f);
+  EXPECT_EQ(sampleTexture(texture, {0, Wrap::kClampToEdge, Wrap::kRepeat}, {1.25f, 1.25f}, {}, {}, 0), 0.0f);
 }
 
 TEST(SampleTexture, TheLevelFollowsTheLongerSide) {
@@ -145,7 +145,8 @@ TEST(SampleTexture, SquaresOfPixelsSeeWhatEachPixelSees) {
       at.u[i] = coin(random) ? place(random) : 1e30f * place(random);
       at.v[i] = i == 5 ? std::numeric_limits<float>::quiet_NaN() : place(random);
       at.du_dx[i] = step(), at.dv_dx[i] = step(), at.du_dy[i] = step(), at.dv_dy[i] = step();
-      uses[i] = {texture(random), kWraps[wrap(random)], kWraps[wrap(random)]};
+      uses[i] = {texture(random),   kWraps[wrap(random)], kWraps[wrap(random)],
+                 coin(random) == 0, coin(random) == 0,    Mips(wrap(random))};
       // In every other square pixels share their maps, as they mostly do in pictures.
       const TextureUse& use = uses[repeat % 2 ? i % (1 + repeat % 3) : i];
       maps[i] = use.texture < 0 ? nullptr : &use;
@@ -154,8 +155,7 @@ TEST(SampleTexture, SquaresOfPixelsSeeWhatEachPixelSees) {
     for (int i = 0; i < kSquarePixels; ++i)
       for (int c = 0; c < 3; ++c)
         EXPECT_EQ(seen[c][i], maps[i]
-                                  ? sampleTexture(textures[maps[i]->texture], maps[i]->wrap_u,
-                                                  maps[i]->wrap_v, {at.u[i], at.v[i]},
+                                  ? sampleTexture(textures[maps[i]->texture], *maps[i], {at.u[i], at.v[i]},
                                                   {at.du_dx[i], at.dv_dx[i]}, {at.du_dy[i], at.dv_dy[i]}, c)
                                   : 1.0f);
   }

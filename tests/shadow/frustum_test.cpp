@@ -42,7 +42,7 @@ class FrustumOfView : public testing::TestWithParam<bool> {};
 
 TEST_P(FrustumOfView, CornersOfAViewAreThoseOfItsPicture) {
   const View view = viewOf(GetParam());
-  const Corners corners = viewCorners(view);
+  const Corners corners = viewCorners(view, 1);
   for (int i = 0; i < 8; ++i) {
     const glm::dvec4 clip = view.projection * (view.world_to_view * glm::dvec4(corners[i], 1));
     const glm::dvec3 expected(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : 0);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "base/did_you_mean.hpp"
@@ -23,31 +25,48 @@ namespace {
 
 constexpr const char* kLights = "KHR_lights_punctual";
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kNearOfFar = 1e-6;  ///< where a near plane is at 0
 
 void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
-  const tinygltf::Node& node = model.file.nodes[placed.node];
-  const tinygltf::Camera& source =
+  const GltfNode& node = model.file.nodes[std::size_t(placed.node)];
+  const GltfCamera& source =
       element(model, model.file.cameras, node.camera, nodePlace(placed.node), "camera");
   const std::string place = fmt::format("cameras[{}]", node.camera);
+  const auto leaveOut = [&](const std::string& what) {
+    repaired(model, place, what + "; left out", "camera");
+  };
   Camera camera;
   camera.name = source.name.empty() ? node.name : source.name;
   const std::string fault = attachCamera(placed.to_world, camera);
-  if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
+  if (!fault.empty()) return leftOut(model, nodePlace(placed.node), fault + "; left out", "camera");
   camera.orthographic = source.type == "orthographic";
+  camera.far = source.far.value_or(std::numeric_limits<double>::infinity());
+  camera.near = source.near;
   if (camera.orthographic) {
-    camera.half_height = std::abs(source.orthographic.ymag);
-    camera.far = source.orthographic.zfar;
+    camera.half_height = std::abs(source.ymag);
+    if (!(camera.half_height > 0)) return leaveOut("ymag is 0");
+    if (!std::isfinite(camera.far) || !(camera.far > std::max(camera.near, 0.0)))
+      return leaveOut(
+          fmt::format("zfar is {}, expected more than znear {}", source.far.value_or(0), camera.near));
     // glTF allows 0 here; Camera::near must be above 0.
-    camera.near = source.orthographic.znear == 0 ? 1e-6 * camera.far : source.orthographic.znear;
-    if (!(camera.half_height > 0)) failGltf(model, place, "ymag is 0");
+    if (camera.near == 0) camera.near = kNearOfFar * camera.far;
   } else {
-    camera.fov_y = source.perspective.yfov;
-    camera.near = source.perspective.znear;
-    // Without zfar glTF's projection is infinite.
-    camera.far = source.perspective.zfar == 0 ? 1e6 * camera.near : source.perspective.zfar;
-    if (!(camera.fov_y > 0 && camera.fov_y < kPi)) failGltf(model, place, "yfov must be between 0 and pi");
+    camera.fov_y = source.yfov;
+    if (!(camera.fov_y > 0 && camera.fov_y < kPi))
+      return leaveOut(fmt::format("yfov is {}, expected one between 0 and pi", camera.fov_y));
+    if (!(camera.far > std::max(camera.near, 0.0))) {
+      repaired(
+          model, place,
+          fmt::format("zfar is {}, expected more than znear {}; taken for infinite", camera.far, camera.near),
+          "zfar");
+      camera.far = std::numeric_limits<double>::infinity();
+    }
   }
-  if (!(camera.near > 0 && camera.far > camera.near)) failGltf(model, place, "expected 0 < znear < zfar");
+  if (!(camera.near > 0)) {
+    const double near = std::isfinite(camera.far) ? kNearOfFar * camera.far : 1e-3;
+    repaired(model, place, fmt::format("znear is {}, taken for {}", camera.near, near), "znear");
+    camera.near = near;
+  }
   if (placed.moving >= 0)
     scene.animation.attached_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
                                                 static_cast<std::uint32_t>(placed.moving), placed.since});
@@ -56,64 +75,86 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
 
 /// The group that a light's node, or else the light, names: a text "group" in its extras. Extras are
 /// anybody's, so one that can't be a group's name is told and left out.
-std::uint32_t groupOf(const GltfModel& model, int node, const tinygltf::Light& light,
-                      LightGroupNumbers& groups, Scene& scene) {
-  for (const tinygltf::Value* extras : {&model.file.nodes[node].extras, &light.extras}) {
-    if (!extras->IsObject() || !extras->Get("group").IsString()) continue;
-    const std::string name = extras->Get("group").Get<std::string>();
-    const std::string fault = faultOfGroupName(name);
-    if (fault.empty()) return lightGroupNumber(name, groups, scene);
-    scene.warnings.push_back(
-        {fmt::format("{}: {}: extras.group: {}; left out", model.path, nodePlace(node), fault), "group"});
+std::uint32_t groupOf(const GltfModel& model, int node, const GltfLight& light, LightGroupNumbers& groups,
+                      Scene& scene) {
+  for (const std::optional<std::string>& name : {model.file.nodes[std::size_t(node)].group, light.group}) {
+    if (!name) continue;
+    const std::string fault = faultOfGroupName(*name);
+    if (fault.empty()) return lightGroupNumber(*name, groups, scene);
+    leftOut(model, nodePlace(node), fmt::format("extras.group: {}; left out", fault), "group");
   }
   return 0;
+}
+
+/// Sets a spot's cone. Returns whether it has one.
+bool setCone(const GltfModel& model, const GltfLight& source, const std::string& place, Light& light) {
+  double inner = source.inner_cone;
+  light.kind = LightKind::kSpot;
+  light.falloff = SpotFalloff::kCone;
+  light.cutoff = source.outer_cone;
+  if (!(light.cutoff > 0)) {
+    repaired(model, place, fmt::format("outerConeAngle is {}, expected more than 0; left out", light.cutoff),
+             "cone");
+    return false;
+  }
+  if (light.cutoff > kPi / 2) {
+    // π/2 as a decimal may have been rounded up.
+    if (light.cutoff > kPi / 2 + 1e-5)
+      repaired(model, place, fmt::format("outerConeAngle is {}, taken for pi/2", light.cutoff), "cone");
+    light.cutoff = kPi / 2;
+  }
+  if (inner < 0 || inner > source.outer_cone) {
+    const double mended = inner < 0 ? 0 : light.cutoff;
+    repaired(model, place, fmt::format("innerConeAngle is {}, taken for {}", inner, mended), "cone");
+    inner = mended;
+  }
+  // Programs write inner = outer for a sharp edge; Light::inner_cone must be below the cutoff.
+  light.inner_cone = std::min(inner, light.cutoff * (1 - 1e-6));
+  return true;
 }
 
 /// KHR_lights_punctual. Its intensities are candela and lux, and its Lambertian surface reflects base colour
 /// / π; our diffuse term has no 1/π, so the light carries it: diffuse = specular = colour · intensity / π. A
 /// surface then has the radiance in cd/m² that glTF gives it. Lights cast no shadow, as glTF says nothing of
 /// shadows.
-void addLight(const GltfModel& model, const PlacedNode& placed, double index, LightGroupNumbers& groups,
-              Scene& scene) {
-  const int number = index >= 0 && index < 1e9 ? static_cast<int>(index) : -1;
-  const tinygltf::Light& source = element(model, model.file.lights, number, nodePlace(placed.node), "light");
+void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumbers& groups, Scene& scene) {
+  const int number = model.file.nodes[std::size_t(placed.node)].light;
+  const GltfLight& source = element(model, model.file.lights, number, nodePlace(placed.node), "light");
   const std::string place = fmt::format("extensions.{}.lights[{}]", kLights, number);
+  const auto kind = [&](const char* name) { return equalIgnoringCase(source.type, name); };
   Light light;
   glm::vec3 color(1);
   for (std::size_t i = 0; i < std::min<std::size_t>(source.color.size(), 3); ++i) {
-    color[static_cast<int>(i)] = static_cast<float>(source.color[i]);
+    if (source.color[i] < 0)
+      repaired(model, place, fmt::format("color has {}, taken for 0", source.color[i]), "negative light");
+    color[static_cast<int>(i)] = static_cast<float>(std::max(source.color[i], 0.0));
   }
-  light.diffuse = light.specular = color * static_cast<float>(source.intensity / kPi);
-  for (int i = 0; i < 3; ++i) {
-    if (!(light.diffuse[i] >= 0 && std::isfinite(light.diffuse[i]))) {
-      failGltf(model, place, "color and intensity must be at least 0 and finite");
-    }
-  }
-  if (source.type == "directional") {
+  if (source.intensity < 0)
+    repaired(model, place, fmt::format("intensity is {}, taken for 0", source.intensity), "negative light");
+  light.diffuse = light.specular = color * static_cast<float>(std::max(source.intensity, 0.0) / kPi);
+  if (!std::isfinite(light.diffuse.x + light.diffuse.y + light.diffuse.z))
+    failGltf(model, place, "color and intensity are too large");
+  if (source.type != "directional" && source.type != "point" && source.type != "spot")
+    repaired(model, place,
+             fmt::format("type is '{}', expected point, directional or spot{}", forMessage(source.type),
+                         kind("directional") || kind("point") || kind("spot") ? "" : "; left out"),
+             "light type");
+  if (kind("directional")) {
     light.kind = LightKind::kDirectional;
-  } else {
+  } else if (kind("point") || kind("spot")) {
     light.attenuation = {0, 0, 1};
     light.window = RangeWindow::kKhr;
-    if (source.range != 0) light.range = static_cast<float>(source.range);
-    if (!(light.range > 0)) failGltf(model, place, "range must be above 0");
+    if (source.range && static_cast<float>(*source.range) > 0)
+      light.range = static_cast<float>(*source.range);
+    else if (source.range)
+      repaired(model, place, fmt::format("range is {}, taken for infinite", *source.range), "range");
+    if (kind("spot") && !setCone(model, source, place, light)) return;
+  } else {
+    return;
   }
-  if (source.type == "spot") {
-    light.kind = LightKind::kSpot;
-    light.falloff = SpotFalloff::kCone;
-    light.cutoff = source.spot.outerConeAngle;
-    // Programs write inner = outer for a sharp edge; Light::inner_cone must be below the cutoff.
-    light.inner_cone = std::min(source.spot.innerConeAngle, light.cutoff * (1 - 1e-6));
-    // π/2 as a decimal may have been rounded up.
-    if (light.cutoff > kPi / 2 && light.cutoff < kPi / 2 + 1e-5) light.cutoff = kPi / 2;
-    if (!(light.cutoff > 0 && light.cutoff <= kPi / 2 && source.spot.innerConeAngle >= 0 &&
-          source.spot.innerConeAngle <= source.spot.outerConeAngle)) {
-      failGltf(model, place, "expected 0 <= innerConeAngle < outerConeAngle <= pi/2");
-    }
-  } else if (source.type != "point" && source.type != "directional") {
-    failGltf(model, place, "type must be point, directional or spot");
-  }
-  const std::string fault = attachLight(placed.to_world, light);
-  if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
+  const bool is_hidden = placed.moving < 0 && glm::dmat3(placed.to_world) == glm::dmat3(0.0);
+  const std::string fault = is_hidden ? "its scale is 0" : attachLight(placed.to_world, light);
+  if (!fault.empty()) return leftOut(model, nodePlace(placed.node), fault + "; left out", "light");
   light.group = groupOf(model, placed.node, source, groups, scene);
   if (placed.moving >= 0)
     scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
@@ -154,16 +195,15 @@ int findAnimation(const std::string& path, const std::vector<std::string>& names
 }  // namespace
 
 void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice,
-              const std::vector<std::string>& /*search*/) {
-  GltfModel model = readGltfModel(path);
+              const std::vector<std::string>& search) {
+  GltfModel model = readGltfModel(path, search, scene.warnings);
   scene.variants = variantNames(model);
   scene.animations = animationNames(model);
   if (!choice.variant.empty()) model.variant = findVariant(path, scene.variants, choice.variant);
   if (!choice.animation.empty()) model.animation = findAnimation(path, scene.animations, choice.animation);
   for (const std::string& extension : ignoredExtensions(model)) {
-    scene.warnings.push_back(
-        {fmt::format("{}: extensionsUsed: '{}' is not supported and left out", path, forMessage(extension)),
-         "extension"});
+    leftOut(model, "extensionsUsed", fmt::format("'{}' is not supported and left out", forMessage(extension)),
+            "extension");
     std::vector<std::string>& all = scene.ignored_extensions;
     if (std::find(all.begin(), all.end(), extension) == all.end()) all.push_back(extension);
   }
@@ -174,11 +214,9 @@ void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice,
   LightGroupNumbers groups = lightGroupNumbers(scene);
   for (const PlacedNode& placed : nodes) {
     if (!placed.shown) continue;
-    const tinygltf::Node& node = model.file.nodes[placed.node];
+    const GltfNode& node = model.file.nodes[std::size_t(placed.node)];
     if (node.camera >= 0) addCamera(model, placed, scene);
-    if (node.extensions.count(kLights)) {
-      addLight(model, placed, extensionNumber(node.extensions, kLights, "light", -1), groups, scene);
-    }
+    if (node.light >= 0) addLight(model, placed, groups, scene);
   }
   if (scene.objects.size() + scene.cameras.size() + scene.lights.size() == before) {
     failGltf(model, "scene", "shows nothing, expected a mesh, a light or a camera");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 namespace luciole {
 namespace {
@@ -34,15 +35,15 @@ float toFloat(T value, bool normalized) {
 
 float loadFloat(const std::byte* place, int type, bool normalized) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case kGltfByte:
       return toFloat(load<std::int8_t>(place), normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case kGltfUnsignedByte:
       return toFloat(load<std::uint8_t>(place), normalized);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case kGltfShort:
       return toFloat(load<std::int16_t>(place), normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case kGltfUnsignedShort:
       return toFloat(load<std::uint16_t>(place), normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case kGltfUnsignedInt:
       return toFloat(load<std::uint32_t>(place), normalized);
     default:
       return load<float>(place);
@@ -51,9 +52,9 @@ float loadFloat(const std::byte* place, int type, bool normalized) {
 
 std::uint32_t loadIndex(const std::byte* place, int type) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case kGltfUnsignedByte:
       return load<std::uint8_t>(place);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case kGltfUnsignedShort:
       return load<std::uint16_t>(place);
     default:
       return load<std::uint32_t>(place);
@@ -61,13 +62,7 @@ std::uint32_t loadIndex(const std::byte* place, int type) {
 }
 
 bool isIndexType(int type) {
-  return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-}
-
-bool isKnownType(int type) {
-  return isIndexType(type) || type == TINYGLTF_COMPONENT_TYPE_BYTE || type == TINYGLTF_COMPONENT_TYPE_SHORT ||
-         type == TINYGLTF_COMPONENT_TYPE_FLOAT;
+  return type == kGltfUnsignedByte || type == kGltfUnsignedShort || type == kGltfUnsignedInt;
 }
 
 /// Finds `count` ≥ 1 elements from `offset` of a buffer view on. Throws InputError where they don't lie
@@ -75,8 +70,8 @@ bool isKnownType(int type) {
 Elements findElements(const GltfModel& model, int buffer_view, std::size_t offset, std::size_t count,
                       int type, int components, const std::string& place) {
   const std::span<const std::byte> bytes = viewBytes(model, buffer_view, place);
-  const std::size_t size = static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(type)) * components;
-  const std::size_t given = model.file.bufferViews[buffer_view].byteStride;
+  const std::size_t size = gltfComponentSize(type) * static_cast<std::size_t>(components);
+  const std::size_t given = model.file.views[static_cast<std::size_t>(buffer_view)].stride;
   const std::size_t stride = given == 0 ? size : given;
   if (stride < size)
     failGltf(model, place, fmt::format("elements of {} bytes lie {} bytes apart", size, stride));
@@ -92,46 +87,45 @@ Elements findElements(const GltfModel& model, int buffer_view, std::size_t offse
 
 std::string accessorPlace(int accessor) { return fmt::format("accessors[{}]", accessor); }
 
-/// An accessor's elements without their sparse part.
+/// An accessor's elements without their sparse part. None where its count is 0.
 Elements baseElements(const GltfModel& model, int index, int components, const std::string& place) {
-  const tinygltf::Accessor& accessor = element(model, model.file.accessors, index, place, "accessor");
+  const GltfAccessor& accessor = element(model, model.file.accessors, index, place, "accessor");
   const std::string here = accessorPlace(index);
-  if (accessorComponents(model, index, place) != components) {
-    failGltf(model, here,
-             fmt::format("has {} components an element, but {} needs {}",
-                         tinygltf::GetNumComponentsInType(accessor.type), place, components));
+  if (accessor.components != components) {
+    failGltf(
+        model, here,
+        fmt::format("has {} components an element, but {} needs {}", accessor.components, place, components));
   }
-  if (!isKnownType(accessor.componentType)) {
-    failGltf(model, here, fmt::format("componentType {} is not one of glTF's", accessor.componentType));
+  if (gltfComponentSize(accessor.type) == 0)
+    failGltf(model, here, fmt::format("componentType {} is not one of glTF's", accessor.type));
+  if (accessor.count == 0) {
+    repaired(model, here, "count is 0, expected at least 1", "count 0");
+    return {{}, 0, 0, accessor.type, components};
   }
-  if (accessor.count == 0) failGltf(model, here, "count is 0, expected at least 1");
-  if (accessor.bufferView >= 0) {
-    return findElements(model, accessor.bufferView, accessor.byteOffset, accessor.count,
-                        accessor.componentType, components, here);
-  }
+  if (accessor.view >= 0)
+    return findElements(model, accessor.view, accessor.offset, accessor.count, accessor.type, components,
+                        here);
   constexpr std::size_t kMostZeros =
       1 << 24;  // without data, only this bounds what a file can make us allocate
   if (accessor.count > kMostZeros) {
     failGltf(model, here, fmt::format("has no bufferView, so count may be {} at most", kMostZeros));
   }
-  return {{}, accessor.count, 0, accessor.componentType, components};
+  return {{}, accessor.count, 0, accessor.type, components};
 }
 
 /// Calls set(which element, its bytes) for each element that the sparse part replaces.
 template <typename Set>
 void forEachSparse(const GltfModel& model, int index, const Elements& base, const Set& set) {
-  const auto& sparse = model.file.accessors[index].sparse;
-  if (!sparse.isSparse) return;
+  const std::optional<GltfSparse>& sparse = model.file.accessors[static_cast<std::size_t>(index)].sparse;
+  if (!sparse || base.count == 0) return;
   const std::string here = accessorPlace(index) + ".sparse";
-  if (sparse.count <= 0 || static_cast<std::size_t>(sparse.count) > base.count ||
-      sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0 ||
-      !isIndexType(sparse.indices.componentType)) {
-    failGltf(model, here, "count, byteOffset or componentType is out of range");
-  }
-  const Elements indices = findElements(model, sparse.indices.bufferView, sparse.indices.byteOffset,
-                                        sparse.count, sparse.indices.componentType, 1, here + ".indices");
-  const Elements values = findElements(model, sparse.values.bufferView, sparse.values.byteOffset,
-                                       sparse.count, base.component_type, base.components, here + ".values");
+  if (sparse->count == 0) return;
+  if (sparse->count > base.count || !isIndexType(sparse->index_type))
+    failGltf(model, here, "count or componentType is out of range");
+  const Elements indices = findElements(model, sparse->index_view, sparse->index_offset, sparse->count,
+                                        sparse->index_type, 1, here + ".indices");
+  const Elements values = findElements(model, sparse->value_view, sparse->value_offset, sparse->count,
+                                       base.component_type, base.components, here + ".values");
   for (std::size_t i = 0; i < indices.count; ++i) {
     const std::uint32_t target = loadIndex(&indices.bytes[i * indices.stride], indices.component_type);
     if (target >= base.count) {
@@ -144,15 +138,14 @@ void forEachSparse(const GltfModel& model, int index, const Elements& base, cons
 }  // namespace
 
 int accessorComponents(const GltfModel& model, int accessor, const std::string& place) {
-  return tinygltf::GetNumComponentsInType(
-      element(model, model.file.accessors, accessor, place, "accessor").type);
+  return element(model, model.file.accessors, accessor, place, "accessor").components;
 }
 
 std::vector<float> readFloats(const GltfModel& model, int accessor, int components,
                               const std::string& place) {
   const Elements base = baseElements(model, accessor, components, place);
-  const bool normalized = model.file.accessors[accessor].normalized;
-  const std::size_t size = tinygltf::GetComponentSizeInBytes(base.component_type);
+  const bool normalized = model.file.accessors[static_cast<std::size_t>(accessor)].normalized;
+  const std::size_t size = gltfComponentSize(base.component_type);
   std::vector<float> values(base.count * components, 0.0f);
   const auto set = [&](std::size_t which, const std::byte* bytes) {
     for (int j = 0; j < components; ++j) {

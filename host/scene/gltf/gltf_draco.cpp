@@ -111,12 +111,12 @@ std::unique_ptr<draco::Mesh> decode(const GltfModel& model, int view, double& le
 }
 
 /// Adds what an accessor is to have in place of its own data. Returns the new accessor.
-int addAccessor(GltfModel& model, tinygltf::Accessor accessor, std::vector<std::byte> bytes) {
-  accessor.bufferView = static_cast<int>(model.file.bufferViews.size());
-  accessor.byteOffset = 0;
-  accessor.sparse.isSparse = false;
-  model.file.bufferViews.emplace_back();
-  model.decoded[accessor.bufferView] = std::move(bytes);
+int addAccessor(GltfModel& model, GltfAccessor accessor, std::vector<std::byte> bytes) {
+  accessor.view = static_cast<int>(model.file.views.size());
+  accessor.offset = 0;
+  accessor.sparse.reset();
+  model.file.views.emplace_back();
+  model.decoded[accessor.view] = std::move(bytes);
   model.file.accessors.push_back(std::move(accessor));
   return static_cast<int>(model.file.accessors.size()) - 1;
 }
@@ -137,33 +137,33 @@ std::vector<std::byte> pointValues(const draco::PointAttribute& attribute, std::
 
 /// An attribute's values as its accessor has them.
 std::vector<std::byte> valuesOf(const GltfModel& model, const draco::PointAttribute& attribute,
-                                std::uint32_t points, const tinygltf::Accessor& accessor,
+                                std::uint32_t points, const GltfAccessor& accessor,
                                 const std::string& place) {
-  const int components = tinygltf::GetNumComponentsInType(accessor.type);
+  const int components = accessor.components;
   if (components != attribute.num_components())
     failGltf(
         model, place,
         fmt::format("has {} components an element, its accessor {}", attribute.num_components(), components));
-  switch (accessor.componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
+  switch (accessor.type) {
+    case kGltfByte:
       return pointValues<std::int8_t>(attribute, points, components, model, place);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case kGltfUnsignedByte:
       return pointValues<std::uint8_t>(attribute, points, components, model, place);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case kGltfShort:
       return pointValues<std::int16_t>(attribute, points, components, model, place);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case kGltfUnsignedShort:
       return pointValues<std::uint16_t>(attribute, points, components, model, place);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case kGltfUnsignedInt:
       return pointValues<std::uint32_t>(attribute, points, components, model, place);
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+    case kGltfFloat:
       return pointValues<float>(attribute, points, components, model, place);
     default:
-      failGltf(model, place, fmt::format("componentType {} is not one of glTF's", accessor.componentType));
+      failGltf(model, place, fmt::format("componentType {} is not one of glTF's", accessor.type));
   }
 }
 
 /// The vertices of triangles as an accessor like `source`.
-int addIndices(GltfModel& model, const draco::Mesh& mesh, const tinygltf::Accessor& source,
+int addIndices(GltfModel& model, const draco::Mesh& mesh, const GltfAccessor& source,
                const std::string& place) {
   std::vector<std::byte> bytes(std::size_t{mesh.num_faces()} * 12);
   for (std::uint32_t i = 0; i < mesh.num_faces(); ++i) {
@@ -175,24 +175,23 @@ int addIndices(GltfModel& model, const draco::Mesh& mesh, const tinygltf::Access
                  fmt::format("index {}, but it has only {} vertices", corner, mesh.num_points()));
     std::memcpy(&bytes[std::size_t{i} * 12], corners, sizeof corners);
   }
-  tinygltf::Accessor accessor = source;
-  accessor.type = TINYGLTF_TYPE_SCALAR;
-  accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  GltfAccessor accessor = source;
+  accessor.components = 1;
+  accessor.type = kGltfUnsignedInt;
   accessor.count = std::size_t{mesh.num_faces()} * 3;
   return addAccessor(model, std::move(accessor), std::move(bytes));
 }
 
-void decodePrimitive(GltfModel& model, tinygltf::Primitive& primitive, double& left,
-                     const std::string& place) {
-  const tinygltf::Value extension = primitive.extensions.find(kDraco)->second;
-  const bool is_strip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP;
-  if (primitive.mode != TINYGLTF_MODE_TRIANGLES && !is_strip)
+void decodePrimitive(GltfModel& model, GltfPrimitive& primitive, double& left, const std::string& place) {
+  const GltfJson& extension = memberOf(primitive.extensions, kDraco);
+  const bool is_strip = primitive.mode == kGltfStrip;
+  if (primitive.mode != kGltfTriangles && !is_strip)
     failGltf(model, place, fmt::format("mode {} is none of triangles", primitive.mode));
-  const int view = extensionIndex(primitive.extensions, kDraco, "bufferView");
+  const int view = indexOf(memberOf(extension, "bufferView"));
   const std::unique_ptr<draco::Mesh> mesh = decode(model, view, left, place);
   if (mesh->num_faces() == 0 || mesh->num_points() == 0) failGltf(model, place, "has no triangles");
 
-  tinygltf::Accessor indices;
+  GltfAccessor indices;
   if (primitive.indices >= 0)
     indices = element(model, model.file.accessors, primitive.indices, place + ".indices", "accessor");
   // Of a strip it says how long that was.
@@ -200,17 +199,16 @@ void decodePrimitive(GltfModel& model, tinygltf::Primitive& primitive, double& l
     failGltf(model, place,
              fmt::format("has {} triangles, its accessor {} indices", mesh->num_faces(), indices.count));
   primitive.indices = addIndices(model, *mesh, indices, place);
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.mode = kGltfTriangles;
 
-  const tinygltf::Value& attributes = memberOf(extension, "attributes");
-  if (!attributes.IsObject() || !attributes.Has("POSITION")) failGltf(model, place, "has no POSITION");
-  for (const std::string& name : attributes.Keys()) {
+  const GltfJson& attributes = memberOf(extension, "attributes");
+  if (memberOf(attributes, "POSITION").is_null()) failGltf(model, place, "has no POSITION");
+  for (const auto& [name, number] : attributes.items()) {
     const std::string here = fmt::format("{}.{}", place, forMessage(name));
     const auto known = primitive.attributes.find(name);
     if (known == primitive.attributes.end()) failGltf(model, here, "is no attribute of its primitive");
-    const tinygltf::Accessor accessor = element(model, model.file.accessors, known->second, here, "accessor");
-    const tinygltf::Value& number = attributes.Get(name);
-    const double id = number.IsNumber() ? number.GetNumberAsDouble() : -1;
+    const GltfAccessor accessor = element(model, model.file.accessors, known->second, here, "accessor");
+    const double id = number.is_number() ? number.get<double>() : -1;
     const draco::PointAttribute* const attribute =
         id >= 0 && id < 4294967296.0 ? mesh->GetAttributeByUniqueId(static_cast<std::uint32_t>(id)) : nullptr;
     if (!attribute) failGltf(model, here, "is not in the data");
@@ -223,7 +221,7 @@ void decodePrimitive(GltfModel& model, tinygltf::Primitive& primitive, double& l
 }
 
 /// Whether two primitives say the same of the same data. Their materials may differ.
-bool haveSameData(const tinygltf::Primitive& a, const tinygltf::Primitive& b) {
+bool haveSameData(const GltfPrimitive& a, const GltfPrimitive& b) {
   return a.mode == b.mode && a.indices == b.indices && a.attributes == b.attributes &&
          a.extensions.at(kDraco) == b.extensions.at(kDraco);
 }
@@ -232,16 +230,17 @@ bool haveSameData(const tinygltf::Primitive& a, const tinygltf::Primitive& b) {
 
 void decodeDraco(GltfModel& model) {
   double left = 0;  // buffer views may overlap, and so stand for more bytes than the file has
-  for (const tinygltf::Buffer& buffer : model.file.buffers) left += kMostNumbers * double(buffer.data.size());
+  for (const GltfBuffer& buffer : model.file.buffers) left += kMostNumbers * double(buffer.bytes.size());
   struct Known {
-    tinygltf::Primitive written, decoded;
+    GltfPrimitive written, decoded;
   };
   std::multimap<int, Known> all_known;  // by buffer view
   for (std::size_t m = 0; m < model.file.meshes.size(); ++m)
     for (std::size_t p = 0; p < model.file.meshes[m].primitives.size(); ++p) {
-      tinygltf::Primitive& primitive = model.file.meshes[m].primitives[p];
-      if (!primitive.extensions.count(kDraco)) continue;
-      const int view = extensionIndex(primitive.extensions, kDraco, "bufferView");
+      GltfPrimitive& primitive = model.file.meshes[m].primitives[p];
+      const GltfJson& extension = memberOf(primitive.extensions, kDraco);
+      if (extension.is_null()) continue;
+      const int view = indexOf(memberOf(extension, "bufferView"));
       const auto [begin, end] = all_known.equal_range(view);
       const auto known = std::find_if(
           begin, end, [&](const auto& entry) { return haveSameData(entry.second.written, primitive); });
@@ -251,7 +250,7 @@ void decodeDraco(GltfModel& model) {
         primitive.attributes = known->second.decoded.attributes;
         continue;
       }
-      const tinygltf::Primitive written = primitive;
+      const GltfPrimitive written = primitive;
       decodePrimitive(model, primitive, left, fmt::format("meshes[{}].primitives[{}].{}", m, p, kDraco));
       all_known.insert({view, {written, primitive}});
     }

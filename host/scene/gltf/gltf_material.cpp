@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
 
 #include "base/text_file.hpp"
 #include "image/make_normals.hpp"
@@ -24,72 +28,118 @@ struct Pictures {
   std::map<int, int> normals_in_scene;
 };
 
-const tinygltf::Texture& textureOf(const GltfModel& model, int texture, const std::string& place) {
-  return element(model, model.file.textures, texture, place, "texture");
-}
+constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
-/// The index of a texture's picture, or -1 where there is no texture.
+/// The index of a texture's picture; -1 where there is no texture, or none that can be read.
 int imageOf(const GltfModel& model, int texture, const std::string& place) {
   if (texture < 0) return -1;
-  const tinygltf::Texture& entry = textureOf(model, texture, place);
-  int image = extensionIndex(entry.extensions, "EXT_texture_webp", "source");
-  if (image < 0) image = entry.source;
-  if (image < 0 && entry.extensions.count("KHR_texture_basisu"))
-    failGltf(model, fmt::format("textures[{}]", texture),
-             "has a KHR_texture_basisu picture only, which is not supported; expected a source beside it");
-  element(model, model.file.images, image, fmt::format("textures[{}]", texture), "image");
+  const GltfTexture& entry = element(model, model.file.textures, texture, place, "texture");
+  const int webp = indexOf(memberOf(memberOf(entry.extensions, "EXT_texture_webp"), "source"));
+  const int image = webp < 0 ? entry.source : webp;
+  if (image >= 0) element(model, model.file.images, image, fmt::format("textures[{}]", texture), "image");
   return image;
 }
 
-constexpr const char* kSpecular = "KHR_materials_specular";
+/// A texture that an extension's JSON names; −1: none.
+int textureIn(const GltfJson& extension, const char* member) {
+  return indexOf(memberOf(memberOf(extension, member), "index"));
+}
 
 /// The index of one of KHR_materials_specular's textures, or −1.
-int specularTexture(const tinygltf::Material& material, const char* member) {
-  const auto found = material.extensions.find(kSpecular);
-  if (found == material.extensions.end()) return -1;
-  const tinygltf::Value& texture = memberOf(found->second, member);
-  const tinygltf::Value& index = memberOf(texture, "index");
-  const double number = index.IsNumber() ? index.GetNumberAsDouble() : -1;
-  return number >= 0 && number < 1e9 ? static_cast<int>(number) : -1;
+int specularTexture(const GltfMaterial& material, const char* member) {
+  return textureIn(memberOf(material.extensions, kSpecular), member);
+}
+
+/// Warns of a texture whose picture only an extension names that is not supported.
+void tellOfNoSource(const GltfModel& model, int texture) {
+  const GltfTexture& entry = model.file.textures[std::size_t(texture)];
+  std::string extension = "no";
+  if (entry.extensions.is_object() && !entry.extensions.empty())
+    extension = fmt::format("only a {}", forMessage(entry.extensions.begin().key()));
+  leftOut(model, fmt::format("textures[{}]", texture),
+          fmt::format("has {} picture{}; drawn without", extension,
+                      extension == "no" ? "" : ", which is not supported"),
+          "texture source");
 }
 
 Pictures decodePictures(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {
   Pictures pictures;
+  std::set<int> without_source;
   for (const int index : materials) {
-    const tinygltf::Material& material = gltfMaterial(model, index);
-    const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
+    const GltfMaterial& material = gltfMaterial(model, index);
+    const GltfJson& glossy = memberOf(material.extensions, kSpecularGlossiness);
     for (const int texture :
-         {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, material.emissiveTexture.index,
-          material.normalTexture.index, specularTexture(material, "specularTexture"),
-          specularTexture(material, "specularColorTexture")}) {
+         {material.base.texture, material.metallic_roughness.texture, material.emissive.texture,
+          material.normal.texture, specularTexture(material, "specularTexture"),
+          specularTexture(material, "specularColorTexture"), textureIn(glossy, "diffuseTexture"),
+          textureIn(glossy, "specularGlossinessTexture")}) {
       const int image = imageOf(model, texture, gltfMaterialPlace(index));
       if (image >= 0) pictures.decoded.try_emplace(image);
+      if (image < 0 && texture >= 0 && without_source.insert(texture).second) tellOfNoSource(model, texture);
     }
   }
   std::vector<int> images;
   for (const auto& [image, texture] : pictures.decoded) {
-    const tinygltf::Image& entry = model.file.images[image];
+    const GltfImage& entry = model.file.images[std::size_t(image)];
     if (isMissing(entry))
       scene.missing_textures.push_back(
-          fmt::format("{}: images[{}]: there is no picture '{}'", model.path, image, forMessage(entry.uri)));
+          entry.uri.empty() ? fmt::format("{}: images[{}]: holds no picture", model.path, image)
+                            : fmt::format("{}: images[{}]: there is no picture '{}'", model.path, image,
+                                          forMessage(entry.uri)));
     else
       images.push_back(image);
   }
   std::erase_if(pictures.decoded,
-                [&](const auto& entry) { return isMissing(model.file.images[entry.first]); });
+                [&](const auto& entry) { return isMissing(model.file.images[std::size_t(entry.first)]); });
   tbb::parallel_for(std::size_t{0}, images.size(), [&](std::size_t i) {
-    const tinygltf::Image& entry = model.file.images[images[i]];
-    const std::string name = forMessage(entry.uri.empty() ? entry.name : entry.uri);
-    pictures.decoded.at(images[i]) = readTexture(
-        imageBytes(model, images[i]), fmt::format("{}: images[{}] '{}'", model.path, images[i], name));
+    const GltfImage& entry = model.file.images[std::size_t(images[i])];
+    const std::string place = fmt::format("images[{}]", images[i]);
+    const std::string name =
+        fmt::format("{}: {} '{}'", model.path, place, forMessage(entry.uri.empty() ? entry.name : entry.uri));
+    const std::string file = entry.file.empty() ? "" : readFile(entry.file);
+    const std::span<const std::byte> bytes = entry.view >= 0      ? viewBytes(model, entry.view, place)
+                                             : entry.file.empty() ? entry.bytes
+                                                                  : std::as_bytes(std::span(file));
+    pictures.decoded.at(images[i]) = readTexture(bytes, name);
   });
   return pictures;
 }
 
-Wrap wrapOf(int mode) {
-  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClampToEdge;
-  if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::kMirroredRepeat;
-  return Wrap::kRepeat;
+// The numbers of a sampler, which are OpenGL's.
+constexpr int kGlRepeat = 10497, kGlClampToEdge = 33071, kGlMirroredRepeat = 33648;
+constexpr int kGlNearest = 9728, kGlLinear = 9729, kGlNearestMipmapNearest = 9984,
+              kGlLinearMipmapNearest = 9985, kGlNearestMipmapLinear = 9986, kGlLinearMipmapLinear = 9987;
+
+/// Sets what a sampler says. Of numbers that mean nothing, which are told, the default counts.
+void setSampler(const GltfModel& model, int index, TextureUse& use) {
+  const GltfSampler& sampler = model.file.samplers[std::size_t(index)];
+  const auto known = [&](int number, const char* member, std::initializer_list<int> numbers) {
+    if (number == 0 || std::find(numbers.begin(), numbers.end(), number) != numbers.end()) return number;
+    repaired(model, fmt::format("samplers[{}]", index),
+             fmt::format("{} is {}, none of glTF's", member, number), "sampler");
+    return 0;
+  };
+  const auto wrapOf = [&](int number, const char* member) {
+    switch (known(number, member, {kGlRepeat, kGlClampToEdge, kGlMirroredRepeat})) {
+      case kGlClampToEdge:
+        return Wrap::kClampToEdge;
+      case kGlMirroredRepeat:
+        return Wrap::kMirroredRepeat;
+      default:
+        return Wrap::kRepeat;
+    }
+  };
+  use.wrap_u = wrapOf(sampler.wrap_u, "wrapS");
+  use.wrap_v = wrapOf(sampler.wrap_v, "wrapT");
+  use.nearest_magnified = known(sampler.magnified, "magFilter", {kGlNearest, kGlLinear}) == kGlNearest;
+  const int minified = known(sampler.minified, "minFilter",
+                             {kGlNearest, kGlLinear, kGlNearestMipmapNearest, kGlLinearMipmapNearest,
+                              kGlNearestMipmapLinear, kGlLinearMipmapLinear});
+  use.nearest_minified =
+      minified == kGlNearest || minified == kGlNearestMipmapNearest || minified == kGlNearestMipmapLinear;
+  if (minified == kGlNearest || minified == kGlLinear) use.mips = Mips::kNone;
+  if (minified == kGlNearestMipmapNearest || minified == kGlLinearMipmapNearest) use.mips = Mips::kNearest;
 }
 
 TextureUse textureUse(const GltfModel& model, int texture, const std::string& place, Pictures& pictures,
@@ -104,14 +154,19 @@ TextureUse textureUse(const GltfModel& model, int texture, const std::string& pl
     if (kind != TextureKind::kColor) makeNormals(kind, scene.textures.back());
   }
   use.texture = entry->second;
-  const int sampler = textureOf(model, texture, place).sampler;
+  const int sampler = model.file.textures[std::size_t(texture)].sampler;
   if (sampler >= 0) {
-    const tinygltf::Sampler& modes =
-        element(model, model.file.samplers, sampler, fmt::format("textures[{}]", texture), "sampler");
-    use.wrap_u = wrapOf(modes.wrapS);
-    use.wrap_v = wrapOf(modes.wrapT);
+    element(model, model.file.samplers, sampler, fmt::format("textures[{}]", texture), "sampler");
+    setSampler(model, sampler, use);
   }
   return use;
+}
+
+/// The picture of a texture; null where there is none.
+const Texture* pictureOf(const GltfModel& model, int texture, const std::string& place,
+                         const Pictures& pictures) {
+  const auto found = pictures.decoded.find(imageOf(model, texture, place));
+  return found == pictures.decoded.end() ? nullptr : &found->second;
 }
 
 /// Linear mean of a colour picture: its 1×1 level.
@@ -132,98 +187,158 @@ glm::dvec3 meanCode(const Texture& texture) {
   return sum / (65535.0 * static_cast<double>(count));
 }
 
-/// A colour factor; components that the file leaves out are those of `otherwise`. Throws InputError for one
-/// outside 0 to 1.
-glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, const glm::dvec4& otherwise,
-                  const std::string& place) {
-  glm::dvec4 result = otherwise;
-  for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 4); ++i) {
-    if (!(values[i] >= 0 && values[i] <= 1)) failGltf(model, place, "a factor is outside 0 to 1");
-    result[static_cast<int>(i)] = values[i];
-  }
+/// A number within its limits, to which it is clamped with a warning.
+double within(const GltfModel& model, double value, double least, double most, const std::string& place,
+              const char* name) {
+  const double clamped = std::clamp(value, least, most);
+  if (clamped != value)
+    repaired(model, place, fmt::format("{} is {}, taken for {}", name, value, clamped), name);
+  return clamped;
+}
+
+/// A colour of `count` factors, each within 0 and 1; those that the file leaves out are `otherwise`.
+glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, int count, double otherwise,
+                  const std::string& place, const char* name) {
+  glm::dvec4 result(otherwise);
+  if (!values.empty() && values.size() != std::size_t(count))
+    repaired(model, place, fmt::format("{} has {} numbers, expected {}", name, values.size(), count), name);
+  for (int i = 0; i < count && std::size_t(i) < values.size(); ++i)
+    result[i] = within(model, values[std::size_t(i)], 0, 1, place, name);
   return result;
 }
+
+/// A list of numbers in an extension's JSON.
+std::vector<double> numbersIn(const GltfJson& extension, const char* member) {
+  std::vector<double> numbers;
+  const GltfJson& list = memberOf(extension, member);
+  for (std::size_t i = 0; list.is_array() && i < list.size(); ++i)
+    numbers.push_back(list[i].is_number() ? list[i].get<double>() : 1.0);
+  return numbers;
+}
+
+/// What a material reflects.
+struct Reflection {
+  glm::dvec4 base{1.0};     ///< colour and alpha, without its texture
+  glm::dvec3 diffuse{1.0};  ///< of them, the share that is scattered
+  glm::dvec3 f0{0.0};       ///< reflected head-on, with the means of textures
+  double roughness = 1;
+};
 
 /// Phong's model for a surface of GGX's facets (Walter et al. 2007). Its lobe's exponent is a quarter of the
 /// facets' 2/α² − 2, because a mirrored direction turns by twice the angle of its facet, and cosines of small
 /// angles fall by their squares. Its peak is the facets', whose term π·D·G·F / (4 N·V) is F0 / 4α² head-on.
 /// So a metal's highlight has all its light; a dielectric's lacks what Fresnel's term adds at grazing angles.
 /// Roughness below 0.15 would need lobes narrower than a pixel mostly is.
-void setReflection(Material& material, const glm::dvec3& base, const glm::dvec3& mean_base,
-                   const glm::dvec3& dielectric, double metallic, double roughness) {
-  const double alpha = std::pow(std::max(roughness, 0.15), 2);
-  material.ambient = glm::vec3(base);
-  material.diffuse = glm::vec3(base * (1 - metallic));
-  const glm::dvec3 f0 = glm::mix(dielectric, mean_base, metallic);
-  material.specular = glm::vec3(f0 / (4 * alpha * alpha));
+void setReflection(const Reflection& reflection, Material& material) {
+  const double alpha = std::pow(std::max(reflection.roughness, 0.15), 2);
+  material.ambient = glm::vec3(reflection.base);
+  material.diffuse = glm::vec3(reflection.diffuse);
+  material.specular = glm::vec3(reflection.f0 / (4 * alpha * alpha));
   material.shininess = static_cast<float>((2 / (alpha * alpha) - 2) / 4);
-  material.facets = {glm::vec3(f0), static_cast<float>(alpha)};
+  material.facets = {glm::vec3(reflection.f0), static_cast<float>(alpha)};
 }
 
 /// What a dielectric reflects head-on, by KHR_materials_ior and KHR_materials_specular, whose textures count
 /// by their means.
-glm::dvec3 dielectricReflection(const GltfModel& model, const tinygltf::Material& source,
-                                const std::string& place, const Pictures& pictures) {
-  const double ior = extensionNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
-  if (ior != 0 && !(ior >= 1)) failGltf(model, place, "ior must be 0 or at least 1");
+glm::dvec3 dielectricReflection(const GltfModel& model, const GltfMaterial& source, const std::string& place,
+                                const Pictures& pictures) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  double ior = extensionNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
+  if (ior != 0) ior = within(model, ior, 1, kMost, place, "ior");
   const double plain = ior == 0 ? 1.0 : std::pow((ior - 1) / (ior + 1), 2);
-  double factor = extensionNumber(source.extensions, kSpecular, "specularFactor", 1.0);
-  if (!(factor >= 0 && factor <= 1)) failGltf(model, place, "specularFactor must be from 0 to 1");
+  const GltfJson& extension = memberOf(source.extensions, kSpecular);
+  if (extension.is_null()) return glm::dvec3(plain);
+  double factor = within(model, extensionNumber(source.extensions, kSpecular, "specularFactor", 1.0), 0, 1,
+                         place, "specularFactor");
   glm::dvec3 color(1);
-  const auto found = source.extensions.find(kSpecular);
-  if (found == source.extensions.end()) return glm::dvec3(plain);
-  const tinygltf::Value& list = memberOf(found->second, "specularColorFactor");
-  for (int i = 0; i < 3 && list.IsArray() && list.ArrayLen() == 3; ++i)
-    color[i] = list.Get(i).IsNumber() ? list.Get(i).GetNumberAsDouble() : 1.0;
-  if (!(color.x >= 0 && color.y >= 0 && color.z >= 0 && std::isfinite(color.x + color.y + color.z)))
-    failGltf(model, place, "specularColorFactor must be at least 0 and finite");
-  const auto picture = [&](const char* member) -> const Texture* {
-    const auto known = pictures.decoded.find(imageOf(model, specularTexture(source, member), place));
-    return known == pictures.decoded.end() ? nullptr : &known->second;
-  };
-  if (const Texture* texture = picture("specularTexture"))
+  const std::vector<double> colors = numbersIn(extension, "specularColorFactor");
+  for (int i = 0; i < 3 && colors.size() == 3; ++i)
+    color[i] = within(model, colors[std::size_t(i)], 0, kMost, place, "specularColorFactor");
+  if (const Texture* texture = pictureOf(model, specularTexture(source, "specularTexture"), place, pictures))
     factor *= double(texture->levels.back().texels[3]) / 65535;
-  if (const Texture* texture = picture("specularColorTexture")) color *= meanColor(*texture);
+  if (const Texture* texture =
+          pictureOf(model, specularTexture(source, "specularColorTexture"), place, pictures))
+    color *= meanColor(*texture);
   return glm::min(plain * color, glm::dvec3(1)) * factor;
 }
 
-Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& scene) {
-  const tinygltf::Material& source = gltfMaterial(model, index);
-  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-  const std::string place = gltfMaterialPlace(index);
-  const auto picture = [&](const tinygltf::TextureInfo& info) -> const Texture* {
-    const auto found = pictures.decoded.find(imageOf(model, info.index, place));
-    return found == pictures.decoded.end() ? nullptr : &found->second;
-  };
-  const glm::dvec4 base = factor(model, pbr.baseColorFactor, glm::dvec4(1), place);
-  const glm::dvec3 emission = factor(model, source.emissiveFactor, glm::dvec4(0), place);
-  glm::dvec3 mean_base = base;
-  if (const Texture* texture = picture(pbr.baseColorTexture)) mean_base *= meanColor(*texture);
-  double metallic = factor(model, {pbr.metallicFactor}, glm::dvec4(1), place).x;
-  double roughness = factor(model, {pbr.roughnessFactor}, glm::dvec4(1), place).x;
-  if (const Texture* texture = picture(pbr.metallicRoughnessTexture)) {
+Reflection metallicRoughness(const GltfModel& model, const GltfMaterial& source, const std::string& place,
+                             const Pictures& pictures) {
+  Reflection reflection;
+  reflection.base = factor(model, source.base_factor, 4, 1, place, "baseColorFactor");
+  glm::dvec3 mean_base = reflection.base;
+  if (const Texture* texture = pictureOf(model, source.base.texture, place, pictures))
+    mean_base *= meanColor(*texture);
+  double metallic = within(model, source.metallic, 0, 1, place, "metallicFactor");
+  reflection.roughness = within(model, source.roughness, 0, 1, place, "roughnessFactor");
+  if (const Texture* texture = pictureOf(model, source.metallic_roughness.texture, place, pictures)) {
     const glm::dvec3 mean = meanCode(*texture);
-    roughness *= mean.g;
+    reflection.roughness *= mean.g;
     metallic *= mean.b;
   }
+  reflection.diffuse = glm::dvec3(reflection.base) * (1 - metallic);
+  reflection.f0 = glm::mix(dielectricReflection(model, source, place, pictures), mean_base, metallic);
+  return reflection;
+}
+
+/// KHR_materials_pbrSpecularGlossiness.
+Reflection specularGlossiness(const GltfModel& model, const GltfMaterial& source, const std::string& place,
+                              const Pictures& pictures) {
+  const GltfJson& extension = memberOf(source.extensions, kSpecularGlossiness);
+  Reflection reflection;
+  reflection.base = factor(model, numbersIn(extension, "diffuseFactor"), 4, 1, place, "diffuseFactor");
+  reflection.f0 = factor(model, numbersIn(extension, "specularFactor"), 3, 1, place, "specularFactor");
+  double glossiness =
+      within(model, extensionNumber(source.extensions, kSpecularGlossiness, "glossinessFactor", 1.0), 0, 1,
+             place, "glossinessFactor");
+  if (const Texture* texture =
+          pictureOf(model, textureIn(extension, "specularGlossinessTexture"), place, pictures)) {
+    reflection.f0 *= meanColor(*texture);
+    glossiness *= double(texture->levels.back().texels[3]) / 65535;
+  }
+  reflection.roughness = 1 - glossiness;
+  const glm::dvec3& f0 = reflection.f0;
+  reflection.diffuse = glm::dvec3(reflection.base) * (1 - std::max({f0.x, f0.y, f0.z}));
+  return reflection;
+}
+
+/// How opacity decides: 0 for everything is opaque.
+double cutoffOf(const GltfModel& model, const GltfMaterial& source, const std::string& place) {
+  const char* mode = "OPAQUE";
+  for (const char* name : {"MASK", "BLEND"})
+    if (equalIgnoringCase(source.alpha_mode, name)) mode = name;
+  if (source.alpha_mode != mode)
+    repaired(model, place,
+             fmt::format("alphaMode is '{}', taken for {}", forMessage(source.alpha_mode), mode),
+             "alphaMode");
+  if (mode == std::string_view("BLEND")) return 0.5;
+  if (mode == std::string_view("OPAQUE")) return 0;
+  return within(model, source.alpha_cutoff, 0, std::numeric_limits<double>::max(), place, "alphaCutoff");
+}
+
+Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& scene) {
+  const GltfMaterial& source = gltfMaterial(model, index);
+  const std::string place = gltfMaterialPlace(index);
+  const Reflection reflection = memberOf(source.extensions, kSpecularGlossiness).is_object()
+                                    ? specularGlossiness(model, source, place, pictures)
+                                    : metallicRoughness(model, source, place, pictures);
+  const glm::dvec3 emission = factor(model, source.emissive_factor, 3, 0, place, "emissiveFactor");
 
   Material material;
   material.name = index < 0 ? "default" : source.name;
-  setReflection(material, base, mean_base, dielectricReflection(model, source, place, pictures), metallic,
-                roughness);
-  material.diffuse_map = textureUse(model, pbr.baseColorTexture.index, place, pictures, scene);
-  const double strength =
-      extensionNumber(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0);
+  setReflection(reflection, material);
+  material.diffuse_map = textureUse(model, baseTexture(model, index).texture, place, pictures, scene);
+  const double strength = within(
+      model, extensionNumber(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0),
+      0, std::numeric_limits<double>::max(), place, "emissiveStrength");
   material.emission = glm::vec3(emission * strength);
-  if (!(strength >= 0) || !std::isfinite(material.emission.x + material.emission.y + material.emission.z)) {
-    failGltf(model, place, "emissiveStrength is negative or too large");
-  }
-  material.emission_map = textureUse(model, source.emissiveTexture.index, place, pictures, scene);
+  if (!std::isfinite(material.emission.x + material.emission.y + material.emission.z))
+    failGltf(model, place, "emissiveStrength is too large");
+  material.emission_map = textureUse(model, source.emissive.texture, place, pictures, scene);
   // Where the picture of the emission is missing, there is no emission.
-  if (source.emissiveTexture.index >= 0 && material.emission_map.texture < 0)
-    material.emission = glm::vec3(0);
+  if (source.emissive.texture >= 0 && material.emission_map.texture < 0) material.emission = glm::vec3(0);
   if (isUnlit(source)) {
-    material.emission = glm::vec3(base);
+    material.emission = glm::vec3(reflection.base);
     material.emission_map = material.diffuse_map;
     material.colored_emission = true;
     material.ambient = material.diffuse = material.specular = glm::vec3(0);
@@ -231,32 +346,37 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
   }
   if (!isUnlit(source)) {
     material.normal_map =
-        textureUse(model, source.normalTexture.index, place, pictures, scene, TextureKind::kNormals);
-    material.normal_scale = static_cast<float>(source.normalTexture.scale);
-    if (!(std::abs(material.normal_scale) <= kMostNormalScale))
-      failGltf(model, place,
-               fmt::format("normalTexture.scale is {0}, expected -{1} to {1}", material.normal_scale,
-                           kMostNormalScale));
+        textureUse(model, source.normal.texture, place, pictures, scene, TextureKind::kNormals);
+    material.normal_scale = static_cast<float>(within(model, source.normal.scale, -kMostNormalScale,
+                                                      kMostNormalScale, place, "normalTexture.scale"));
   }
-  material.alpha = static_cast<float>(base.a);
-  if (source.alphaMode == "MASK") material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-  if (source.alphaMode == "BLEND") material.alpha_cutoff = 0.5f;
-  if (!(material.alpha_cutoff >= 0)) failGltf(model, place, "alphaCutoff is negative");
-  material.double_sided = source.doubleSided;
+  material.alpha = static_cast<float>(reflection.base.a);
+  material.alpha_cutoff = static_cast<float>(cutoffOf(model, source, place));
+  material.double_sided = source.double_sided;
   return material;
 }
 
 }  // namespace
 
-const tinygltf::Material& gltfMaterial(const GltfModel& model, int material) {
-  static const tinygltf::Material kDefault;
+const GltfMaterial& gltfMaterial(const GltfModel& model, int material) {
+  static const GltfMaterial kDefault;
   return material < 0 ? kDefault : element(model, model.file.materials, material, "a primitive", "material");
 }
 
 std::string gltfMaterialPlace(int material) { return fmt::format("materials[{}]", material); }
 
-bool isUnlit(const tinygltf::Material& material) {
-  return material.extensions.count("KHR_materials_unlit") > 0;
+bool isUnlit(const GltfMaterial& material) {
+  return !memberOf(material.extensions, "KHR_materials_unlit").is_null();
+}
+
+GltfTextureInfo baseTexture(const GltfModel& model, int material) {
+  const GltfMaterial& source = gltfMaterial(model, material);
+  const GltfJson& glossy = memberOf(source.extensions, kSpecularGlossiness);
+  if (!glossy.is_object()) return source.base;
+  const GltfJson& info = memberOf(glossy, "diffuseTexture");
+  return {.texture = indexOf(memberOf(info, "index")),
+          .uv_set = std::max(indexOf(memberOf(info, "texCoord")), 0),
+          .extensions = memberOf(info, "extensions")};
 }
 
 void addGltfMaterials(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {

@@ -9,11 +9,13 @@
 namespace luciole {
 
 /// A material of the file by its index; −1 is glTF's default material. Throws InputError where there is none.
-const tinygltf::Material& gltfMaterial(const GltfModel& model, int material);
+const GltfMaterial& gltfMaterial(const GltfModel& model, int material);
 /// The name of a material in messages.
 std::string gltfMaterialPlace(int material);
 /// Whether a material shows its base colour unlit (KHR_materials_unlit).
-bool isUnlit(const tinygltf::Material& material);
+bool isUnlit(const GltfMaterial& material);
+/// The texture of its base colour: KHR_materials_pbrSpecularGlossiness' diffuse one where it has that.
+GltfTextureInfo baseTexture(const GltfModel& model, int material);
 
 /// Appends the materials in the order given, −1 being glTF's default one, and their textures. Throws
 /// InputError.
@@ -33,6 +35,12 @@ bool isUnlit(const tinygltf::Material& material);
 /// 1/π, limited to 1 to keep the highlight in range. r is at least 0.15 (shininess 987), since a sharper
 /// highlight falls between pixels. Nothing is blended: alphaMode BLEND is drawn as MASK with cutoff 0.5. An
 /// unlit material reflects nothing and has its base colour as emission, to the bit.
+///
+/// KHR_materials_pbrSpecularGlossiness comes before metallic-roughness: base is its diffuse colour, F0 its
+/// specular colour, r is 1 − glossiness, of textures' means, and diffuse = base · (1 − the largest of F0).
+///
+/// Factors outside the specification's range are clamped to it, with a warning each; pictures that are
+/// missing or of a kind that is not supported are left out, with a warning.
 void addGltfMaterials(const GltfModel& model, const std::vector<int>& materials, Scene& scene);
 
 }  // namespace luciole

@@ -19,7 +19,7 @@ namespace {
 glm::uvec3 stripTriangle(std::uint32_t i) { return {i, i + 1 + i % 2, i + 2 - i % 2}; }
 
 /// Triangles of vertex numbers, by the primitive's mode and indices.
-std::vector<glm::uvec3> readTriangles(const GltfModel& model, const tinygltf::Primitive& primitive,
+std::vector<glm::uvec3> readTriangles(const GltfModel& model, const GltfPrimitive& primitive,
                                       std::size_t vertices, const std::string& place) {
   std::vector<std::uint32_t> order(vertices);
   std::iota(order.begin(), order.end(), 0);
@@ -30,9 +30,11 @@ std::vector<glm::uvec3> readTriangles(const GltfModel& model, const tinygltf::Pr
   }
   const std::uint32_t count = static_cast<std::uint32_t>(order.size());
   std::vector<glm::uvec3> triangles;
-  if (primitive.mode == TINYGLTF_MODE_TRIANGLES) {
+  if (primitive.mode == kGltfTriangles) {
+    if (count % 3 != 0)
+      repaired(model, place, fmt::format("{} corners, expected a multiple of 3", count), "corners");
     for (std::uint32_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(i, i + 1, i + 2);
-  } else if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+  } else if (primitive.mode == kGltfStrip) {
     for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.push_back(stripTriangle(i));
   } else {
     for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.emplace_back(i + 1, i + 2, 0);
@@ -43,14 +45,14 @@ std::vector<glm::uvec3> readTriangles(const GltfModel& model, const tinygltf::Pr
 
 /// An attribute's values as vectors; empty where the primitive doesn't have it.
 template <typename Vector>
-std::vector<Vector> readAttribute(const GltfModel& model, const tinygltf::Primitive& primitive,
+std::vector<Vector> readAttribute(const GltfModel& model, const GltfPrimitive& primitive,
                                   const std::string& name, const std::string& place) {
   const auto found = primitive.attributes.find(name);
   if (found == primitive.attributes.end()) return {};
   return readVectors<Vector>(model, found->second, place + "." + name);
 }
 
-std::vector<glm::vec4> readColors(const GltfModel& model, const tinygltf::Primitive& primitive,
+std::vector<glm::vec4> readColors(const GltfModel& model, const GltfPrimitive& primitive,
                                   const std::string& place) {
   const auto found = primitive.attributes.find("COLOR_0");
   if (found == primitive.attributes.end()) return {};
@@ -88,44 +90,85 @@ void makeFlat(Mesh& mesh) {
   mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
 }
 
+/// Numbers of an attribute that are mended, told in one warning.
+class Mended {
+ public:
+  void add(std::size_t element) {
+    if (count_++ == 0) first_ = element;
+  }
+  /// what: of which `place` has some, and what was done.
+  void tell(const GltfModel& model, const std::string& place, const char* what) const {
+    if (count_ > 0)
+      repaired(model, place, fmt::format("{} elements, {} the first, {}", count_, first_, what), what);
+  }
+
+ private:
+  std::size_t count_ = 0, first_ = 0;
+};
+
+/// Gives vectors with a number that isn't finite a value that is as if they weren't there.
+template <typename Vector>
+void repairNumbers(const GltfModel& model, const Vector& otherwise, const std::string& place,
+                   std::vector<Vector>& vectors) {
+  Mended mended;
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    bool is_finite = true;
+    for (int c = 0; c < Vector::length(); ++c) is_finite = is_finite && std::isfinite(vectors[i][c]);
+    if (is_finite) continue;
+    vectors[i] = otherwise;
+    mended.add(i);
+  }
+  mended.tell(model, place, "with a number that is not finite; drawn as if without");
+}
+
 /// Normalizes normals. Those without a direction become the angle-weighted mean of the faces around them.
-void repairNormals(Mesh& mesh) {
+void repairNormals(const GltfModel& model, const std::string& place, Mesh& mesh) {
+  // Those of 8 bits are as long as 1 ± √3 / 254.
+  constexpr double kMostOff = 0.01;
+  Mended not_unit, without_direction;
   std::vector<glm::vec3> from_faces;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
     const double length = glm::length(glm::dvec3(mesh.normals[i]));
     if (length > 0 && std::isfinite(length)) {
+      if (std::abs(length - 1) > kMostOff) not_unit.add(i);
       mesh.normals[i] = glm::vec3(glm::dvec3(mesh.normals[i]) / length);
     } else {
       if (from_faces.empty()) from_faces = angleWeightedNormals(mesh.positions, mesh.triangles);
       mesh.normals[i] = from_faces[i];
+      without_direction.add(i);
     }
   }
+  not_unit.tell(model, place, "not of length 1; made so");
+  without_direction.tell(model, place, "without a direction; taken from the faces");
 }
 
 /// The material of a primitive in the chosen variant.
-int materialOf(const GltfModel& model, const tinygltf::Primitive& primitive) {
-  const auto found = primitive.extensions.find("KHR_materials_variants");
-  if (model.variant < 0 || found == primitive.extensions.end()) return primitive.material;
-  const tinygltf::Value& mappings = memberOf(found->second, "mappings");
-  for (std::size_t i = 0; mappings.IsArray() && i < mappings.ArrayLen(); ++i) {
-    const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i));
-    const tinygltf::Value& variants = memberOf(mapping, "variants");
-    for (std::size_t j = 0; variants.IsArray() && j < variants.ArrayLen(); ++j) {
-      const tinygltf::Value& variant = variants.Get(static_cast<int>(j));
-      if (!variant.IsNumber() || variant.GetNumberAsDouble() != model.variant) continue;
-      const tinygltf::Value& material = memberOf(mapping, "material");
-      const double index = material.IsNumber() ? material.GetNumberAsDouble() : -1;
+int materialOf(const GltfModel& model, const GltfPrimitive& primitive) {
+  if (model.variant < 0) return primitive.material;
+  const GltfJson& mappings = memberOf(memberOf(primitive.extensions, "KHR_materials_variants"), "mappings");
+  if (!mappings.is_array()) return primitive.material;
+  for (const GltfJson& mapping : mappings) {
+    const GltfJson& variants = memberOf(mapping, "variants");
+    if (!variants.is_array()) continue;
+    for (const GltfJson& variant : variants) {
+      if (!variant.is_number() || variant.get<double>() != model.variant) continue;
+      const int material = indexOf(memberOf(mapping, "material"));
       // One that the file can't have is refused where it is looked up.
-      return index >= 0 && index < 1e9 ? static_cast<int>(index) : 1'000'000'000;
+      return material >= 0 ? material : 1'000'000'000;
     }
   }
   return primitive.material;
 }
 
 /// Texture coordinates with the texture's transform applied; empty where the primitive doesn't have them.
-std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& primitive, const GltfUvs& use,
+std::vector<glm::vec2> uvsOf(const GltfModel& model, const GltfPrimitive& primitive, const GltfUvs& use,
                              const std::string& place) {
-  auto uvs = readAttribute<glm::vec2>(model, primitive, fmt::format("TEXCOORD_{}", use.set), place);
+  const std::string name = fmt::format("TEXCOORD_{}", use.set);
+  auto uvs = readAttribute<glm::vec2>(model, primitive, name, place);
+  if (!primitive.attributes.count(name))
+    repaired(model, place,
+             fmt::format("has no {}, which a texture of its material wants; drawn with 0 0", name), "no uvs");
+  repairNumbers(model, glm::vec2(0), place + "." + name, uvs);
   if (use.matrix != glm::dmat2(1) || use.offset != glm::dvec2(0))
     for (glm::vec2& uv : uvs) uv = glm::vec2(use.matrix * glm::dvec2(uv) + use.offset);
   return uvs;
@@ -133,8 +176,7 @@ std::vector<glm::vec2> uvsOf(const GltfModel& model, const tinygltf::Primitive& 
 
 /// A primitive has one material, so the transforms of its textures can be applied to its vertices'
 /// coordinates.
-void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
-             Mesh& mesh) {
+void readUvs(const GltfModel& model, const GltfPrimitive& primitive, const std::string& place, Mesh& mesh) {
   const GltfUvs base = baseColorUvs(model, materialOf(model, primitive)),
                 emission = emissionUvs(model, materialOf(model, primitive)),
                 bent = normalUvs(model, materialOf(model, primitive));
@@ -151,12 +193,19 @@ void readUvs(const GltfModel& model, const tinygltf::Primitive& primitive, const
 }
 
 /// rest: null, or what its shape at rest is appended to.
-Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& place,
+Mesh readPrimitive(const GltfModel& model, const GltfPrimitive& primitive, const std::string& place,
                    RestShape* rest) {
   Mesh mesh;
-  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return mesh;
-  if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    failGltf(model, place, fmt::format("mode {} is not one of glTF's", primitive.mode));
+  if (primitive.mode > kGltfFan || primitive.mode < 0) {
+    repaired(model, place, fmt::format("mode {} is not one of glTF's; left out", primitive.mode), "mode");
+    return mesh;
+  }
+  if (primitive.mode < kGltfTriangles) {
+    leftOut(model, place,
+            fmt::format("mode {} is of {}, which are not drawn; left out", primitive.mode,
+                        primitive.mode == 0 ? "points" : "lines"),
+            "points and lines");
+    return mesh;
   }
   mesh.positions = readAttribute<glm::vec3>(model, primitive, "POSITION", place);
   if (mesh.positions.empty())
@@ -174,16 +223,17 @@ Mesh readPrimitive(const GltfModel& model, const tinygltf::Primitive& primitive,
              fmt::format("its attributes have {} and {} elements", mesh.positions.size(), count));
   }
   checkFinite(model, mesh.positions, place + ".POSITION");
+  // A transform of textures may overflow.
   checkFinite(model, mesh.uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.emission_uvs, place + ".TEXCOORD");
   checkFinite(model, mesh.normal_uvs, place + ".TEXCOORD");
-  checkFinite(model, mesh.tangents, place + ".TANGENT");
-  checkFinite(model, mesh.colors, place + ".COLOR_0");
+  repairNumbers(model, glm::vec4(0), place + ".TANGENT", mesh.tangents);
+  repairNumbers(model, glm::vec4(1), place + ".COLOR_0", mesh.colors);
   for (glm::vec4& color : mesh.colors) color = glm::max(color, glm::vec4(0));
 
   mesh.triangles = readTriangles(model, primitive, mesh.positions.size(), place);
   const bool is_flat = mesh.normals.empty();
-  if (!is_flat) repairNormals(mesh);
+  if (!is_flat) repairNormals(model, place + ".NORMAL", mesh);
   if (rest) {
     mesh.sources.resize(mesh.positions.size());
     std::iota(mesh.sources.begin(), mesh.sources.end(), static_cast<std::uint32_t>(rest->positions.size()));
@@ -232,13 +282,14 @@ void append(Mesh& mesh, const Mesh& more, std::uint32_t material) {
 
 Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials,
                   std::uint32_t first_material, RestShape* rest) {
-  const tinygltf::Mesh& source = model.file.meshes[index];
+  const GltfMesh& source = model.file.meshes[std::size_t(index)];
   Mesh mesh;
   mesh.name = source.name;
   const std::string place = fmt::format("meshes[{}]", index);
-  if (source.primitives.empty()) failGltf(model, place, "has no primitives, expected at least one");
+  if (source.primitives.empty())
+    repaired(model, place, "has no primitives, expected at least one", "no primitives");
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
-    const tinygltf::Primitive& primitive = source.primitives[i];
+    const GltfPrimitive& primitive = source.primitives[i];
     const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i), rest);
     if (part.triangles.empty()) continue;
     const int material = materialOf(model, primitive);

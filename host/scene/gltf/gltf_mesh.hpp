@@ -7,8 +7,8 @@
 
 namespace luciole {
 
-/// The triangles of all primitives of a glTF mesh as one mesh, at rest; points and lines are left out.
-/// `materials` lists the glTF materials in use, −1 for the default one; new ones are appended.
+/// The triangles of all primitives of a glTF mesh as one mesh, at rest; points and lines are left out, with a
+/// warning. `materials` lists the glTF materials in use, −1 for the default one; new ones are appended.
 /// Mesh::triangle_materials are positions in that list plus `first_material`. `index` must be in range. The
 /// mesh is empty where there is nothing to draw. `rest`: null, or where the shape at rest goes, with morph
 /// targets and influences of joints; then the mesh has `sources`. Throws InputError.

@@ -21,36 +21,35 @@ struct Compressed {
   std::string mode, filter;
 };
 
-std::size_t sizeOf(const GltfModel& model, const tinygltf::Value& extension, const char* member,
+std::size_t sizeOf(const GltfModel& model, const GltfJson& extension, const char* member,
                    std::size_t otherwise, const std::string& place) {
-  const tinygltf::Value& value = memberOf(extension, member);
-  if (!value.IsNumber()) return otherwise;
-  const double number = value.GetNumberAsDouble();
+  const GltfJson& value = memberOf(extension, member);
+  if (!value.is_number()) return otherwise;
+  const double number = value.get<double>();
   if (!(number >= 0 && number < 2147483648.0))
     failGltf(model, place, fmt::format("{} is {}, expected 0 to 2147483647", member, number));
   return static_cast<std::size_t>(number);
 }
 
-Compressed readCompressed(const GltfModel& model, const tinygltf::Value& extension,
-                          const std::string& place) {
+Compressed readCompressed(const GltfModel& model, const GltfJson& extension, const std::string& place) {
   Compressed compressed;
   compressed.place = place;
   const std::size_t missing = 0x7fffffff;
   const std::size_t index = sizeOf(model, extension, "buffer", missing, place);
-  const tinygltf::Buffer& buffer =
+  const GltfBuffer& buffer =
       element(model, model.file.buffers, index < 0x7fffffff ? static_cast<int>(index) : -1, place, "buffer");
   const std::size_t offset = sizeOf(model, extension, "byteOffset", 0, place),
                     length = sizeOf(model, extension, "byteLength", missing, place);
-  if (offset > buffer.data.size() || length > buffer.data.size() - offset)
+  if (offset > buffer.bytes.size() || length > buffer.bytes.size() - offset)
     failGltf(model, place,
              fmt::format("{} bytes from {} on reach past its buffer of {} bytes", length, offset,
-                         buffer.data.size()));
-  compressed.bytes = std::as_bytes(std::span(buffer.data)).subspan(offset, length);
+                         buffer.bytes.size()));
+  compressed.bytes = buffer.bytes.subspan(offset, length);
   compressed.count = sizeOf(model, extension, "count", 0, place);
   compressed.stride = sizeOf(model, extension, "byteStride", 0, place);
   const auto text = [&](const char* member, const char* otherwise) {
-    const tinygltf::Value& value = memberOf(extension, member);
-    return value.IsString() ? value.Get<std::string>() : std::string(otherwise);
+    const GltfJson& value = memberOf(extension, member);
+    return value.is_string() ? value.get<std::string>() : std::string(otherwise);
   };
   compressed.mode = text("mode", "");
   compressed.filter = text("filter", "NONE");
@@ -100,13 +99,13 @@ std::vector<std::byte> decode(const GltfModel& model, const Compressed& compress
 }  // namespace
 
 void decodeMeshopt(GltfModel& model) {
-  for (std::size_t i = 0; i < model.file.bufferViews.size(); ++i) {
-    const tinygltf::BufferView& view = model.file.bufferViews[i];
-    const auto found = view.extensions.find(kMeshopt);
-    if (found == view.extensions.end()) continue;
+  for (std::size_t i = 0; i < model.file.views.size(); ++i) {
+    const GltfView& view = model.file.views[i];
+    const GltfJson& extension = memberOf(view.extensions, kMeshopt);
+    if (extension.is_null()) continue;
     const Compressed compressed =
-        readCompressed(model, found->second, fmt::format("bufferViews[{}].{}", i, kMeshopt));
-    check(model, compressed, view.byteLength);
+        readCompressed(model, extension, fmt::format("bufferViews[{}].{}", i, kMeshopt));
+    check(model, compressed, view.length);
     model.decoded[static_cast<int>(i)] = decode(model, compressed);
   }
 }

@@ -1,21 +1,24 @@
 #pragma once
 
-#include <tiny_gltf.h>
-
 #include <cstddef>
+#include <deque>
 #include <map>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/gltf/gltf_json.hpp"
+#include "scene/warning.hpp"
+
 namespace luciole {
 
 /// A parsed glTF file. Its content is not validated: any index in it may be out of range.
 struct GltfModel {
   std::string path;
-  tinygltf::Model
-      file;  ///< Image::image holds a picture file's bytes, not texels; empty where it lies in a buffer
+  std::vector<Warning>* warnings = nullptr;  ///< where warnings go; never null
+  GltfFile file{};
+  std::deque<std::string> kept{};  ///< the bytes that buffers and images refer to
   /// What buffer views hold that are compressed, by their index (decodeMeshopt(), decodeDraco()).
   std::map<int, std::vector<std::byte>> decoded{};
   int variant = -1;    ///< which of variantNames() materials are of; −1: the primitives' own
@@ -29,9 +32,10 @@ std::vector<std::string> variantNames(const GltfModel& model);
 /// What the file's animations are called: by name, or by index where they have none.
 std::vector<std::string> animationNames(const GltfModel& model);
 
-/// Parses a .gltf or .glb with its buffers and pictures. Throws InputError: among others for a glTF other
-/// than 2.x, a missing buffer, and a required extension that is not supported.
-GltfModel readGltfModel(const std::string& path);
+/// Parses a .gltf or .glb with its buffers, and finds its pictures (see findResources). Throws InputError:
+/// among others for a glTF other than 2.x, a missing buffer, and a required extension that is not supported.
+GltfModel readGltfModel(const std::string& path, const std::vector<std::string>& search,
+                        std::vector<Warning>& warnings);
 
 /// The extensions, each once, that the file uses, that it doesn't require, and that are not supported.
 std::vector<std::string> ignoredExtensions(const GltfModel& model);
@@ -45,19 +49,23 @@ const T& element(const GltfModel& model, const std::vector<T>& list, int index, 
 std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, const std::string& place);
 
 /// Whether an image's file doesn't exist or is empty.
-bool isMissing(const tinygltf::Image& image);
-/// The bytes of the picture file of an image that isn't missing; the model owns them.
-std::span<const std::byte> imageBytes(const GltfModel& model, int image);
-
-/// A member of an extension's JSON as a number; `otherwise` where there is none or it isn't a number.
-double extensionNumber(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member,
-                       double otherwise);
+bool isMissing(const GltfImage& image);
 
 /// A member of a JSON object; null where there is none or `value` is no object.
-const tinygltf::Value& memberOf(const tinygltf::Value& value, const char* name);
+const GltfJson& memberOf(const GltfJson& value, const char* name);
 
-/// A member of an extension's JSON as an index; −1 where there is none, or none that a file could have.
-int extensionIndex(const tinygltf::ExtensionMap& extensions, const char* extension, const char* member);
+/// A JSON value as an index; −1 where it isn't one that a file could have.
+int indexOf(const GltfJson& value);
+
+/// A member of one of a thing's extensions as a number; `otherwise` where there is none or it isn't a number.
+double extensionNumber(const GltfJson& extensions, const char* extension, const char* member,
+                       double otherwise);
+
+/// Adds a warning that the file breaks the format's rules: "path: place: what". `kind`: as Warning has it.
+void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
+
+/// Adds a warning of what isn't shown though the file may ask for it.
+void leftOut(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
 
 /// Throws InputError "path: place: what".
 [[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);
@@ -67,10 +75,11 @@ const T& element(const GltfModel& model, const std::vector<T>& list, int index, 
                  const char* what) {
   if (index < 0 || static_cast<std::size_t>(index) >= list.size()) {
     failGltf(model, std::string(place),
-             std::string("refers to ") + what + " " + std::to_string(index) + ", but the file has " +
-                 std::to_string(list.size()) + " of them");
+             index < 0 ? std::string("names no ") + what
+                       : std::string("refers to ") + what + " " + std::to_string(index) +
+                             ", but the file has " + std::to_string(list.size()) + " of them");
   }
-  return list[index];
+  return list[static_cast<std::size_t>(index)];
 }
 
 }  // namespace luciole

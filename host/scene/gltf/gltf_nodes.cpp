@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
 
 #include "scene/pose.hpp"
 
@@ -18,7 +20,7 @@ struct LocalTransform {
 };
 
 LocalTransform localTransform(const GltfModel& model, int index) {
-  const tinygltf::Node& node = model.file.nodes[index];
+  const GltfNode& node = model.file.nodes[std::size_t(index)];
   const auto has = [&](const std::vector<double>& values, std::size_t count, const char* name) {
     if (values.empty() || values.size() == count) return !values.empty();
     failGltf(model, nodePlace(index),
@@ -27,20 +29,50 @@ LocalTransform localTransform(const GltfModel& model, int index) {
   LocalTransform local;
   if (has(node.matrix, 16, "matrix")) {
     local.is_matrix = true;
-    for (int i = 0; i < 16; ++i) local.matrix[i / 4][i % 4] = node.matrix[i];
+    for (int i = 0; i < 16; ++i) local.matrix[i / 4][i % 4] = node.matrix[std::size_t(i)];
     const glm::dvec4 last_row(local.matrix[0].w, local.matrix[1].w, local.matrix[2].w, local.matrix[3].w);
-    if (last_row != glm::dvec4(0, 0, 0, 1))
-      failGltf(model, nodePlace(index), "matrix must have 0 0 0 1 as last row");
+    if (last_row != glm::dvec4(0, 0, 0, 1)) {
+      repaired(model, nodePlace(index),
+               fmt::format("matrix has {} {} {} {} as last row, taken for 0 0 0 1", last_row.x, last_row.y,
+                           last_row.z, last_row.w),
+               "last row");
+      for (int i = 0; i < 4; ++i) local.matrix[i].w = i == 3 ? 1 : 0;
+    }
+    if (!node.translation.empty() || !node.rotation.empty() || !node.scale.empty())
+      repaired(model, nodePlace(index), "has a matrix, and parts beside it, which are left out",
+               "matrix and parts");
     return local;
   }
   for (int i = 0; has(node.translation, 3, "translation") && i < 3; ++i)
-    local.translate[i] = node.translation[i];
-  for (int i = 0; has(node.rotation, 4, "rotation") && i < 4; ++i) local.rotation[i] = node.rotation[i];
-  for (int i = 0; has(node.scale, 3, "scale") && i < 3; ++i) local.scale[i] = node.scale[i];
-  if (!(glm::length(local.rotation) > 0))
-    failGltf(model, nodePlace(index), "rotation must be a unit quaternion");
+    local.translate[i] = node.translation[std::size_t(i)];
+  for (int i = 0; has(node.rotation, 4, "rotation") && i < 4; ++i)
+    local.rotation[i] = node.rotation[std::size_t(i)];
+  for (int i = 0; has(node.scale, 3, "scale") && i < 3; ++i) local.scale[i] = node.scale[std::size_t(i)];
+  if (const double length = glm::length(local.rotation); !isUnitLength(length)) {
+    repaired(model, nodePlace(index),
+             fmt::format("rotation is of length {}, expected a unit quaternion", length), "rotation");
+    if (!(length > 0)) local.rotation = {0, 0, 0, 1};
+  }
   local.matrix = placementByQuaternion(local.translate, local.rotation, local.scale);
   return local;
+}
+
+/// Takes a matrix apart into the parts that animations move. Of one that shears, what they can't hold is
+/// lost.
+void takeApart(LocalTransform& local) {
+  glm::dmat3 axes(local.matrix);
+  for (int i = 0; i < 3; ++i) local.scale[i] = glm::length(axes[i]);
+  if (glm::determinant(axes) < 0) local.scale.x = -local.scale.x;
+  local.translate = glm::dvec3(local.matrix[3]);
+  // An axis of length 0 is across the others, and two or three that are so may be any.
+  for (int i = 0; i < 3; ++i)
+    if (local.scale[i] != 0) axes[i] /= local.scale[i];
+  for (int i = 0; i < 3; ++i)
+    if (local.scale[i] == 0) axes[i] = glm::cross(axes[(i + 1) % 3], axes[(i + 2) % 3]);
+  const glm::dquat turn = glm::quat_cast(axes);
+  const glm::dvec4 rotation(turn.x, turn.y, turn.z, turn.w);
+  if (const double length = glm::length(rotation); length > 0 && std::isfinite(length))
+    local.rotation = rotation / length;
 }
 
 /// The MovingNode of an animated node. Parts that no curve moves keep the node's own value.
@@ -61,12 +93,10 @@ MovingNode movingNode(const LocalTransform& local, const NodeCurves& curves, Ani
 /// The nodes at the top of the scene to show: the default one, else the first, else every node without a
 /// parent.
 std::vector<int> rootNodes(const GltfModel& model) {
-  const tinygltf::Model& file = model.file;
-  if (!file.scenes.empty()) {
-    return element(model, file.scenes, std::max(file.defaultScene, 0), "scene", "scene").nodes;
-  }
+  const GltfFile& file = model.file;
+  if (!file.scenes.empty()) return element(model, file.scenes, std::max(file.scene, 0), "scene", "scene");
   std::vector<bool> is_child(file.nodes.size(), false);
-  for (const tinygltf::Node& node : file.nodes) {
+  for (const GltfNode& node : file.nodes) {
     for (const int child : node.children) {
       if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) is_child[child] = true;
     }
@@ -79,17 +109,14 @@ std::vector<int> rootNodes(const GltfModel& model) {
 }
 
 /// Whether a node hides itself and all below it (KHR_node_visibility).
-bool isHidden(const tinygltf::Node& node) {
-  const auto found = node.extensions.find("KHR_node_visibility");
-  if (found == node.extensions.end()) return false;
-  const tinygltf::Value& visible = memberOf(found->second, "visible");
-  return visible.IsBool() && !visible.Get<bool>();
+bool isHidden(const GltfNode& node) {
+  return memberOf(memberOf(node.extensions, "KHR_node_visibility"), "visible") == GltfJson(false);
 }
 
 /// Of each node the one that it is a child of; -1: none. Throws InputError unless every node has one parent
 /// at most, and roots have none.
 std::vector<int> parentsOf(const GltfModel& model, const std::vector<int>& roots) {
-  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  const std::vector<GltfNode>& nodes = model.file.nodes;
   std::vector<int> parents(nodes.size(), -1), uses(nodes.size(), 0);
   const auto use = [&](int node, const std::string& place) {
     element(model, nodes, node, place, "node");
@@ -120,19 +147,24 @@ int topOf(const GltfModel& model, const std::vector<int>& parents, int node) {
 void placeTree(const GltfModel& model, int root, bool shown, bool with_hidden,
                const std::map<int, NodeCurves>& curves, Animation& animation,
                std::vector<PlacedNode>& placed) {
-  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  const std::vector<GltfNode>& nodes = model.file.nodes;
   std::vector<PlacedNode> stack{{.node = root, .shown = shown}};
   while (!stack.empty()) {
     PlacedNode next = stack.back();
     stack.pop_back();
     if (isHidden(nodes[next.node])) next.shown = false;
     if (!next.shown && !with_hidden) continue;
-    const LocalTransform local = localTransform(model, next.node);
+    LocalTransform local = localTransform(model, next.node);
     next.to_world = next.to_world * local.matrix;
     if (!isFinite(next.to_world)) failGltf(model, nodePlace(next.node), "transform is not finite");
     const auto animated = curves.find(next.node);
     if (animated != curves.end() && movesNode(animated->second)) {
-      if (local.is_matrix) failGltf(model, nodePlace(next.node), "is animated, so it must have no matrix");
+      if (local.is_matrix) {
+        repaired(model, nodePlace(next.node),
+                 "has a matrix and is animated; it is taken apart into translation, rotation and scale",
+                 "animated matrix");
+        takeApart(local);
+      }
       MovingNode moving = movingNode(local, animated->second, animation);
       moving.parent = next.moving;
       moving.before = next.since;
@@ -157,7 +189,7 @@ std::string nodePlace(int node) { return fmt::format("nodes[{}]", node); }
 
 std::vector<PlacedNode> placedNodes(const GltfModel& model, const std::map<int, NodeCurves>& curves,
                                     Animation& animation) {
-  const std::vector<tinygltf::Node>& nodes = model.file.nodes;
+  const std::vector<GltfNode>& nodes = model.file.nodes;
   const std::vector<int> roots = rootNodes(model), parents = parentsOf(model, roots);
   const bool has_skins = std::ranges::any_of(nodes, [](const auto& node) { return node.skin >= 0; });
   std::vector<PlacedNode> placed;

@@ -20,13 +20,17 @@ struct PlacedNode {
   bool shown = true;         ///< false: only skins may need it
 };
 
+/// Whether a quaternion of this length is as good as unit: those of 8 bits are as long as 1 ± 1 / 127.
+inline bool isUnitLength(double length) { return length > 0.99 && length < 1.01; }
+
 /// "nodes[index]", for messages.
 std::string nodePlace(int node);
 
 /// Every node of the scene that isn't hidden (KHR_node_visibility), parents first; where the file has skins
 /// also those that are, and the trees of joints outside the scene. Nodes that curves move are added to the
 /// animation. Throws InputError unless the nodes form trees (roots without a parent, other nodes with at most
-/// one), and where a transform isn't finite.
+/// one), and where a transform isn't finite. What nodes have beside a matrix, last rows of matrices and
+/// rotations that aren't unit are mended, each with a warning.
 std::vector<PlacedNode> placedNodes(const GltfModel& model, const std::map<int, NodeCurves>& curves,
                                     Animation& animation);
 

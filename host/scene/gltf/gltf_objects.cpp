@@ -24,19 +24,16 @@ constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 /// The transforms of a node's instances (EXT_mesh_gpu_instancing) to the node's space; one of nothing where
 /// it has none.
 std::vector<glm::dmat4> instancesOf(const GltfModel& model, int index) {
-  const tinygltf::Node& node = model.file.nodes[index];
-  const auto found = node.extensions.find(kInstancing);
-  if (found == node.extensions.end()) return {glm::dmat4(1.0)};
-  const tinygltf::Value& attributes = memberOf(found->second, "attributes");
+  const GltfJson& extension = memberOf(model.file.nodes[std::size_t(index)].extensions, kInstancing);
+  if (extension.is_null()) return {glm::dmat4(1.0)};
+  const GltfJson& attributes = memberOf(extension, "attributes");
   const std::string place = fmt::format("{}.{}", nodePlace(index), kInstancing);
   std::size_t count = 0;
   const auto read = [&](const char* name, int components) {
     std::vector<float> values;
-    if (!attributes.IsObject() || !attributes.Has(name)) return values;
-    const tinygltf::Value& accessor = attributes.Get(name);
-    const double number = accessor.IsNumber() ? accessor.GetNumberAsDouble() : -1;
-    values = readFloats(model, number >= 0 && number < 1e9 ? static_cast<int>(number) : -1, components,
-                        fmt::format("{}.{}", place, name));
+    const GltfJson& accessor = memberOf(attributes, name);
+    if (accessor.is_null()) return values;
+    values = readFloats(model, indexOf(accessor), components, fmt::format("{}.{}", place, name));
     const std::size_t instances = values.size() / static_cast<std::size_t>(components);
     if (count != 0 && count != instances)
       failGltf(model, place, fmt::format("its attributes have {} and {} elements", count, instances));
@@ -93,7 +90,7 @@ glm::dmat4 frameOf(const RestShape& rest, std::span<const double> pose, std::siz
 
 /// The joints of a node's skin. still: where they are without animation.
 std::vector<Joint> jointsOf(const Source& source, const PlacedNode& placed, bool still) {
-  const int index = source.model.file.nodes[placed.node].skin;
+  const int index = source.model.file.nodes[std::size_t(placed.node)].skin;
   if (index < 0) return {};
   const GltfSkin skin = readGltfSkin(source.model, index, nodePlace(placed.node));
   std::vector<Joint> joints;
@@ -107,7 +104,7 @@ std::vector<Joint> jointsOf(const Source& source, const PlacedNode& placed, bool
 
 /// The mesh of a node that deforms it, as it is at rest. Read at its first use.
 const RestMesh& restMesh(Source& source, const PlacedNode& placed) {
-  const int index = source.model.file.nodes[placed.node].mesh;
+  const int index = source.model.file.nodes[std::size_t(placed.node)].mesh;
   const auto [known, is_new] = source.rest_meshes.try_emplace(index);
   if (is_new) {
     auto rest = std::make_shared<RestShape>();
@@ -188,9 +185,9 @@ void placeWithNode(const Source& source, const PlacedNode& placed, std::uint32_t
   for (const glm::dmat4& instance : instancesOf(source.model, placed.node)) {
     const glm::dmat4 to_world = placed.to_world * instance;
     if (!isFinite(to_world)) failGltf(source.model, nodePlace(placed.node), "transform is not finite");
-    // A scale of 0 hides an object. What moves may have it for a while, and is kept.
-    if (placed.moving < 0 && isFlat(to_world)) continue;
-    scene.objects.push_back({mesh, to_world, -1, source.model.file.nodes[placed.node].name});
+    // A scale of 0 along two axes hides an object. What moves may have it for a while, and is kept.
+    if (placed.moving < 0 && hidesObjects(to_world)) continue;
+    scene.objects.push_back({mesh, to_world, -1, source.model.file.nodes[std::size_t(placed.node)].name});
     if (placed.moving < 0) continue;
     attach(scene, {static_cast<std::uint32_t>(scene.objects.size()) - 1,
                    static_cast<std::uint32_t>(placed.moving), placed.since * instance, mesh});
@@ -201,11 +198,12 @@ void placeWithNode(const Source& source, const PlacedNode& placed, std::uint32_t
 
 void addGltfObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes,
                     const std::map<int, NodeCurves>& curves, Scene& scene) {
+  checkWeights(model);
   Source source{model, nodes, curves, static_cast<std::uint32_t>(scene.materials.size())};
   source.places.resize(model.file.nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) source.places[std::size_t(nodes[i].node)] = i;
   for (const PlacedNode& placed : nodes) {
-    const tinygltf::Node& node = model.file.nodes[placed.node];
+    const GltfNode& node = model.file.nodes[std::size_t(placed.node)];
     if (node.mesh < 0 || !placed.shown) continue;
     element(model, model.file.meshes, node.mesh, nodePlace(placed.node), "mesh");
     glm::dmat4 frame(1.0);
@@ -215,7 +213,7 @@ void addGltfObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes
     if (node.skin < 0) {
       placeWithNode(source, placed, static_cast<std::uint32_t>(mesh), scene);
     } else {
-      if (node.extensions.count(kInstancing))
+      if (!memberOf(node.extensions, kInstancing).is_null())
         failGltf(model, nodePlace(placed.node), "has a skin, which has no instances");
       scene.objects.push_back({static_cast<std::uint32_t>(mesh), frame, -1, node.name});
     }

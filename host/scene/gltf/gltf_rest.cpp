@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "scene/gltf/gltf_accessor.hpp"
@@ -12,8 +12,8 @@ namespace luciole {
 namespace {
 
 /// How far a target moves an attribute's vertices; 0 where it says nothing of it.
-std::vector<glm::vec3> readShifts(const GltfModel& model, const std::map<std::string, int>& target,
-                                  const char* name, std::size_t vertices, const std::string& place) {
+std::vector<glm::vec3> readShifts(const GltfModel& model, const GltfAttributes& target, const char* name,
+                                  std::size_t vertices, const std::string& place) {
   const auto found = target.find(name);
   if (found == target.end()) return std::vector<glm::vec3>(vertices, glm::vec3(0));
   const std::string here = fmt::format("{}.{}", place, name);
@@ -25,7 +25,7 @@ std::vector<glm::vec3> readShifts(const GltfModel& model, const std::map<std::st
 }
 
 /// Appends what a target does to a primitive whose first vertex is `first`.
-void appendTarget(const GltfModel& model, const std::map<std::string, int>& source, std::size_t first,
+void appendTarget(const GltfModel& model, const GltfAttributes& source, std::size_t first,
                   std::size_t vertices, const std::string& place, MorphTarget& target) {
   const auto read = [&](const char* name) { return readShifts(model, source, name, vertices, place); };
   const std::vector<glm::vec3> positions = read("POSITION"), normals = read("NORMAL"),
@@ -44,7 +44,7 @@ struct InfluenceSet {
   std::vector<glm::vec4> joints, weights;
 };
 
-std::vector<InfluenceSet> readInfluenceSets(const GltfModel& model, const tinygltf::Primitive& primitive,
+std::vector<InfluenceSet> readInfluenceSets(const GltfModel& model, const GltfPrimitive& primitive,
                                             std::size_t vertices, const std::string& place) {
   std::vector<InfluenceSet> sets;
   for (;;) {
@@ -61,15 +61,23 @@ std::vector<InfluenceSet> readInfluenceSets(const GltfModel& model, const tinygl
     for (const std::size_t count : {set.joints.size(), set.weights.size()})
       if (count != vertices)
         failGltf(model, place, fmt::format("its attributes have {} and {} elements", vertices, count));
+    std::size_t negative = 0, first_negative = 0;
     for (std::size_t i = 0; i < vertices; ++i)
       for (int c = 0; c < 4; ++c) {
         const float joint = set.joints[i][c], weight = set.weights[i][c];
         if (!(joint >= 0 && joint <= 65535 && joint == std::floor(joint)))
           failGltf(model, place, fmt::format("{}: element {} is no joint's number", joints_name, i));
-        if (!(weight >= 0 && std::isfinite(weight)))
-          failGltf(model, place,
-                   fmt::format("{}: element {} must be at least 0 and finite", weights_name, i));
+        if (!std::isfinite(weight))
+          failGltf(model, place, fmt::format("{}: element {} is not finite", weights_name, i));
+        if (weight < 0) {
+          set.weights[i][c] = 0;
+          if (negative++ == 0) first_negative = i;
+        }
       }
+    if (negative > 0)
+      repaired(model, fmt::format("{}.{}", place, weights_name),
+               fmt::format("{} are negative, the first of element {}; taken for 0", negative, first_negative),
+               "negative weights");
     sets.push_back(std::move(set));
   }
 }
@@ -77,16 +85,16 @@ std::vector<InfluenceSet> readInfluenceSets(const GltfModel& model, const tinygl
 }  // namespace
 
 GltfSkin readGltfSkin(const GltfModel& model, int skin, const std::string& place) {
-  const tinygltf::Skin& source = element(model, model.file.skins, skin, place, "skin");
+  const GltfSkinEntry& source = element(model, model.file.skins, skin, place, "skin");
   const std::string here = fmt::format("skins[{}]", skin);
   if (source.joints.empty()) failGltf(model, here, "has no joints");
   GltfSkin result;
   result.joints = source.joints;
   for (const int joint : result.joints) element(model, model.file.nodes, joint, here, "node");
   result.inverse_binds.assign(result.joints.size(), glm::dmat4(1.0));
-  if (source.inverseBindMatrices < 0) return result;
+  if (source.inverse_binds < 0) return result;
   const std::vector<float> numbers =
-      readFloats(model, source.inverseBindMatrices, 16, here + ".inverseBindMatrices");
+      readFloats(model, source.inverse_binds, 16, here + ".inverseBindMatrices");
   if (numbers.size() < 16 * result.joints.size())
     failGltf(
         model, here,
@@ -102,7 +110,7 @@ GltfSkin readGltfSkin(const GltfModel& model, int skin, const std::string& place
   return result;
 }
 
-void appendRest(const GltfModel& model, const tinygltf::Primitive& primitive, const Mesh& part,
+void appendRest(const GltfModel& model, const GltfPrimitive& primitive, const Mesh& part,
                 const std::string& place, RestShape& rest) {
   const std::size_t first = rest.positions.size(), vertices = part.positions.size();
   rest.positions.insert(rest.positions.end(), part.positions.begin(), part.positions.end());
@@ -138,30 +146,43 @@ void checkInfluences(const GltfModel& model, const RestShape& rest, std::size_t 
 }
 
 std::size_t targetCount(const GltfModel& model, int mesh) {
-  const std::string place = fmt::format("meshes[{}]", mesh);
-  const std::vector<tinygltf::Primitive>& primitives =
-      element(model, model.file.meshes, mesh, place, "mesh").primitives;
-  if (primitives.empty()) return 0;
-  const std::size_t count = primitives.front().targets.size();
-  for (const tinygltf::Primitive& primitive : primitives)
-    if (primitive.targets.size() != count)
-      failGltf(model, place,
-               fmt::format("its primitives have {} and {} morph targets", count, primitive.targets.size()));
+  std::size_t count = 0;
+  for (const GltfPrimitive& primitive :
+       element(model, model.file.meshes, mesh, fmt::format("meshes[{}]", mesh), "mesh").primitives)
+    count = std::max(count, primitive.targets.size());
   return count;
 }
 
 std::vector<double> targetWeights(const GltfModel& model, int node) {
-  const tinygltf::Node& source = model.file.nodes[node];
-  const std::size_t count = targetCount(model, source.mesh);
-  const bool of_node = !source.weights.empty();
-  std::vector<double> weights = of_node ? source.weights : model.file.meshes[source.mesh].weights;
-  if (weights.empty()) weights.resize(count, 0.0);
-  const std::string place = of_node ? fmt::format("nodes[{}]", node) : fmt::format("meshes[{}]", source.mesh);
-  if (weights.size() != count)
-    failGltf(model, place, fmt::format("has {} weights for {} morph targets", weights.size(), count));
-  for (const double weight : weights)
-    if (!std::isfinite(weight)) failGltf(model, place, "a weight is not finite");
+  const GltfNode& source = model.file.nodes[std::size_t(node)];
+  std::vector<double> weights = source.weights;
+  if (weights.empty()) weights = model.file.meshes[std::size_t(source.mesh)].weights;
+  weights.resize(targetCount(model, source.mesh), 0.0);
   return weights;
+}
+
+void checkWeights(const GltfModel& model) {
+  const auto check = [&](const std::vector<double>& weights, int mesh, const char* list, std::size_t index) {
+    const std::size_t count = weights.empty() ? 0 : targetCount(model, mesh);
+    if (!weights.empty() && weights.size() != count)
+      repaired(model, fmt::format("{}[{}]", list, index),
+               fmt::format("has {} weights for {} morph targets", weights.size(), count), "weights");
+  };
+  for (std::size_t i = 0; i < model.file.meshes.size(); ++i) {
+    const GltfMesh& mesh = model.file.meshes[i];
+    check(mesh.weights, static_cast<int>(i), "meshes", i);
+    const std::size_t count = targetCount(model, static_cast<int>(i));
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      if (primitive.targets.size() == count) continue;
+      repaired(model, fmt::format("meshes[{}]", i),
+               fmt::format("its primitives have {} and {} morph targets", count, primitive.targets.size()),
+               "targets");
+      break;
+    }
+  }
+  for (std::size_t i = 0; i < model.file.nodes.size(); ++i)
+    if (model.file.nodes[i].mesh >= 0)
+      check(model.file.nodes[i].weights, model.file.nodes[i].mesh, "nodes", i);
 }
 
 }  // namespace luciole

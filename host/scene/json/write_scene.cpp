@@ -25,6 +25,10 @@ std::string quoted(const std::string& text) {
 
 std::string vectorText(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
+/// In place of infinity, which JSON doesn't have: farther than anything may lie from anything
+/// (place_limits.hpp).
+constexpr double kBeyondAll = 1e20;
+
 std::string cameraLine(const Camera& camera) {
   const glm::dmat4& place = camera.camera_to_world;
   const glm::dvec3 eye = place[3];
@@ -36,7 +40,8 @@ std::string cameraLine(const Camera& camera) {
                                                : fmt::format("\"fov_y\": {}", glm::degrees(camera.fov_y));
   return fmt::format(
       "  \"camera\": {{\"eye\": {}, \"target\": {}, \"up\": {}, {}, \"near\": {}, \"far\": {}}},\n",
-      vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near, camera.far);
+      vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near,
+      std::min(camera.far, kBeyondAll));
 }
 
 /// Appends the lights and the end of a scene's file.

@@ -409,8 +409,8 @@ TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
     attributes(f).erase("WEIGHTS_0");
   });
   refuses(bar, "has one of JOINTS_0 and WEIGHTS_0", [&](GltfFile& f) { attributes(f).erase("WEIGHTS_0"); });
-  refuses(bar, "element 0 must be at least 0", [&](GltfFile& f) {
-    attributes(f)["WEIGHTS_0"] = f.addAccessor("VEC4", kFloat, 4, std::vector<float>(24, -1.0f));
+  refuses(bar, "WEIGHTS_0: element 0 is not finite", [&](GltfFile& f) {
+    attributes(f)["WEIGHTS_0"] = f.addAccessor("VEC4", kFloat, 4, std::vector<float>(24, INFINITY));
   });
   refuses(bar, "element 0 is no joint's number", [&](GltfFile& f) {
     attributes(f)["JOINTS_0"] = f.addAccessor("VEC4", kFloat, 4, std::vector<float>(24, 0.5f));
@@ -430,9 +430,6 @@ TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
     f.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
         f.primitive()["attributes"]["POSITION"];
   });
-  refuses(morph, "has 1 weights for 2 morph targets",
-          [](GltfFile& f) { f.root["meshes"][0]["weights"] = {1}; });
-  refuses(morph, "has 3 weights for 2", [](GltfFile& f) { f.root["nodes"][0]["weights"] = {1, 2, 3}; });
   refuses(morph, "targets[1].POSITION: has 2 elements for 3 vertices", [](GltfFile& f) {
     f.root["meshes"][0]["weights"] = {1, 0};
     f.primitive()["targets"][1]["POSITION"] = f.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 0, 0, 0, 0});
@@ -442,19 +439,54 @@ TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
     f.primitive()["targets"][0]["POSITION"] =
         f.addAccessor("VEC3", kFloat, 3, std::vector<float>(9, std::nanf("")));
   });
-  refuses(morph, "its primitives have 2 and 0 morph targets", [](GltfFile& f) {
-    json other = f.primitive();
-    other.erase("targets");
-    f.root["meshes"][0]["primitives"].push_back(other);
-  });
   refuses(morph, "expected 4", [](GltfFile& f) { animate(f, 0, "weights", {0, 1}, {0, 0, 1}); });
-  refuses(morph, "weights of a node without morph targets", [](GltfFile& f) {
-    f.root["nodes"].push_back(json::object());
-    animate(f, 1, "weights", {0, 1}, {0, 1});
-  });
   refuses(morph, "a vertex's position is not finite", [](GltfFile& f) {
     f.root["meshes"][0]["weights"] = {1e300, 0};
   });
+}
+
+TEST_F(GltfDeform, WrongNumbersOfWeightsAndTargetsAreMended) {
+  const auto mended = [&](const char* what, const std::function<void(GltfFile&)>& change) {
+    GltfFile file = morphFile({{1, 0, 0}, {0, 1, 0}});
+    change(file);
+    EXPECT_THAT(repair(file), HasSubstr(what));
+    return load(file).meshes.at(0).positions;
+  };
+  const std::vector<glm::vec3> rest = load(morphFile({{1, 0, 0}, {0, 1, 0}})).meshes.at(0).positions;
+  EXPECT_NE(mended("meshes[0]: has 1 weights for 2 morph targets",
+                   [](GltfFile& f) { f.root["meshes"][0]["weights"] = {1}; }),
+            rest);
+  EXPECT_NE(mended("nodes[0]: has 3 weights for 2",
+                   [](GltfFile& f) {
+                     f.root["nodes"][0]["weights"] = {1, 2, 3};
+                   }),
+            rest);
+  EXPECT_EQ(mended("meshes[0]: has 1 weights for 0 morph targets",
+                   [](GltfFile& f) {
+                     f.primitive().erase("targets");
+                     f.root["meshes"][0]["weights"] = {1};
+                   }),
+            rest);
+  EXPECT_EQ(mended("meshes[0]: its primitives have 2 and 0 morph targets",
+                   [](GltfFile& f) {
+                     json other = f.primitive();
+                     other.erase("targets");
+                     f.root["meshes"][0]["primitives"].push_back(other);
+                     f.root["meshes"][0]["weights"] = {1, 0};
+                   })
+                .size(),
+            2 * rest.size());
+}
+
+TEST_F(GltfDeform, NegativeWeightsOfJointsAreTakenForZero) {
+  GltfFile file = bendingFile();
+  std::vector<float> weights(24, 0.0f);
+  for (std::size_t i = 0; i < 6; ++i) {
+    weights[4 * i] = 1;
+    weights[4 * i + 1] = i == 2 ? -0.25f : 0.0f;
+  }
+  file.primitive()["attributes"]["WEIGHTS_0"] = file.addAccessor("VEC4", kFloat, 4, weights);
+  EXPECT_THAT(repair(file), HasSubstr("WEIGHTS_0: 1 are negative, the first of element 2"));
 }
 
 TEST_F(GltfDeform, APoseThatIsNotFiniteIsRefusedByItsFrame) {

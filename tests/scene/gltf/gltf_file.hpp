@@ -65,6 +65,15 @@ class GltfTest : public testing::Test {
     loadGltf(folder / "a.gltf", scene);
     return scene;
   }
+  /// Loads it, and returns the only warning, which is of a fault that was mended.
+  std::string repair(const GltfFile& file) {
+    const std::vector<Warning> warnings = load(file).warnings;
+    EXPECT_EQ(warnings.size(), 1u);
+    if (warnings.empty()) return "no warning";
+    EXPECT_TRUE(warnings[0].repaired) << warnings[0].text;
+    EXPECT_THAT(warnings[0].text, testing::StartsWith(folder / "a.gltf: "));
+    return warnings[0].text;
+  }
   std::string error(const GltfFile& file) {
     try {
       load(file);

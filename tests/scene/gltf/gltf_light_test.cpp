@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <string>
 
 #include "base/error.hpp"
 #include "scene/gltf/gltf_loader.hpp"
@@ -44,9 +46,6 @@ TEST_F(GltfLoader, SpotLightsHaveTheirCones) {
   EXPECT_EQ(l.inner_cone, 0.25);
   const Light sharp = light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}});
   EXPECT_LT(sharp.inner_cone, sharp.cutoff);
-  EXPECT_THROW(light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.6}, {"outerConeAngle", 0.5}}}}),
-               InputError);
-  EXPECT_THROW(light({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}), InputError);
 }
 
 TEST_F(GltfLoader, ExtrasOfANodeOrItsLightNameTheLightsGroup) {
@@ -73,11 +72,52 @@ TEST_F(GltfLoader, ExtrasOfANodeOrItsLightNameTheLightsGroup) {
   EXPECT_EQ(groupName(), "default");
 }
 
-TEST_F(GltfLoader, ImpossibleLightsAreRefused) {
-  EXPECT_THROW(light({{"type", "point"}, {"intensity", -1}}), InputError);
-  EXPECT_THROW(light({{"type", "point"}, {"range", -1}}), InputError);
+TEST_F(GltfLoader, ImpossibleLightsAreMendedOrLeftOut) {
+  const auto mended = [&](const json& source, const char* what) {
+    GltfFile file = triangleFile();
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {source};
+    file.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    EXPECT_THAT(repair(file), HasSubstr(std::string("extensions.KHR_lights_punctual.lights[0]: ") + what));
+    return load(file).lights;
+  };
+  EXPECT_EQ(mended({{"type", "point"}, {"intensity", -1}}, "intensity is -1").at(0).diffuse, glm::vec3(0));
+  EXPECT_EQ(mended({{"type", "point"}, {"color", {1, -2, 1}}}, "color has -2").at(0).diffuse.y, 0.0f);
+  for (const double range : {-1.0, 0.0})
+    EXPECT_EQ(mended({{"type", "point"}, {"range", range}}, "range is ").at(0).range, INFINITY);
+  EXPECT_TRUE(mended({{"type", "neon"}}, "type is 'neon'").empty());
+  EXPECT_EQ(mended({{"type", "Point"}}, "type is 'Point'").at(0).kind, LightKind::kPoint);
+  const auto cone = [](double inner, double outer) {
+    return json{{"type", "spot"}, {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}};
+  };
+  Light spot = mended(cone(0.6, 0.5), "innerConeAngle is 0.6, taken for 0.5").at(0);
+  EXPECT_EQ(spot.cutoff, 0.5);
+  EXPECT_NEAR(spot.inner_cone, 0.5, 1e-6);
+  spot = mended(cone(0.6, 2), "outerConeAngle is 2, taken for pi/2").at(0);
+  EXPECT_EQ(spot.cutoff, kPi / 2);
+  EXPECT_EQ(spot.inner_cone, 0.6);
+  EXPECT_EQ(mended(cone(-0.5, 1), "innerConeAngle is -0.5").at(0).inner_cone, 0);
+  EXPECT_TRUE(mended(cone(0, 0), "outerConeAngle is 0").empty());
   EXPECT_THROW(light({{"type", "point"}, {"intensity", 1e300}}), InputError);
-  EXPECT_THROW(light({{"type", "neon"}}), InputError);
+}
+
+TEST_F(GltfLoader, LampsAndCamerasBelowAScaleOfZeroAreLeftOutWithAWarning) {
+  GltfFile file = triangleFile();
+  file.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}}, {{"type", "point"}}};
+  file.root["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}, {"zfar", 9}}}}};
+  file.root["nodes"] = {{{"mesh", 0}}, {{"scale", {0, 0, 0}}, {"children", {2, 3, 4}}}, {{"camera", 0}}};
+  for (const int lamp : {0, 1})
+    file.root["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", lamp}}}}}});
+  file.root["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = load(file);
+  EXPECT_TRUE(scene.lights.empty());
+  EXPECT_TRUE(scene.cameras.empty());
+  EXPECT_EQ(scene.objects.size(), 1u);
+  EXPECT_THAT(textsOf(scene.warnings),
+              ElementsAre(HasSubstr("nodes[2]: its scale leaves a camera no direction; left out"),
+                          HasSubstr("nodes[3]: its scale is 0; left out"),
+                          HasSubstr("nodes[4]: its scale is 0; left out")));
+  for (const Warning& warning : scene.warnings) EXPECT_FALSE(warning.repaired) << warning.text;
 }
 
 }  // namespace

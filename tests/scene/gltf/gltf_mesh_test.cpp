@@ -73,7 +73,11 @@ TEST_F(GltfLoader, PointsAndLinesAreLeftOut) {
   json line = file.primitive();
   line["mode"] = 1;
   file.root["meshes"][0]["primitives"].push_back(line);
-  EXPECT_EQ(load(file).meshes.at(0).triangles.size(), 1u);
+  const Scene scene = load(file);
+  EXPECT_EQ(scene.meshes.at(0).triangles.size(), 1u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(scene.warnings[0].text, HasSubstr("meshes[0].primitives[1]: mode 1 is of lines"));
+  EXPECT_FALSE(scene.warnings[0].repaired);
   file.primitive()["mode"] = 0;
   EXPECT_THAT(error(file), HasSubstr("shows nothing"));
 }

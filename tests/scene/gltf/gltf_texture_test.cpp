@@ -147,7 +147,7 @@ TEST_F(GltfTextures, NormalMapsHaveTangentsAndCoordinatesOfTheirOwn) {
   expectUvs(scene.meshes.at(0).uvs, {{0, 0.25f}, {1, 0.5f}, {0, 1}});
   EXPECT_TRUE(scene.meshes[0].normal_uvs.empty());
   file.root["materials"][0]["normalTexture"]["scale"] = 1e9;
-  EXPECT_THAT(error(file), HasSubstr("materials[0]: normalTexture.scale"));
+  EXPECT_THAT(repair(file), HasSubstr("materials[0]: normalTexture.scale"));
 }
 
 TEST_F(GltfTextures, WebPPicturesComeBeforeTheirFallback) {
@@ -165,12 +165,19 @@ TEST_F(GltfTextures, WebPPicturesComeBeforeTheirFallback) {
   EXPECT_EQ(scene.textures.size(), 1u);
 }
 
-TEST_F(GltfTextures, BasisPicturesFallBackOrAreRefused) {
+TEST_F(GltfTextures, BasisPicturesFallBackOrAreLeftOutWithAWarning) {
   file.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
   file.root["images"].push_back({{"uri", "a.ktx2"}});
   EXPECT_EQ(load(file).materials.at(0).diffuse_map.texture, 0);
   file.root["textures"][0].erase("source");
-  EXPECT_THAT(error(file), HasSubstr("textures[0]: has a KHR_texture_basisu picture only"));
+  const Scene scene = load(file);
+  EXPECT_EQ(scene.materials.at(0).diffuse_map.texture, -1);
+  ASSERT_EQ(scene.warnings.size(), 1u) << "though two maps use it";
+  EXPECT_THAT(scene.warnings[0].text,
+              HasSubstr("textures[0]: has only a KHR_texture_basisu picture, which is not supported"));
+  EXPECT_FALSE(scene.warnings[0].repaired);
+  file.root["textures"][0].erase("extensions");
+  EXPECT_THAT(load(file).warnings.at(0).text, HasSubstr("textures[0]: has no picture; drawn without"));
 }
 
 TEST_F(GltfTextures, TexturesOfSpecularCountByTheirMeans) {
@@ -220,13 +227,13 @@ TEST_F(GltfTextures, AMissingPictureIsToldOnceAndItsMaterialsDoWithout) {
   EXPECT_EQ(scene.materials[0].emission, glm::vec3(0)) << "it glows by the picture only";
 }
 
-TEST_F(GltfTextures, MalformedAddressesAreRefusedAtTheirPlace) {
-  for (const char* uri : {"%!QAAAQAAA5", "a%2", "a%", "100% wool.png", "a%00.png"}) {
-    file.root["images"] = {{{"uri", "a.png"}}, {{"uri", uri}}};
-    EXPECT_THAT(error(file), HasSubstr("images[1].uri: '%")) << uri;
+TEST_F(GltfTextures, AddressesThatMeanNoFileAreMissingPictures) {
+  for (const char* uri : {"%!QAAAQAAA5", "a%2", "a%", "100% wool.png", "a%00.png", ".", "http://x/b.png"}) {
+    file.root["images"] = {{{"uri", uri}}};
+    EXPECT_THAT(load(file).missing_textures,
+                testing::ElementsAre(HasSubstr("images[0]: there is no picture")))
+        << uri;
   }
-  file.root["images"] = {{{"uri", "."}}};
-  EXPECT_THAT(error(file), HasSubstr("images[0].uri: '.' is not a file"));
 }
 
 TEST_F(GltfLoader, OnePictureIsOneTexture) {

@@ -1,0 +1,468 @@
+#include "scene/gltf/gltf_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text_file.hpp"
+#include "scene/gltf/gltf_model.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr std::size_t kNoIndex = ~std::size_t{0};
+
+/// An object of the file and the way to it, which becomes text for messages alone. Absent members, and those
+/// of an object that is absent, have their defaults. Functions that read throw InputError where a member is
+/// of another kind.
+class ObjectReader {
+ public:
+  ObjectReader(const GltfModel& model, GltfJson& root) : model_(model), json_(&root) { expectObject(); }
+
+  /// Whether there is such a member.
+  bool has(const char* name) const { return find(name) != nullptr; }
+
+  ObjectReader object(const char* name) const {
+    GltfJson* found = find(name);
+    static GltfJson empty = GltfJson::object();
+    return {*this, name, kNoIndex, found ? *found : empty};
+  }
+
+  /// Calls read(object) for each object of a list.
+  template <typename Read>
+  void each(const char* name, const Read& read) const {
+    GltfJson* list = findList(name);
+    for (std::size_t i = 0; list && i < list->size(); ++i) read(ObjectReader(*this, name, i, (*list)[i]));
+  }
+
+  std::string text(const char* name, const char* otherwise = "") const {
+    GltfJson* found = find(name);
+    if (!found) return otherwise;
+    if (!found->is_string()) fail(name, "expected a text");
+    return std::move(found->get_ref<std::string&>());
+  }
+
+  /// What the thing is called. A name that is no text changes no picture.
+  std::string name() const {
+    const GltfJson* found = find("name");
+    if (!found || found->is_string()) return text("name");
+    repaired(model_, placeOf("name"), "is no text; left out", "name");
+    return "";
+  }
+
+  bool truth(const char* name) const {
+    const GltfJson* found = find(name);
+    if (found && !found->is_boolean()) fail(name, "expected true or false");
+    return found && found->get<bool>();
+  }
+
+  double number(const char* name, double otherwise) const {
+    const GltfJson* found = find(name);
+    return found ? numberOf(*found, name) : otherwise;
+  }
+
+  std::optional<double> optionalNumber(const char* name) const {
+    return has(name) ? std::optional(number(name, 0)) : std::nullopt;
+  }
+
+  std::vector<double> numbers(const char* name) const {
+    std::vector<double> values;
+    if (const GltfJson* list = findList(name))
+      for (const GltfJson& value : *list) values.push_back(numberOf(value, name));
+    return values;
+  }
+
+  std::size_t size(const char* name, std::size_t otherwise = 0) const {
+    const GltfJson* found = find(name);
+    if (!found) return otherwise;
+    if (found->is_number_unsigned()) return found->get<std::size_t>();
+    constexpr double kMostExact = 9007199254740992.0;  // 2^53
+    const double value = numberOf(*found, name);
+    if (!(value >= 0 && value < kMostExact && value == std::floor(value)))
+      fail(name, fmt::format("{}, expected a whole number from 0 on", value));
+    return static_cast<std::size_t>(value);
+  }
+
+  int index(const char* name) const {
+    const GltfJson* found = find(name);
+    return found ? indexOf(*found, name) : -1;
+  }
+
+  /// A number that names something, such as 9729 for a filter.
+  int code(const char* name, int otherwise) const {
+    const std::size_t value = size(name, static_cast<std::size_t>(otherwise));
+    return value < 1'000'000'000 ? static_cast<int>(value) : -1;
+  }
+
+  std::vector<int> indices(const char* name) const {
+    std::vector<int> values;
+    if (const GltfJson* list = findList(name))
+      for (const GltfJson& value : *list) values.push_back(indexOf(value, name));
+    return values;
+  }
+
+  std::vector<std::string> texts(const char* name) const {
+    std::vector<std::string> values;
+    if (GltfJson* list = findList(name))
+      for (GltfJson& value : *list) {
+        if (!value.is_string()) fail(name, "expected a list of texts");
+        values.push_back(std::move(value.get_ref<std::string&>()));
+      }
+    return values;
+  }
+
+  GltfAttributes attributes() const {
+    GltfAttributes values;
+    for (const auto& [name, value] : json_->items()) {
+      const int accessor = indexOf(value, name.c_str());
+      if (accessor >= 0) values.emplace(name, accessor);
+    }
+    return values;
+  }
+
+  /// The extensions, which their readers check.
+  GltfJson extensions() const {
+    GltfJson* found = find("extensions");
+    return found ? std::move(*found) : GltfJson();
+  }
+
+  /// The text "group" of its extras, which are anybody's.
+  std::optional<std::string> group() const {
+    const GltfJson* extras = find("extras");
+    if (!extras || !extras->is_object()) return {};
+    const auto group = extras->find("group");
+    if (group == extras->end() || !group->is_string()) return {};
+    return group->get<std::string>();
+  }
+
+ private:
+  ObjectReader(const ObjectReader& owner, const char* name, std::size_t index, GltfJson& json)
+      : model_(owner.model_), owner_(&owner), name_(name), index_(index), json_(&json) {
+    expectObject();
+  }
+
+  void expectObject() const {
+    if (!json_->is_object()) failGltf(model_, owner_ ? place() : "its JSON", "expected an object");
+  }
+
+  /// A member; null where there is none, or null is written for none.
+  GltfJson* find(const char* name) const {
+    const auto found = json_->find(name);
+    return found == json_->end() || found->is_null() ? nullptr : &*found;
+  }
+
+  GltfJson* findList(const char* name) const {
+    GltfJson* found = find(name);
+    if (found && !found->is_array()) fail(name, "expected a list");
+    return found;
+  }
+
+  double numberOf(const GltfJson& value, const char* name) const {
+    if (!value.is_number()) fail(name, "expected a number");
+    return value.get<double>();
+  }
+
+  int indexOf(const GltfJson& value, const char* name) const {
+    const double index = numberOf(value, name);
+    if (index != std::floor(index)) fail(name, fmt::format("{}, expected a whole number", index));
+    if (index < 0)
+      repaired(model_, placeOf(name), fmt::format("{} is nothing's number; left out", index),
+               "negative index");
+    // One that no file can have is refused where it is looked up.
+    return index < 0 ? -1 : index < 1e9 ? static_cast<int>(index) : 1'000'000'000;
+  }
+
+  std::string place() const {
+    if (!owner_) return "";
+    const std::string before = owner_->placeOf(name_);
+    return index_ == kNoIndex ? before : fmt::format("{}[{}]", before, index_);
+  }
+  std::string placeOf(const char* name) const {
+    const std::string here = place();
+    return here.empty() ? forMessage(name) : fmt::format("{}.{}", here, forMessage(name));
+  }
+  [[noreturn]] void fail(const char* name, const std::string& what) const {
+    failGltf(model_, placeOf(name), what);
+  }
+
+  const GltfModel& model_;
+  const ObjectReader* owner_ = nullptr;
+  const char* name_ = "";
+  std::size_t index_ = kNoIndex;
+  GltfJson* json_;
+};
+
+int componentsOf(const std::string& type) {
+  static const std::map<std::string, int> kComponents{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4},
+                                                      {"MAT2", 4},   {"MAT3", 9}, {"MAT4", 16}};
+  const auto found = kComponents.find(type);
+  return found == kComponents.end() ? 0 : found->second;
+}
+
+GltfAccessor parseAccessor(const ObjectReader& from) {
+  GltfAccessor accessor{.view = from.index("bufferView"),
+                        .offset = from.size("byteOffset"),
+                        .count = from.size("count"),
+                        .type = from.code("componentType", 0),
+                        .components = componentsOf(from.text("type")),
+                        .normalized = from.truth("normalized"),
+                        .sparse = {}};
+  if (!from.has("sparse")) return accessor;
+  const ObjectReader sparse = from.object("sparse"), indices = sparse.object("indices"),
+                     values = sparse.object("values");
+  accessor.sparse = GltfSparse{.count = sparse.size("count"),
+                               .index_offset = indices.size("byteOffset"),
+                               .value_offset = values.size("byteOffset"),
+                               .index_view = indices.index("bufferView"),
+                               .index_type = indices.code("componentType", 0),
+                               .value_view = values.index("bufferView")};
+  return accessor;
+}
+
+GltfTextureInfo parseTextureInfo(const ObjectReader& owner, const char* name) {
+  const ObjectReader from = owner.object(name);
+  return {.texture = from.index("index"),
+          .uv_set = std::max(from.index("texCoord"), 0),
+          .scale = from.number("scale", 1),
+          .extensions = from.extensions()};
+}
+
+GltfMaterial parseMaterial(const ObjectReader& from) {
+  const ObjectReader pbr = from.object("pbrMetallicRoughness");
+  return {.name = from.name(),
+          .base_factor = pbr.numbers("baseColorFactor"),
+          .emissive_factor = from.numbers("emissiveFactor"),
+          .metallic = pbr.number("metallicFactor", 1),
+          .roughness = pbr.number("roughnessFactor", 1),
+          .alpha_cutoff = from.number("alphaCutoff", 0.5),
+          .base = parseTextureInfo(pbr, "baseColorTexture"),
+          .metallic_roughness = parseTextureInfo(pbr, "metallicRoughnessTexture"),
+          .normal = parseTextureInfo(from, "normalTexture"),
+          .emissive = parseTextureInfo(from, "emissiveTexture"),
+          .alpha_mode = from.text("alphaMode", "OPAQUE"),
+          .double_sided = from.truth("doubleSided"),
+          .extensions = from.extensions()};
+}
+
+GltfPrimitive parsePrimitive(const ObjectReader& from) {
+  GltfPrimitive primitive{.attributes = from.object("attributes").attributes(),
+                          .indices = from.index("indices"),
+                          .material = from.index("material"),
+                          .mode = from.code("mode", 4),
+                          .targets = {},
+                          .extensions = {}};
+  from.each("targets", [&](const ObjectReader& target) { primitive.targets.push_back(target.attributes()); });
+  primitive.extensions = from.extensions();
+  return primitive;
+}
+
+GltfMesh parseMesh(const ObjectReader& from) {
+  GltfMesh mesh{.name = from.name(), .primitives = {}, .weights = from.numbers("weights")};
+  from.each("primitives",
+            [&](const ObjectReader& primitive) { mesh.primitives.push_back(parsePrimitive(primitive)); });
+  return mesh;
+}
+
+GltfNode parseNode(const ObjectReader& from) {
+  GltfNode node{.name = from.name(),
+                .children = from.indices("children"),
+                .mesh = from.index("mesh"),
+                .camera = from.index("camera"),
+                .skin = from.index("skin"),
+                .light = from.object("extensions").object("KHR_lights_punctual").index("light"),
+                .matrix = from.numbers("matrix"),
+                .translation = from.numbers("translation"),
+                .rotation = from.numbers("rotation"),
+                .scale = from.numbers("scale"),
+                .weights = from.numbers("weights"),
+                .group = from.group(),
+                .extensions = {}};
+  node.extensions = from.extensions();
+  return node;
+}
+
+GltfAnimationEntry parseAnimationEntry(const ObjectReader& from) {
+  GltfAnimationEntry animation{.name = from.name(), .channels = {}, .samplers = {}};
+  from.each("channels", [&](const ObjectReader& channel) {
+    const ObjectReader target = channel.object("target");
+    animation.channels.push_back({channel.index("sampler"), target.index("node"), target.text("path")});
+  });
+  from.each("samplers", [&](const ObjectReader& sampler) {
+    animation.samplers.push_back(
+        {sampler.index("input"), sampler.index("output"), sampler.text("interpolation", "LINEAR")});
+  });
+  return animation;
+}
+
+GltfCamera parseCamera(const ObjectReader& from) {
+  GltfCamera camera{.name = from.name(), .type = from.text("type"), .far = {}};
+  const ObjectReader lens = from.object(camera.type == "orthographic" ? "orthographic" : "perspective");
+  camera.ymag = lens.number("ymag", 0);
+  camera.yfov = lens.number("yfov", 0);
+  camera.near = lens.number("znear", 0);
+  camera.far = lens.optionalNumber("zfar");
+  return camera;
+}
+
+GltfLight parseLight(const ObjectReader& from) {
+  const ObjectReader spot = from.object("spot");
+  const GltfLight plain;
+  return {.name = from.name(),
+          .type = from.text("type"),
+          .color = from.numbers("color"),
+          .intensity = from.number("intensity", plain.intensity),
+          .inner_cone = spot.number("innerConeAngle", plain.inner_cone),
+          .outer_cone = spot.number("outerConeAngle", plain.outer_cone),
+          .range = from.optionalNumber("range"),
+          .group = from.group()};
+}
+
+void parseFile(const ObjectReader& root, GltfFile& file) {
+  const auto list = [&](const ObjectReader& owner, const char* name, auto& all, const auto& read) {
+    owner.each(name, [&](const ObjectReader& from) { all.push_back(read(from)); });
+  };
+  file.version = root.object("asset").text("version");
+  file.extensions_used = root.texts("extensionsUsed");
+  file.extensions_required = root.texts("extensionsRequired");
+  list(root, "buffers", file.buffers, [](const ObjectReader& from) {
+    GltfBuffer buffer{.uri = {}, .length = from.size("byteLength"), .bytes = {}};
+    if (from.has("uri")) buffer.uri = from.text("uri");
+    return buffer;
+  });
+  list(root, "bufferViews", file.views, [](const ObjectReader& from) {
+    return GltfView{from.index("buffer"), from.size("byteOffset"), from.size("byteLength"),
+                    from.size("byteStride"), from.extensions()};
+  });
+  list(root, "accessors", file.accessors, parseAccessor);
+  list(root, "images", file.images, [](const ObjectReader& from) {
+    return GltfImage{from.name(), from.text("uri"), from.index("bufferView"), {}, {}};
+  });
+  list(root, "samplers", file.samplers, [](const ObjectReader& from) {
+    return GltfSampler{from.code("wrapS", 0), from.code("wrapT", 0), from.code("magFilter", 0),
+                       from.code("minFilter", 0)};
+  });
+  list(root, "textures", file.textures, [](const ObjectReader& from) {
+    return GltfTexture{from.index("sampler"), from.index("source"), from.extensions()};
+  });
+  list(root, "materials", file.materials, parseMaterial);
+  list(root, "meshes", file.meshes, parseMesh);
+  list(root, "nodes", file.nodes, parseNode);
+  list(root, "skins", file.skins, [](const ObjectReader& from) {
+    return GltfSkinEntry{from.indices("joints"), from.index("inverseBindMatrices")};
+  });
+  list(root, "animations", file.animations, parseAnimationEntry);
+  list(root, "cameras", file.cameras, parseCamera);
+  list(root.object("extensions").object("KHR_lights_punctual"), "lights", file.lights, parseLight);
+  list(root, "scenes", file.scenes, [](const ObjectReader& from) { return from.indices("nodes"); });
+  file.scene = root.index("scene");
+  file.extensions = root.extensions();
+}
+
+/// Throws InputError for JSON nested so deep that copying or comparing it, which recurses, would overflow the
+/// stack.
+void checkNesting(const GltfModel& model, std::string_view json) {
+  constexpr int kDeepest = 500;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (c == '"') in_string = !in_string;
+    if (in_string) {
+      if (c == '\\') ++i;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kDeepest)
+        throw InputError(fmt::format("{}: JSON nested deeper than {}", model.path, kDeepest));
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+}
+
+/// How many bytes of valid UTF-8 a text begins with for its first letter; 0: it isn't one.
+std::size_t utf8Length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xc2 && first < 0xe0   ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first >= 0xf0 && first < 0xf5 ? 4
+                                                             : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Forms that are too long, surrogates, and numbers beyond the last letter's.
+  const unsigned second = byte(1);
+  const bool is_odd = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+                      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
+  return is_odd ? 0 : length;
+}
+
+/// The text with bytes that are no UTF-8 as letters of Latin-1, which older exporters write.
+std::string asUtf8(std::string_view text) {
+  std::string valid;
+  while (!text.empty()) {
+    const std::size_t length = utf8Length(text);
+    if (length > 0) {
+      valid += text.substr(0, length);
+    } else {
+      const unsigned byte = static_cast<unsigned char>(text[0]);
+      valid += static_cast<char>(0xc0 | byte >> 6);
+      valid += static_cast<char>(0x80 | (byte & 0x3f));
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return valid;
+}
+
+/// What the parser says is wrong without its own name and number.
+std::string parserWords(const std::exception& error) {
+  const std::string words = error.what();
+  const std::size_t end = words.find("] ");
+  return forMessage(end == std::string::npos ? words : words.substr(end + 2));
+}
+
+GltfJson parseJson(std::string_view text, const GltfModel& model) {
+  try {
+    return GltfJson::parse(text);
+  } catch (const GltfJson::exception& error) {
+    const std::string valid = asUtf8(text);
+    if (valid == text)
+      throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(error)));
+    try {
+      GltfJson json = GltfJson::parse(valid);
+      repaired(model, "its JSON", "is not UTF-8; other bytes are taken for Latin-1", "text");
+      return json;
+    } catch (const GltfJson::exception& second) {
+      throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(second)));
+    }
+  }
+}
+
+}  // namespace
+
+void parseGltf(std::string_view text, GltfModel& model) {
+  checkNesting(model, text);
+  GltfJson json = parseJson(text, model);
+  parseFile(ObjectReader(model, json), model.file);
+}
+
+std::size_t gltfComponentSize(int type) {
+  switch (type) {
+    case kGltfByte:
+    case kGltfUnsignedByte:
+      return 1;
+    case kGltfShort:
+    case kGltfUnsignedShort:
+      return 2;
+    case kGltfUnsignedInt:
+    case kGltfFloat:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace luciole

@@ -1,0 +1,215 @@
+#include "scene/gltf/gltf_resources.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text_file.hpp"
+#include "scene/find_file.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
+
+/// A number of four bytes, which must be there.
+std::uint32_t wordAt(std::string_view bytes, std::size_t place) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    word |= std::uint32_t{static_cast<unsigned char>(bytes[place + i])} << 8 * i;
+  return word;
+}
+
+bool startsChunk(std::string_view bytes, std::size_t place, std::uint32_t kind) {
+  return place + 8 <= bytes.size() && wordAt(bytes, place + 4) == kind;
+}
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// A URI's text with each %41 as the byte that it stands for. What is no such escape stays, as browsers have
+/// it.
+std::string withoutEscapes(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const int high = uri[i] == '%' && i + 2 < uri.size() ? hexDigit(uri[i + 1]) : -1;
+    const int low = high >= 0 ? hexDigit(uri[i + 2]) : -1;
+    text += low >= 0 ? static_cast<char>(high * 16 + low) : uri[i];
+    if (low >= 0) i += 2;
+  }
+  return text;
+}
+
+/// The digits' values; 64: none.
+constexpr std::array<std::uint8_t, 256> base64Values() {
+  std::array<std::uint8_t, 256> values{};
+  values.fill(64);
+  for (std::uint8_t i = 0; i < 26; ++i) {
+    values['A' + i] = i;
+    values['a' + i] = static_cast<std::uint8_t>(26 + i);
+  }
+  for (std::uint8_t i = 0; i < 10; ++i) values['0' + i] = static_cast<std::uint8_t>(52 + i);
+  values['+'] = values['-'] = 62;
+  values['/'] = values['_'] = 63;
+  return values;
+}
+
+/// The bytes of base64's text, in which blanks and ends of lines may lie; nothing where it is no such text.
+std::optional<std::string> fromBase64(std::string_view text) {
+  static constexpr std::array<std::uint8_t, 256> kValues = base64Values();
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  int digits = 0;
+  bool has_ended = false;
+  for (const char c : text) {
+    const std::uint8_t value = kValues[static_cast<unsigned char>(c)];
+    if (value < 64 && !has_ended) {
+      bits = bits << 6 | value;
+      if (++digits % 4 != 0) continue;
+      bytes += {static_cast<char>(bits >> 16), static_cast<char>(bits >> 8), static_cast<char>(bits)};
+    } else if (c == '=') {
+      has_ended = true;
+    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\n') {
+      return {};
+    }
+  }
+  if (digits % 4 == 1) return {};
+  if (digits % 4 == 2) bytes += static_cast<char>(bits >> 4);
+  if (digits % 4 == 3) bytes += {static_cast<char>(bits >> 10), static_cast<char>(bits >> 2)};
+  return bytes;
+}
+
+bool isData(std::string_view uri) { return uri.size() >= 5 && equalIgnoringCase(uri.substr(0, 5), "data:"); }
+
+/// What a data URI holds (RFC 2397), whatever its media type says. Throws InputError.
+std::string dataOf(std::string_view uri, const std::string& place, const GltfModel& model) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos) failGltf(model, place, "is a data URI without a comma");
+  const std::string_view header = uri.substr(0, comma), data = uri.substr(comma + 1);
+  const std::string_view last = header.substr(std::min(header.rfind(';'), header.size()));
+  if (!equalIgnoringCase(last, ";base64")) return withoutEscapes(data);
+  std::optional<std::string> bytes =
+      data.find('%') == std::string_view::npos ? fromBase64(data) : fromBase64(withoutEscapes(data));
+  if (!bytes) failGltf(model, place, "its data is not base64");
+  return std::move(*bytes);
+}
+
+/// The file that a URI means: escaped, or else as it is written.
+std::optional<std::string> findUri(const std::string& uri, const SearchFolders& where) {
+  const std::string name = withoutEscapes(uri);
+  if (name.empty() || name.find('\0') != std::string::npos) return {};
+  std::optional<std::string> found = findFile(name, where);
+  return found || name == uri ? found : findFile(uri, where);
+}
+
+bool isEmptyFile(const std::string& path) {
+  std::error_code failed;
+  return std::filesystem::file_size(path, failed) == 0;
+}
+
+std::span<const std::byte> asBytes(std::string_view text) { return std::as_bytes(std::span(text)); }
+
+/// Keeps bytes for as long as the model lives.
+std::span<const std::byte> keep(std::string bytes, GltfModel& model) {
+  return asBytes(model.kept.emplace_back(std::move(bytes)));
+}
+
+void findBuffer(std::size_t index, std::string_view binary, const SearchFolders& where, GltfModel& model) {
+  GltfBuffer& buffer = model.file.buffers[index];
+  const std::string place = fmt::format("buffers[{}]", index);
+  if (!buffer.uri) {
+    buffer.bytes = asBytes(binary);
+    // Without data there may be a buffer that an extension gives a meaning. Who reads from it is told.
+    if (buffer.bytes.empty()) return;
+  } else if (isData(*buffer.uri)) {
+    buffer.bytes = keep(dataOf(*buffer.uri, place + ".uri", model), model);
+    buffer.uri->clear();
+  } else {
+    const std::optional<std::string> file = findUri(*buffer.uri, where);
+    if (!file) failGltf(model, place, fmt::format("there is no file '{}'", forMessage(*buffer.uri)));
+    buffer.bytes = keep(readFile(*file), model);
+  }
+  if (buffer.bytes.size() < buffer.length)
+    failGltf(
+        model, place,
+        fmt::format("byteLength is {}, but there are only {} bytes", buffer.length, buffer.bytes.size()));
+}
+
+void findImage(std::size_t index, const SearchFolders& where, GltfModel& model) {
+  GltfImage& image = model.file.images[index];
+  if (image.uri.empty()) return;
+  if (isData(image.uri)) {
+    image.bytes = keep(dataOf(image.uri, fmt::format("images[{}].uri", index), model), model);
+    image.uri.clear();
+    return;
+  }
+  const std::optional<std::string> file = findUri(image.uri, where);
+  if (file && !isEmptyFile(*file)) image.file = *file;
+}
+
+}  // namespace
+
+GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
+  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+  if (!bytes.starts_with("glTF")) return {bytes, {}};
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format("{}: is no GLB file: {}", model.path, what));
+  };
+  if (bytes.size() < kHeader + kChunkHeader) fail("it is cut short");
+  if (wordAt(bytes, 4) != 2) fail(fmt::format("version {}, expected 2", wordAt(bytes, 4)));
+  if (wordAt(bytes, 8) != bytes.size())
+    repaired(model, "its header", fmt::format("length is {}, the file's {}", wordAt(bytes, 8), bytes.size()),
+             "GLB length");
+  if (!startsChunk(bytes, kHeader, kJsonChunk)) fail("its first chunk is no JSON");
+  const std::size_t json = kHeader + kChunkHeader, length = wordAt(bytes, kHeader);
+  if (length > bytes.size() - json)
+    fail(fmt::format("its JSON has {} bytes, but only {} follow", length, bytes.size() - json));
+  GltfParts parts{bytes.substr(json, length), {}};
+  std::size_t place = json + length;
+  if (place % 4 != 0) {
+    repaired(model, "its JSON chunk", fmt::format("{} bytes, expected a multiple of 4", length),
+             "GLB padding");
+    const std::size_t padded = (place + 3) / 4 * 4;
+    if (!startsChunk(bytes, place, kBinChunk) && startsChunk(bytes, padded, kBinChunk)) place = padded;
+  }
+  while (place + kChunkHeader <= bytes.size() && parts.binary.empty()) {
+    const std::size_t size = wordAt(bytes, place), begin = place + kChunkHeader;
+    // One that is cut short is refused where a buffer needs more.
+    if (wordAt(bytes, place + 4) == kBinChunk) parts.binary = bytes.substr(begin, size);
+    place = begin + size;
+  }
+  return parts;
+}
+
+void findResources(std::string_view binary, const std::vector<std::string>& search, GltfModel& model) {
+  const SearchFolders where{std::filesystem::path(model.path).parent_path().string(), search};
+  for (std::size_t i = 0; i < model.file.buffers.size(); ++i) findBuffer(i, binary, where, model);
+  for (std::size_t i = 0; i < model.file.images.size(); ++i) findImage(i, where, model);
+  for (std::size_t i = 0; i < model.file.views.size(); ++i) {
+    const GltfView& view = model.file.views[i];
+    if (view.buffer < 0 || std::size_t(view.buffer) >= model.file.buffers.size()) continue;
+    const GltfBuffer& buffer = model.file.buffers[std::size_t(view.buffer)];
+    const auto fitsInto = [&](std::size_t bytes) {
+      return view.offset <= bytes && view.length <= bytes - view.offset;
+    };
+    if (!fitsInto(buffer.length) && fitsInto(buffer.bytes.size()))
+      repaired(model, fmt::format("bufferViews[{}]", i),
+               fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
+                           view.length, view.offset, buffer.length),
+               "view past byteLength");
+  }
+}
+
+}  // namespace luciole
