@@ -240,7 +240,10 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
   }
   material.alpha = static_cast<float>(base.a);
   if (source.alphaMode == "MASK") material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-  if (source.alphaMode == "BLEND") material.alpha_cutoff = 0.5f;
+  if (source.alphaMode == "BLEND") {
+    material.blended = true;
+    material.alpha_cutoff = 0.5f;  // of its shadows
+  }
   if (!(material.alpha_cutoff >= 0)) failGltf(model, place, "alphaCutoff is negative");
   material.double_sided = source.doubleSided;
   return material;
