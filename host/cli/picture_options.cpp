@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "base/threads.hpp"
 #include "cli/cameras.hpp"
 #include "cli/commands.hpp"
@@ -20,6 +21,7 @@
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "load/load_scene.hpp"
+#include "raster/blend.hpp"
 #include "render/coarse_triangles.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
@@ -425,6 +427,19 @@ Scene openLitScene(const std::string& path, double frame, const PictureOptions& 
        "gouraud"});
   if (!options.quiet) tellWarning(scene.warnings.back().text);
   return scene;
+}
+
+void warnOfDither(Scene& scene, const PictureOptions& options) {
+  if (options.samples > 1) return;
+  const std::vector<std::uint32_t> materials = blendedMaterials(scene);
+  if (materials.empty()) return;
+  const std::string& name = scene.materials[materials.front()].name;
+  const std::string others = materials.size() > 1 ? fmt::format(" and {} more", materials.size() - 1) : "";
+  scene.warnings.push_back(
+      {fmt::format("{}: material '{}'{}: blended by dithering, one sample a pixel; more --samples smooth it",
+                   scene.name, forMessage(name), others),
+       "dithered"});
+  if (!options.quiet) tellWarning(scene.warnings.back().text);
 }
 
 std::vector<Aov> aovsOf(const PictureOptions& options) {

@@ -99,6 +99,9 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
 /// that are too large for it (coarseTriangleWidth).
 Scene openLitScene(const std::string& path, double frame, const PictureOptions& options);
 
+/// Warns of blended materials (scene/scene.hpp) that one sample a pixel shows as grain.
+void warnOfDither(Scene& scene, const PictureOptions& options);
+
 /// The layers that --aov names, each once. Throws InputError.
 std::vector<Aov> aovsOf(const PictureOptions& options);
 

@@ -15,6 +15,7 @@
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/file_format.hpp"
+#include "image/film.hpp"
 #include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 
@@ -66,7 +67,9 @@ WriteOptions fileOptions(const PictureOptions& options) {
 
 bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
   if (!options.exposure.empty()) return options.exposure == "auto";
-  return isMeshFile(scene_path) && !pictureFormat(options.output, fileOptions(options)).is_float;
+  if (!isMeshFile(scene_path)) return false;
+  return isFilm(options.output, options.format) ||
+         !pictureFormat(options.output, fileOptions(options)).is_float;
 }
 
 void checkOtherOutputs(const PictureOptions& options) {

@@ -337,6 +337,7 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
     }
     Scene scene = timed(stats, Stage::kLoadScene,
                         [&] { return openLitScene(options->scene, options->frame, *options); });
+    warnOfDither(scene, *options);
     removeBackground(*options, scene);
     for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
       checkOutput(picture);

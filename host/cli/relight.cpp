@@ -24,11 +24,14 @@
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/gbuffer_input.hpp"
 #include "image/exposure.hpp"
+#include "image/light_mixer.hpp"
+#include "image/light_names.hpp"
 #include "image/picture_hash.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/surface_ids.hpp"
 #include "scene/json/mesh_file.hpp"
+#include "scene/light_groups.hpp"
 
 namespace luciole {
 namespace {
@@ -107,16 +110,44 @@ void leaveLightAlone(Scene& scene, GBuffer& gbuffer) {
   gbuffer.emission = {};
 }
 
-/// Adds light to a picture's R, G and B.
-Image sumOf(Image picture, const Image& light) {
-  const std::size_t channels = picture.channels.size(), lit = light.channels.size();
-  tbb::parallel_for(0, picture.height, [&](int y) {
-    for (std::size_t pixel = std::size_t(y) * picture.width; pixel < std::size_t(y + 1) * picture.width;
-         ++pixel)
-      for (std::size_t c = 0; c < 3; ++c)
-        picture.pixels[pixel * channels + c] += light.pixels[pixel * lit + c];
+/// Adds a picture's channels to those of the same names of another of its size, or to new ones.
+Image sumOf(const Image& picture, const Image& more) {
+  Image sum{picture.width, picture.height, picture.channels, {}};
+  std::vector<std::size_t> places;  // in the sum, of the channels of `more`
+  for (const std::string& channel : more.channels) {
+    const auto found = std::find(sum.channels.begin(), sum.channels.end(), channel);
+    places.push_back(std::size_t(found - sum.channels.begin()));
+    if (found == sum.channels.end()) sum.channels.push_back(channel);
+  }
+  const std::size_t own = picture.channels.size(), channels = sum.channels.size();
+  sum.pixels.resize(std::size_t(sum.width) * std::size_t(sum.height) * channels);
+  tbb::parallel_for(0, sum.height, [&](int y) {
+    const std::size_t first = std::size_t(y) * std::size_t(sum.width);
+    for (std::size_t pixel = first; pixel < first + std::size_t(sum.width); ++pixel) {
+      float* const out = sum.pixels.data() + pixel * channels;
+      std::copy_n(picture.pixels.data() + pixel * own, own, out);
+      for (std::size_t c = 0; c < places.size(); ++c)
+        out[places[c]] += more.pixels[pixel * places.size() + c];
+    }
   });
-  return picture;
+  return sum;
+}
+
+/// A picture with the layers of its groups of lights that its file has, or where it has none, with all of it
+/// as the layer of what no light gives. Throws InputError.
+Image withGroups(const Image& picture, const std::string& path) {
+  Image groups = readLightGroups(path);
+  if (groups.channels.empty()) {
+    groups = {picture.width, picture.height, {}, {}};
+    for (const char* component : {".R", ".G", ".B"})
+      groups.channels.push_back(std::string(kLightGroups) + kRestOfLight + component);
+    for (std::size_t at = 0; at < picture.pixels.size(); at += picture.channels.size())
+      groups.pixels.insert(groups.pixels.end(), &picture.pixels[at], &picture.pixels[at] + 3);
+  }
+  if (groups.width != picture.width || groups.height != picture.height)
+    throw InputError(fmt::format("{}: layers {}NAME are of {}x{} pixels, and its picture of {}x{}", path,
+                                 kLightGroups, groups.width, groups.height, picture.width, picture.height));
+  return sumOf(picture, groups);
 }
 
 /// Throws InputError for layers of --aov that a file of surfaces doesn't know.
@@ -142,7 +173,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
   logDevice(device.description);
   if (adds) {
-    image = sumOf(std::move(picture), image);
+    image = sumOf(picture, image);
     expose(image, exposure);
   }
   if (measuresExposure(options, scene_path)) {
@@ -173,10 +204,11 @@ void relight(CommandContext& context, RelightOptions& options) {
   const int frame = useFrame(options, "relight");
   checkOutput(options);
   refuseSurfaceIds(options);
-  if (options.add && (options.alpha || options.light_groups || !options.aovs.empty()))
+  if (options.add && (options.alpha || !options.aovs.empty()))
     throw InputError(
-        "--add: keeps the picture's own A and makes no other layers, without --alpha, --aov or "
-        "--light-groups");
+        "--add: keeps the picture's own A and makes no layers but those of --light-groups, without --alpha "
+        "or "
+        "--aov");
   if (options.albedo && isMeshFile(options.scene))
     throw InputError(
         fmt::format("--albedo: the lights of {} are divided by pi already, as every glTF's", options.scene));
@@ -189,6 +221,7 @@ void relight(CommandContext& context, RelightOptions& options) {
                              [&] { return readGBuffer(options.input, requestOf(options, scene)); });
   tellNotes(input.notes, options.quiet);
   if (options.add) leaveLightAlone(scene, input.gbuffer);
+  if (options.add && options.light_groups) input.color = withGroups(input.color, options.input);
   lightAndWrite(context, options, scene, options.scene, input.gbuffer, std::move(input.color), frame, stats);
 }
 

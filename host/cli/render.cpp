@@ -16,6 +16,7 @@
 #include "cli/frame_claims.hpp"
 #include "cli/frames.hpp"
 #include "cli/open_devices.hpp"
+#include "cli/orbit.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/progress.hpp"
@@ -40,7 +41,15 @@ struct RenderOptions : PictureOptions {
   std::string shard;
   std::optional<double> frames_per_second;
   bool resume = false;
+  Orbit orbit;
 };
+
+/// The settings of a picture of a scene that is posed for the frame.
+RenderSettings settingsAt(int frame, const PictureOptions& picture, const Scene& scene, const Orbit& orbit) {
+  RenderSettings settings = renderSettings(picture, scene);
+  settings.camera = orbiting(settings.camera, orbit, frame);
+  return settings;
+}
 
 /// The part of the picture that is made.
 Crop windowOf(const RenderSettings& settings) {
@@ -56,15 +65,16 @@ std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene,
   if (!measuresExposure(options, options.scene)) return exposures;
   poseScene(scene, frame);
   for (std::size_t i = 0; i < pictures.size(); ++i)
-    exposures[i] = measureExposure(device, scene, renderSettings(pictures[i], scene), stats);
+    exposures[i] =
+        measureExposure(device, scene, settingsAt(frame, pictures[i], scene, options.orbit), stats);
   return exposures;
 }
 
-/// Renders the scene at its frame, with the exposure that was measured or that the options say, and writes
-/// the picture, to the film unless that is null. keeps: see renderShared.
-void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options, Film* film,
-                   const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
-  RenderSettings settings = renderSettings(options, scene);
+/// Renders the scene as it is posed, by these settings of the options, with the exposure that was measured or
+/// that the options say, and writes the picture, to the film unless that is null. keeps: see renderShared.
+void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
+                   RenderSettings settings, Film* film, const std::function<void(int, int)>& on_pass,
+                   bool keeps, Stats& stats) {
   settings.on_pass = on_pass;
   if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
   const Crop window = windowOf(settings);
@@ -160,7 +170,8 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
-        renderPicture(sharers, scene, picture, film, showPass, true, stats);
+        renderPicture(sharers, scene, picture, settingsAt(frames[i], picture, scene, options.orbit), film,
+                      showPass, true, stats);
         progress.clear();
         reportStats(picture, stats, frames[i]);
       }
@@ -257,6 +268,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       "(default: 1); #### or %04d in the output's name (and that of --stats) becomes the number; a frame "
       "that "
       "fails is told and the others are made");
+  addOrbitOption(*command, options->orbit);
   command
       ->add_option(
           "--fps", options->frames_per_second,
@@ -268,6 +280,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
                       "tasks share them)");
   command->callback([&context, options] {
+    options->frames = framesOf(options->frames, options->orbit);
     const FrameChoice choice = chosenFrames(options->frames);
     if (!choice.is_list) useFrame(*options, "render");
     checkOptions(*options, choice);
@@ -293,6 +306,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
+    warnOfDither(scene, *options);
+    if (options->orbit.frames > 0) {
+      setMiddle(scene, options->orbit);
+      if (!choice.is_list) poseScene(scene, choice.frames.front());
+    }
     if (choice.is_list) {
       // Before any frame: what is wrong with it is so with all.
       const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
@@ -326,7 +344,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                       std::size_t(passes));
       };
       stats.measured_exposure = exposures[i];
-      renderPicture(sharers, scene, pictures[i], nullptr, showPass, false, stats);
+      renderPicture(sharers, scene, pictures[i], settingsAt(frame, pictures[i], scene, options->orbit),
+                    nullptr, showPass, false, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);

@@ -30,14 +30,20 @@ std::string groupOfRed(const std::string& channel) {
   return length > 2 ? channel.substr(kLightGroups.size(), length - 2) : "";
 }
 
-/// The part of the file that has the groups' layers. Throws InputError where none has.
-int partOf(const ExrInput& input, const std::string& path) {
+/// The part of the file that has the groups' layers; -1 where none has.
+int findPart(const ExrInput& input) {
   for (std::size_t part = 0; part < input.parts().size(); ++part) {
     const std::vector<std::string>& channels = input.parts()[part].channels;
     if (std::any_of(channels.begin(), channels.end(),
                     [](const std::string& name) { return !groupOfRed(name).empty(); }))
       return int(part);
   }
+  return -1;
+}
+
+/// The same, but throws InputError where none has.
+int partOf(const ExrInput& input, const std::string& path) {
+  if (const int part = findPart(input); part >= 0) return part;
   throw InputError(
       fmt::format("{}: no layers {}NAME, which render --light-groups writes", path, kLightGroups));
 }
@@ -85,6 +91,29 @@ std::vector<GroupFactor> lightGroupsOf(const std::string& path) {
   for (const std::string& name : input.parts()[std::size_t(partOf(input, path))].channels)
     if (const std::string group = groupOfRed(name); !group.empty()) groups.push_back({group});
   return groups;
+}
+
+Image readLightGroups(const std::string& path) {
+  ExrInput input(path);
+  const int part = findPart(input);
+  if (part < 0) return {};
+  const PicturePart& header = input.parts()[std::size_t(part)];
+  Image image{header.size.x, header.size.y, {}, {}};
+  std::vector<int> places;
+  for (std::size_t c = 0; c < header.channels.size(); ++c) {
+    if (!header.channels[c].starts_with(kLightGroups)) continue;
+    image.channels.push_back(header.channels[c]);
+    places.push_back(int(c));
+  }
+  const std::size_t pixels = std::size_t(header.size.x) * std::size_t(header.size.y),
+                    channels = places.size();
+  const ChannelPlanes planes = input.read(part, places);
+  requireMemory(double(pixels) * double(channels) * sizeof(float), path);
+  image.pixels.resize(pixels * channels);
+  tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t i) {
+    for (std::size_t c = 0; c < channels; ++c) image.pixels[i * channels + c] = planes[c * pixels + i];
+  });
+  return image;
 }
 
 Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups, WriteOptions& options) {

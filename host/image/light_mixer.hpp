@@ -20,6 +20,10 @@ struct GroupFactor {
 /// channels. Throws InputError, also where there is none.
 std::vector<GroupFactor> lightGroupsOf(const std::string& path);
 
+/// The layers of an EXR's groups of lights alone, channels as the file calls them; no channels where it has
+/// no such layers. Throws InputError and MachineError.
+Image readLightGroups(const std::string& path);
+
 /// The sum of an EXR's groups times their factors, and its A where it has one: summed in double, so within
 /// half an ulp. NaN counts as the largest float, as other sums beyond it. `options` gets the file's camera
 /// and place in the whole picture. Throws InputError and MachineError.

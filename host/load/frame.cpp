@@ -185,6 +185,7 @@ Framing frameFromInside(const Bounds& bounds, const Stand& stand) {
   glm::dvec3 target = stand.eye + stand.ahead * stand.length;
   target.y += std::min(0.2 * height, 0.2 * stand.length);
   framing.camera.camera_to_world = cameraToWorld(stand.eye, target, {0, 1, 0});
+  framing.camera.target = stand.eye;  // in a room one turns about oneself
   framing.camera.fov_y = glm::radians(60.0);
   framing.camera.far = 1.1 * glm::length(bounds.high - bounds.low);
   framing.camera.near = std::max(0.01 * height, 1e-5 * framing.camera.far);
@@ -208,6 +209,7 @@ Framing frameFromOutside(const Bounds& bounds, const glm::dvec3& back) {
   }
   framing.camera.camera_to_world = rotation;
   framing.camera.camera_to_world[3] = glm::dvec4(center + back * distance, 1);
+  framing.camera.target = center;
   framing.camera.near = std::max(0.5 * (distance - radius), 1e-3 * distance);
   framing.camera.far = distance + 1.5 * radius;
   return framing;

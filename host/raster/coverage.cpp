@@ -165,7 +165,8 @@ void drawWhereSolid(const HoleTest& holes, const Surface& surface, std::uint32_t
                     NearestSamples& samples, BinPixels& pixels) {
   LaneMask wanted;
   for (int i = 0; i < kSquarePixels; ++i) wanted[i] = i < samples.count;
-  const LaneMask open = holesIn(holes.scene, surface, holes.plane, samples.x, samples.y, wanted);
+  const LaneMask open =
+      holesIn(holes.scene, surface, holes.plane, samples.x, samples.y, wanted, holes.sample);
   for (int i = 0; i < samples.count; ++i) {
     if (open[i]) continue;
     pixels.depth[samples.place[i]] = samples.z[i];

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "raster/bins.hpp"
@@ -17,11 +18,13 @@ struct BinPixels {
   alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> label;  ///< the triangle, or its slopes
 };
 
-/// What the test for holes of alpha-masked triangles needs.
+/// What the test for holes of alpha-masked and blended triangles needs.
 struct HoleTest {
   const Scene& scene;
   const std::vector<PlacedObject>& objects;
   const ViewPlane& plane;
+  /// Of each pixel, where one is drawn. None for a depth map, which knows masks alone.
+  std::optional<SampleNumber> sample;
 };
 
 /// Draws a bin's triangles: the nearer wins, and at equal depth the one with the lower number. Labels are the

@@ -34,6 +34,7 @@ std::vector<PlacedObject> placeObjects(const Scene& scene, std::span<const std::
     const Mesh& mesh = lit_vertices && plain.divided ? *plain.divided : plain;
     PlacedObject& place = placed.emplace_back();
     place.mesh = &mesh;
+    place.number = index;
     place.material = object.material;
     place.first_vertex = vertices;
     place.first_triangle = std::uint32_t(triangles);

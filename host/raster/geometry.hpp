@@ -17,7 +17,8 @@ namespace luciole {
 /// It refers to the scene's mesh.
 struct PlacedObject {
   const Mesh* mesh = nullptr;
-  int material = -1;  ///< as in Object
+  std::uint32_t number = 0;  ///< in Scene::objects
+  int material = -1;         ///< as in Object
   std::size_t first_vertex = 0;
   std::uint32_t first_triangle = 0;
   bool mirrored = false;  ///< its transform turns counter-clockwise triangles clockwise

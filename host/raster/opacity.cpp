@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "image/srgb.hpp"
+#include "raster/blend.hpp"
 #include "raster/sample_texture.hpp"
 
 namespace luciole {
@@ -154,18 +155,21 @@ bool isHoleAt(const Scene& scene, const PlacedObject& object, std::uint32_t tria
   return opacityAt(scene, surface, weights, place) < surface.material->alpha_cutoff;
 }
 
-bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y) {
+bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, const glm::dvec2& at,
+            const glm::ivec2& pixel, const SampleNumber& sample) {
   const Material& material = *surface.material;
-  const Weights weights = weightsInside(surface, plane.at(x, y));
+  const Weights weights = weightsInside(surface, plane.at(at.x, at.y));
   const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;
   const TexturePlace place = textured && !surface.object->mesh->uvs.empty()
-                                 ? texturePlace(surface, plane, x, y, weights)
+                                 ? texturePlace(surface, plane, at.x, at.y, weights)
                                  : TexturePlace{};
-  return opacityAt(scene, surface, weights, place) < material.alpha_cutoff;
+  const float opacity = opacityAt(scene, surface, weights, place);
+  if (material.blended) return !(opacity > blendThreshold(surface.blend_surface, pixel, sample));
+  return opacity < material.alpha_cutoff;
 }
 
 LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
-                 const Lanes<double>& y, const LaneMask& wanted) {
+                 const Lanes<double>& y, const LaneMask& wanted, const std::optional<SampleNumber>& sample) {
   const Material& material = *surface.material;
   const LaneWeights here = inPlane(surface, plane, x, y, {0, 0});
   LaneWeights weights = here;
@@ -176,6 +180,12 @@ LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& pl
     places = texturePlaces(surface, plane, x, y, here, weights);
   const Lanes<float> opacity = opacities(scene, surface, weights, places, wanted);
   LaneMask holes;
+  if (material.blended && sample) {
+    for (int i = 0; i < kSquarePixels; ++i)
+      holes[i] =
+          wanted[i] && !(opacity[i] > blendThreshold(surface.blend_surface, {int(x[i]), int(y[i])}, *sample));
+    return holes;
+  }
   for (int i = 0; i < kSquarePixels; ++i) holes[i] = wanted[i] & (opacity[i] < material.alpha_cutoff);
   return holes;
 }

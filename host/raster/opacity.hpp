@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "raster/square.hpp"
 #include "raster/surface.hpp"
 
@@ -12,15 +14,20 @@ float opacityAt(const Scene& scene, const Surface& surface, const Weights& weigh
 
 /// Whether a triangle of an object (counted in its mesh) has a hole at a place given by barycentric weights:
 /// its opacity there, with maps looked up at their finest level, is below its material's alpha_cutoff.
+/// Shadows ask it.
 bool isHoleAt(const Scene& scene, const PlacedObject& object, std::uint32_t triangle, const Weights& weights);
 
-/// Whether the surface has a hole at (x, y), as in ViewPlane::at: its opacity is below its material's
-/// alpha_cutoff, which must be > 0.
-bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, double x, double y);
+/// Whether surfaces of a material may have holes, for a camera.
+inline bool hasHoles(const Material& material) { return material.alpha_cutoff > 0.0f || material.blended; }
 
-/// The same, bit for bit, for the wanted ones of several places at once: 1 where there is a hole, 0
-/// elsewhere.
+/// Whether the surface has a hole at a place, as in ViewPlane::at, for a sample of a pixel: its opacity is
+/// below its material's alpha_cutoff, or if that is blended not above the sample's blendThreshold().
+bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, const glm::dvec2& place,
+            const glm::ivec2& pixel, const SampleNumber& sample);
+
+/// The same, bit for bit, for the wanted ones of several pixels at once: 1 where there is a hole, 0
+/// elsewhere. Without a sample blended materials, too, are held against their alpha_cutoff.
 LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
-                 const Lanes<double>& y, const LaneMask& wanted);
+                 const Lanes<double>& y, const LaneMask& wanted, const std::optional<SampleNumber>& sample);
 
 }  // namespace luciole

@@ -28,7 +28,7 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   planes.emission |= lit_vertices;
   GBuffer gbuffer = emptyGBuffer(view, planes, std::move(used));
   const ViewPlane plane = viewPlane(view);
-  const HoleTest holes{scene, geometry.objects, plane};
+  const HoleTest holes{scene, geometry.objects, plane, view.number};
   const ResolveInput input{scene,         geometry.objects, plane,         shading,
                            vertex_colors, planes.lift,      planes.unbent, planes.model};
   RasterCounts own_counts;
@@ -55,7 +55,7 @@ void rasterizeDepth(const Scene& scene, const Meshlets& meshlets, std::span<cons
   const Bins bins = binTriangles(setup.triangles, view, farthest);
 
   const ViewPlane plane = viewPlane(view);
-  const HoleTest holes{scene, placed.objects, plane};
+  const HoleTest holes{scene, placed.objects, plane, std::nullopt};
   tbb::parallel_for(0, bins.size(), [&](int bin) {
     if (!farthest.empty() && !std::isfinite(farthest[bin])) return;
     BinPixels pixels;

@@ -10,6 +10,7 @@
 
 #include "raster/clip.hpp"
 #include "raster/concatenate.hpp"
+#include "raster/opacity.hpp"
 #include "raster/rasterize.hpp"
 
 namespace luciole {
@@ -135,7 +136,7 @@ void setupTriangle(const Scene& scene, const PlacedObject& object, std::uint32_t
   }
 
   const std::uint32_t number = object.first_triangle + in_mesh;
-  const bool masked = material.alpha_cutoff > 0.0f;
+  const bool masked = hasHoles(material);
   if (!(any & (kBehindNear | kBeyondFar | kOutsideGuard))) {
     emitTriangle({vertices.screen[corners[0]], vertices.screen[corners[1]], vertices.screen[corners[2]]},
                  frame, winding, number, masked, output);

@@ -176,7 +176,7 @@ GroupPlace placeOf(const SampleGroup& group, const std::uint32_t* labels, Groupi
   const double count = group.samples, fine = kSubpixels;
   const glm::dvec2 mean = glm::dvec2(group.sum) / count;
   const Material& material = *grouping.surfaces[group.triangle].surface.material;
-  if (!(material.alpha_cutoff > 0.0f)) {
+  if (!hasHoles(material)) {
     const glm::dvec2 variance = glm::max(glm::dvec2(group.squares) / count - mean * mean, glm::dvec2(0.0));
     return {glm::vec2(mean / fine), glm::vec2(glm::sqrt(variance) / fine)};
   }
@@ -309,7 +309,7 @@ void forEachStrip(const SampledView& sampled, int bin, Visit visit) {
 
 void drawRows(const SampledView& sampled, int bin, int row, std::span<std::uint8_t> covering,
               StripSamples& samples) {
-  const HoleTest holes{sampled.scene, sampled.objects, sampled.plane};
+  const HoleTest holes{sampled.scene, sampled.objects, sampled.plane, std::nullopt};
   drawStrip(sampled.setup.triangles, sampled.bins, bin, row, holes, sampled.pattern, covering, samples);
 }
 

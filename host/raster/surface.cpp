@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "raster/blend.hpp"
 #include "raster/sample_texture.hpp"
 
 namespace luciole {
@@ -40,6 +41,16 @@ glm::dvec3 nearestOnEdge(const Surface& surface, const glm::dvec3& p) {
 glm::vec2 finiteOrZero(const glm::dvec2& step) {
   const glm::vec2 rounded(step);
   return std::isfinite(rounded.x) && std::isfinite(rounded.y) ? rounded : glm::vec2(0.0f);
+}
+
+/// A triangle's number in its mesh, or for the two of a quad, one behind the other, that of the first.
+std::uint32_t triangleOrQuad(const Mesh& mesh, std::uint32_t triangle) {
+  const std::uint32_t other = triangle ^ 1u;
+  if (other >= mesh.triangles.size()) return triangle;
+  const glm::uvec3 &a = mesh.triangles[triangle], &b = mesh.triangles[other];
+  int common = 0;
+  for (int i = 0; i < 3; ++i) common += a[i] == b[0] || a[i] == b[1] || a[i] == b[2];
+  return common == 2 ? triangle & ~1u : triangle;
 }
 
 }  // namespace
@@ -80,6 +91,9 @@ Surface makeSurface(const Scene& scene, const std::vector<PlacedObject>& objects
   surface.weight2 = row(glm::cross(a, edge1), {edge1.y, -edge1.x}, plane.perspective);
   surface.determinant = row(cross, {0.0, 0.0}, plane.perspective);
   surface.front_facing = eyeInFront(cross, a, plane.perspective) != object.mirrored;
+  if (surface.material->blended)
+    surface.blend_surface =
+        blendSurface(object.number, triangleOrQuad(*object.mesh, in_mesh), surface.front_facing);
   const double length = glm::length(cross);
   surface.normal = length > 0.0 && std::isfinite(length) ? cross / (object.mirrored ? -length : length)
                                                          : glm::dvec3(0.0, 0.0, 1.0);

@@ -74,6 +74,11 @@ glm::dvec2 samplePoint(int index, int count) {
   return {(index + 0.5) / count, inverse + finest / 2};
 }
 
+void takeSample(View& view, const SampleNumber& number) {
+  view.number = number;
+  view.sample = samplePoint(number.index, number.count);
+}
+
 Camera viewCamera(const View& view) {
   Camera camera;
   const glm::dmat3 to_world = glm::transpose(glm::dmat3(view.world_to_view));

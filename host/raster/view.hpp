@@ -7,6 +7,12 @@
 
 namespace luciole {
 
+/// Which of how many samples of a pixel.
+struct SampleNumber {
+  int index = 0;
+  int count = 1;
+};
+
 /// A pinhole or parallel view and the part of its picture to draw.
 struct View {
   glm::dmat4 world_to_view{1.0};  ///< rigid; view space as in Camera
@@ -17,6 +23,7 @@ struct View {
   glm::ivec2 crop_origin{0};  ///< top left pixel of the part to draw
   glm::ivec2 crop_size{0};
   glm::dvec2 sample{0.5};  ///< where in a pixel the sample lies, from its top left corner, in [0,1)²
+  SampleNumber number;     ///< of that sample, for surfaces that are blended (blendThreshold)
   /// Where several samples of a pixel are drawn together, they lie at `sample` and up to so many 1/256 pixel
   /// to the right of it and below it (see SamplePattern).
   glm::ivec2 reach{0};
@@ -54,6 +61,9 @@ View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>
 /// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is
 /// the centre.
 glm::dvec2 samplePoint(int index, int count);
+
+/// Makes a view that of a sample of its pixels, at samplePoint().
+void takeSample(View& view, const SampleNumber& number);
 
 /// The camera of a view: the inverse of cameraView, without the name. A shift of the picture (an off-centre
 /// projection) is lost.

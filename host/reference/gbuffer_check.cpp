@@ -178,9 +178,9 @@ std::optional<SurfaceHit> intersect(const Tracer& tracer, const Ray& ray, std::u
   hit.position = ray.from + ray.direction * (hit.depth + ray.from.z);
   const glm::dvec4 clip = tracer.view.projection * glm::dvec4(hit.position, 1);
   if (!(clip.z >= 0 && clip.z <= clip.w)) return std::nullopt;
-  if (material.alpha_cutoff > 0 &&
+  if (hasHoles(material) &&
       isHole(tracer.scene, makeSurface(tracer.scene, tracer.geometry.objects, triangle, tracer.plane),
-             tracer.plane, pixel.x, pixel.y))
+             tracer.plane, pixel, pixel, tracer.view.number))
     return std::nullopt;
   const glm::uvec3 corners = object.mesh->triangles[in_mesh];
   const std::vector<glm::vec3>& normals = object.mesh->normals;

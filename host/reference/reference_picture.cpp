@@ -34,7 +34,7 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
   std::vector<glm::dvec3> sum(pixels.size());
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
-    sample_view.sample = samplePoint(sample, samples);
+    takeSample(sample_view, {sample, samples});
     const bool bent = shading == Shading::kPhong && hasNormalMaps(scene);
     const PlaneSet planes{.specular = true,
                           .ambient = true,
@@ -88,7 +88,7 @@ std::vector<double> referenceCoverage(const Scene& scene, const View& view, int 
   std::vector<double> covered(pixels.size());
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
-    sample_view.sample = samplePoint(sample, samples);
+    takeSample(sample_view, {sample, samples});
     const GBuffer gbuffer = rasterize(scene, allObjects(scene), sample_view, Shading::kFlat, {});
     const std::vector<double> of_sample = referenceCoverage(gbuffer, pixels);
     for (std::size_t i = 0; i < covered.size(); ++i) covered[i] += of_sample[i];

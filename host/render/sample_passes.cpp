@@ -143,7 +143,7 @@ Image renderAllSamples(Device& device, const Scene& scene, const RenderSettings&
   std::vector<Plane> layer_sums(prepared.layers.size());
   for (int sample = 0; sample < settings.samples; ++sample) {
     const TraceSpan span("sample", {{"sample", sample}, {"samples", settings.samples}});
-    of_sample.sample = samplePoint(sample, settings.samples);
+    takeSample(of_sample, {sample, settings.samples});
     GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
       return rasterize(scene, prepared.objects, of_sample, settings.shading, prepared.planes,
                        prepared.vertex_colors, &triangles, std::move(used.gbuffer));

@@ -175,6 +175,8 @@ std::string aimCamera(const glm::dvec3& eye, const glm::dvec3& target, const glm
   if (glm::length(glm::cross((target - eye) / distance, up)) < kLeastSine)
     return "up is parallel to the view from eye to target";
   camera.camera_to_world = cameraToWorld(eye, target, up);
+  camera.target = target;
+  camera.up = up;
   return "";
 }
 

@@ -63,7 +63,10 @@ struct Material {
   TextureUse alpha_map;       ///< opacity: its alpha where it has one that varies, else its red (OBJ map_d)
   float alpha = 1.0f;         ///< constant opacity, multiplied with the maps' and the vertex colour's alpha
   float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
-  bool double_sided = false;  ///< otherwise back faces are culled
+  /// What a camera sees is dithered by the opacity instead (raster/blend.hpp): alpha_cutoff is for shadows
+  /// alone.
+  bool blended = false;
+  bool double_sided = false;      ///< otherwise back faces are culled
   bool colored_emission = false;  ///< vertex colours multiply the emission too
   std::optional<Model> model;     ///< how it reflects light; none: as the picture's settings say
   /// What `specular` and `shininess`, which are of Phong's model, stand for. See takeFacets().
@@ -163,6 +166,9 @@ struct Camera {
   double half_height = 1.0;           ///< metres, orthographic only
   double near = 0.1;                  ///< metres, > 0
   double far = 1000.0;                ///< metres, > near; of a perspective camera it may be infinite
+  /// What it goes round where it is told to, and about which way, of any length: see render --orbit.
+  std::optional<glm::dvec3> target;  ///< what it looks at, where the file says it or the scene was framed
+  glm::dvec3 up{0.0, 1.0, 0.0};
 };
 
 /// Everything a picture is made of: the output of the loaders, and the input of every later stage.

@@ -21,10 +21,10 @@ void withFields(T& use, Visit&& visit) {
 template <Is<Material> T, class Visit>
 void withFields(T& material, Visit&& visit) {
   auto& [name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
-         normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model, facets] =
-      material;
+         normal_scale, alpha_map, alpha, alpha_cutoff, blended, double_sided, colored_emission, model,
+         facets] = material;
   visit(name, ambient, diffuse, specular, emission, shininess, diffuse_map, emission_map, normal_map,
-        normal_scale, alpha_map, alpha, alpha_cutoff, double_sided, colored_emission, model, facets);
+        normal_scale, alpha_map, alpha, alpha_cutoff, blended, double_sided, colored_emission, model, facets);
 }
 template <Is<Facets> T, class Visit>
 void withFields(T& surface, Visit&& visit) {
@@ -57,8 +57,8 @@ void withFields(T& fog, Visit&& visit) {
 }
 template <Is<Camera> T, class Visit>
 void withFields(T& camera, Visit&& visit) {
-  auto& [name, camera_to_world, orthographic, fov_y, half_height, near, far] = camera;
-  visit(name, camera_to_world, orthographic, fov_y, half_height, near, far);
+  auto& [name, camera_to_world, orthographic, fov_y, half_height, near, far, target, up] = camera;
+  visit(name, camera_to_world, orthographic, fov_y, half_height, near, far, target, up);
 }
 template <Is<MipLevel> T, class Visit>
 void withFields(T& level, Visit&& visit) {

@@ -139,6 +139,26 @@ TEST_F(Films, KeepTheirColorsAndSayHow) {
   }
 }
 
+// Files of meshes alone are exposed by what their first frame shows.
+TEST_F(Films, OfABareMeshAreExposedAsItsPicturesAre) {
+  writeText(folder / "box.obj",
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 -1\nv 1 0 -1\nv 1 1 -1\nv 0 1 -1\n"
+            "f 1 2 3 4\nf 6 5 8 7\nf 4 3 7 8\nf 2 6 7 3\n");
+  succeed("luciole render box.obj --size 64x36 --frames 1-2 -o f.#.png");
+  const Bytes picture = pictureOf("f.2.png");
+  for (const std::string film :
+       {"-o film.mp4", "-o film.webm", "--format mp4 -o film", "--format webm -o -x"}) {
+    const std::string name = film.substr(film.rfind(' ') + 1);
+    const Outcome made = run("luciole render box.obj --size 64x36 --frames 1-2 " + film);
+    EXPECT_THAT(made.err, HasSubstr(": 2 frames of 64x36")) << film;
+    const std::vector<Bytes> frames = framesOf("./" + name, 64, 36);
+    ASSERT_EQ(frames.size(), 2u) << film;
+    EXPECT_GT(psnr(frames[1], picture), 22.2) << film;  // as HoldTheFramesInTheirOrderAndSize derives
+  }
+  succeed("luciole render box.obj --size 64x36 --frames 1-2 -o film.webp");
+  refuse("luciole render box.obj --size 64x36 --frames 1-2 -o film.y4m", 2, "unknown extension 'y4m'");
+}
+
 TEST_F(Films, WebpIsAFilmWithoutANumberInItsName) {
   LUCIOLE_NEEDS_PROGRAM("webpmux", "webp");
   succeed("luciole render scene.json --frames 1-5 --size 33x21 -o film.webp");

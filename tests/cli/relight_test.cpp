@@ -102,6 +102,59 @@ TEST_F(RelightCommand, AddLaysTheLightAloneOverThePicture) {
     }
 }
 
+// The picture goes to what no added light gives, unless its file has groups of its own: then they grow.
+TEST_F(RelightCommand, AddedLightsAreLayersByTheirGroups) {
+  writeWall("P", "N", "XYZ");
+  writeText(folder / "lamps.json",
+            R"({"camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}, "ambient": 0.125, "lights": [
+      {"type": "point", "position": [0, 0, 1], "intensity": 4, "attenuation": [0, 0, 1], "group": "key"},
+      {"type": "point", "position": [1, 1, 1], "intensity": 3, "attenuation": [0, 0, 1]}]})");
+  const std::string add = " --lights lamps.json --add --light-groups --quiet ";
+  succeed("luciole relight wall.exr" + add + "-o first.exr");
+  succeed("luciole relight wall.exr --lights lamps.json --light-groups --quiet -o alone.exr");
+  const auto at = [](const Image& image, std::size_t pixel, const std::string& channel) {
+    const auto found = std::find(image.channels.begin(), image.channels.end(), channel);
+    EXPECT_NE(found, image.channels.end()) << channel;
+    return double(image.pixels[pixel * image.channels.size() + std::size_t(found - image.channels.begin())]);
+  };
+  const Image wall = readImage(folder / "wall.exr"), first = readImage(folder / "first.exr"),
+              alone = readImage(folder / "alone.exr");
+  for (std::size_t pixel = 0; pixel < 48; ++pixel) {
+    EXPECT_EQ(at(first, pixel, "light_groups.key.G"), at(alone, pixel, "light_groups.key.G"));
+    EXPECT_EQ(at(first, pixel, "light_groups.default.G"), at(alone, pixel, "light_groups.default.G"));
+    EXPECT_EQ(at(first, pixel, "light_groups.rest.G"),
+              float(at(wall, pixel, "G") + at(alone, pixel, "light_groups.rest.G")));
+    // Four sums of numbers below 8.
+    EXPECT_NEAR(at(first, pixel, "G"),
+                at(first, pixel, "light_groups.key.G") + at(first, pixel, "light_groups.default.G") +
+                    at(first, pixel, "light_groups.rest.G"),
+                4 * 4 * 0x1p-24 * 4);
+  }
+  succeed("luciole mix first.exr --light-mixer key=0,default=0 --quiet -o rest.exr");
+
+  // A picture with groups: its G-buffer and layers in one file, as render writes them.
+  writeText(folder / "box.json",
+            R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]}, "size": [16, 9], "ambient": 0.25,
+      "objects": [{"primitive": "box"}], "lights": [{"type": "point", "position": [0, 1, 3], "group": "key"},
+                                                    {"type": "point", "position": [1, 0, 3], "group": "fill"}]})");
+  succeed("luciole render box.json --aov position,normal,diffuse --light-groups --quiet -o box.exr");
+  succeed("luciole relight box.exr --exposure 1" + add + "-o more.exr");
+  const Image box = readImage(folder / "box.exr"), more = readImage(folder / "more.exr");
+  succeed("luciole relight box.exr --lights lamps.json --light-groups --quiet -o lamps.exr");
+  const Image lamps = readImage(folder / "lamps.exr");
+  for (std::size_t pixel = 0; pixel < 144; ++pixel) {
+    EXPECT_EQ(at(more, pixel, "light_groups.fill.R"), 2 * at(box, pixel, "light_groups.fill.R"));
+    EXPECT_EQ(
+        at(more, pixel, "light_groups.key.R"),
+        2 * double(float(at(box, pixel, "light_groups.key.R") + at(lamps, pixel, "light_groups.key.R"))));
+    EXPECT_EQ(at(more, pixel, "light_groups.default.R"), 2 * at(lamps, pixel, "light_groups.default.R"));
+    double sum = 0;
+    for (const char* group : {"fill", "key", "default", "rest"})
+      sum += at(more, pixel, std::string("light_groups.") + group + ".R");
+    EXPECT_NEAR(at(more, pixel, "R"), sum, 16 * 8 * 0x1p-24);
+  }
+}
+
 TEST_F(RelightCommand, AddLeavesWhatThePictureHasAlready) {
   // Emission, background and the fog's own colour are in it.
   writeText(

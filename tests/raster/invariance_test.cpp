@@ -44,7 +44,10 @@ Scene busyScene() {
   scene.materials[0].emission = glm::vec3(0.5f);
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].alpha_cutoff = 0.4f;
-  for (std::size_t i = 0; i < mesh.triangle_materials.size(); i += 2) mesh.triangle_materials[i] = 1;
+  scene.materials.push_back(scene.materials[1]);
+  scene.materials[2].blended = true;
+  for (std::size_t i = 0; i < mesh.triangle_materials.size(); i += 2)
+    mesh.triangle_materials[i] = 1 + i / 2 % 2;
   return scene;
 }
 

@@ -22,6 +22,7 @@ TEST(Opacity, PlacesTogetherHaveTheHolesThatEachHasAlone) {
     Material material = doubleSided();
     material.alpha = 0.5f + unit(random);
     material.alpha_cutoff = 0.3f;
+    material.blended = repeat % 2 == 1;
     material.diffuse_map = {map(random), Wrap::kRepeat, Wrap::kMirroredRepeat};
     material.alpha_map = {map(random), Wrap::kClampToEdge, Wrap::kRepeat};
     const float z = -1.0f - 9.0f * unit(random);
@@ -46,9 +47,12 @@ TEST(Opacity, PlacesTogetherHaveTheHolesThatEachHasAlone) {
       y[i] = double(48.0f * unit(random));
       wanted[i] = coin(random);
     }
-    const LaneMask seen = holesIn(scene, surface, plane, x, y, wanted);
+    const SampleNumber sample{repeat % 7, 7};
+    const LaneMask seen = holesIn(scene, surface, plane, x, y, wanted, sample);
     for (int i = 0; i < kSquarePixels; ++i) {
-      EXPECT_EQ(seen[i], wanted[i] && isHole(scene, surface, plane, x[i], y[i])) << repeat << ", " << i;
+      EXPECT_EQ(seen[i],
+                wanted[i] && isHole(scene, surface, plane, {x[i], y[i]}, {int(x[i]), int(y[i])}, sample))
+          << repeat << ", " << i;
       (seen[i] ? holes : solid) += wanted[i];
     }
   }

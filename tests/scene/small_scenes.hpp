@@ -41,7 +41,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       "all": {"ambient": 0.1, "diffuse": [0.5, 0.6, 0.7], "specular": 0.3, "emission": [0, 0, 0.5], "shininess": 32,
               "diffuse_map": "gone.png", "emission_map": "gone.png", "alpha_map": "gone.png", "alpha": 0.75,
               "alpha_cutoff": 0.5, "double_sided": true, "normal_map": "gone.png", "normal_scale": -2, "model": "toon"},
-      "bumpy": {"bump_map": "gone.png"},
+      "bumpy": {"bump_map": "gone.png", "blend": true, "alpha_cutoff": 0.25},
       "none": {}}})"},
     {"Objects", R"({"ambient": 1, "materials": {"red": {"diffuse": [1, 0, 0]}}, "objects": [
       {"primitive": "torus", "segments": 4, "minor_radius": 0.5, "uv_scale": 2, "material": "red", "scale": [1, -2, 3]},
@@ -50,7 +50,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
        "keys": [{"frame": 1, "rotate": [0, 0, 0], "scale": 2}, {"frame": 9, "rotate": [0, 360, 0]},
                 {"frame": 12, "translate": [0, 1, 0], "scale": [1, 2, 1]}]},
       {"primitive": "box"}, {"primitive": "cone", "segments": 3}, {"primitive": "sphere", "segments": 3},
-      {"mesh": "t.gltf", "variant": "new", "animation": "spin"},
+      {"mesh": "t.gltf", "variant": "new", "animation": "spin", "lights": true, "cameras": true}, {"mesh": "t.gltf"},
       {"mesh": "t.obj", "material": "red", "translate": [1, 0, 0], "keys": [{"frame": 1, "translate": [2, 0, 0]}]}]})"},
     {"PointLights", R"({"lights": [
       {"type": "point", "position": [1, 2, 3], "color": [1, 0.8, 0.5], "intensity": 2, "attenuation": [1, 0, 0.5],

@@ -353,6 +353,7 @@ Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& s
   material.alpha = static_cast<float>(reflection.base.a);
   material.alpha_cutoff = static_cast<float>(cutoffOf(model, source, place));
   material.double_sided = source.double_sided;
+  material.blended = equalIgnoringCase(source.alpha_mode, "BLEND");  // its cutoff is of its shadows
   return material;
 }
 

@@ -11,6 +11,7 @@
 
 #include "scene/json/json_keys.hpp"
 #include "scene/json/mesh_file.hpp"
+#include "scene/lights/light_field.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/pose.hpp"
 #include "scene/primitives.hpp"
@@ -20,12 +21,25 @@ namespace {
 
 constexpr std::size_t kMostObjects = 10'000'000;
 
-/// The objects of a mesh file, as the file places them. Indices of its nodes and attached objects count from
-/// 0.
-struct LoadedFile {
-  std::vector<Object> objects;
-  std::vector<MovingNode> nodes;
+/// What a mesh file holds of one kind, and what of it is attached to the file's nodes.
+template <class T>
+struct Attached {
+  std::vector<T> items;
   std::vector<Attachment> attachments;
+};
+
+/// The objects, lights and cameras of a mesh file, as the file places them. Indices of its nodes and of what
+/// is attached to them count from 0.
+struct LoadedFile {
+  Attached<Object> objects;
+  Attached<Light> lights;
+  Attached<Camera> cameras;
+  std::vector<MovingNode> nodes;
+};
+
+/// What of a mesh file an object is made of beside its geometry.
+struct FileParts {
+  bool lights = false, cameras = false;
 };
 
 /// What has been loaded so far, by its key, so that nothing is loaded twice.
@@ -57,7 +71,7 @@ Model readModel(const JsonNode& node) {
 
 Material readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene) {
   allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
-                   "normal_map", "bump_map", "normal_scale", "alpha_map", "alpha", "alpha_cutoff",
+                   "normal_map", "bump_map", "normal_scale", "alpha_map", "alpha", "alpha_cutoff", "blend",
                    "double_sided", "model"});
   Material material;
   material.name = node.key;
@@ -88,6 +102,8 @@ Material readMaterial(const JsonNode& node, const SearchFolders& where, Scene& s
     material.alpha_map = readMap(*n, where, scene);
     if (material.alpha_map.texture >= 0) material.alpha_cutoff = 0.5f;
   }
+  if (const auto n = find(node, "blend")) material.blended = readBool(*n);
+  if (material.blended) material.alpha_cutoff = 0.5f;
   if (const auto n = find(node, "alpha")) material.alpha = static_cast<float>(readNumber(*n, 0, 1));
   if (const auto n = find(node, "alpha_cutoff"))
     material.alpha_cutoff = static_cast<float>(readNumber(*n, 0, 1));
@@ -185,77 +201,142 @@ std::vector<T> cutFrom(std::vector<T>& list, std::size_t first) {
   return end;
 }
 
-/// The objects of a mesh file. At its first use it is loaded into the scene, without its lights and cameras.
+/// Removes from the scene what a file has added: things from number `first` on, and their attachments.
+template <class T>
+Attached<T> cutAttached(std::vector<T>& things, std::size_t first, std::vector<Attachment>& attachments,
+                        std::size_t first_attached, std::size_t first_node) {
+  Attached<T> cut{cutFrom(things, first), cutFrom(attachments, first_attached)};
+  for (Attachment& attachment : cut.attachments) {
+    attachment.index -= static_cast<std::uint32_t>(first);
+    attachment.node -= static_cast<std::uint32_t>(first_node);
+  }
+  return cut;
+}
+
+/// What a mesh file holds. At its first use it is loaded into the scene, which keeps its meshes and
+/// materials.
 const LoadedFile& loadedFile(const std::string& path, const GltfChoice& choice,
                              const std::vector<std::string>& search, Loaded& loaded, Scene& scene) {
   const auto [it, is_new] = loaded.mesh_files.try_emplace({path, choice.variant, choice.animation});
   if (!is_new) return it->second;
   Animation& animation = scene.animation;
   const std::size_t first_object = scene.objects.size(), first_node = animation.nodes.size();
-  const std::size_t light_count = scene.lights.size(), camera_count = scene.cameras.size();
-  const std::size_t first_attached = animation.objects.size();
+  const std::size_t first_light = scene.lights.size(), first_camera = scene.cameras.size();
+  const std::size_t objects_attached = animation.objects.size(),
+                    lights_attached = animation.attached_lights.size(),
+                    cameras_attached = animation.attached_cameras.size();
   const std::size_t deformations = animation.deformations.size();
   loadMeshFile(path, scene, choice, search);
   LoadedFile& file = it->second;
-  file.objects = cutFrom(scene.objects, first_object);
+  file.objects = cutAttached(scene.objects, first_object, animation.objects, objects_attached, first_node);
+  file.lights =
+      cutAttached(scene.lights, first_light, animation.attached_lights, lights_attached, first_node);
+  file.cameras =
+      cutAttached(scene.cameras, first_camera, animation.attached_cameras, cameras_attached, first_node);
   file.nodes = cutFrom(animation.nodes, first_node);
   // All placements show meshes of one shape, which joints give it where the file itself has them.
   if (animation.deformations.size() > deformations)
     animation.nodes.insert(animation.nodes.end(), file.nodes.begin(), file.nodes.end());
-  file.attachments = cutFrom(animation.objects, first_attached);
   for (MovingNode& node : file.nodes) node.parent -= node.parent < 0 ? 0 : static_cast<int>(first_node);
-  for (Attachment& attachment : file.attachments) {
-    attachment.index -= static_cast<std::uint32_t>(first_object);
-    attachment.node -= static_cast<std::uint32_t>(first_node);
-  }
-  scene.lights.resize(light_count);
-  scene.cameras.resize(camera_count);
-  animation.attached_lights.clear();  // a scene file has none of its own
-  animation.attached_cameras.clear();
   return file;
 }
 
 /// The name of a part of an object: the object's, and that of the part where there are several.
-std::string nameOf(const std::string& name, const Object& part, std::size_t parts) {
-  if (name.empty()) return part.name;
-  return parts == 1 || part.name.empty() ? name : fmt::format("{}/{}", name, part.name);
+std::string nameOf(const std::string& name, const std::string& part, std::size_t parts) {
+  if (name.empty()) return part;
+  return parts == 1 || part.empty() ? name : fmt::format("{}/{}", name, part);
 }
 
-/// Places a file's objects. Those that move in the file move relative to that place.
-void placeObjects(const LoadedFile& file, const Placement& placement, int material, const std::string& name,
-                  Scene& scene) {
-  Animation& animation = scene.animation;
-  const std::size_t first = scene.objects.size();
-  const int first_node = static_cast<int>(animation.nodes.size());
-  for (const Object& part : file.objects) {
-    scene.objects.push_back({part.mesh, placement.still * part.object_to_world,
-                             material == -1 ? part.material : material,
-                             nameOf(name, part, file.objects.size())});
-  }
-  for (MovingNode node : file.nodes) {
-    if (node.parent < 0 && placement.node < 0) node.before = placement.still * node.before;
-    node.parent = node.parent < 0 ? placement.node : first_node + node.parent;
-    animation.nodes.push_back(node);
-  }
-  std::vector<bool> attached(file.objects.size(), false);
-  for (Attachment attachment : file.attachments) {
+/// A transform that attachLight() takes to the light's own place: it looks along −z.
+glm::dmat4 frameOf(const Light& light) {
+  glm::dmat4 frame(1.0);
+  if (light.kind != LightKind::kPoint) frame[2] = glm::dvec4(-light.direction, 0);
+  if (light.kind != LightKind::kDirectional) frame[3] = glm::dvec4(light.position, 1);
+  return frame;
+}
+
+glm::dmat4 frameOf(const Camera& camera) { return camera.camera_to_world; }
+
+std::string place(const glm::dmat4& to_world, Light& light) { return attachLight(to_world, light); }
+std::string place(const glm::dmat4& to_world, Camera& camera) { return attachCamera(to_world, camera); }
+
+/// Appends a file's attachments: of things that are numbered from `first` on, to nodes from first_node on.
+/// Returns which of the file's things are attached.
+std::vector<bool> attachAgain(const std::vector<Attachment>& of_file, std::size_t things, std::size_t first,
+                              std::size_t first_node, std::vector<Attachment>& attachments) {
+  std::vector<bool> attached(things, false);
+  for (Attachment attachment : of_file) {
     attached[attachment.index] = true;
     attachment.index += static_cast<std::uint32_t>(first);
     attachment.node += static_cast<std::uint32_t>(first_node);
-    animation.objects.push_back(attachment);
+    attachments.push_back(attachment);
   }
-  if (placement.node < 0) return;
-  for (std::size_t i = 0; i < file.objects.size(); ++i) {
-    const Object& part = file.objects[i];
-    if (!attached[i])
-      attach(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
-                     part.object_to_world, part.mesh});
+  return attached;
+}
+
+/// Places a file's lights or cameras, which take of a transform its motion and turn alone. `object`: for
+/// errors.
+template <class T>
+void placeThings(const JsonNode& object, const Attached<T>& of_file, const Placement& placement,
+                 std::size_t first_node, std::vector<T>& things, std::vector<Attachment>& attachments) {
+  const std::size_t first = things.size();
+  const std::vector<bool> attached =
+      attachAgain(of_file.attachments, of_file.items.size(), first, first_node, attachments);
+  for (std::size_t i = 0; i < of_file.items.size(); ++i) {
+    const glm::dmat4 frame = frameOf(of_file.items[i]);
+    things.push_back(of_file.items[i]);
+    if (attached[i]) continue;
+    const std::string fault = place(placement.still * frame, things.back());
+    if (!fault.empty()) refuse(object, fault);
+    if (placement.node >= 0)
+      attachments.push_back(
+          {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node), frame});
   }
 }
 
+/// Places what a file holds. What moves in the file moves relative to that place.
+void placeFile(const JsonNode& object, const LoadedFile& file, const FileParts& parts,
+               const Placement& placement, int material, const std::string& name, Scene& scene) {
+  Animation& animation = scene.animation;
+  const std::size_t first = scene.objects.size(), first_node = animation.nodes.size();
+  for (MovingNode node : file.nodes) {
+    if (node.parent < 0 && placement.node < 0) node.before = placement.still * node.before;
+    node.parent = node.parent < 0 ? placement.node : static_cast<int>(first_node) + node.parent;
+    animation.nodes.push_back(node);
+  }
+  const std::vector<Object>& objects = file.objects.items;
+  const std::vector<bool> attached =
+      attachAgain(file.objects.attachments, objects.size(), first, first_node, animation.objects);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Object& part = objects[i];
+    scene.objects.push_back({part.mesh, placement.still * part.object_to_world,
+                             material == -1 ? part.material : material,
+                             nameOf(name, part.name, objects.size())});
+    if (placement.node >= 0 && !attached[i])
+      attach(scene, {static_cast<std::uint32_t>(first + i), static_cast<std::uint32_t>(placement.node),
+                     part.object_to_world, part.mesh});
+  }
+  if (parts.lights)
+    placeThings(object, file.lights, placement, first_node, scene.lights, animation.attached_lights);
+  if (!parts.cameras) return;
+  const std::size_t first_camera = scene.cameras.size();
+  placeThings(object, file.cameras, placement, first_node, scene.cameras, animation.attached_cameras);
+  for (std::size_t i = first_camera; i < scene.cameras.size(); ++i)
+    scene.cameras[i].name = nameOf(name, scene.cameras[i].name, file.cameras.items.size());
+}
+
+/// Whether an object takes what `key` names of its mesh file, which only glTF files have.
+bool takes(const JsonNode& object, const char* key, const std::string& path) {
+  const auto n = find(object, key);
+  if (n && extensionOf(path) == ".obj")
+    refuse(*n, fmt::format("an .obj file has no {}, only glTF files have", key));
+  return n && readBool(*n);
+}
+
 void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded, Scene& scene) {
-  allowKeys(node, {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
-                   "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name"});
+  allowKeys(node,
+            {"mesh", "variant", "animation", "primitive", "translate", "rotate", "scale", "material",
+             "segments", "minor_radius", "uv_scale", "keys", "interpolation", "name", "lights", "cameras"});
   const Placement placement = readPlacement(node, scene.animation);
   int material = -1;
   if (const auto n = find(node, "material")) {
@@ -264,7 +345,8 @@ void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded
     material = it->second;
   }
   LoadedFile single;
-  const LoadedFile* parts = &single;
+  const LoadedFile* file = &single;
+  FileParts parts;
   if (const auto n = find(node, "mesh")) {
     refuseKeys(node, {"primitive", "segments", "minor_radius", "uv_scale"}, "beside mesh");
     const std::string path = readPath(*n, where);
@@ -272,9 +354,10 @@ void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded
     GltfChoice choice;
     if (const auto variant = find(node, "variant")) choice.variant = readName(*variant);
     if (const auto animation = find(node, "animation")) choice.animation = readName(*animation);
-    parts = &loadedFile(path, choice, where.others, loaded, scene);
+    parts = {takes(node, "lights", path), takes(node, "cameras", path)};
+    file = &loadedFile(path, choice, where.others, loaded, scene);
   } else if (find(node, "primitive")) {
-    refuseKeys(node, {"variant", "animation"}, "beside primitive");
+    refuseKeys(node, {"variant", "animation", "lights", "cameras"}, "beside primitive");
     const Primitive primitive = readPrimitive(node);
     const auto [it, is_new] =
         loaded.primitives.try_emplace(primitive, static_cast<std::uint32_t>(scene.meshes.size()));
@@ -282,19 +365,23 @@ void readObject(const JsonNode& node, const SearchFolders& where, Loaded& loaded
       // The material is the object's, since other objects may share the mesh.
       scene.meshes.push_back(makePrimitive(primitive, loaded.plain_material));
     }
-    single.objects.push_back({it->second, glm::dmat4(1.0), -1});
+    single.objects.items.push_back({it->second, glm::dmat4(1.0), -1});
   } else {
     refuse(node, "\"mesh\" or \"primitive\" is missing");
   }
-  if (scene.objects.size() + parts->objects.size() > kMostObjects) {
+  if (scene.objects.size() + file->objects.items.size() > kMostObjects) {
     refuse(node, fmt::format("a scene may have {} objects at most", kMostObjects));
   }
-  if (scene.animation.nodes.size() + parts->nodes.size() > kMostObjects) {
+  if (scene.animation.nodes.size() + file->nodes.size() > kMostObjects) {
     refuse(node, fmt::format("a scene may have {} moving nodes at most", kMostObjects));
   }
+  if (parts.lights && scene.lights.size() + file->lights.items.size() > kMostLights)
+    refuse(node, fmt::format("a scene may have {} lights at most", kMostLights));
+  if (parts.cameras && scene.cameras.size() + file->cameras.items.size() > kMostObjects)
+    refuse(node, fmt::format("a scene may have {} cameras at most", kMostObjects));
   std::string name;
   if (const auto n = find(node, "name")) name = readText(*n);
-  placeObjects(*parts, placement, material, name, scene);
+  placeFile(node, *file, parts, placement, material, name, scene);
 }
 
 }  // namespace

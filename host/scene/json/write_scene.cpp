@@ -99,7 +99,10 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
         movePath(material, map);
   }
   if (scene.contains("objects"))
-    for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
+    for (OrderedJson& object : scene["objects"]) {
+      movePath(object, "mesh");
+      object.erase("lights");
+    }
   // A schema may be a path or a URL.
   if (scene.contains("$schema") && scene["$schema"].get<std::string>().find(':') == std::string::npos)
     movePath(scene, "$schema");

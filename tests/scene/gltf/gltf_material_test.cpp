@@ -132,7 +132,9 @@ TEST_F(GltfLoader, AlphaModesBecomeCutoffs) {
   EXPECT_EQ(material({{"alphaMode", "MASK"}, {"alphaCutoff", 0.25}}).alpha_cutoff, 0.25f);
   const Material glass =
       material({{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.75}}}}});
-  EXPECT_EQ(glass.alpha_cutoff, 0.5f);
+  EXPECT_TRUE(glass.blended);
+  EXPECT_FALSE(material({{"alphaMode", "MASK"}}).blended);
+  EXPECT_EQ(glass.alpha_cutoff, 0.5f) << "of its shadows";
   EXPECT_EQ(glass.alpha, 0.75f);
 }
 
