@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,20 +21,12 @@
 #include "base/output_file.hpp"
 #include "base/threads.hpp"
 #include "image/deflate.hpp"
+#include "image/header_text.hpp"
 #include "image/png_filters.hpp"
 #include "image/row_file.hpp"
 
 namespace luciole {
 namespace {
-
-bool isUtf8(const std::string& text) {
-  try {
-    nlohmann::json(text).dump();
-    return true;
-  } catch (const nlohmann::json::type_error&) {
-    return false;
-  }
-}
 
 bool isAscii(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
