@@ -60,15 +60,24 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
     throw InputError(fmt::format("--only \"{}\": needs --gbuffer and --scene", kCullAndShade));
   Device device;
   openDevice(settings.device, device);
+  const bool draws = !choice.given || choice.only != std::vector<std::string>{kCullAndShade};
+  const Scene& described = draws ? scene : choice.given->scene;
   Stats stats;
-  describeScene(scene, {}, stats);
+  describeScene(described, {}, stats);
   BenchResult result{.machine = describeMachine(device),
-                     .scene = scene.name,
+                     .scene = described.name,
                      .triangles = stats.triangles,
                      .lights = stats.lights,
-                     .width = settings.picture.size.x,
-                     .height = settings.picture.size.y,
+                     .width = draws ? settings.picture.size.x : choice.given->gbuffer.width,
+                     .height = draws ? settings.picture.size.y : choice.given->gbuffer.height,
                      .repeats = settings.repeats};
+  if (choice.given && chosen(kCullAndShade))
+    result.gbuffer = {.file = choice.given->file,
+                      .scene = choice.given->scene.name,
+                      .lights = choice.given->scene.lights.size(),
+                      .width = choice.given->gbuffer.width,
+                      .height = choice.given->gbuffer.height,
+                      .model = modelName(choice.given->model)};
   std::vector<VariantGroup> groups = benchVariants(scene, device.description.lanes, choice.shadow_size);
   std::erase_if(groups, [&](const VariantGroup& group) { return !chosen(group.chosen_by); });
   if (!groups.empty()) result.groups = measureVariants(scene, groups, settings);

@@ -14,11 +14,22 @@ namespace luciole {
 /// Steps of an 8-bit picture in a range of 1: what reports count errors in.
 inline constexpr double k8BitSteps = 255;
 
+/// What "cull and shade" measured.
+struct BenchedGBuffer {
+  std::string file, scene;  ///< the surfaces, and the scene whose lights light them
+  std::uint64_t lights = 0;
+  int width = 0, height = 0;
+  std::string model;
+};
+
 struct BenchResult {
   Machine machine;
+  /// What was drawn; where nothing was, because a G-buffer alone was lit, the scene that lit it, and its
+  /// size.
   std::string scene;
   std::uint64_t triangles = 0, lights = 0;
   int width = 0, height = 0, repeats = 0;
+  std::optional<BenchedGBuffer> gbuffer{};
   std::vector<BenchGroup> groups{};  ///< speed against error
   std::vector<SpeedTable> speed{};   ///< speed alone, a table for each measurement
 };

@@ -162,6 +162,9 @@ std::string benchTable(const BenchResult& result) {
       result.scene, result.triangles, result.lights, result.width, result.height, result.machine.processor,
       result.machine.threads, result.machine.device.platform, result.machine.device.version,
       result.machine.device.lanes, result.machine.compiler);
+  if (const auto& gbuffer = result.gbuffer)
+    text += fmt::format("{}: {} x {} pixels, by the {} lights of {}, {}.\n", gbuffer->file, gbuffer->width,
+                        gbuffer->height, gbuffer->lights, gbuffer->scene, gbuffer->model);
   for (const BenchGroup& group : result.groups) {
     text += fmt::format("\n{}: {}.", group.group.name, group.group.measured);
     if (group.truth_error > 0)
@@ -193,8 +196,12 @@ std::string benchJson(const BenchResult& result) {
             {"scene", {{"name", result.scene}, {"triangles", result.triangles}, {"lights", result.lights}}},
             {"image", {{"width", result.width}, {"height", result.height}}},
             {"repeats", result.repeats},
+            {"gbuffer", nullptr},
             {"groups", Json::array()},
             {"speed", Json::array()}};
+  if (const auto& gbuffer = result.gbuffer)
+    json["gbuffer"] = {{"file", gbuffer->file},   {"scene", gbuffer->scene},   {"lights", gbuffer->lights},
+                       {"width", gbuffer->width}, {"height", gbuffer->height}, {"model", gbuffer->model}};
   for (const BenchGroup& group : result.groups) {
     Json rows = Json::array();
     for (const BenchRow& row : group.rows) rows.push_back(rowJson(row));

@@ -15,6 +15,7 @@ namespace luciole {
 
 /// A G-buffer from a file, the scene whose lights light it, and how it reflects them.
 struct GivenGBuffer {
+  std::string file;
   GBuffer gbuffer;
   Scene scene;
   Model model = Model::kPhong;

@@ -69,8 +69,8 @@ int bench(const BenchOptions& options) {
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
   if (!options.gbuffer.empty()) {
-    choice.given = {readGBuffer(options.gbuffer), openScene(options.lights, 1, options.picture),
-                    modelOf(options.picture)};
+    choice.given = {options.gbuffer, readGBuffer(options.gbuffer),
+                    openScene(options.lights, 1, options.picture), modelOf(options.picture)};
     if (choice.only.empty()) choice.only = {"cull and shade"};
   }
   const BenchResult result = runBench(scene, settings, choice);

@@ -73,6 +73,7 @@ void addEntries(const CLI::App& command, const std::string& path, std::vector<Co
   CommandEntry entry;
   entry.path = path;
   entry.description = command.get_description();
+  entry.footer = command.get_footer();
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;  // --help hides it
     OptionEntry one = entryOf(*option);

@@ -32,7 +32,7 @@ struct OptionEntry {
 /// A command, or a command's command. The program itself is one too.
 struct CommandEntry {
   std::string path;  ///< "render", "scale merge"; empty for the program
-  std::string description;
+  std::string description, footer;
   std::vector<OptionEntry> arguments, options;
   std::vector<std::pair<std::string, std::string>> commands;  ///< names and descriptions of those inside
 };

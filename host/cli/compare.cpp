@@ -90,6 +90,7 @@ ImageDifference comparePictures(const CompareOptions& options, const std::string
     pictures.emplace_back(differencePicture(a, b, kDifferenceGain), options.difference);
     pictures.back().first.picture_size = a.picture_size;
     pictures.back().first.crop_origin = a.crop_origin;
+    pictures.back().first.display = a.display;
   }
   if (!options.error_map.empty()) pictures.emplace_back(errorMap(d), options.error_map);
   if (!options.side_by_side.empty()) {
@@ -99,7 +100,9 @@ ImageDifference comparePictures(const CompareOptions& options, const std::string
   }
   for (const auto& [picture, path] : pictures)
     writeImage(picture, path, metadata,
-               {.picture_size = picture.picture_size, .crop_origin = picture.crop_origin});
+               {.picture_size = picture.picture_size,
+                .crop_origin = picture.crop_origin,
+                .display = picture.display});
   return d;
 }
 
@@ -252,6 +255,23 @@ void compare(const CompareOptions& options, CommandContext& context) {
 void addCompareCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "compare", "two pictures, or two sequences, in numbers, in linear light; exit 1 over a limit");
+  command->footer(
+      "Over all compared pixels and channels, d = B - A, in linear light (white: 1):\n"
+      "max_abs        the largest |d|, and its pixel\n"
+      "mean_abs       the mean of |d|\n"
+      "max_relative   max_abs / the largest |A|\n"
+      "mean_relative  mean_abs / the largest |A|\n"
+      "mean_signed    the mean of d: a bias\n"
+      "rmse           the root of the mean of d^2\n"
+      "psnr           -20 log10(rmse), in dB: the peak is 1\n"
+      "relmse         the mean of d^2 / (A^2 + 0.01)\n"
+      "p99_abs        99 % of the pixels differ by at most this in any channel\n"
+      "p999_abs       99.9 % of them\n"
+      "nonfinite      values of which one alone is NaN or infinite, or infinities of both\n"
+      "               signs; infinite in max_abs and percentiles, not in the means\n"
+      "pixels over    pixels with a |d| above 1/2, 1 and 4 steps of 1/255\n"
+      "Channels are those that both have, but A. Where one is named sampled, pixels with\n"
+      "0 in it don't count.");
   auto options = std::make_shared<CompareOptions>();
   command
       ->add_option("A", options->a,

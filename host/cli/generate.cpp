@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -157,12 +158,16 @@ void generateLights(const LightsOptions& options) {
   if (!options.range.empty()) field.range = {float(options.range.front()), float(options.range.back())};
   if (options.cutoff) {
     field.cutoff = *options.cutoff;
-    field.attenuation = {0, 0, 1};
+    field.attenuation = glm::vec3(0, 0, 1);
   }
   field.shadow = options.shadow;
   expandLightField(field, scene);
   const bool is_ranged = !options.range.empty() || options.cutoff || shape == "csv";
   if (options.density || options.no_range || !is_ranged) {
+    if (std::any_of(scene.lights.begin(), scene.lights.end(),
+                    [](const Light& light) { return light.kind == LightKind::kDirectional; }))
+      throw InputError(fmt::format("generate lights: {}: a directional light of {} has no place to fade from",
+                                   options.no_range ? "--no-range" : "--density", options.csv));
     const std::vector<glm::dvec3> points = measuredPoints(options, field, seen);
     if (options.density || !is_ranged) {
       const float range = rangeForDensity(scene.lights, points, options.density.value_or(kUsualDensity));
@@ -209,7 +214,11 @@ void addLightsCommand(CLI::App& command) {
   auto* shape = lights->add_option(
       "--shape", options->shape,
       "box (default), ball, sphere, surface (on the scene's triangles), clusters or curve");
-  lights->add_option("--csv", options->csv, "take the lights from lines x,y,z,r,g,b,range instead")
+  lights
+      ->add_option(
+          "--csv", options->csv,
+          "take the lights from lines x,y,z,r,g,b,range instead, or of the columns that the first line names "
+          "(scenes/FORMATS.md)")
       ->excludes(shape);
   lights->add_option("--count", options->count, "lights (default: 1000, or all of --csv)");
   lights->add_option("--seed", options->seed)->capture_default_str();

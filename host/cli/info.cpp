@@ -16,6 +16,7 @@
 #include "cli/picture_options.hpp"
 #include "culling/exact_reason.hpp"
 #include "gbuffer/camera_header.hpp"
+#include "image/header_text.hpp"
 #include "image/layers.hpp"
 #include "render/estimate.hpp"
 #include "render/scene_info.hpp"
@@ -37,7 +38,8 @@ struct Report {
 };
 
 /// Text from a file, fit for a line of its own.
-std::string printable(std::string text) {
+std::string printable(const std::string& bytes) {
+  std::string text = headerText(bytes);
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return text;
@@ -311,6 +313,10 @@ void addPart(const PicturePart& part, Report& report) {
   if (is_crop)
     words += fmt::format(" from ({}, {}) on of {}", part.crop_origin.x, part.crop_origin.y,
                          sizeText(part.picture_size));
+  if (part.display.pixel_aspect != 1)
+    words += fmt::format(", pixels {:g} times as wide as high", part.display.pixel_aspect);
+  if (const glm::ivec2 origin = part.display.origin; origin != glm::ivec2(0))
+    words += fmt::format(", display window from ({}, {}) on", origin.x, origin.y);
   if (!part.compression.empty()) words += ", " + printable(part.compression);
   addLine(report, "picture", words + (part.name.empty() ? "" : ", " + printable(part.name)));
   for (const Layer& layer : layersOf(part)) {
@@ -328,6 +334,8 @@ void addPart(const PicturePart& part, Report& report) {
        {"height", part.size.y},
        {"picture", {{"width", part.picture_size.x}, {"height", part.picture_size.y}}},
        {"origin", {part.crop_origin.x, part.crop_origin.y}},
+       {"display_origin", {part.display.origin.x, part.display.origin.y}},
+       {"pixel_aspect", part.display.pixel_aspect},
        {"compression", part.compression},
        {"layers", layers}});
 }
@@ -336,7 +344,8 @@ void addPart(const PicturePart& part, Report& report) {
 std::string addCamera(const std::string& file, const PicturePart& part, Report& report) {
   report.json["camera"] = nullptr;
   try {
-    const std::optional<CameraHeader> header = readCamera(part.attributes, part.picture_size, file, {});
+    const std::optional<CameraHeader> header =
+        readCamera(part.attributes, part.picture_size, file, {}, part.display.pixel_aspect);
     if (!header) {
       addLine(report, "camera", "none");
       return "";

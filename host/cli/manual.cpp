@@ -189,18 +189,21 @@ std::string roffTerms(const Terms& terms) {
   return text;
 }
 
+/// Lines that stay apart.
+std::string roffLines(std::string_view lines) {
+  std::string text;
+  while (!lines.empty()) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    text += roff(lines.substr(0, end)) + "\n";
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+  return text;
+}
+
 std::string roffExamples() {
   std::string text;
-  for (const auto& [what, lines] : kManualExamples) {
-    text += fmt::format(".PP\n{}\n.PP\n.RS 4\n.EX\n", roff(what));
-    std::string_view rest = lines;
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      text += roff(rest.substr(0, end)) + "\n";
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    text += ".EE\n.RE\n";
-  }
+  for (const auto& [what, lines] : kManualExamples)
+    text += fmt::format(".PP\n{}\n.PP\n.RS 4\n.EX\n{}.EE\n.RE\n", roff(what), roffLines(lines));
   return text;
 }
 
@@ -225,6 +228,7 @@ std::string manualPage(const std::vector<CommandEntry>& table) {
     for (const auto& [name, description] : command.commands)
       page += fmt::format(".TP\n{}\n{}\n", boldRoff(name), roff(description));
     for (const OptionEntry& option : command.options) page += roffOption(option);
+    if (!command.footer.empty()) page += fmt::format(".PP\n.EX\n{}.EE\n", roffLines(command.footer));
   }
   page += ".SH EXIT STATUS\n" + roffTerms(kManualStatuses);
   page += ".SH ENVIRONMENT\n" + roffTerms(kManualVariables);

@@ -338,7 +338,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
               "rows, [,lanes=1|4|8|16]"
             : "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
   if (is_one_picture && !(groups & kColorOptions)) {
-    command.add_option("--stats", options.stats, "write what the picture cost as JSON (- : standard output)");
+    command.add_option(
+        "--stats", options.stats,
+        "write what the picture cost as JSON (- : standard output), or by a name .csv as a line of names "
+        "and one of values");
     addTraceOption(command, options.trace);
   }
   addThreadsOption(command);

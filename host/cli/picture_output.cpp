@@ -131,8 +131,13 @@ WriteOptions writeOptions(const PictureOptions& options, const std::optional<Cam
 }
 
 WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
-  const auto camera = gbuffer.knows_camera ? std::optional(gbuffer.camera) : std::nullopt;
-  return writeOptions(options, camera, gbuffer.picture_size, gbuffer.crop_origin);
+  WriteOptions file = fileOptions(options);
+  file.picture_size = gbuffer.picture_size;
+  file.crop_origin = gbuffer.crop_origin;
+  file.display = gbuffer.display;
+  if (gbuffer.knows_camera)
+    file.exr = cameraAttributes(gbuffer.camera, gbuffer.picture_size, gbuffer.display.pixel_aspect);
+  return file;
 }
 
 void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
@@ -180,7 +185,9 @@ Stats laterStats(const std::string& command) {
 
 void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   const double ended = millisecondsSinceStart();
-  if (!options.stats.empty()) writeTextFile(options.stats, statsJson(stats, ended));
+  if (!options.stats.empty())
+    writeTextFile(options.stats,
+                  options.stats.ends_with(".csv") ? statsCsv(stats, ended) : statsJson(stats, ended));
   if (!stats.hash.empty()) {
     fmt::print("{}  {}\n", stats.hash, options.output);
     std::fflush(stdout);  // whoever waits for a frame's line gets it when the frame is done

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -11,6 +13,7 @@
 #include "cli/progress.hpp"
 #include "cli/scale_plan.hpp"
 #include "cli/shard.hpp"
+#include "gbuffer/gbuffer_file.hpp"
 #include "render/check_device.hpp"
 #include "scale/page.hpp"
 #include "scale/scale.hpp"
@@ -59,11 +62,18 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   checkDrawing(options.plot);
   if (options.shard.empty() && shard.count > 1 && !options.picture.quiet)
     fmt::print(stderr, "shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count);
-  Scene scene = loadScene(options.scene, 1, options.picture.load);
+  options.frame = useFrame(options.picture, "scale");
+  std::optional<GBuffer> gbuffer;
+  if (!options.gbuffer.empty()) gbuffer = readGBuffer(options.gbuffer);
+  Scene scene;
+  if (!options.scene.empty())
+    scene = loadScene(options.scene, options.frame, options.picture.load);
+  else
+    scene.cameras = {gbuffer->camera};
   if (modelOf(options.picture) == Model::kCookTorrance) takeFacets(scene);
   std::erase(scene.warnings, nothingLights(scene));
   if (!options.picture.quiet) tellWarnings(scene.warnings);
-  ScaleExperiment experiment = planExperiment(command, options, scene);
+  ScaleExperiment experiment = planExperiment(command, options, scene, std::move(gbuffer));
   if (experiment.too_exact > 0 && !options.picture.quiet)
     fmt::print(
         stderr,
@@ -99,7 +109,11 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   auto options = std::make_shared<ScaleOptions>();
   options->picture.shadows = "off";
   command->add_option("SCENE", options->scene,
-                      "a .json, .obj, .gltf or .glb file; its own lights are left out");
+                      "a .json, .obj, .gltf or .glb file; its own lights are left out unless --own-lights");
+  command->add_option(
+      "--gbuffer", options->gbuffer,
+      "an EXR whose surfaces to light instead; of SCENE, if there is one, then count ambient, "
+      "fog and shadow casters");
   command->add_option("--lights", options->lights, "numbers of lights: 1,10,100 or 1,10,...,1000000");
   command
       ->add_option("--vary", options->vary,
@@ -122,7 +136,9 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--seed", options->seed, "of the lights and the checked pixels")->capture_default_str();
   command
       ->add_option("--field", options->field,
-                   "where lights are: " + std::string(kFieldShapeNames) + ", or a .csv file")
+                   "where lights are: " + std::string(kFieldShapeNames) +
+                       ", or a .csv file: its first lights, with their own colours, and ranges unless others "
+                       "are asked for")
       ->capture_default_str();
   const CLI::Range positive(1e-18, 1e18);
   auto* density = command
@@ -150,14 +166,26 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
       ->excludes(density)
       ->excludes(range)
       ->excludes(cutoff);
-  command->add_option("--intensity", options->intensity, "of each light")
-      ->check(CLI::Range(0.0, 1e18))
-      ->capture_default_str();
+  auto* no_range = command->get_option("--no-range");
+  auto* intensity = command->add_option("--intensity", options->intensity, "of each light")
+                        ->check(CLI::Range(0.0, 1e18))
+                        ->capture_default_str();
+  command
+      ->add_flag(
+          "--own-lights", options->own_lights,
+          "the first of SCENE's own lights, or of --field's .csv file, as they are: brightness, ranges, "
+          "attenuation, spots")
+      ->excludes(density)
+      ->excludes(range)
+      ->excludes(cutoff)
+      ->excludes(no_range)
+      ->excludes(intensity);
   command->add_option("--shard", options->shard,
                       "I/N: only every N-th point from the I-th on (default: the task of a Slurm array)");
-  addPictureOptions(
-      *command, options->picture,
-      kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption | kManyPictures);
+  addPictureOptions(*command, options->picture,
+                    kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kDeviceOption |
+                        kManyPictures | kFrameOption);
+  command->get_option("--frames")->description("which frame of a scene that moves (default: 1)");
   command->get_option("--size")->description("WxH pixels, or W (default: 640x360)");
 
   CLI::App* merge = command->add_subcommand("merge", "put the results of shards together");

@@ -7,6 +7,8 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/sha256.hpp"
+#include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "cli/suggest.hpp"
 #include "raster/visible_points.hpp"
@@ -42,6 +44,9 @@ constexpr const char* kReaches[] = {"density", "range", "cutoff", "no-range"};
 /// The most pairs of a pixel and a light, seconds of work, of a picture without light error beside others
 /// with one.
 constexpr double kMostExactPairs = 1e10;
+
+constexpr const char* kViewOfGBuffer =
+    "scale: --gbuffer: a G-buffer has its size, camera, shading and samples already";
 
 constexpr glm::ivec2 kDefaultSize(640, 360);
 /// Number of visible points that make a box which holds most of what is seen.
@@ -221,9 +226,42 @@ bool variesLightError(const std::vector<ScaleAxis>& axes) {
                      [](const ScaleAxis& axis) { return axis.name == kLightErrorAxis; });
 }
 
-LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64_t most_lights) {
+bool isList(const ScaleOptions& options) { return options.field.ends_with(".csv"); }
+
+/// The first `count` of the scene's own lights. Those that it marks cast shadows, or all where it marks none;
+/// none has a size, as the truth of all methods of shadows is rays to their middles.
+std::vector<Light> ownLights(const ScaleOptions& options, const Scene& scene, std::uint64_t count) {
+  const std::size_t there = scene.adds_lights ? 0 : scene.lights.size();
+  if (there < count)
+    throw InputError(
+        fmt::format("{}: {} lights of its own, expected {} or more", options.scene, there, count));
+  std::vector<Light> lights(scene.lights.begin(), scene.lights.begin() + std::ptrdiff_t(count));
+  const bool marks =
+      std::any_of(lights.begin(), lights.end(), [](const Light& light) { return light.shadow; });
+  for (Light& light : lights) {
+    light.shadow = light.shadow || !marks;
+    light.radius = light.half_angle = 0;
+  }
+  return lights;
+}
+
+/// A field of lights that stay as they are.
+LightField ownField(const ScaleOptions& options, const Scene& scene, std::uint64_t count) {
   LightField field;
-  if (options.field.ends_with(".csv")) {
+  field.shape = FieldShape::kList;
+  field.count = count;
+  field.as_listed = true;
+  field.list = isList(options) ? readLightList(options.field, count) : ownLights(options, scene, count);
+  const bool casts = options.picture.shadows != "off";
+  for (Light& light : field.list) light.shadow = casts && (light.shadow || isList(options));
+  return field;
+}
+
+LightField makeField(const ScaleOptions& options, const Scene& scene, const Bounds& box,
+                     std::uint64_t most_lights) {
+  if (options.own_lights) return ownField(options, scene, most_lights);
+  LightField field;
+  if (isList(options)) {
     field.shape = FieldShape::kList;
     field.list = readLightList(options.field, most_lights);
   } else {
@@ -239,7 +277,7 @@ LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64
   if (options.range) field.range = glm::vec2(float(*options.range));
   if (options.cutoff) {
     field.cutoff = *options.cutoff;
-    field.attenuation = {0, 0, 1};
+    field.attenuation = glm::vec3(0, 0, 1);
   }
   field.shadow = options.picture.shadows != "off";
   return field;
@@ -248,18 +286,27 @@ LightField makeField(const ScaleOptions& options, const Bounds& box, std::uint64
 /// Whether ranges are chosen for a density of lights: if --density is given, or if nothing else says the
 /// range (--range, --cutoff, or a file of lights).
 bool choosesRanges(const CLI::App& command, const ScaleOptions& options) {
-  return isGiven(command, "density") ||
-         (!options.range && !options.cutoff && !options.field.ends_with(".csv"));
+  if (options.own_lights) return false;
+  return isGiven(command, "density") || (!options.range && !options.cutoff && !isList(options));
 }
 
 /// Whether lights lose their ranges: if that is asked for, or if a light error is, which concerns lights
 /// without range alone, and nothing else says how far they reach.
 bool removesRanges(const CLI::App& command, const ScaleOptions& options, const std::vector<ScaleAxis>& axes) {
+  if (options.own_lights) return false;
   if (options.no_range) return true;
   const bool is_reach_said = std::any_of(std::begin(kReaches), std::end(kReaches),
                                          [&](const char* name) { return isGiven(command, name); }) ||
-                             options.field.ends_with(".csv");
+                             isList(options);
   return (options.picture.light_error > 0 || variesLightError(axes)) && !is_reach_said;
+}
+
+/// So that an experiment goes on only with the same file.
+std::string hashOfFile(const std::string& path) {
+  const std::string bytes = readFile(path);
+  Sha256 hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.hex();
 }
 
 /// The settings that all points share, as text for people.
@@ -269,6 +316,12 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
                                                                 const RenderSettings& settings) {
   std::vector<std::pair<std::string, std::string>> shared{
       {"size", fmt::format("{}x{}", settings.size.x, settings.size.y)}};
+  if (!options.gbuffer.empty()) {
+    if (!options.scene.empty()) shared.emplace_back("scene", options.scene);
+    shared.emplace_back("G-buffer's SHA-256", hashOfFile(options.gbuffer));
+  }
+  if (options.frame != 1) shared.emplace_back("frame", std::to_string(options.frame));
+  if (options.own_lights) shared.emplace_back("own-lights", "true");
   if (!settings.camera.name.empty()) shared.emplace_back("camera", settings.camera.name);
   std::vector<std::string> names{"seed", "check-pixels", "exposure"};
   for (const ScaleAxis& axis : kAxes) names.push_back(axis.name);
@@ -278,9 +331,12 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
         std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; }) ||
         (varies_reach && isReach({name, {}}));
     const bool is_meant =
-        name == "range"           ? options.range.has_value()
-        : name == "cutoff"        ? options.cutoff.has_value()
-        : name == "no-range"      ? false  // told below
+        name == "field"                          ? !options.own_lights || isList(options)
+        : name == "intensity"                    ? !options.own_lights
+        : name == "samples" || name == "shading" ? options.gbuffer.empty()
+        : name == "range"                        ? options.range.has_value()
+        : name == "cutoff"                       ? options.cutoff.has_value()
+        : name == "no-range"                     ? false  // told below
         : name == "density"       ? choosesRanges(command, options) && !removesRanges(command, options, axes)
         : name == kLightErrorAxis ? options.picture.light_error > 0
         : name == "pcf-width"     ? options.picture.shadows == "pcf"
@@ -288,6 +344,11 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
                                                            : true;
     if (!is_varied && is_meant) shared.emplace_back(name, command.get_option("--" + name)->as<std::string>());
   }
+  std::vector<std::string> lists{options.field};
+  for (const ScaleAxis& axis : axes)
+    if (axis.name == "field") lists.insert(lists.end(), axis.values.begin(), axis.values.end());
+  for (const std::string& list : lists)
+    if (list.ends_with(".csv")) shared.emplace_back(list + "'s SHA-256", hashOfFile(list));
   if (!varies_reach && removesRanges(command, options, axes)) shared.emplace_back("no-range", "true");
   if (!options.picture.device.empty()) shared.emplace_back("device", options.picture.device);
   return shared;
@@ -297,14 +358,27 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
 
 void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
   for (const auto& [name, value] :
-       {std::pair("SCENE", &options.scene), std::pair("--lights", &options.lights),
-        std::pair("--output", &options.output)})
+       {std::pair("SCENE", options.gbuffer.empty() ? &options.scene : &options.gbuffer),
+        std::pair("--lights", &options.lights), std::pair("--output", &options.output)})
     if (value->empty()) throw InputError(fmt::format("scale: {} is required", name));
   if (options.scene == "-") throw InputError("scale: expected a file as SCENE, got standard input");
+  const auto isTyped = [&](const char* name) { return command.get_option(name)->count() > 0; };
+  if (options.own_lights && isTyped("--field") && !isList(options))
+    throw InputError(fmt::format(
+        "scale: --own-lights --field {}: expected a .csv file, or no --field for the scene's own lights",
+        options.field));
+  if (options.own_lights && options.scene.empty() && !isList(options))
+    throw InputError("scale: --own-lights: expected a SCENE that has some, or --field with a .csv file");
+  const auto isOfView = [](const std::string& axis) { return axis == "samples" || axis == "shading"; };
+  const bool is_view_typed = isTyped("--size") || isTyped("--camera") || isTyped("--shading") ||
+                             isTyped("--samples") || isTyped("--samples-shading");
   int reaches = options.range.has_value() + options.cutoff.has_value() + options.no_range;
   for (const ScaleAxis& axis : parseAxes(options.vary)) {
     if (command.get_option("--" + axis.name)->count() > 0)
       throw InputError(fmt::format("scale: --{} is given and varied; expected one", axis.name));
+    if (options.own_lights && (isReach(axis) || axis.name == "intensity" || axis.name == "field"))
+      throw InputError(fmt::format("scale: --vary {}: --own-lights leaves lights as they are", axis.name));
+    if (!options.gbuffer.empty() && (is_view_typed || isOfView(axis.name))) throw InputError(kViewOfGBuffer);
     reaches += isReach(axis) && command.get_option("--density")->count() > 0;
     if (isReach(axis) && reaches > 0)
       throw InputError(fmt::format(
@@ -312,13 +386,16 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
           "one",
           axis.name));
   }
+  if (!options.gbuffer.empty() && is_view_typed) throw InputError(kViewOfGBuffer);
 }
 
-ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const Scene& scene) {
+ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const Scene& scene,
+                               std::optional<GBuffer> gbuffer) {
   ScaleExperiment experiment;
+  experiment.gbuffer = std::move(gbuffer);
   ScaleDescription& description = experiment.description;
   description.version = LUCIOLE_VERSION;
-  description.scene = utf8Of(options.scene);
+  description.scene = utf8Of(experiment.gbuffer ? options.gbuffer : options.scene);
   description.digest = sceneDigest(scene);
   description.lights = parseLights(options.lights);
   description.axes = parseAxes(options.vary);
@@ -329,15 +406,20 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
   const auto settingsNow = [&] {
     RenderSettings settings = renderSettings(options.picture, scene);
     if (options.picture.size.empty()) settings.size = kDefaultSize;
+    if (const auto& surfaces = experiment.gbuffer) {
+      settings.size = {surfaces->width, surfaces->height};
+      settings.camera = surfaces->camera;
+    }
     return settings;
   };
   description.settings = sharedSettings(command, options, description.axes, settingsNow());
   const RenderSettings first = settingsNow();
   const std::vector<glm::dvec3> seen =
-      visiblePoints(scene, first.camera, first.size, kPointsOfAField, options.seed);
+      experiment.gbuffer ? visiblePoints(*experiment.gbuffer, kPointsOfAField, options.seed)
+                         : visiblePoints(scene, first.camera, first.size, kPointsOfAField, options.seed);
   if (seen.empty())
-    throw InputError(
-        fmt::format("{}: its camera sees nothing that lights could be put around", options.scene));
+    throw InputError(fmt::format("{}: {} nothing that lights could be put around", description.scene,
+                                 experiment.gbuffer ? "shows" : "its camera sees"));
   const Bounds box = seenBox(seen, glm::dvec3(first.camera.camera_to_world[3]));
   completeAxes(description.axes, box);
 
@@ -354,7 +436,17 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
         fmt::format("{} {} {} {} {}", options.field, options.range.value_or(0), options.cutoff.value_or(0),
                     options.intensity, options.picture.shadows == "off"),
         experiment.fields.size());
-    if (is_new) experiment.fields.push_back(makeField(options, box, description.lights.back()));
+    if (is_new) {
+      experiment.fields.push_back(makeField(options, scene, box, description.lights.back()));
+      const std::vector<Light>& list = experiment.fields.back().list;
+      const bool chooses = !has_range || removesRanges(command, options, description.axes);
+      if (chooses && std::any_of(list.begin(), list.end(),
+                                 [](const Light& light) { return light.kind == LightKind::kDirectional; }))
+        throw InputError(fmt::format(
+            "{}: a directional light has no place to fade from; expected --own-lights in place of a density "
+            "or --no-range",
+            options.field));
+    }
     variants.push_back(variant);
     of_variant.push_back({.settings = settingsNow(),
                           .field = place->second,

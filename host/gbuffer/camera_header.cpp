@@ -31,11 +31,6 @@ glm::dmat4 mirrorZ() {
   return mirror;
 }
 
-glm::dvec2 halfExtent(const Camera& camera, glm::ivec2 size) {
-  const double height = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2);
-  return {height * size.x / size.y, height};
-}
-
 /// Camera space with +z ahead to OpenEXR's NDC; z runs from 0 at the near plane to 1 at the far plane.
 glm::dmat4 cameraToNdc(const Camera& camera, const glm::dvec2& half_extent) {
   const double depth = camera.far - camera.near;
@@ -186,9 +181,14 @@ bool isRigid(const glm::dmat4& m) {
   return rigid;
 }
 
-ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size) {
+glm::dvec2 halfExtent(const Camera& camera, glm::ivec2 picture_size, double pixel_aspect) {
+  const double height = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2);
+  return {height * pixel_aspect * picture_size.x / picture_size.y, height};
+}
+
+ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size, double pixel_aspect) {
   const glm::dmat4 world_to_camera = mirrorZ() * glm::inverse(camera.camera_to_world);
-  const glm::dmat4 to_ndc = cameraToNdc(camera, halfExtent(camera, picture_size));
+  const glm::dmat4 to_ndc = cameraToNdc(camera, halfExtent(camera, picture_size, pixel_aspect));
   const double* pose = glm::value_ptr(camera.camera_to_world);
   std::string text;
   for (int i = 0; i < 16; ++i) text += fmt::format("{}{:.17g}", i ? " " : "", pose[i]);
@@ -205,12 +205,13 @@ ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size) {
 }
 
 std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ivec2 picture_size,
-                                       const std::string& path, std::span<const glm::dvec3> visible_points) {
+                                       const std::string& path, std::span<const glm::dvec3> visible_points,
+                                       double pixel_aspect) {
   CameraHeader header;
   if (findNamed(attributes.texts, kPose)) {
     header.camera = parseOwn(attributes, path);
     header.is_exact = true;
-    header.half_extent = halfExtent(header.camera, picture_size);
+    header.half_extent = halfExtent(header.camera, picture_size, pixel_aspect);
     return header;
   }
   std::optional<glm::dmat4> world_to_camera = findMatrix(attributes, kWorldToCamera);

@@ -31,8 +31,12 @@ struct CameraHeader {
   std::optional<glm::dvec2> half_extent;
 };
 
+/// Half a picture's width and height as this camera sees it, at distance 1 (perspective) or in metres
+/// (parallel view). `pixel_aspect`: see Display.
+glm::dvec2 halfExtent(const Camera& camera, glm::ivec2 picture_size, double pixel_aspect);
+
 /// The attributes that describe a camera in a header. `picture_size`: of the whole picture, pixels.
-ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size);
+ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size, double pixel_aspect = 1);
 
 /// Whether a matrix is a rotation, or mirroring, and a translation, to within 1e-4.
 bool isRigid(const glm::dmat4& matrix);
@@ -46,6 +50,7 @@ bool isRigid(const glm::dmat4& matrix);
 /// Names of attributes are matched in any case. Throws InputError for a matrix that isn't a rotation (or
 /// mirroring) and a translation, and for text that can't be read.
 std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ivec2 picture_size,
-                                       const std::string& path, std::span<const glm::dvec3> visible_points);
+                                       const std::string& path, std::span<const glm::dvec3> visible_points,
+                                       double pixel_aspect = 1);
 
 }  // namespace luciole

@@ -31,17 +31,11 @@ void setOpening(const glm::dvec2& half_extent, bool parallel, FileView& view) {
     view.camera.fov_y = 2 * std::atan(half_extent.y);
 }
 
-/// How wide a scene's camera sees in a picture of that size.
-glm::dvec2 halfExtentOf(const Camera& camera, const glm::dvec2& size) {
-  const double height = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2);
-  return {height * size.x / size.y, height};
-}
-
 std::optional<CameraHeader> headerCamera(const ViewQuestion& asked) {
   std::vector<glm::dvec3> world;
   if (asked.space.value_or(asked.usual) == FileSpace::kWorld)
     for (const SeenPoint& seen : asked.points) world.push_back(seen.point);
-  return readCamera(asked.attributes, asked.picture_size, asked.path, world);
+  return readCamera(asked.attributes, asked.picture_size, asked.path, world, asked.pixel_aspect);
 }
 
 bool liesInWorldSpace(const ViewQuestion& asked, const std::optional<CameraHeader>& header) {
@@ -114,7 +108,8 @@ FileView findView(const ViewQuestion& asked) {
     if (const auto fit = fitRays(seen, size); fit && fit->signs == glm::dvec3(1.0))
       setOpening(fit->half_extent, false, view);
   if (!view.knows_camera && asked.camera)
-    setOpening(halfExtentOf(*asked.camera, size), asked.camera->orthographic, view);
+    setOpening(halfExtent(*asked.camera, asked.picture_size, asked.pixel_aspect), asked.camera->orthographic,
+               view);
   if (!asked.has_positions && !view.knows_camera)
     throw InputError(
         asked.path +

@@ -17,6 +17,7 @@ struct ViewQuestion {
   const std::string& path;  ///< for messages
   const ExrAttributes& attributes;
   glm::ivec2 picture_size{0};
+  double pixel_aspect = 1;              ///< see Display
   std::span<const SeenPoint> points{};  ///< some positions as the file has them; none where it has none
   FileSpace usual = FileSpace::kWorld;  ///< of the file's layout
   std::optional<FileSpace> space{};     ///< as the user says

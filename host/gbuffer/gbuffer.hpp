@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/array_memory.hpp"
+#include "image/image.hpp"
 #include "kernels/shared.h"
 #include "scene/scene.hpp"
 
@@ -60,6 +61,7 @@ struct GBuffer {
   bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
+  Display display{};           ///< of the file that it was read from
 
   /// Pixels in a plane, tiles beyond the edge included.
   std::size_t pixels() const { return std::size_t(tiles_x) * tiles_y * kTilePixels; }

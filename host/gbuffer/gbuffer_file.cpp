@@ -84,11 +84,13 @@ void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadat
   if (outputFormat(path, format).extension != "exr") {
     throw InputError(path + ": a G-buffer has many float channels, expected .exr");
   }
-  const WriteOptions options{.format = "exr",
-                             .compression = compression,
-                             .picture_size = gbuffer.picture_size,
-                             .crop_origin = gbuffer.crop_origin,
-                             .exr = cameraAttributes(gbuffer.camera, gbuffer.picture_size)};
+  const WriteOptions options{
+      .format = "exr",
+      .compression = compression,
+      .picture_size = gbuffer.picture_size,
+      .crop_origin = gbuffer.crop_origin,
+      .display = gbuffer.display,
+      .exr = cameraAttributes(gbuffer.camera, gbuffer.picture_size, gbuffer.display.pixel_aspect)};
   Image rows{gbuffer.width, 0, channelNames(gbuffer), {}};
   ImageWriter file(path, gbuffer.width, gbuffer.height, rows.channels, metadata, options);
   // Some rows at a time: all of them together would take more memory than the G-buffer.

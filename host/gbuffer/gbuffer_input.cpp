@@ -19,6 +19,7 @@
 #include "gbuffer/packed_normal.hpp"
 #include "gbuffer/planes.hpp"
 #include "gbuffer/rebuild_normals.hpp"
+#include "image/header_text.hpp"
 
 namespace luciole {
 namespace {
@@ -108,7 +109,8 @@ class Conversion {
         request_.layers.contains(Role::kPosition) || request_.layers.contains(Role::kNormal) ||
         request_.camera_to_world)
       return false;
-    const auto header = readCamera(part_.attributes, part_.picture_size, path_, {});
+    const auto header =
+        readCamera(part_.attributes, part_.picture_size, path_, {}, part_.display.pixel_aspect);
     return header && header->is_exact;
   }
 
@@ -179,6 +181,7 @@ class Conversion {
     view_ = findView({.path = path_,
                       .attributes = part_.attributes,
                       .picture_size = part_.picture_size,
+                      .pixel_aspect = part_.display.pixel_aspect,
                       .points = points,
                       .usual = found_.layout->space,
                       .space = request_.space,
@@ -203,6 +206,7 @@ class Conversion {
     gbuffer.tiles_y = (part_.size.y + kTileSize - 1) / kTileSize;
     gbuffer.picture_size = part_.picture_size;
     gbuffer.crop_origin = part_.crop_origin;
+    gbuffer.display = part_.display;
     gbuffer.camera = view_.camera;
     gbuffer.knows_camera = view_.knows_camera;
     allocatePlanes({.specular = true,
@@ -358,11 +362,16 @@ class Conversion {
                                       : role == Role::kDiffuse && request_.albedo ? " (Kd = albedo / pi)"
                                                                                   : "";
       taken.push_back(fmt::format("{} = {}{}", kRoleNames[i],
-                                  layer.name.empty() ? "R G B" : forMessage(layer.name), remark));
+                                  layer.name.empty() ? "R G B" : forMessage(headerText(layer.name)), remark));
     }
     std::vector<std::string> lines;
     lines.push_back(
         fmt::format("{}: named as {}'s: {}", path_, found_.layout->program, fmt::join(taken, ", ")));
+    if (part_.display.pixel_aspect != 1)
+      lines.push_back(fmt::format("{}: pixels are {} times as wide as high (pixelAspectRatio)", path_,
+                                  part_.display.pixel_aspect));
+    if (const glm::ivec2 origin = part_.display.origin; origin != glm::ivec2(0))
+      lines.push_back(fmt::format("{}: the display window begins at ({}, {})", path_, origin.x, origin.y));
     const std::string space = view_.space == FileSpace::kCamera ? "camera" : "world";
     lines.push_back(fmt::format("{}: {} in {} space, camera {}", path_,
                                 position_ ? "positions" : "positions from depths, normals", space,

@@ -93,11 +93,13 @@ Imf::Compression compressionOf(const std::string& name) {
 Imf::Header makeHeader(int width, int height, const std::vector<std::string>& channels,
                        const Metadata& metadata, const WriteOptions& options) {
   const glm::ivec2 whole = options.picture_size.x > 0 ? options.picture_size : glm::ivec2(width, height);
-  const glm::ivec2 first = options.crop_origin, last = first + glm::ivec2(width - 1, height - 1);
+  const glm::ivec2 origin = options.display.origin, first = origin + options.crop_origin,
+                   last = first + glm::ivec2(width - 1, height - 1);
   const auto box = [](glm::ivec2 from, glm::ivec2 to) {
     return Imath::Box2i(Imath::V2i(from.x, from.y), Imath::V2i(to.x, to.y));
   };
-  Imf::Header header(box({0, 0}, whole - 1), box(first, last), 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
+  Imf::Header header(box(origin, origin + whole - 1), box(first, last), options.display.pixel_aspect,
+                     Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
                      compressionOf(options.compression.empty() ? kExrCompression : options.compression));
   for (const std::string& name : channels)
     header.channels().insert(name,
@@ -124,7 +126,8 @@ class ExrFile : public RowFile {
       : path_(path), width_(width), channels_(channels), file_(path), stream_(file_, path) {
     for (const std::string& name : channels)
       halves_.push_back(options.half && isColorChannel(name) ? half_channels_++ : kNoHalf);
-    at_ = {options.crop_origin.x, options.crop_origin.y};
+    const glm::ivec2 first = options.display.origin + options.crop_origin;
+    at_ = {first.x, first.y};
     encode([&] {
       useExrThreads();
       output_.emplace(stream_, makeHeader(width, height, channels, metadata, options));

@@ -23,6 +23,7 @@
 #include "image/exr_header.hpp"
 #include "image/exr_threads.hpp"
 #include "image/exr_zip.hpp"
+#include "image/header_text.hpp"
 #include "image/picture_claims.hpp"
 
 namespace luciole {
@@ -64,10 +65,11 @@ PicturePart partOf(const Imf::Header& header) {
                    .size = sizeOf(data),
                    .picture_size = sizeOf(display),
                    .crop_origin = {data.min.x - display.min.x, data.min.y - display.min.y},
+                   .display = {{display.min.x, display.min.y}, header.pixelAspectRatio()},
                    .is_deep = isDeep(header)};
   for (auto i = header.begin(); i != header.end(); ++i) {
     if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute()))
-      part.attributes.texts.emplace_back(i.name(), text->value());
+      part.attributes.texts.emplace_back(i.name(), headerText(text->value()));
     else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&i.attribute()))
       part.attributes.matrices.emplace_back(i.name(), matrixOf(matrix->value()));
     else if (const auto* wide = dynamic_cast<const Imf::M44dAttribute*>(&i.attribute()))

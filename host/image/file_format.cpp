@@ -23,6 +23,8 @@ const FileFormat kFormats[] = {
     {"bmp", false, 3},
     {"ppm", false, 3},
     {"hdr", true, 3},
+    {"pfm", true, 3},
+    {"npy", true, 4},
     {"exr", true, kAnyChannels},
     {"tif", true, kAnyChannels},
     {"tiff", true, kAnyChannels},
@@ -70,7 +72,8 @@ FileFormat pictureFormat(const std::string& path, const WriteOptions& options) {
       refuse(fmt::format("such compression (--compression {})", options.compression),
              is_of_png ? ".png" : ".exr");
   }
-  if (options.alpha && format.max_channels < 4) refuse("coverage (--alpha)", ".exr, .png, .tif or .tga");
+  if (options.alpha && format.max_channels < 4)
+    refuse("coverage (--alpha)", ".exr, .png, .tif, .tga or .npy");
   if (options.bits == 0) return format;
   const bool has_codes = options.bits == 8    ? !format.is_float || is_tiff
                          : options.bits == 16 ? format.extension == "png" || is_tiff

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/gtc/type_ptr.hpp>
@@ -11,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "image/header_text.hpp"
 #include "image/layers.hpp"
 #include "image/oiio.hpp"
 #include "image/picture_file.hpp"
@@ -52,11 +54,19 @@ ExrAttributes attributesOf(const OIIO::ImageSpec& spec) {
   for (const OIIO::ParamValue& value : spec.extra_attribs) {
     const std::string name = value.name().string();
     if (value.type() == OIIO::TypeDesc::STRING)
-      attributes.texts.emplace_back(name, value.get_string());
+      attributes.texts.emplace_back(name, headerText(value.get_string()));
     else if (value.type() == kMatrix)
       attributes.matrices.emplace_back(name, glm::make_mat4(static_cast<const float*>(value.data())));
   }
   return attributes;
+}
+
+Display displayOf(const OIIO::ImageSpec& spec) {
+  Display display{.origin = {spec.full_x, spec.full_y}};
+  if (const float aspect = spec.get_float_attribute("PixelAspectRatio", 1);
+      std::isfinite(aspect) && aspect > 0)
+    display.pixel_aspect = aspect;
+  return display;
 }
 
 /// Where in the whole picture pixel (0,0) of its data lies.
@@ -67,6 +77,7 @@ PicturePart partOf(const OIIO::ImageSpec& spec) {
                    .size = {spec.width, spec.height},
                    .picture_size = {spec.full_width, spec.full_height},
                    .crop_origin = cropOrigin(spec),
+                   .display = displayOf(spec),
                    .channels = spec.channelnames,
                    .types = {},
                    .compression = spec.get_string_attribute("compression"),
@@ -87,7 +98,8 @@ Image readImage(const std::string& path) {
   image.height = spec.height;
   image.channels = spec.channelnames;
   image.picture_size = {spec.full_width, spec.full_height};
-  image.crop_origin = {spec.x - spec.full_x, spec.y - spec.full_y};
+  image.crop_origin = cropOrigin(spec);
+  image.display = displayOf(spec);
   const std::size_t channels = image.channels.size();
   // Integer files are read as 16-bit codes first, which lie beside the floats.
   requireMemory(double(spec.width) * spec.height * channels * (sizeof(float) + sizeof(std::uint16_t)), path);

@@ -11,6 +11,13 @@
 
 namespace luciole {
 
+/// What an EXR says of its whole picture beside the size.
+struct Display {
+  glm::ivec2 origin{0};    ///< where the display window begins; places in the whole picture count from there
+  float pixel_aspect = 1;  ///< the width of a pixel by its height, > 0
+  bool operator==(const Display&) const = default;
+};
+
 /// A picture in memory: linear float, row-major, channels interleaved, pixel (0,0) top left.
 struct Image {
   int width = 0;
@@ -19,6 +26,7 @@ struct Image {
   std::vector<float> pixels;          ///< width × height × channels.size()
   glm::ivec2 picture_size{0};         ///< of the whole picture, of which the file says that this is a part
   glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
+  Display display{};
 };
 
 /// Text attributes to store with a picture, by the names OpenImageIO gives them ("Software",
@@ -45,14 +53,15 @@ struct WriteOptions {
   bool alpha = false;          ///< colours are multiplied by A; integer formats then get them divided by A
   glm::ivec2 picture_size{0};  ///< of the whole picture where this is a crop; 0: this is the whole
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
+  Display display = {};        ///< exr
   ExrAttributes exr = {};
   Film* film = nullptr;  ///< whose next frame this is, rather than a file of its own: 8-bit R, G, B
 };
 
-/// Reads any picture OpenImageIO reads; 8- and 16-bit integer files are taken as sRGB and linearized (alpha
-/// apart), unless the file says that it is linear. Colours are as the file has them: never multiplied or
-/// divided by alpha. Sizes are checked before anything is allocated. Throws InputError, or MachineError where
-/// the picture doesn't fit into memory.
+/// Reads any picture OpenImageIO reads, and .npy files (readNpy); 8- and 16-bit integer files are taken as
+/// sRGB and linearized (alpha apart), unless the file says that it is linear. Colours are as the file has
+/// them: never multiplied or divided by alpha. Sizes are checked before anything is allocated. Throws
+/// InputError, or MachineError where the picture doesn't fit into memory.
 Image readImage(const std::string& path);
 
 /// A text attribute stored with a picture; empty where it has none of that name. Throws as readImage does.
@@ -60,13 +69,11 @@ std::string readAttribute(const std::string& path, const std::string& name);
 
 /// Writes by the extension. Integer formats (png, tga, jpg, bmp, ppm) take the R, G, B channels (and A: png,
 /// tga) as sRGB, rounded to nearest or dithered, NaN as 0; exr and tif every channel as it is, 32-bit float;
-/// hdr R, G, B. Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G, B.
-/// An EXR of a crop has it as data window inside the display window.
-/// Colours of an EXR whose magnitude is beyond largestColor() become that. Returns the number of pixels with
-/// such a colour.
-/// The file appears whole or not at all (see OutputFile). "-" writes a PNG to standard output.
-/// Throws InputError (unknown extension, options that the format has no place for, no such folder, read-only
-/// folder) or MachineError (disk full).
+/// hdr and pfm R, G, B; npy these, and A. Others that OpenImageIO writes (webp, gif, sgi ...) as 8-bit R, G,
+/// B. An EXR of a crop has it as data window inside the display window. Colours of an EXR whose magnitude is
+/// beyond largestColor() become that. Returns the number of pixels with such a colour. The file appears whole
+/// or not at all (see OutputFile). "-" writes a PNG to standard output. Throws InputError (unknown extension,
+/// options that the format has no place for, no such folder, read-only folder) or MachineError (disk full).
 std::uint64_t writeImage(const Image& image, const std::string& path, const Metadata& metadata,
                          const WriteOptions& options = {});
 

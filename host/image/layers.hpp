@@ -14,6 +14,7 @@ struct PicturePart {
   glm::ivec2 size{0};
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
+  Display display{};
   std::vector<std::string> channels{};
   std::vector<std::string> types{};  ///< of each channel: "half", "float", "uint8" …
   std::string compression{};         ///< by its name in OpenImageIO; empty where the format knows none

@@ -147,6 +147,7 @@ Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups,
   });
   options.picture_size = header.picture_size;
   options.crop_origin = header.crop_origin;
+  options.display = header.display;
   options.exr.matrices = header.attributes.matrices;
   return image;
 }

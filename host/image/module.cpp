@@ -11,6 +11,8 @@
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
 #include "base/trace.hpp"
+#include "image/file_format.hpp"
+#include "image/float_file.hpp"
 #include "image/quick_texture.hpp"
 
 namespace luciole {
@@ -47,10 +49,13 @@ const ImageFunctions& functions() {
 
 }  // namespace
 
-Image readImage(const std::string& path) { return functions().read_image(path); }
+Image readImage(const std::string& path) {
+  std::optional<Image> array = readNpy(path);
+  return array ? std::move(*array) : functions().read_image(path);
+}
 
 std::string readAttribute(const std::string& path, const std::string& name) {
-  return functions().read_attribute(path, name);
+  return formatName(path) == "npy" ? "" : functions().read_attribute(path, name);
 }
 
 std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int height,
@@ -59,7 +64,16 @@ std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int
   return functions().open_picture_file(path, width, height, channels, format, metadata, options);
 }
 
-std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
+std::vector<PicturePart> readParts(const std::string& path) {
+  const std::optional<Image> array = readNpy(path);
+  if (!array) return functions().read_parts(path);
+  const glm::ivec2 size(array->width, array->height);
+  return {{.name = "",
+           .size = size,
+           .picture_size = size,
+           .channels = array->channels,
+           .types = std::vector<std::string>(array->channels.size(), "float")}};
+}
 
 Texture readTexture(const std::string& path) {
   const TraceSpan span("read texture", {{"file", path}});

@@ -16,6 +16,7 @@
 #include "image/dither.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "image/float_file.hpp"
 #include "image/image.hpp"
 #include "image/row_file.hpp"
 #include "image/srgb_codes.hpp"
@@ -187,6 +188,8 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
         openPngFile(path, width, height, int(names.size()), metadata, format.bits, options.compression);
   else if (format.extension == "exr")
     state_->file = openExrFile(path, width, height, names, metadata, options);
+  else if (format.extension == "pfm" || format.extension == "npy")
+    state_->file = openFloatFile(path, width, height, int(names.size()), format);
   else
     state_->file = openPictureFile(path, width, height, names, format, metadata, options);
 }

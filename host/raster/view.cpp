@@ -40,10 +40,10 @@ glm::dmat4 worldToView(const Camera& camera) {
   return to_view;
 }
 
-View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop) {
+View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop, double pixel_aspect) {
   View view;
   view.world_to_view = worldToView(camera);
-  const double aspect = double(size.x) / size.y;
+  const double aspect = pixel_aspect * size.x / size.y;
   if (camera.orthographic) {
     const double half_width = camera.half_height * aspect;
     view.projection = orthographicProjection(-half_width, half_width, -camera.half_height, camera.half_height,

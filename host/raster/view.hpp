@@ -54,9 +54,11 @@ struct PixelRectangle {
   }
 };
 
-/// The view of a camera on a picture of `size` pixels, or on a part of it, sampled at pixel centres. Throws
-/// InputError for a crop that is not inside the picture.
-View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop = {});
+/// The view of a camera on a picture of `size` pixels, or on a part of it, sampled at pixel centres.
+/// pixel_aspect: the width of a pixel by its height. Throws InputError for a crop that is not inside the
+/// picture.
+View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop = {},
+                double pixel_aspect = 1);
 
 /// Where in a pixel sample `index` of `count` lies: the Hammersley set, shifted so that a single sample is
 /// the centre.

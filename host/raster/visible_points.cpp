@@ -13,39 +13,57 @@ namespace {
 /// Pixels that are drawn at once, so that their G-buffer takes at most some 200 MB.
 constexpr int kBandPixels = 1 << 22;
 
+/// A random sample of points that come one after another: Vitter 1985, "Random sampling with a reservoir",
+/// algorithm R.
+struct Reservoir {
+  std::size_t count;    ///< of points, at most
+  std::uint64_t state;  ///< of the random numbers
+  std::uint64_t covered = 0;
+  std::vector<glm::dvec3> points{};  ///< world space
+};
+
+/// Adds what the pixels of a G-buffer show.
+void addPoints(const GBuffer& gbuffer, const glm::dmat4& camera_to_world, Reservoir& sample) {
+  const std::size_t stride = gbuffer.pixels();
+  for (int y = 0; y < gbuffer.height; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      const float* p = gbuffer.position.data() + gbuffer.index(x, y);
+      if (std::isinf(p[2 * stride])) continue;
+      ++sample.covered;
+      const std::size_t place =
+          sample.covered <= sample.count
+              ? sample.points.size()
+              : static_cast<std::size_t>(nextUniform(sample.state) * static_cast<double>(sample.covered));
+      if (place >= sample.count) continue;
+      const glm::dvec3 world(camera_to_world * glm::dvec4(p[0], p[stride], p[2 * stride], 1));
+      if (place == sample.points.size()) {
+        sample.points.push_back(world);
+      } else {
+        sample.points[place] = world;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<glm::dvec3> visiblePoints(const Scene& scene, const Camera& camera, glm::ivec2 size,
                                       std::size_t count, std::uint64_t seed) {
   const int band_height = std::max(kBandPixels / size.x, 1);
   const std::vector<std::uint32_t> objects = allObjects(scene);
-  std::vector<glm::dvec3> points;
-  std::uint64_t state = seed;
-  std::uint64_t covered = 0;
+  Reservoir sample{count, seed};
   for (int top = 0; top < size.y; top += band_height) {
     const Crop band{0, top, size.x, std::min(band_height, size.y - top)};
-    const GBuffer gbuffer = rasterize(scene, objects, cameraView(camera, size, band), Shading::kPhong, {});
-    const std::size_t stride = gbuffer.pixels();
-    for (int y = 0; y < gbuffer.height; ++y) {
-      for (int x = 0; x < gbuffer.width; ++x) {
-        const float* p = gbuffer.position.data() + gbuffer.index(x, y);
-        if (std::isinf(p[2 * stride])) continue;
-        // Vitter 1985, "Random sampling with a reservoir", algorithm R.
-        ++covered;
-        const std::size_t place =
-            covered <= count ? points.size()
-                             : static_cast<std::size_t>(nextUniform(state) * static_cast<double>(covered));
-        if (place >= count) continue;
-        const glm::dvec3 world(camera.camera_to_world * glm::dvec4(p[0], p[stride], p[2 * stride], 1));
-        if (place == points.size()) {
-          points.push_back(world);
-        } else {
-          points[place] = world;
-        }
-      }
-    }
+    addPoints(rasterize(scene, objects, cameraView(camera, size, band), Shading::kPhong, {}),
+              camera.camera_to_world, sample);
   }
-  return points;
+  return sample.points;
+}
+
+std::vector<glm::dvec3> visiblePoints(const GBuffer& gbuffer, std::size_t count, std::uint64_t seed) {
+  Reservoir sample{count, seed};
+  addPoints(gbuffer, gbuffer.camera.camera_to_world, sample);
+  return sample.points;
 }
 
 Bounds seenBox(std::span<const glm::dvec3> points, const glm::dvec3& eye) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gbuffer/gbuffer.hpp"
 #include "scene/bounds.hpp"
 #include "scene/scene.hpp"
 
@@ -15,6 +16,9 @@ namespace luciole {
 /// same points. Draws the whole picture. Throws as rasterize does.
 std::vector<glm::dvec3> visiblePoints(const Scene& scene, const Camera& camera, glm::ivec2 size,
                                       std::size_t count, std::uint64_t seed);
+
+/// The same of the pixels of a G-buffer.
+std::vector<glm::dvec3> visiblePoints(const GBuffer& gbuffer, std::size_t count, std::uint64_t seed);
 
 /// A box around the part of a scene that is worth lighting, world space, metres: from the 5th to the 95th
 /// percentile of visible points along each axis, so that a little sky or far horizon doesn't enlarge it. A

@@ -356,7 +356,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   ShadeSettings shade = pictureShading(scene, one_sample);
   shade.model = settings.shade.model;
   chooseModel(surfaces.models, shade);
-  const View view = cameraView(gbuffer.camera, gbuffer.picture_size);
+  const View view = cameraView(gbuffer.camera, gbuffer.picture_size, {}, gbuffer.display.pixel_aspect);
   const FeatureSet features =
       neededFeatures(scene, gbuffer.camera, surfaces, shade, standsForLights(scene, view, surfaces, shade));
   std::vector<LightLayer> layers = lightLayers(scene, one_sample);

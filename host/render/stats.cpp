@@ -1,9 +1,13 @@
 #include "render/stats.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "base/csv.hpp"
 #include "base/dump_utf8.hpp"
 #include "base/peak_memory.hpp"
 #include "base/threads.hpp"
@@ -155,6 +159,52 @@ std::string statsJson(const Stats& stats, double ended) {
   json["picture_milliseconds"] = ended - stats.began;
   json["wall_milliseconds"] = ended;
   return dumpUtf8(std::move(json), 2) + "\n";
+}
+
+std::string statsCsv(const Stats& stats, double ended) {
+  std::vector<std::string> names, values;
+  const auto add = [&](std::string name, std::string value) {
+    std::replace(name.begin(), name.end(), ' ', '_');
+    names.push_back(std::move(name));
+    values.push_back(std::move(value));
+  };
+  const auto text = [](const auto& number) { return fmt::format("{}", number); };
+  const auto ifAny = [&](const auto& number) { return number ? text(*number) : std::string(); };
+  add("version", LUCIOLE_VERSION);
+  add("command", stats.command);
+  add("platform", stats.device.platform);
+  add("device", stats.device.name);
+  add("driver", stats.device.version);
+  add("lanes", text(stats.device.lanes));
+  add("threads", text(livingThreads()));
+  add("triangles", text(stats.triangles));
+  add("lights", text(stats.lights));
+  add("width", text(stats.width));
+  add("height", text(stats.height));
+  add("samples", text(stats.samples));
+  add("measured_exposure", ifAny(stats.measured_exposure));
+  add("hash", stats.hash);
+  add("wall_ms", text(ended));
+  add("picture_ms", text(ended - stats.began));
+  add("cold_start_ms", text(stageTime(stats, Stage::kOpenDevice) + stageTime(stats, Stage::kCompileKernels)));
+  add("kernels_compiled", ifAny(kernelsCompiled(stats.device.platform)));
+  for (int stage = 0; stage <= int(Stage::kWrite); ++stage)
+    add(std::string(stageName(Stage(stage))) + " ms", text(stageTime(stats, Stage(stage))));
+  for (const char* count :
+       {"pixels_lit", "refined_pixels", "pixel_lights_evaluated", "pixel_lights_in_range", "list_entries",
+        "lights_stood_for", "pixel_clusters_evaluated", "pixel_clustered_lights_evaluated", "pixels_redone",
+        "shadow_lights_exact", "shadow_lights_by_maps", "shadow_pairs_exact", "shadow_pairs_by_maps",
+        "shadow_rays"})
+    add(count, text(countOf(stats, count)));
+  const LightErrorStats& bounds = stats.light_error;
+  const bool is_bounded = bounds.values > 0;
+  add("light_error_largest", is_bounded ? text(bounds.largest) : "");
+  add("light_error_mean", is_bounded ? text(bounds.sum / double(bounds.values)) : "");
+  add("peak_bytes", text(peakBytes()));
+  add("device_bytes", text(stats.device_bytes));
+  add("uploaded_bytes", text(stats.traffic.bytes_up));
+  add("downloaded_bytes", text(stats.traffic.bytes_down));
+  return csvLine(names) + csvLine(values);
 }
 
 }  // namespace luciole

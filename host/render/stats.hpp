@@ -145,4 +145,10 @@ std::uint64_t countOf(const Stats& stats, std::string_view name);
 /// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.
 std::string statsJson(const Stats& stats, double ended);
 
+/// The same as two lines of CSV: names, and values. The columns are always the same, so that the files of
+/// many runs make one table; a cell is empty where there is no such figure, and 0 for a stage that did not
+/// run or a count of nothing. What has no fixed number of values (features, warnings, several devices) is in
+/// the JSON alone.
+std::string statsCsv(const Stats& stats, double ended);
+
 }  // namespace luciole

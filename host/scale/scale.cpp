@@ -85,9 +85,11 @@ void setLights(Bench& bench, std::size_t index) {
   bench.lit_by = key;
 }
 
-bool isSame(const Light& a, const Light& b) {
-  return a.position == b.position && a.diffuse == b.diffuse && a.specular == b.specular &&
-         a.attenuation == b.attenuation && a.range == b.range && a.shadow == b.shadow;
+/// The picture of a point, lit by the scene's lights.
+Image makePicture(const Bench& bench, const RenderSettings& settings, Stats& stats) {
+  return bench.experiment.gbuffer
+             ? shadeGBuffer(bench.device, bench.scene, *bench.experiment.gbuffer, settings, stats)
+             : renderScene(bench.device, bench.scene, settings, stats);
 }
 
 /// The truth by the scene's lights: the last one if that fits, otherwise a new one.
@@ -95,8 +97,7 @@ const Truth& findTruth(Bench& bench, const RenderSettings& settings) {
   Truth& truth = bench.truth;
   const Scene& scene = bench.scene;
   if (!truth.image.pixels.empty() && truth.model == settings.shade.model &&
-      truth.shading == settings.shading &&
-      std::equal(truth.lights.begin(), truth.lights.end(), scene.lights.begin(), scene.lights.end(), isSame))
+      truth.shading == settings.shading && truth.lights == scene.lights)
     return truth;
   ReferenceSettings reference;
   reference.model = settings.shade.model;
@@ -104,8 +105,10 @@ const Truth& findTruth(Bench& bench, const RenderSettings& settings) {
   if (std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; }))
     reference.shadow_rays =
         &rays.emplace(buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3])));
-  truth.colors = referencePicture(scene, cameraView(settings.camera, settings.size), settings.shading,
-                                  bench.experiment.truth_samples, bench.checked.pixels, reference);
+  truth.colors = bench.experiment.gbuffer
+                     ? referencePixels(scene, *bench.experiment.gbuffer, bench.checked.pixels, reference)
+                     : referencePicture(scene, cameraView(settings.camera, settings.size), settings.shading,
+                                        bench.experiment.truth_samples, bench.checked.pixels, reference);
   truth.lights = scene.lights;
   truth.model = settings.shade.model;
   truth.shading = settings.shading;
@@ -184,7 +187,7 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   settings.aovs = {Aov::kListLength};
   if (settings.shade.light_error > 0) settings.aovs.push_back(Aov::kLightError);
   Stats stats;
-  const Image picture = renderScene(bench.device, bench.scene, settings, stats);
+  const Image picture = makePicture(bench, settings, stats);
   const Image colors = colorsOf(picture);
   const Truth& truth = findTruth(bench, settings);
   ImageDifference difference = compareImages(truth.image, colors);
@@ -229,7 +232,7 @@ PointRun timePoint(Bench& bench, std::size_t index) {
   malloc_trim(0);  // memory that earlier points freed shall not count for this one
   resetPeakBytes();
   Stats stats;
-  renderScene(bench.device, bench.scene, bench.experiment.tasks[index].settings, stats);
+  makePicture(bench, bench.experiment.tasks[index].settings, stats);
   PointRun run{.stages = {}, .device_bytes = stats.device_bytes, .peak_bytes = peakBytes()};
   for (const auto& [stage, milliseconds] : stats.stages)
     if (!isStart(stage)) run.stages.emplace_back(stageName(stage), milliseconds);
@@ -326,7 +329,9 @@ std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExpe
       {},     {},    {},         {}};
   if (std::any_of(experiment.tasks.begin(), experiment.tasks.end(),
                   [](const ScaleTask& task) { return task.density > 0 || task.no_range; })) {
-    bench.seen = visiblePoints(scene, any.camera, any.size, kDensityPoints, experiment.seed);
+    bench.seen = experiment.gbuffer
+                     ? visiblePoints(*experiment.gbuffer, kDensityPoints, experiment.seed)
+                     : visiblePoints(scene, any.camera, any.size, kDensityPoints, experiment.seed);
     if (bench.seen.empty())
       throw InputError(fmt::format("{}: its camera sees nothing, so there is no density of lights to have",
                                    description.scene));

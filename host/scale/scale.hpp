@@ -10,6 +10,7 @@
 #include "cl/device.hpp"
 #include "figures/kept_bounds.hpp"
 #include "figures/rounds.hpp"
+#include "gbuffer/gbuffer.hpp"
 #include "render/render.hpp"
 #include "scene/lights/light_field.hpp"
 
@@ -65,8 +66,10 @@ struct ScaleTask {
 
 struct ScaleExperiment {
   ScaleDescription description;
-  std::vector<ScaleTask> tasks;     ///< one for each of description.points
-  std::vector<LightField> fields;   ///< with at least as many lights as any point
+  std::vector<ScaleTask> tasks;    ///< one for each of description.points
+  std::vector<LightField> fields;  ///< with at least as many lights as any point
+  /// What is lit in place of the scene's surfaces. Then the tasks' settings have its size and camera.
+  std::optional<GBuffer> gbuffer{};
   std::size_t check_pixels = 1024;  ///< about how many pixels are compared with the reference
   std::uint64_t seed = 0;           ///< chooses these pixels
   int truth_samples = 1;            ///< samples a pixel that make the truth

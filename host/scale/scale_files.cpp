@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/csv.hpp"
 #include "base/dump_utf8.hpp"
 #include "base/page_text.hpp"
 
@@ -21,23 +22,6 @@ using Json = nlohmann::ordered_json;
 
 /// The most bytes of pictures on the page: more is too much for browsers on phones.
 constexpr std::size_t kMostPictureBytes = std::size_t(64) << 20;
-
-/// A cell of a CSV file, quoted as in RFC 4180.
-std::string csvCell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string csvLine(const std::vector<std::string>& cells) {
-  std::string line;
-  for (const std::string& cell : cells) {
-    if (!line.empty()) line += ',';
-    line += csvCell(cell);
-  }
-  return line + '\n';
-}
 
 std::vector<std::string> allStages(const ScaleSummary& summary) {
   std::vector<std::string> names;

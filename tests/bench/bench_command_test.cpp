@@ -282,6 +282,14 @@ TEST_F(BenchCommand, CullAndShadeTimesAGBufferFromAFileBesideItsRoofs) {
   const auto json = nlohmann::json::parse(readText(folder / "out.json"));
   ASSERT_EQ(json["speed"].size(), 1u);
   EXPECT_NE(json["speed"][0]["measured"].get<std::string>().find("blinn-phong"), std::string::npos);
+  // What was measured, and not the built-in scene.
+  EXPECT_EQ(json["scene"]["name"], "scene.json");
+  EXPECT_EQ(json["image"], nlohmann::json({{"width", 80}, {"height", 45}}));
+  const nlohmann::json measured{
+      {"file", "g.exr"}, {"scene", "scene.json"}, {"lights", json["scene"]["lights"]},
+      {"width", 80},     {"height", 45},          {"model", "blinn-phong"}};
+  EXPECT_EQ(json["gbuffer"], measured);
+  EXPECT_NE(outcome.out.find("g.exr: 80 x 45 pixels, by the "), std::string::npos) << outcome.out;
   const auto& rows = json["speed"][0]["rows"];
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0]["name"], "cull and shade");

@@ -191,6 +191,18 @@ TEST_F(CommandLine, StatsNameEveryStageAndCount) {
   EXPECT_GT(stats["memory"]["peak_bytes"], 0);
 }
 
+TEST_F(CommandLine, StatsAreALineOfATableWhoseColumnsAreTheSameForAllRuns) {
+  succeed("luciole render scene.json -o out.png --stats a.csv");
+  succeed("luciole gbuffer scene.json -o g.exr --stats b.csv");
+  const std::string a = readText(folder / "a.csv"), b = readText(folder / "b.csv");
+  EXPECT_EQ(std::count(a.begin(), a.end(), '\n'), 2);
+  EXPECT_EQ(a.substr(0, a.find('\n')), b.substr(0, b.find('\n')));
+  for (const char* name :
+       {"version,command,", ",lights,width,height,samples,", ",picture_ms,", ",shade_ms,", ",pixels_lit,"})
+    EXPECT_NE(a.find(name), std::string::npos) << name;
+  EXPECT_NE(a.find(",203,96,54,1,"), std::string::npos) << a;
+}
+
 /// What the line about a finished picture says of time: "… lights, 123 ms (load scene 4, shade 56)".
 struct PrintedTime {
   double picture = -1, stages = 0;

@@ -35,6 +35,20 @@ class Compare : public ProgramTest {
   }
 };
 
+TEST_F(Compare, HelpDefinesEachFigureThatItPrints) {
+  writeImage({1, 1, {"R", "G", "B"}, {1, 1, 1}}, folder / "a.npy", {});
+  writeImage({1, 1, {"R", "G", "B"}, {1, 2, 1}}, folder / "b.pfm", {});
+  const std::string figures = succeed("luciole compare a.npy b.pfm"),
+                    help = succeed("luciole compare --help");
+  EXPECT_NE(figures.find("max_abs 1 at (0, 0)"), std::string::npos) << figures;
+  std::istringstream lines(figures);
+  std::string line;
+  std::getline(lines, line);  // how many pixels
+  while (std::getline(lines, line))
+    EXPECT_NE(help.find("\n" + line.substr(0, line.find(' ')) + " "), std::string::npos) << line;
+  EXPECT_NE(succeed("luciole man").find("relmse"), std::string::npos);
+}
+
 TEST_F(Compare, SequencesAreATableWithALineAFrame) {
   writeSequences();
   const std::string table = succeed("luciole compare a.###.exr b.###.exr");

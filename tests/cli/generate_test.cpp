@@ -104,6 +104,30 @@ TEST_F(Generate, EveryShapeHasItsDensityInThePictureOfAMeshAndOfAScene) {
   }
 }
 
+TEST_F(Generate, AListsSpotsSunsAndAttenuationsAreKept) {
+  writeText(folder / "list.csv",
+            "x,y,z,r,g,b,constant,quadratic,dx,dy,dz,cutoff,exponent,inner_cone,outer_cone\n"
+            "1,2,3,4,5,6,1,0.5,,,,,,,\n"
+            "1,2,3,4,5,6,,,1,-2,0.3,33.3,7,,\n"
+            "1,2,3,4,5,6,,,1,0,0,,,12.1,47.7\n"
+            ",,,4,5,6,,,0,-1,1,,,,\n");
+  succeed("luciole generate lights --csv list.csv -o lights.json");
+  const std::vector<Light> lights = loadScene(folder / "lights.json", 1, {}).lights;
+  ASSERT_EQ(lights.size(), 4u);
+  EXPECT_EQ(lights[0].attenuation, glm::vec3(1, 0, 0.5f));
+  EXPECT_EQ(lights[1].kind, LightKind::kSpot);
+  EXPECT_EQ(lights[1].cutoff, glm::radians(33.3));
+  EXPECT_EQ(lights[1].exponent, 7);
+  EXPECT_NEAR(glm::length(lights[1].direction - glm::normalize(glm::dvec3(1, -2, 0.3))), 0, 1e-15);
+  EXPECT_EQ(lights[2].falloff, SpotFalloff::kCone);
+  EXPECT_EQ(lights[2].inner_cone, glm::radians(12.1));
+  EXPECT_EQ(lights[2].cutoff, glm::radians(47.7));
+  EXPECT_EQ(lights[3].kind, LightKind::kDirectional);
+  for (const Light& light : lights) EXPECT_EQ(light.diffuse, glm::vec3(4, 5, 6));
+  refuse("luciole generate lights small.json --csv list.csv --density 4 -o x.json", 2,
+         "--density: a directional light of list.csv has no place to fade from");
+}
+
 TEST_F(Generate, LightsWithoutRangeAreAsBrightAsLightsWithWhateverTheCount) {
   for (const char* shape : {"box", "clusters", "surface"}) {
     double first = 0;

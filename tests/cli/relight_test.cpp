@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -84,6 +86,34 @@ TEST_F(RelightCommand, BothCommandsUnderstandOtherProgramsNames) {
     succeed(std::string("luciole compare blender.exr ") + other + " --max-abs 0");
   // Straight ahead the lamp of 16 is 4 m away: 16 · 0.8 / 4².
   EXPECT_NEAR(readImage(folder / "told.exr").pixels[(3 * 8 + 4) * 3], 0.8f, 1e-6f);
+}
+
+TEST_F(RelightCommand, PixelsThatAreWiderThanHighAreSeenSo) {
+  // A wall 4 m ahead, of which the file tells depth alone. The camera is the scene's, 45 degrees high.
+  constexpr int kSide = 8;
+  Image depth{kSide, kSide, {"Z"}, std::vector<float>(kSide * kSide, 4.0f)};
+  const Display display{.origin = {3, -2}, .pixel_aspect = 2};
+  writeImage(depth, folder / "depth.exr", {}, {.display = display});
+  writeText(folder / "eye.json", R"({"camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}, "ambient": 0,
+      "lights": [{"type": "point", "position": [0, 0, 5], "color": 16, "attenuation": [0, 0, 1]}]})");
+  const std::string said = told("luciole relight depth.exr --lights eye.json -o lit.exr");
+  EXPECT_THAT(said, HasSubstr("depth.exr: pixels are 2 times as wide as high (pixelAspectRatio)"));
+  EXPECT_THAT(said, HasSubstr("depth.exr: the display window begins at (3, -2)"));
+  const Image lit = readImage(folder / "lit.exr");
+  EXPECT_EQ(lit.display, display);
+  const double half_height = std::tan(glm::radians(22.5));
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const glm::dvec3 to_point(4 * 2 * half_height * (2 * (x + 0.5) / kSide - 1),
+                                4 * half_height * (1 - 2 * (y + 0.5) / kSide), -4);
+      const double d = glm::length(to_point);
+      // Some 30 roundings of 2^-24, with those of positions that normals are made of.
+      EXPECT_NEAR(lit.pixels[std::size_t(3 * (y * kSide + x))], 16 * 0.8 * (4 / d) / (d * d), 2e-6)
+          << x << ", " << y;
+    }
+  EXPECT_THAT(succeed("luciole info lit.exr --json -"), HasSubstr(R"("pixel_aspect": 2.0)"));
+  EXPECT_THAT(succeed("luciole info lit.exr"),
+              HasSubstr("8x8, pixels 2 times as wide as high, display window from (3, -2) on"));
 }
 
 TEST_F(RelightCommand, AddLaysTheLightAloneOverThePicture) {

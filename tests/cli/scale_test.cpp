@@ -452,5 +452,100 @@ TEST_F(ScaleCommand, WrongArgumentsAreRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder / "run"));
 }
 
+TEST_F(ScaleCommand, OwnLightsStayAsTheyAre) {
+  writeText(folder / "own.csv",
+            "x,y,z,r,g,b,range,quadratic,dx,dy,dz,cutoff,exponent\n"
+            "0,2,1,3,2,1,,1,,,,,\n"
+            "1,2,1,0,2,1,4,,,,,,\n"
+            "0,3,1,5,5,5,,1,0,-1,0,40,2\n"
+            ",,,0.1,0.2,0.3,,,0,-1,-1,,\n");
+  const std::string box_scene = readText(folder / "scene.json");
+  succeed("--field own.csv --own-lights --lights 1,2,4 --exposure -2 --repeat 1 -o run");
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  // The first of the file, by a scene that has them as its only lights.
+  for (const Row& row : rows) {
+    auto scene = nlohmann::json::parse(box_scene, nullptr, true, true);
+    scene.erase("lights");
+    scene["light_fields"] =
+        nlohmann::json::array({nlohmann::json{{"csv", "own.csv"}, {"count", std::stoi(row.at("lights"))}}});
+    writeText(folder / "lit.json", scene.dump());
+    ASSERT_EQ(runLine(folder, "luciole render lit.json --size " + size +
+                                  " --shadows off --exposure -2 --quiet -o lit.png")
+                  .status,
+              0);
+    EXPECT_EQ(readImage(folder / "lit.png").pixels, readImage(folder / ("run/" + row.at("picture"))).pixels)
+        << row.at("lights") << " lights";
+    EXPECT_LT(std::stod(row.at("max_abs")), 1e-5);
+  }
+  EXPECT_THAT(refuse("--field own.csv --density 3 --lights 4 -o x"), HasSubstr("--own-lights in place of"));
+  EXPECT_THAT(refuse("--field own.csv --own-lights --lights 5 -o x"), HasSubstr("4 lights, expected 5"));
+  EXPECT_THAT(refuse("--field own.csv --own-lights --no-range --lights 4 -o x"), HasSubstr("--no-range"));
+  EXPECT_THAT(refuse("--own-lights --vary density --lights 1 -o x"), HasSubstr("leaves lights as they are"));
+  EXPECT_THAT(refuse("--own-lights --field ball --lights 1 -o x"), HasSubstr("expected a .csv file"));
+  // Another list under the name of the first is another experiment.
+  writeText(folder / "own.csv", "0,2,1,3,2,1\n0,2,1,3,2,1\n0,2,1,3,2,1\n0,2,1,3,2,1\n");
+  EXPECT_THAT(refuse("--field own.csv --own-lights --lights 1,2,4 --exposure -2 --repeat 1 -o run"),
+              HasSubstr("own.csv's SHA-256"));
+}
+
+TEST_F(ScaleCommand, TheScenesOwnLightsAreTakenInItsOrder) {
+  succeed("--own-lights --lights 1 --shadows exact --repeat 1 -o run");
+  auto scene = nlohmann::json::parse(readText(folder / "scene.json"), nullptr, true, true);
+  scene["lights"] = nlohmann::json::array({scene["lights"][0]});
+  scene.erase("light_fields");
+  writeText(folder / "one.json", scene.dump());
+  ASSERT_EQ(runLine(folder, "luciole render one.json --size " + size + " --shadows exact --quiet -o one.png")
+                .status,
+            0);
+  const std::vector<Row> rows = readCsv(folder / "run/results.csv");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(readImage(folder / "one.png").pixels,
+            readImage(folder / ("run/" + rows[0].at("picture"))).pixels);
+  EXPECT_THAT(refuse("--own-lights --lights 1000 -o x"), HasSubstr("lights of its own, expected 1000"));
+}
+
+TEST_F(ScaleCommand, AGBufferIsLitLikeItsScene) {
+  ASSERT_EQ(runLine(folder, "luciole gbuffer scene.json --size " + size + " --quiet -o g.exr").status, 0);
+  const std::string of_both = "--lights 10,1000 --vary culling --check-pixels 40 --repeat 1 --seed 3 ";
+  ASSERT_EQ(runLine(folder, "luciole scale scene.json --size " + size + " " + of_both + "-o drawn").status,
+            0);
+  const Outcome outcome = runLine(folder, "luciole scale scene.json --gbuffer g.exr " + of_both + "-o read");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<Row> drawn = readCsv(folder / "drawn/results.csv"),
+                         read = readCsv(folder / "read/results.csv");
+  ASSERT_EQ(drawn.size(), read.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    EXPECT_EQ(readImage(folder / ("read/" + read[i].at("picture"))).pixels,
+              readImage(folder / ("drawn/" + drawn[i].at("picture"))).pixels);
+    EXPECT_EQ(read[i].at("mean_abs"), drawn[i].at("mean_abs"));
+    EXPECT_FALSE(read[i].contains("rasterize_ms"));
+  }
+  EXPECT_THAT(readText(folder / "read/results.jsonl"), HasSubstr("G-buffer's SHA-256"));
+  // Without a scene its surfaces are lit in the dark.
+  EXPECT_EQ(runLine(folder, "luciole scale --gbuffer g.exr --lights 5 --repeat 1 -o alone").status, 0);
+  for (const char* of_view : {"--size 4x4", "--samples 4", "--vary samples", "--shading flat"}) {
+    const Outcome refused =
+        runLine(folder, std::string("luciole scale --gbuffer g.exr --lights 5 -o x ") + of_view);
+    EXPECT_EQ(refused.status, 2) << of_view;
+    EXPECT_THAT(refused.err, HasSubstr("a G-buffer has its size, camera, shading and samples already"));
+  }
+}
+
+TEST_F(ScaleCommand, AFrameOfASceneThatMovesIsLit) {
+  auto scene = nlohmann::json::parse(readText(folder / "scene.json"), nullptr, true, true);
+  scene["objects"][1]["keys"] = nlohmann::json::parse(
+      R"([{"frame": 1, "translate": [0, 1, 0]}, {"frame": 9, "translate": [2, 1, 0]}])");
+  writeText(folder / "scene.json", scene.dump());
+  const std::string arguments = "--own-lights --lights 1 --repeat 1 ";
+  succeed(arguments + "-o first");
+  succeed(arguments + "--frames 9 -o ninth");
+  const std::string first = readCsv(folder / "first/results.csv")[0].at("picture");
+  const std::string ninth = readCsv(folder / "ninth/results.csv")[0].at("picture");
+  EXPECT_NE(readImage(folder / ("first/" + first)).pixels, readImage(folder / ("ninth/" + ninth)).pixels);
+  EXPECT_THAT(refuse(arguments + "--frames 1-3 -o x"), HasSubstr("expected one frame"));
+  EXPECT_THAT(refuse(arguments + "--frames 3 -o ninth"), HasSubstr("ninth"));
+}
+
 }  // namespace
 }  // namespace luciole::test

@@ -113,6 +113,20 @@ class GBufferInputTest : public testing::Test {
   const TwoPlanes planes{};
 };
 
+TEST(CameraHeader, OfPixelsThatAreWiderThanHighSeesAsFarAsTheyDo) {
+  Camera camera;
+  camera.fov_y = 1;
+  const ExrAttributes attributes = cameraAttributes(camera, {30, 20}, 2);
+  const double height = std::tan(0.5);
+  const auto own = readCamera(attributes, {30, 20}, "a.exr", {}, 2);
+  ASSERT_TRUE(own && own->half_extent);
+  EXPECT_EQ(*own->half_extent, glm::dvec2(height * 2 * 30 / 20, height));
+  const auto others = readCamera({.texts = {}, .matrices = attributes.matrices}, {30, 20}, "a.exr", {}, 2);
+  ASSERT_TRUE(others && others->half_extent);
+  EXPECT_NEAR(others->half_extent->x, height * 2 * 30 / 20, 1e-6);  // the matrices are floats
+  EXPECT_NEAR(others->half_extent->y, height, 1e-6);
+}
+
 TEST_F(GBufferInputTest, PartsMustBeOfOneSizeAndPlace) {
   ForeignPart positions = surfaces([](int, int) { return glm::vec3(0, 0, -3); }, {});
   positions.header = [](OIIO::ImageSpec& spec) { spec.attribute("oiio:subimagename", "positions"); };

@@ -15,7 +15,8 @@ using test::filesIn;
 using test::readText;
 using test::TemporaryFolder;
 
-const std::vector<std::string> kExtensions{"exr", "tif", "hdr", "png", "jpg", "ppm", "bmp", "tga", "sgi"};
+const std::vector<std::string> kExtensions{"exr", "tif", "hdr", "png", "jpg", "ppm",
+                                           "bmp", "tga", "sgi", "pfm", "npy"};
 
 Image somePicture(int width, int height) {
   Image image{width, height, {"R", "G", "B"}, {}};

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "image/exr_input.hpp"
+#include "image/header_text.hpp"
 #include "image/layers.hpp"
 #include "shared_files.hpp"
 
@@ -38,6 +40,34 @@ void writeTwoParts(const std::string& path) {
   ASSERT_TRUE(output->open(path, depth, OIIO::ImageOutput::AppendSubimage));
   ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()));
   ASSERT_TRUE(output->close());
+}
+
+TEST(PictureParts, TextsOfHeadersAreUtf8) {
+  EXPECT_EQ(headerText("Caf\xe9 \xa0"), "Caf\u00e9 \u00a0");
+  EXPECT_EQ(headerText("Caf\u00e9, 灯"), "Caf\u00e9, 灯");
+  EXPECT_EQ(headerText("\xc3"), "\u00c3") << "cut off in a character";
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  writeImage({1, 1, {"Y"}, {0}}, path, {},
+             {.exr = {.texts = {{"luciole:cameraName", "Caf\xe9"}}, .matrices = {}}});
+  const std::pair<std::string, std::string> wanted("luciole:cameraName", "Caf\u00e9");
+  EXPECT_THAT(ExrInput(path).parts()[0].attributes.texts, testing::Contains(wanted));
+  EXPECT_THAT(readParts(path)[0].attributes.texts, testing::Contains(wanted));
+}
+
+TEST(PictureParts, TellWhereTheDisplayWindowLiesAndHowWidePixelsAre) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  const Display display{.origin = {-7, 9}, .pixel_aspect = 0.5f};
+  writeImage({2, 1, {"Y"}, {0, 1}}, path, {},
+             {.picture_size = {5, 4}, .crop_origin = {-1, 2}, .display = display});
+  for (const PicturePart& part : {ExrInput(path).parts()[0], readParts(path)[0]}) {
+    EXPECT_EQ(part.display, display);
+    EXPECT_EQ(part.picture_size, glm::ivec2(5, 4));
+    EXPECT_EQ(part.crop_origin, glm::ivec2(-1, 2));
+  }
+  EXPECT_EQ(readImage(path).display, display);
+  EXPECT_EQ(readImage(path).pixels, (std::vector<float>{0, 1}));
 }
 
 TEST(PictureParts, AreAllTold) {

@@ -33,7 +33,7 @@ GltfTextureInfo baseTexture(const GltfModel& model, int material);
 /// exponent is that of Walter et al., "Microfacet Models for Refraction" (2007), for the half vector; a
 /// quarter of it is for the reflected vector. 1 / (4 α²) is the peak of the GGX lobe relative to a Lambertian
 /// 1/π, limited to 1 to keep the highlight in range. r is at least 0.15 (shininess 987), since a sharper
-/// highlight falls between pixels. Nothing is blended: alphaMode BLEND is drawn as MASK with cutoff 0.5. An
+/// highlight falls between pixels. alphaMode BLEND is Material::blended, and of its shadows a cutoff of 0.5. An
 /// unlit material reflects nothing and has its base colour as emission, to the bit.
 ///
 /// KHR_materials_pbrSpecularGlossiness comes before metallic-roughness: base is its diffuse colour, F0 its

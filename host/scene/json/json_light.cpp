@@ -289,7 +289,7 @@ LightField readLightField(const JsonNode& node, const SearchFolders& where, Ligh
   if (const auto n = find(node, "cutoff")) {
     refuseKeys(node, {"range", "attenuation"}, "beside cutoff");
     field.cutoff = readPositive(*n);
-    field.attenuation = {0, 0, 1};
+    field.attenuation = glm::vec3(0, 0, 1);
   }
   if (const auto n = find(node, "no_range")) {
     refuseKeys(node, {"range", "cutoff", "attenuation"}, "beside no_range");

@@ -44,16 +44,44 @@ std::string cameraLine(const Camera& camera) {
       std::min(camera.far, kBeyondAll));
 }
 
+/// The degrees that are read as these radians, to the bit where they were typed as degrees.
+double degreesOf(double radians) {
+  double degrees = glm::degrees(radians);
+  for (const double near : {degrees, std::nextafter(degrees, 0.0), std::nextafter(degrees, 360.0)})
+    if (glm::radians(near) == radians) return near;
+  return degrees;
+}
+
+void appendSpot(const Light& light, std::string& text) {
+  const auto out = std::back_inserter(text);
+  if (light.falloff == SpotFalloff::kCone)
+    fmt::format_to(out, ", \"inner_cone\": {}, \"outer_cone\": {}", degreesOf(light.inner_cone),
+                   degreesOf(light.cutoff));
+  else
+    fmt::format_to(out, ", \"cutoff\": {}, \"exponent\": {}", degreesOf(light.cutoff), light.exponent);
+}
+
 /// Appends the lights and the end of a scene's file.
 void appendLights(const std::vector<Light>& lights, std::string& text) {
   text += "  \"lights\": [";
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
-    const glm::dvec3& p = light.position;
     const glm::vec3& c = light.diffuse;
-    fmt::format_to(out, "{}\n    {{\"type\": \"point\", \"position\": [{}, {}, {}], \"color\": [{}, {}, {}]",
-                   i ? "," : "", p.x, p.y, p.z, c.x, c.y, c.z);
+    fmt::format_to(out, "{}\n    {{\"type\": \"{}\"", i ? "," : "",
+                   light.kind == LightKind::kPoint  ? "point"
+                   : light.kind == LightKind::kSpot ? "spot"
+                                                    : "directional");
+    if (light.kind != LightKind::kDirectional) {
+      const glm::dvec3& p = light.position;
+      fmt::format_to(out, ", \"position\": [{}, {}, {}]", p.x, p.y, p.z);
+    }
+    if (light.kind != LightKind::kPoint) {
+      const glm::dvec3& d = light.direction;
+      fmt::format_to(out, ", \"direction\": [{}, {}, {}]", d.x, d.y, d.z);
+    }
+    fmt::format_to(out, ", \"color\": [{}, {}, {}]", c.x, c.y, c.z);
+    if (light.kind == LightKind::kSpot) appendSpot(light, text);
     if (light.attenuation != glm::vec3(1, 0, 0)) {
       const glm::vec3& a = light.attenuation;
       fmt::format_to(out, ", \"attenuation\": [{}, {}, {}]", a.x, a.y, a.z);

@@ -7,8 +7,9 @@
 
 namespace luciole {
 
-/// The text of a Luciole scene with the given point lights, one a line. It keeps the members that
-/// expandLightField sets, but for the group. Reading it gives the same lights to the bit.
+/// The text of a Luciole scene with the given lights, one a line. It keeps the members that expandLightField
+/// sets, but for the group. Reading it gives the same lights to the bit, but for directions, which keep all
+/// but their last bit.
 std::string lightsScene(const std::vector<Light>& lights);
 
 /// The same with one object, a mesh file, and a camera, whose direction is kept to within its rounding. The

@@ -31,19 +31,24 @@ void appendLights(const LightField& field, const std::function<glm::dvec3(std::u
     } else {
       light.position = placeOf(place_state);
     }
+    light.group = field.group;
+    if (field.as_listed) {
+      lights.push_back(light);
+      continue;
+    }
     const double pick = nextUniform(look_state) * static_cast<double>(field.colors.size());
     const double intensity = between(field.intensity.x, field.intensity.y, nextUniform(look_state));
     const double range_u = nextUniform(look_state);
     if (!listed) light.diffuse = field.colors[static_cast<std::size_t>(pick)];
     light.diffuse *= static_cast<float>(intensity);
     light.specular = light.diffuse;
-    light.attenuation = field.attenuation;
-    if (std::isfinite(field.range.y)) {
-      light.range = static_cast<float>(between(field.range.x, field.range.y, range_u));
-    }
-    if (field.cutoff > 0) light.range = rangeForCutoff(light, field.cutoff);
     light.shadow = field.shadow;
-    light.group = field.group;
+    if (light.kind != LightKind::kDirectional) {
+      if (field.attenuation) light.attenuation = *field.attenuation;
+      if (std::isfinite(field.range.y))
+        light.range = static_cast<float>(between(field.range.x, field.range.y, range_u));
+      if (field.cutoff > 0) light.range = rangeForCutoff(light, field.cutoff);
+    }
     lights.push_back(light);
   }
 }

@@ -23,9 +23,9 @@ enum class FieldShape : std::uint8_t {
   kList,      ///< the first `count` of `list`
 };
 
-/// Point lights spread at random. The same seed gives the same lights on every machine, to the bit, and a
-/// smaller count gives the first lights of a larger one. Positions don't depend on the looks (colours,
-/// intensities, ranges).
+/// Point lights spread at random, or a list of any lights. The same seed gives the same lights on every
+/// machine, to the bit, and a smaller count gives the first lights of a larger one. Positions don't depend on
+/// the looks (colours, intensities, ranges).
 struct LightField {
   std::uint64_t count = 0;
   std::uint64_t seed = 0;
@@ -42,13 +42,14 @@ struct LightField {
   std::vector<glm::dvec3>
       points;               ///< curve: two or more. Catmull-Rom, uniform; ends as if it went on straight
   std::vector<Light> list;  ///< at least `count` lights
-  // Looks. A list's lights have their own colours, and their own ranges unless `range` or `cutoff` gives
+  bool as_listed = false;   ///< list: no look but `group` changes its lights, nor does `shadow`
+  // Looks. A list's lights have their own colours, and their own ranges and attenuations unless these give
   // some.
   std::vector<glm::vec3> colors{glm::vec3(1.0f)};  ///< each light picks one; never empty
   glm::vec2 intensity{1.0f};                       ///< multiplies the colour; uniform from x to y
   glm::vec2 range{
       std::numeric_limits<float>::infinity()};  ///< metres, uniform from x to y; or infinite, both
-  glm::vec3 attenuation{1.0f, 0.0f, 0.0f};
+  std::optional<glm::vec3> attenuation{};       ///< as in Light
   /// If > 0, ranges are those of rangeForCutoff instead. With an attenuation of (0,0,1) a light has faded to
   /// this value there.
   double cutoff = 0.0;

@@ -333,6 +333,30 @@ TEST(LightField, ListKeepsItsColoursAndRangesUnlessRangesAreGiven) {
   EXPECT_TRUE(std::isinf(lights[1].range));
   field.range = glm::vec2(7);
   EXPECT_EQ(expand(field)[0].range, 7);
+  field.list[0].attenuation = {0, 1, 0};
+  EXPECT_EQ(expand(field)[0].attenuation, glm::vec3(0, 1, 0));
+  field.attenuation = glm::vec3(1, 0, 2);
+  EXPECT_EQ(expand(field)[0].attenuation, glm::vec3(1, 0, 2));
+  field.list[1].kind = LightKind::kDirectional;
+  EXPECT_TRUE(std::isinf(expand(field)[1].range)) << "it has no place to reach from";
+}
+
+TEST(LightField, LightsAsListedChangeInNothing) {
+  LightField field;
+  field.shape = FieldShape::kList;
+  field.as_listed = true;
+  field.count = 1;
+  field.intensity = glm::vec2(2);
+  field.list = {{.kind = LightKind::kSpot,
+                 .position = {1, 2, 3},
+                 .ambient = glm::vec3(0.5f),
+                 .diffuse = {1, 2, 3},
+                 .specular = {4, 5, 6},
+                 .attenuation = {0, 0, 1},
+                 .range = 5,
+                 .cutoff = 1,
+                 .shadow = true}};
+  EXPECT_EQ(expand(field), field.list);
 }
 
 TEST(LightField, CutoffEndsALightWhereItHasFadedToIt) {
