@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -16,13 +18,30 @@
 namespace luciole {
 namespace {
 
+/// The hidden names that exist. Those beyond are left behind by a process that ends at once.
+constinit std::array<std::atomic<const char*>, 64> hidden_names{};
+
+/// Whether errno means that the caller named a place where no file can be, or may be written.
+bool isPlaceRefused(int code) {
+  return code == EACCES || code == EROFS || code == ENOENT || code == ENOTDIR || code == EPERM ||
+         code == EISDIR || code == EBUSY;
+}
+
+/// Makes a system call again where a signal interrupted it. Returns its result, < 0 for failure.
+template <class Call>
+auto again(Call call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
 /// Makes a file in a folder under a hidden name that no file has. `make` takes the name and returns < 0 for
 /// failure, with errno; so does this.
 template <class Make>
 int makeHidden(const std::string& folder, std::string& name, Make make) {
   for (unsigned serial = 0;; ++serial) {
     name = fmt::format("{}/.luciole-{}-{}.tmp", folder, getpid(), serial);
-    const int result = make(name.c_str());
+    const int result = again([&] { return make(name.c_str()); });
     if (result >= 0 || errno != EEXIST) return result;
   }
 }
@@ -70,13 +89,13 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
     return;
   }
   if (is_stream_) {
-    descriptor_ = open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    descriptor_ = again([&] { return open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC); });
     if (descriptor_ < 0) throw InputError(fmt::format("{}: can't write to it: {}", path, systemReason()));
     return;
   }
   place_ = followLinks(path);
   const std::string folder = folderOf(place_);
-  descriptor_ = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  descriptor_ = again([&] { return open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); });
   if (descriptor_ >= 0) return;
   descriptor_ = makeHidden(folder, beside_, [](const char* name) {
     return open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -85,16 +104,31 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
     const int code = errno;
     const std::string message =
         fmt::format("{}: can't create a file in its folder: {}", path, systemReason());
-    if (code == EACCES || code == EROFS || code == ENOENT || code == ENOTDIR || code == EPERM)
-      throw InputError(message);
+    if (isPlaceRefused(code)) throw InputError(message);
     throw MachineError(message);
   }
-  has_name_ = true;
+  setHasName(true);
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0 && path_ != "-") close(descriptor_);
-  if (has_name_) unlink(beside_.c_str());
+  if (!has_name_) return;
+  unlink(beside_.c_str());
+  setHasName(false);
+}
+
+void OutputFile::setHasName(bool has_name) {
+  has_name_ = has_name;
+  const char* const name = beside_.c_str();
+  for (std::atomic<const char*>& place : hidden_names) {
+    const char* before = has_name ? nullptr : name;
+    if (place.compare_exchange_strong(before, has_name ? name : nullptr)) return;
+  }
+}
+
+void removeHiddenFiles() noexcept {
+  for (const std::atomic<const char*>& place : hidden_names)
+    if (const char* const name = place.load()) unlink(name);
 }
 
 void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -102,10 +136,12 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
     throw MachineError(name() + ": can't go back to where something was written, expected a file");
   size_ += bytes.size();
   while (!bytes.empty()) {
-    const ssize_t written = is_stream_ ? write(descriptor_, bytes.data(), bytes.size())
-                                       : pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw MachineError(fmt::format("{}: can't write: {}", name(), systemReason()));
+    const ssize_t written = again([&] {
+      return is_stream_ ? write(descriptor_, bytes.data(), bytes.size())
+                        : pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
+    });
+    if (written == 0) errno = ENOSPC;
+    if (written <= 0) throw MachineError(fmt::format("{}: can't write: {}", name(), systemReason()));
     bytes = bytes.subspan(std::size_t(written));
     offset += std::uint64_t(written);
   }
@@ -114,7 +150,7 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
 void OutputFile::putInPlace() {
   if (path_ == "-") return;
   // Some file systems can't sync, which is no error.
-  if (!is_stream_ && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
+  if (!is_stream_ && again([&] { return fsync(descriptor_); }) != 0 && errno != EINVAL && errno != ENOTSUP)
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
   if (!is_stream_ && !has_name_) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
@@ -123,15 +159,20 @@ void OutputFile::putInPlace() {
           return linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);
         }) != 0)
       throw MachineError(fmt::format("{}: can't put the file in place: {}", path_, systemReason()));
-    has_name_ = true;
+    setHasName(true);
   }
   const int closed = close(descriptor_);
   descriptor_ = -1;
-  if (closed != 0) throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
+  if (closed != 0 && errno != EINTR)  // Linux has closed it then, and fsync() above told what was lost
+    throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
   if (is_stream_) return;
-  if (std::rename(beside_.c_str(), place_.c_str()) != 0)
-    throw InputError(fmt::format("{}: can't put the file in place: {}", path_, systemReason()));
-  has_name_ = false;
+  if (again([&] { return std::rename(beside_.c_str(), place_.c_str()); }) != 0) {
+    const int code = errno;
+    const std::string message = fmt::format("{}: can't put the file in place: {}", path_, systemReason());
+    if (isPlaceRefused(code)) throw InputError(message);
+    throw MachineError(message);
+  }
+  setHasName(false);
 }
 
 }  // namespace luciole

@@ -36,16 +36,21 @@ class OutputFile {
   void putInPlace();
 
  private:
+  void setHasName(bool has_name);
   std::string name() const { return path_ == "-" ? "standard output" : path_; }
 
   std::string path_;
   std::string place_;      ///< the path with its symbolic links followed
   std::string beside_;     ///< the hidden name beside it
-  bool has_name_ = false;  ///< whether the hidden name exists
+  bool has_name_ = false;  ///< whether the hidden name exists, which removeHiddenFiles() knows then
   bool is_stream_ = false;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;  ///< bytes written
 };
+
+/// Removes the hidden files of all OutputFiles that there are, for a process that ends at once. A signal
+/// handler may call it.
+void removeHiddenFiles() noexcept;
 
 /// Throws MachineError where a picture of `bytes` bytes of pixels might become a file larger than this
 /// process may write (RLIMIT_FSIZE). Beyond that limit some encoders lose pixels silently and others end the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 
@@ -19,7 +20,12 @@ bool isFile(const std::filesystem::path& path) {
 std::string readFile(const std::string& path) {
   std::error_code refused;
   if (std::filesystem::is_directory(path, refused)) throw InputError(path + ": is a folder, expected a file");
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file;
+  do {
+    errno = 0;
+    file.clear();
+    file.open(path, std::ios::binary);
+  } while (!file && errno == EINTR);
   if (!file) throw InputError(path + ": can't be opened, expected a readable file");
   std::string bytes;
   std::error_code no_size;

@@ -10,6 +10,7 @@
 #include "base/array_memory.hpp"
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
+#include "cl/driver_call.hpp"
 
 namespace luciole {
 namespace {
@@ -34,7 +35,7 @@ struct Loan {
   explicit Loan(const cl::CommandQueue& lent_on) : queue(lent_on) {}
   ~Loan() {
     try {
-      queue.finish();
+      callDriver([&] { queue.finish(); });
     } catch (const cl::Error&) {
       // A queue that fails has stopped.
     }
@@ -49,7 +50,7 @@ void count(Device& device, std::uint64_t Traffic::*kind, std::size_t bytes) {
 /// clCreateBuffer. Throws MachineError.
 cl::Buffer create(Device& device, cl_mem_flags flags, std::size_t size, void* array) {
   try {
-    return cl::Buffer(device.context, flags, size, array);
+    return callDriver([&] { return cl::Buffer(device.context, flags, size, array); });
   } catch (const cl::Error& error) {
     throw deviceError(error, device.description.name);
   }
@@ -74,7 +75,7 @@ DeviceMemory make(Device& device, std::size_t size) {
       // From allocateArray() instead of OpenCL, because it uses larger pages.
       auto array = std::make_unique<OwnArray>(size);
       memory.handle = create(device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size, array->memory);
-      memory.handle.setDestructorCallback(freeOwnArray, array.get());
+      callDriver([&] { memory.handle.setDestructorCallback(freeOwnArray, array.get()); });
       static_cast<void>(array.release());  // freeOwnArray() has it now
     } catch (const std::bad_alloc&) {
       throw DeviceError(fmt::format("{}: out of memory", device.description.name), true);
@@ -135,7 +136,7 @@ void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* 
       queueCommand(device, "map", {{"bytes", std::int64_t(size)}}, [&](cl::Event* event) {
         mapped = device.queue.enqueueMapBuffer(memory.handle, CL_TRUE, CL_MAP_READ, 0, size, nullptr, event);
       });
-      device.queue.enqueueUnmapMemObject(memory.handle, mapped);
+      callDriver([&] { device.queue.enqueueUnmapMemObject(memory.handle, mapped); });
       finish(device);
       return;
     }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/machine_memory.hpp"
+#include "cl/driver_call.hpp"
 #include "cl/kernel_source.hpp"
 #include "cl/program_cache.hpp"
 
@@ -28,9 +29,13 @@ constexpr std::string_view kCompilerSettings[] = {"CL_CONFIG_", "IGC_"};
 /// (device.cpp), measured in the same way.
 constexpr double kCompilerBytes = 64 << 20;
 
+cl::Kernel kernelOf(const cl::Program& program, const char* name) {
+  return callDriver([&] { return cl::Kernel(program, name); });
+}
+
 cl::Program built(const Device& device, const std::string& source, const std::string& options) {
-  cl::Program program(device.context, source);
-  program.build({device.device}, options.c_str());
+  const cl::Program program = callDriver([&] { return cl::Program(device.context, source); });
+  callDriver([&] { program.build({device.device}, options.c_str()); });
   return program;
 }
 
@@ -39,7 +44,8 @@ cl::Program compile(const Device& device, const std::string& source, const std::
   if (device.description.platform == kPocl) {
     try {
       return built(device, kernelSource("builtins.clh") + source, options + " -D_OPENCL_H_");
-    } catch (const cl::BuildError&) {
+    } catch (const cl::BuildError& error) {
+      if (error.err() != CL_BUILD_PROGRAM_FAILURE) throw;
       // Wrong, or in need of more than builtins.clh declares. PoCL's own header decides.
     }
   }
@@ -50,12 +56,14 @@ cl::Program compile(const Device& device, const std::string& source, const std::
 /// that were kept with it.
 std::optional<Program> restored(const Device& device, KeptProgram kept, const std::string& options) {
   try {
-    cl::Program program(device.context, {device.device}, cl::Program::Binaries{std::move(kept.binary)});
-    program.build({device.device}, options.c_str());
+    const cl::Program program = callDriver([&] {
+      return cl::Program(device.context, {device.device}, cl::Program::Binaries{std::move(kept.binary)});
+    });
+    callDriver([&] { program.build({device.device}, options.c_str()); });
     for (const auto& [name, arguments] : kept.arguments)
-      if (cl::Kernel(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
+      if (kernelOf(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
         return std::nullopt;
-    return Program{std::move(program), std::move(kept.arguments)};
+    return Program{program, std::move(kept.arguments)};
   } catch (const cl::Error&) {
     return std::nullopt;
   }
@@ -65,11 +73,11 @@ std::optional<Program> restored(const Device& device, KeptProgram kept, const st
 std::optional<KeptProgram> toKeep(const cl::Program& program) {
   try {
     KeptProgram kept;
-    kept.binary = program.getInfo<CL_PROGRAM_BINARIES>().front();
-    std::istringstream names(program.getInfo<CL_PROGRAM_KERNEL_NAMES>());
+    kept.binary = callDriver([&] { return program.getInfo<CL_PROGRAM_BINARIES>().front(); });
+    std::istringstream names(callDriver([&] { return program.getInfo<CL_PROGRAM_KERNEL_NAMES>(); }));
     for (std::string name; std::getline(names, name, ';');) {
       name = name.c_str();  // some platforms leave the terminator in the text
-      kept.arguments[name] = declaredArguments(cl::Kernel(program, name.c_str()));
+      kept.arguments[name] = declaredArguments(kernelOf(program, name.c_str()));
     }
     if (kept.binary.empty() || kept.arguments.empty()) return std::nullopt;
     return kept;
@@ -108,15 +116,17 @@ std::string describeProgram(const Device& device, const std::string& source, con
 
 std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
   std::vector<DeclaredArgument> arguments;
-  const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
-  for (cl_uint i = 0; i < count; ++i) {
-    // Some platforms leave the terminator in the text.
-    arguments.push_back(
-        {kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i).c_str(),
-         kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i).c_str(),
-         kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i),
-         (kernel.getArgInfo<CL_KERNEL_ARG_TYPE_QUALIFIER>(i) & CL_KERNEL_ARG_TYPE_CONST) != 0});
-  }
+  callDriver([&] {
+    const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+    for (cl_uint i = 0; i < count; ++i) {
+      // Some platforms leave the terminator in the text.
+      arguments.push_back(
+          {kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i).c_str(),
+           kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i).c_str(),
+           kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i),
+           (kernel.getArgInfo<CL_KERNEL_ARG_TYPE_QUALIFIER>(i) & CL_KERNEL_ARG_TYPE_CONST) != 0});
+    }
+  });
   return arguments;
 }
 

@@ -12,6 +12,7 @@
 #include "base/clock.hpp"
 #include "base/trace.hpp"
 #include "cl/device.hpp"
+#include "cl/driver_call.hpp"
 
 // What a device's queue did when, for a trace: kernels and copies, by OpenCL's profiling events.
 namespace luciole {
@@ -52,11 +53,11 @@ template <class Enqueue>
 void queueCommand(Device& device, const char* name, std::initializer_list<TraceArgument> arguments,
                   Enqueue&& enqueue) {
   if (!device.trace) {
-    enqueue(static_cast<cl::Event*>(nullptr));
+    callDriver([&] { enqueue(static_cast<cl::Event*>(nullptr)); });
     return;
   }
   QueuedCommand command{{}, name, traceArguments(arguments), nanosecondsSinceStart(), 0};
-  enqueue(&command.event);
+  callDriver([&] { enqueue(&command.event); });
   command.after = nanosecondsSinceStart();
   noteCommand(device, std::move(command));
 }

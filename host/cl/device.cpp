@@ -1,10 +1,14 @@
 #include "cl/device.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstring>
+#include <new>
 #include <optional>
 
 #include "base/clock.hpp"
@@ -15,6 +19,7 @@
 #include "cl/build_program.hpp"
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
+#include "cl/driver_call.hpp"
 
 namespace luciole {
 namespace {
@@ -48,27 +53,57 @@ int nativeLanes(const cl::Device& device) {
 ///   and 40 MiB.
 constexpr double kPlatformBytes = 192 << 20, kPlatformAddresses = 640 << 20, kPlatformData = 320 << 20;
 
+DeviceDescription describe(const cl::Platform& platform, const cl::Device& device) {
+  return {trimmed(platform.getInfo<CL_PLATFORM_NAME>()), trimmed(device.getInfo<CL_DEVICE_NAME>()),
+          trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device),
+          device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
+}
+
+/// LLVM, the compiler of PoCL and of others, writes two lines and aborts where malloc() fails in it. After
+/// this it throws bad_alloc, as it does where operator new fails in it. Does nothing where no platform
+/// brought a shared library of LLVM along.
+void letCompilersThrow() {
+  static const bool is_done = [] {
+    std::vector<std::string> libraries;
+    dl_iterate_phdr(
+        [](dl_phdr_info* object, std::size_t, void* names) {
+          if (std::strstr(object->dlpi_name, "/libLLVM"))
+            static_cast<std::vector<std::string>*>(names)->emplace_back(object->dlpi_name);
+          return 0;
+        },
+        &libraries);
+    for (const std::string& name : libraries) {
+      void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+      // llvm::install_bad_alloc_error_handler(void (*)(void*, const char*, bool), void*)
+      void* const install =
+          library ? dlsym(library, "_ZN4llvm31install_bad_alloc_error_handlerEPFvPvPKcbES0_") : nullptr;
+      using Handler = void(void*, const char*, bool);
+      if (install)
+        reinterpret_cast<void (*)(Handler*, void*)>(install)(
+            [](void*, const char*, bool) { throw std::bad_alloc(); }, nullptr);
+    }
+    return true;
+  }();
+  static_cast<void>(is_done);
+}
+
 std::vector<FoundDevice> findDevices() {
   requireMemory(kPlatformBytes, "OpenCL");
   requireMappings(kPlatformAddresses, kPlatformData, 2 * threadCount(), "OpenCL");
   std::vector<FoundDevice> found;
   std::vector<cl::Platform> platforms;
   try {
-    cl::Platform::get(&platforms);
+    callDriver([&] { cl::Platform::get(&platforms); });
+    letCompilersThrow();
   } catch (const cl::Error&) {
     return found;  // the loader reports "no platform" as an error
   }
   for (const cl::Platform& platform : platforms) {
     std::vector<cl::Device> devices;
     try {
-      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      callDriver([&] { platform.getDevices(CL_DEVICE_TYPE_ALL, &devices); });
       for (const cl::Device& device : devices)
-        found.push_back(
-            {platform,
-             device,
-             {trimmed(platform.getInfo<CL_PLATFORM_NAME>()), trimmed(device.getInfo<CL_DEVICE_NAME>()),
-              trimmed(device.getInfo<CL_DRIVER_VERSION>()), nativeLanes(device),
-              device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()}});
+        found.push_back({platform, device, callDriver([&] { return describe(platform, device); })});
     } catch (const cl::Error&) {
       continue;  // a platform without usable devices
     }
@@ -135,10 +170,11 @@ void openDevice(const std::string& selector, Device& device) {
   }
   try {
     device.device = chosen.device;
-    device.context = cl::Context(chosen.device);
+    device.context = callDriver([&] { return cl::Context(chosen.device); });
     const bool is_profiled = isTracing();
-    device.queue =
-        cl::CommandQueue(device.context, chosen.device, is_profiled ? CL_QUEUE_PROFILING_ENABLE : 0);
+    device.queue = callDriver([&] {
+      return cl::CommandQueue(device.context, chosen.device, is_profiled ? CL_QUEUE_PROFILING_ENABLE : 0);
+    });
     if (is_profiled)
       device.trace = std::make_shared<CommandTrace>(CommandTrace{deviceTrack(device.description.name)});
     const bool rounds_quotients =
@@ -173,7 +209,7 @@ Traffic trafficOf(Device& device) {
 
 void finish(Device& device) {
   try {
-    device.queue.finish();
+    callDriver([&] { device.queue.finish(); });
   } catch (const cl::Error& error) {
     const std::lock_guard lock(device.notes_mutex);
     throw deviceError(

@@ -8,6 +8,7 @@
 #include "cl/build_program.hpp"
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
+#include "cl/driver_call.hpp"
 #include "cl/kernel_source.hpp"
 
 namespace luciole {
@@ -28,11 +29,13 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
       place = device.programs.emplace(options + key, buildProgram(device, source(), options)).first;
     }
     const Program& program = place->second;
-    const cl::Kernel kernel(program.program, name);
+    const cl::Kernel kernel = callDriver([&] { return cl::Kernel(program.program, name); });
     const auto known = program.arguments.find(name);
     return {kernel, name, known == program.arguments.end() ? declaredArguments(kernel) : known->second,
             defines};
   } catch (const cl::BuildError& error) {
+    if (error.err() != CL_BUILD_PROGRAM_FAILURE)
+      throw deviceError(error, fmt::format("{}: kernel '{}'", device.description.name, name));
     std::string log;
     for (const auto& [where, text] : error.getBuildLog()) log += text;
     std::replace(log.begin(), log.end(), '\n', ' ');
@@ -99,15 +102,17 @@ void launch(Device& device, Kernel& kernel, const std::vector<KernelArgument>& a
   try {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       try {
-        kernel.kernel.setArg(places[i], arguments[i].value.size(), arguments[i].value.data());
+        callDriver(
+            [&] { kernel.kernel.setArg(places[i], arguments[i].value.size(), arguments[i].value.data()); });
       } catch (const cl::Error&) {
         what += fmt::format(", argument '{}'", arguments[i].name);
         throw;
       }
     }
-    const std::size_t most =
-        std::min(kernel.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device),
-                 device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
+    const std::size_t most = callDriver([&] {
+      return std::min(kernel.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device),
+                      device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>().front());
+    });
     std::size_t group = work.group;
     while (group > std::max<std::size_t>(most, 1)) group /= 2;
     queueCommand(device, kernel.name.c_str(),

@@ -32,9 +32,9 @@ std::array<char, 80> timeText() {
   return text;
 }
 
-/// Writes to standard error by as few system calls as it takes, one as a rule, so that the lines of several
-/// processes that share a file stay whole. What can't be written is lost, as it is without a log.
-void writeError(std::string_view text) {
+}  // namespace
+
+void writeError(std::string_view text) noexcept {
   while (!text.empty()) {
     const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
@@ -42,8 +42,6 @@ void writeError(std::string_view text) {
     text.remove_prefix(std::size_t(written));
   }
 }
-
-}  // namespace
 
 CLI::Option* addLogOption(CLI::App& command) {
   return command
@@ -75,12 +73,12 @@ void logEvent(const char* name, const EventFields& fields) {
 
 double eventMilliseconds(double milliseconds) { return std::round(milliseconds * 1000) / 1000; }
 
-void logOutOfMemory(int status) noexcept {
-  std::array<char, 200> line{};
+void logFailure(const char* message, int status) noexcept {
+  std::array<char, 400> line{};
   const int length = std::snprintf(line.data(), line.size(),
-                                   R"({"time":"%s","event":"error","message":"out of memory","status":%d})"
+                                   R"({"time":"%s","event":"error","message":"%s","status":%d})"
                                    "\n",
-                                   timeText().data(), status);
+                                   timeText().data(), message, status);
   writeError({line.data(), std::size_t(length)});
 }
 

@@ -2,11 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace luciole {
 
 /// What an event tells besides its time and name, in this order.
 using EventFields = nlohmann::ordered_json;
+
+/// Writes to standard error by as few system calls as it takes, one as a rule, so that the lines of several
+/// processes that share a file stay whole. What can't be written is lost. Takes no memory.
+void writeError(std::string_view text) noexcept;
 
 /// Adds the option --log to a command.
 CLI::Option* addLogOption(CLI::App& command);
@@ -28,7 +33,7 @@ void logEvent(const char* name, const EventFields& fields = EventFields::object(
 /// Milliseconds as events tell them: to the microsecond.
 double eventMilliseconds(double milliseconds);
 
-/// Writes the event `error` of a process that is out of memory, taking none.
-void logOutOfMemory(int status) noexcept;
+/// Writes the event `error` of a process that ends at once, taking no memory. message: without quotes.
+void logFailure(const char* message, int status) noexcept;
 
 }  // namespace luciole

@@ -1,6 +1,12 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -9,11 +15,13 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/output_file.hpp"
 #include "base/utf8.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
@@ -48,7 +56,7 @@ void luciole::tellError(const std::string& message, int status) {
   if (logsEvents())
     logEvent("error", {{"message", message}, {"status", status}});
   else
-    fmt::print(stderr, "luciole: {}\n", message);
+    writeError(fmt::format("luciole: {}\n", message));
 }
 
 int luciole::tellFailure(std::optional<int> frame) {
@@ -82,7 +90,7 @@ void luciole::tellWarning(const std::string& text) {
   if (logsEvents())
     logEvent("warning", {{"message", text}});
   else
-    fmt::print(stderr, "luciole: warning: {}\n", text);
+    writeError(fmt::format("luciole: warning: {}\n", text));
 }
 
 std::vector<std::string> luciole::shownWarnings(const std::vector<Warning>& warnings) {
@@ -106,20 +114,74 @@ void luciole::tellWarnings(const std::vector<Warning>& warnings) {
 
 namespace {
 
-/// Ends the process after an exception that nobody could catch. Memory may run out in a library's thread, or
-/// in a noexcept function: then with a message, and with the status of a MachineError.
+/// Ends the process with a line, and without a step that may wait for a lock or take memory: other threads,
+/// or a library that gave up, may hold any lock.
+[[noreturn]] void endAtOnce(const char* message) noexcept {
+  static std::atomic_flag is_ending;
+  while (is_ending.test_and_set()) pause();  // another thread is at it
+  if (logsEvents()) {
+    logFailure(message, kMachineFailed);
+  } else {
+    std::array<char, 200> line{};
+    std::snprintf(line.data(), line.size(), "luciole: %s\n", message);
+    writeError(line.data());
+  }
+  removeHiddenFiles();
+  std::_Exit(kMachineFailed);
+}
+
+/// Ends the process after an exception that nobody could catch. Memory may run out in a library's thread, in
+/// a noexcept function, or before main().
 [[noreturn]] void endUncaught() {
   try {
     if (std::current_exception()) throw;
   } catch (const std::bad_alloc&) {
-    if (logsEvents())
-      logOutOfMemory(kMachineFailed);
-    else
-      std::fputs("luciole: out of memory\n", stderr);
-    std::_Exit(kMachineFailed);
+    endAtOnce("out of memory");
+  } catch (const std::system_error&) {
+    endAtOnce("the system refuses what a library needs");
   } catch (...) {
   }
-  std::abort();
+  endAtOnce("internal error: an exception that nobody catches");
+}
+
+void endAborted(int) { endAtOnce("a library gave up (abort), as some do where memory runs out"); }
+
+// Leaks are looked for when main() has returned, and by these tools an abort is told.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kIsSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kIsSanitized = true;
+#else
+constexpr bool kIsSanitized = false;
+#endif
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
+/// What the dynamic loader calls before any library that the program links is started.
+void catchEverything() {
+  std::set_terminate(endUncaught);
+  if (!kIsSanitized) std::signal(SIGABRT, endAborted);
+}
+__attribute__((section(".preinit_array"), used)) void (*before_libraries)() = catchEverything;
+
+/// Opens standard input, output and error where the caller closed them: else the next file that is opened
+/// would get what is printed. To write to standard output is an error then, to standard error none.
+void openStandardStreams() {
+  for (const auto& [stream, how] : {std::pair{0, O_WRONLY}, {1, O_RDONLY}, {2, O_RDWR}})
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) open("/dev/null", how);
+}
+
+/// Writes what was printed. Returns the status, that of a failure where something is lost and no failure was
+/// told before.
+int flushOutput(int status) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
+  if (status == kWrongInput || status == kMachineFailed) return status;
+  tellError(fmt::format("standard output: can't write{}", errno ? ": " + systemReason() : ""),
+            kMachineFailed);
+  return kMachineFailed;
 }
 
 /// Does what the command line says. Returns the exit status.
@@ -172,38 +234,24 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
     if (logsEvents())
       logEvent("error", {{"message", "luciole" + unexpected}, {"status", kWrongInput}});
     else
-      fmt::print(stderr, "luciole{}\n", unexpected);
+      writeError(fmt::format("luciole{}\n", unexpected));
     return kWrongInput;
   } catch (const std::exception&) {
     return tellFailure();
   }
 }
 
-// Leaks are looked for when main() has returned.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kLooksForLeaks = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kLooksForLeaks = true;
-#else
-constexpr bool kLooksForLeaks = false;
-#endif
-#else
-constexpr bool kLooksForLeaks = false;
-#endif
-
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-  std::set_terminate(endUncaught);
+  openStandardStreams();
   saveAddresses();
   CommandContext context{joinedArguments(argument_count, arguments)};
   if (asksForEvents(argument_count, arguments)) startEventLog();
   logEvent("start", {{"command", context.command_line}, {"version", LUCIOLE_VERSION}});
-  const int status = runCommand(argument_count, arguments, context);
+  const int status = flushOutput(runCommand(argument_count, arguments, context));
   logEvent("end", {{"status", status}, {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
-  if (kLooksForLeaks) return status;
+  if (kIsSanitized) return status;
   // All files are closed. To take the device's compiler apart would cost 6 ms, and 100 where it has compiled.
-  std::fflush(nullptr);
   std::_Exit(status);
 }

@@ -119,8 +119,8 @@ void mix(const CommandContext& context, MixOptions& options) {
   else
     writePicture(context, options, terms);
   if (!options.quiet && !logsEvents())
-    fmt::print(stderr, "{}: {} groups of lights, {:.0f} ms\n", options.output, terms.size(),
-               millisecondsSinceStart());
+    writeError(fmt::format("{}: {} groups of lights, {:.0f} ms\n", options.output, terms.size(),
+                           millisecondsSinceStart()));
 }
 
 }  // namespace

@@ -202,9 +202,10 @@ void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
       stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
   const std::string exposure =
       stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
-  fmt::print(stderr, "{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
-             stats.height, stats.triangles, stats.lights, exposure, whole(ended - stats.began), stages,
-             stages.empty() ? "" : ")", options.half ? ", colours rounded by up to 2^-11 of themselves" : "");
+  writeError(fmt::format("{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
+                         stats.height, stats.triangles, stats.lights, exposure, whole(ended - stats.began),
+                         stages, stages.empty() ? "" : ")",
+                         options.half ? ", colours rounded by up to 2^-11 of themselves" : ""));
 }
 
 }  // namespace luciole

@@ -34,15 +34,13 @@ void ProgressLine::show(const std::string& what, std::size_t done, std::size_t t
   if (done > 0) line += fmt::format(", {} left", duration(left));
   if (line == text) return;
   text = line;
-  fmt::print(stderr, "\r\x1b[K{}", text);
-  std::fflush(stderr);
+  writeError(fmt::format("\r\x1b[K{}", text));
 }
 
 void ProgressLine::clear() {
   if (text.empty()) return;
   text.clear();
-  fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  writeError("\r\x1b[K");
 }
 
 std::string duration(double seconds) {

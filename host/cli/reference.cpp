@@ -188,11 +188,11 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
     return;
   }
   if (options.quiet) return;
-  fmt::print(stderr,
-             "G-buffer against rays: position within {:.1e}, normal within {:.1e} rad; of {} pixels {} show "
-             "another surface within 1/256 pixel of an edge, {} one at the same depth, {} any other\n",
-             check.position_error, check.normal_error, check.pixels, check.beside_edges, check.at_ties,
-             check.unexplained);
+  writeError(fmt::format(
+      "G-buffer against rays: position within {:.1e}, normal within {:.1e} rad; of {} pixels {} show "
+      "another surface within 1/256 pixel of an edge, {} one at the same depth, {} any other\n",
+      check.position_error, check.normal_error, check.pixels, check.beside_edges, check.at_ties,
+      check.unexplained));
 }
 
 /// Makes the reference picture of a scene, and compares the rasterizer's G-buffer with rays.

@@ -196,7 +196,7 @@ void tellNotes(const std::vector<std::string>& notes, bool quiet) {
     if (logsEvents())
       logEvent("layers", {{"message", note}});
     else if (!quiet)
-      fmt::print(stderr, "{}\n", note);
+      writeError(fmt::format("{}\n", note));
   }
 }
 

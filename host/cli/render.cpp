@@ -116,8 +116,8 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
     if (logsEvents())
       logEvent("slurm_shard", {{"shard", shard.index + 1}, {"shards", shard.count}});
     else if (!options.quiet)
-      fmt::print(stderr, "shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1,
-                 shard.count);
+      writeError(
+          fmt::format("shard {}/{} of the frames, as task of a Slurm array\n", shard.index + 1, shard.count));
   }
   std::vector<int> frames, done;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -129,7 +129,7 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
     if (logsEvents())
       logEvent("resumed", {{"frames_there", done.size()}, {"frames", done.size() + frames.size()}});
     else if (!options.quiet)
-      fmt::print(stderr, "there already: {} of {} frames\n", done.size(), done.size() + frames.size());
+      writeError(fmt::format("there already: {} of {} frames\n", done.size(), done.size() + frames.size()));
   }
   return frames;
 }
@@ -209,8 +209,8 @@ int renderFilm(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& op
                            {"height", window.height},
                            {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
   else if (!options.quiet)
-    fmt::print(stderr, "{}: {} frames of {}x{}, {} a second, {:.0f} ms\n", path, frames.size(), window.width,
-               window.height, rate, millisecondsSinceStart());
+    writeError(fmt::format("{}: {} frames of {}x{}, {} a second, {:.0f} ms\n", path, frames.size(),
+                           window.width, window.height, rate, millisecondsSinceStart()));
   return kDone;
 }
 

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
+#include "cli/event_log.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/progress.hpp"
 #include "cli/scale_plan.hpp"
@@ -49,8 +50,8 @@ int writeResults(const ScaleResults& results, const std::string& folder, const s
   if (!plot.empty() && !summary.points.empty()) writeTextFile(plot, scalePlot(summary));
   if (!quiet) fmt::print("{}", scaleTable(summary));
   if (summary.incomplete > 0)
-    fmt::print(stderr, "{}: {} of {} points are not complete\n", folder, summary.incomplete,
-               summary.description.points.size());
+    writeError(fmt::format("{}: {} of {} points are not complete\n", folder, summary.incomplete,
+                           summary.description.points.size()));
   for (const std::string& violation : summary.violations) tellError(violation, kDifferent);
   return summary.violations.empty() ? kDone : kDifferent;
 }
@@ -61,7 +62,8 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   const Shard shard = chosenShard(options.shard);
   checkDrawing(options.plot);
   if (options.shard.empty() && shard.count > 1 && !options.picture.quiet)
-    fmt::print(stderr, "shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count);
+    writeError(
+        fmt::format("shard {}/{} of the points, as task of a Slurm array\n", shard.index + 1, shard.count));
   options.frame = useFrame(options.picture, "scale");
   std::optional<GBuffer> gbuffer;
   if (!options.gbuffer.empty()) gbuffer = readGBuffer(options.gbuffer);
@@ -75,10 +77,9 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   if (!options.picture.quiet) tellWarnings(scene.warnings);
   ScaleExperiment experiment = planExperiment(command, options, scene, std::move(gbuffer));
   if (experiment.too_exact > 0 && !options.picture.quiet)
-    fmt::print(
-        stderr,
+    writeError(fmt::format(
         "points with a light error of 0 that are left out, as so many lights one by one take long: {}\n",
-        experiment.too_exact);
+        experiment.too_exact));
   Device device;
   openDevice(options.picture.device, device);
   device.description.arithmetic = knownArithmetic(device).sha256;
@@ -95,7 +96,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
                });
   progress.clear();
   for (const ScaleFailure& failure : failures)
-    fmt::print(stderr, "luciole: {}: {}\n", failure.point, failure.reason);
+    writeError(fmt::format("luciole: {}: {}\n", failure.point, failure.reason));
   const int status =
       writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet);
   return failures.empty() ? status : kMachineFailed;

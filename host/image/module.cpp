@@ -30,12 +30,16 @@ std::string modulePath() {
 /// with 480 to 540 MiB it failed, with 580 MiB it worked; 80 MiB of each were this program's own.
 constexpr double kModuleBytes = 32 << 20, kModuleAddresses = 500 << 20, kModuleData = 64 << 20;
 
+/// dlopen(). An exception of what starts in these libraries would leave the loader's lock taken, for which
+/// the next call of the loader waits for ever: it ends the program.
+void* open(const char* path) noexcept { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
+
 const ImageFunctions& load() {
   const TraceSpan span("load OpenImageIO");
   constexpr const char* kWhat = "reading and writing pictures";
   requireMemory(kModuleBytes, kWhat);
   requireMappings(kModuleAddresses, kModuleData, threadCount(), kWhat);
-  void* module = dlopen(modulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* module = open(modulePath().c_str());
   void* functions = module ? dlsym(module, "luciole_image_functions") : nullptr;
   if (!functions)
     throw MachineError(fmt::format("can't load the part that reads and writes pictures: {}", dlerror()));

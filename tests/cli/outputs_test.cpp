@@ -82,6 +82,30 @@ TEST_F(Outputs, FormatSaysWhatANameDoesNot) {
   EXPECT_EQ(readText(folder / "piped").substr(0, 4), "\x76\x2f\x31\x01");
 }
 
+TEST_F(Outputs, WhatStandardOutputDoesNotTakeIsTold) {
+  for (const char* refusing : {" >/dev/full", " >&-"})
+    for (const char* command : {"info scene.json", "--version", "help render",
+                                "render scene.json --hash --quiet -o out.png", "compare out.png out.png"})
+      refuse(std::string("luciole ") + command + refusing, 3, "write");
+}
+
+TEST_F(Outputs, AFullOrClosedStandardErrorChangesNothing) {
+  for (const char* refusing : {" 2>/dev/full", " 2>&-"}) {
+    succeed(std::string("luciole render scene.json -o out.png") + refusing);
+    EXPECT_EQ(runLine(folder, std::string("luciole render nothing.json -o no.png") + refusing).status, 2);
+    EXPECT_EQ(runLine(folder, std::string("luciole unknown") + refusing).status, 2);
+  }
+}
+
+TEST_F(Outputs, WithoutStandardStreamsFilesAreTheSame) {
+  // Files that are opened first would have their numbers otherwise, and get what is printed.
+  const std::string line = "luciole render scene.json --hash -o out.png";
+  succeed(line);
+  const std::string whole = readText(folder / "out.png");
+  EXPECT_EQ(runLine(folder, line + " <&- >&- 2>&-").status, 3) << "the hash is lost";
+  EXPECT_EQ(readText(folder / "out.png"), whole);
+}
+
 /// sRGB codes of a picture, from 0 to 255, not only whole ones.
 std::vector<double> codesOf(const Image& image) {
   std::vector<double> codes;
