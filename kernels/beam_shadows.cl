@@ -46,7 +46,7 @@ INLINE bool take_blockers(const Scene *scene, const Outlook *outlook, const Beam
 }
 
 // Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the beam.
-WORK bool find_candidates(const Scene *scene, const Outlook *outlook, const Beam *beam, BeamWalk *walk, Candidates *candidates, uint batch) {
+SHARED_WORK bool find_candidates(const Scene *scene, const Outlook *outlook, const Beam *beam, BeamWalk *walk, Candidates *candidates, uint batch) {
   candidates->count = 0;
   int *stack = walk->stack;
   uint height = walk->height;
@@ -98,7 +98,7 @@ INLINE Target target_of(const Scene *scene, const Outlook *outlook, const Cluste
 }
 
 // Goes to the end of a walk for one cluster.
-WORK void finish_cluster(const Scene *scene, const Outlook *outlook, const Cluster *cluster, BeamWalk *walk, Candidates *candidates,
+SHARED_WORK void finish_cluster(const Scene *scene, const Outlook *outlook, const Cluster *cluster, BeamWalk *walk, Candidates *candidates,
                          Remaining *remaining) {
   Beam beam;
   uint left = 0;
@@ -148,7 +148,7 @@ INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidate
 
 // Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns false and does nothing if the light is
 // amid the points or near them.
-WORK bool shade_alone(const Scene *scene, float4 place, float size, const Cluster *points, Remaining *remaining) {
+SHARED_WORK bool shade_alone(const Scene *scene, float4 place, float size, const Cluster *points, Remaining *remaining) {
   Outlook outlook;
   for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
   if (!look(place, size, &points->bounds.box, &outlook)) return false;
@@ -161,7 +161,7 @@ WORK bool shade_alone(const Scene *scene, float4 place, float size, const Cluste
 }
 
 // Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't reach.
-WORK void shade_points(const Scene *scene, float4 place, float size, const Cluster *cluster, Remaining *remaining) {
+SHARED_WORK void shade_points(const Scene *scene, float4 place, float size, const Cluster *cluster, Remaining *remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
     uint lit = 0;
     for (uint points = remaining->left[row]; points; points &= points - 1) {
@@ -179,7 +179,7 @@ WORK void shade_points(const Scene *scene, float4 place, float size, const Clust
 }
 
 // Takes from what is left of a bundle's points those that a light doesn't reach.
-WORK void shade_bundle(const Scene *scene, float4 place, float size, const PointBounds *bounds, uint first, uint end, Remaining *remaining) {
+SHARED_WORK void shade_bundle(const Scene *scene, float4 place, float size, const PointBounds *bounds, uint first, uint end, Remaining *remaining) {
   TilePoints *tile = scene->tile;
   Active active;
   active.count = 0;

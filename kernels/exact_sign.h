@@ -7,7 +7,7 @@
 #include "wide_integer.h"
 #ifdef __cplusplus
 #define INLINE static inline
-#define WORK [[gnu::noinline]] static inline
+#define SHARED_WORK [[gnu::noinline]] static inline
 namespace luciole {
 #endif
 
@@ -23,7 +23,7 @@ namespace luciole {
 enum { kMostDeterminantWords = WORDS_OF_BITS(DETERMINANT_BITS(277)) };
 
 // The sign of det(a − l, b − l, c − m), by integers.
-WORK int determinant_sign_by_integers(float4 a, float4 b, float4 l, float4 c, float4 m) {
+SHARED_WORK int determinant_sign_by_integers(float4 a, float4 b, float4 l, float4 c, float4 m) {
   const uint minuends[3][3] = {{float_bits(a.x), float_bits(a.y), float_bits(a.z)},
                                {float_bits(b.x), float_bits(b.y), float_bits(b.z)},
                                {float_bits(c.x), float_bits(c.y), float_bits(c.z)}};
@@ -99,7 +99,7 @@ INLINE int orientation_along(float4 p, float4 q, float4 r, float4 d) {
 #undef DOUBLES
 #ifdef __cplusplus
 }  // namespace luciole
-#undef WORK
+#undef SHARED_WORK
 #undef INLINE
 #endif
 #endif

@@ -8,7 +8,7 @@
 #include "shared.h"
 #ifdef __cplusplus
 #include <bit>
-#define WORK static inline
+#define SHARED_WORK static inline
 #define INLINE static inline
 namespace luciole {
 typedef unsigned long long ulong;
@@ -25,7 +25,7 @@ INLINE uint float_exponent(uint bits) {
 }
 
 // sum += the float of these bits, in units of 2^(unit − 150); unit: float_exponent(bits) or less, unless the float is 0.
-WORK void add_float(uint *sum, uint words, uint bits, uint unit) {
+SHARED_WORK void add_float(uint *sum, uint words, uint bits, uint unit) {
   ulong digits = (bits & 0x7fffff) | ((bits & 0x7f800000) != 0 ? 0x800000 : 0);
   if (digits == 0) return;
   uint shift = float_exponent(bits) - unit;
@@ -42,7 +42,7 @@ WORK void add_float(uint *sum, uint words, uint bits, uint unit) {
 }
 
 // sum += a·b
-WORK void add_product(uint *sum, uint words, const uint *a, const uint *b) {
+SHARED_WORK void add_product(uint *sum, uint words, const uint *a, const uint *b) {
   for (uint i = 0; i < words; ++i) {
     ulong carry = 0;
     for (uint j = 0; i + j < words; ++j) {
@@ -67,7 +67,7 @@ INLINE int integer_sign(const uint *integer, uint words) {
 
 #ifdef __cplusplus
 }  // namespace luciole
-#undef WORK
+#undef SHARED_WORK
 #undef INLINE
 #endif
 #endif

@@ -45,6 +45,22 @@ void exchange(LayerLighting& layer, Lighting& lighting) {
   std::swap(layer.beam_light_buffer, lighting.beams.light_buffer);
 }
 
+/// While it exists, `lighting` has the layer's lights. They are given back also if something is thrown: where
+/// the device runs out of memory, the picture goes on in smaller bands.
+class LitByLayer {
+ public:
+  LitByLayer(LayerLighting& layer, Lighting& lighting) : of_layer(layer), of_picture(lighting) {
+    exchange(of_layer, of_picture);
+  }
+  ~LitByLayer() { exchange(of_layer, of_picture); }
+  LitByLayer(const LitByLayer&) = delete;
+  LitByLayer& operator=(const LitByLayer&) = delete;
+
+ private:
+  LayerLighting& of_layer;
+  Lighting& of_picture;
+};
+
 void darken(float4& color) { color.x = color.y = color.z = 0; }
 
 /// lights: those of the layer, by their places in `lighting`, in its order.
@@ -132,11 +148,10 @@ FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer) {
 
 Plane lightLayer(Device& device, const Scene& scene, Lighting& lighting, LayerLighting& layer,
                  const FeatureSet& features, const GBuffer& gbuffer, Stats& stats, Plane used) {
-  exchange(layer, lighting);
-  LitPlanes lit = lightGBuffer(device, scene, lighting, layerFeatures(features, layer.layer), gbuffer, {},
-                               stats, std::move(used));
-  exchange(layer, lighting);
-  return std::move(lit.color);
+  const LitByLayer lit_by_layer(layer, lighting);
+  return lightGBuffer(device, scene, lighting, layerFeatures(features, layer.layer), gbuffer, {}, stats,
+                      std::move(used))
+      .color;
 }
 
 }  // namespace luciole

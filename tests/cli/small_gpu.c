@@ -2,7 +2,8 @@
 //
 //   MOST_BYTES  of a buffer (CL_DEVICE_MAX_MEM_ALLOC_SIZE)
 //   MOST_GROUP  work-items of a group
-//   LOG         a file that gets a line for each buffer that was too large
+//   FAIL_AT     the number of a buffer, counted from 1, for which there is no memory; may be unset
+//   LOG         a file that gets a line for each buffer that was too large, or for which there was no memory
 #define _GNU_SOURCE
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
@@ -54,13 +55,21 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
   return real(queue, kernel, dimensions, offset, global, local, waits, wait_list, event);
 }
 
+static int isNumberedToFail(void) {
+  static int made;
+  const char* at = getenv("FAIL_AT");
+  return at && __atomic_add_fetch(&made, 1, __ATOMIC_RELAXED) == atoi(at);
+}
+
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* array, cl_int* error) {
   const int in_place = (flags & CL_MEM_USE_HOST_PTR) != 0;
-  if (in_place || size > number("MOST_BYTES")) {
+  const int is_too_large = size > number("MOST_BYTES"), fails = isNumberedToFail();
+  if (in_place || is_too_large || fails) {
     FILE* log = fopen(getenv("LOG"), "a");
-    fprintf(log, "%s %zu\n", in_place ? "in place" : "too large", size);
+    fprintf(log, "%s %zu\n", in_place ? "in place" : is_too_large ? "too large" : "no memory", size);
     fclose(log);
-    if (error) *error = in_place ? CL_INVALID_HOST_PTR : CL_INVALID_BUFFER_SIZE;
+    if (error)
+      *error = in_place ? CL_INVALID_HOST_PTR : is_too_large ? CL_INVALID_BUFFER_SIZE : CL_MEM_OBJECT_ALLOCATION_FAILURE;
     return NULL;
   }
   cl_mem (*real)(cl_context, cl_mem_flags, size_t, void*, cl_int*) = dlsym(RTLD_NEXT, "clCreateBuffer");

@@ -59,5 +59,34 @@ TEST_F(SmallGpu, TakesFewerRowsAtATimeWhereABufferWouldBeTooLarge) {
   refuse(gpu(20'000, 2) + picture("cornell", "640x600", "--shadows off"), 3, "out of memory");
 }
 
+// Also where it runs out in the middle of a layer of light: then the picture goes on with all of its lights.
+TEST_F(SmallGpu, MakesTheSamePictureInSmallerPartsWhereMemoryRunsOutOnce) {
+  LUCIOLE_NEEDS_PROGRAM("cc", "gcc");
+  writeText(folder / "groups.json",
+            R"({"camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}, "objects": [{"primitive": "sphere"}],
+                "lights": [{"type": "point", "position": [3, 0, 3], "color": [1, 0, 0], "group": "key"},
+                           {"type": "directional", "direction": [1, 0, -1], "color": [0, 0, 1], "group": "rim"},
+                           {"type": "point", "position": [0, 3, 3], "color": [0, 1, 0]}]})");
+  const std::string line =
+      "luciole render groups.json --size 16x192 --shadows off --light-groups --aov "
+      "diffuse_light,specular_light --hash --quiet -o a.exr";
+  const std::string whole = succeed(gpu(1 << 30, 4) + line);
+  int gone_on = 0;
+  for (int at = 1;; at += 5) {
+    const Outcome result =
+        runLine(folder, gpu(1 << 30, 4) + "export FAIL_AT=" + std::to_string(at) + "; " + line);
+    if (log().empty()) break;
+    EXPECT_THAT(log(), HasSubstr("no memory"));
+    if (result.status == 0) {
+      EXPECT_EQ(result.out, whole) << "buffer " << at;
+      ++gone_on;
+    } else {
+      EXPECT_EQ(result.status, 3) << result.err;  // before the first band
+      EXPECT_THAT(result.err, HasSubstr("out of memory"));
+    }
+  }
+  EXPECT_GT(gone_on, 10);
+}
+
 }  // namespace
 }  // namespace luciole::test

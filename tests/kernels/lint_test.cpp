@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -174,6 +175,71 @@ TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
         EXPECT_EQ(joined(looseArithmetic(program.output)), "") << options;
       }
     }
+}
+
+/// A function in LLVM's text: its instructions, those that it calls, and whether it is always inlined.
+struct FunctionText {
+  double instructions = 0;
+  std::vector<std::string> calls;
+  std::string attributes;
+};
+
+/// Instructions of a program in LLVM's text, before any pass, once all is inlined that always is.
+double inlinedInstructions(const std::string& program) {
+  std::map<std::string, FunctionText> functions;
+  std::set<std::string> inlined;
+  const auto nameIn = [](const std::string& line) {
+    const std::size_t at = line.find('@') + 1;
+    return line.substr(at, line.find('(', at) - at);
+  };
+  FunctionText* function = nullptr;
+  std::istringstream lines(program);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("define ")) {
+      function = &functions[nameIn(line)];
+      const std::size_t at = line.rfind(" #");
+      function->attributes = line.substr(at + 1, line.find(' ', at + 1) - at - 1);
+    } else if (line.starts_with("attributes ") && line.find(" alwaysinline ") != std::string::npos) {
+      inlined.insert(line.substr(11, line.find(' ', 11) - 11));
+    } else if (line.starts_with("  ")) {
+      ++function->instructions;
+      if (line.find("call ") != std::string::npos && line.find('@') != std::string::npos)
+        function->calls.push_back(nameIn(line));
+    }
+  }
+  std::map<std::string, double> sizes;
+  const std::function<double(const std::string&)> sizeOf = [&](const std::string& name) {
+    const auto found = functions.find(name);
+    if (found == functions.end()) return 0.0;
+    if (const auto known = sizes.find(name); known != sizes.end()) return known->second;
+    double size = found->second.instructions;
+    for (const std::string& called : found->second.calls) {
+      const auto it = functions.find(called);
+      if (it != functions.end() && inlined.count(it->second.attributes) != 0) size += sizeOf(called);
+    }
+    return sizes[name] = size;
+  };
+  double all = 0;
+  for (const auto& [name, one] : functions)
+    if (inlined.count(one.attributes) == 0) all += sizeOf(name);
+  return all;
+}
+
+// What several places call is not inlined into each of them, and into each place that calls these: at one
+// lane beam_shadows.cl would have 200,000 instructions, before loops are unrolled, and take minutes to
+// compile.
+TEST(KernelLint, NoProgramGrowsManyfoldByWhatIsInlined) {
+  const std::string clang = findClang();
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
+    if (entry.path().extension() != ".cl") continue;
+    for (const int lanes : {1, 4}) {
+      const Compiled program = programOf(clang, fmt::format("-DLANES={} {}", lanes, quoted(entry.path())));
+      ASSERT_TRUE(program.succeeded) << program.output;
+      EXPECT_LE(inlinedInstructions(program.output), 1e5) << entry.path() << " at " << lanes << " lanes";
+    }
+  }
 }
 
 TEST(KernelLint, LooseArithmeticIsFound) {
