@@ -33,6 +33,7 @@ MATERIALS = {  # diffuse, emission, specular, shininess
     "lamp": ([0, 0, 0], [1.5, 1.05, 0.6], 0, 1),
     "head": ([0.1, 0.1, 0.1], [1.6, 1.5, 1.3], 0, 1),
     "tail": ([0.1, 0.01, 0.01], [1.5, 0.05, 0.03], 0, 1),
+    "paint": ([0.5, 0.5, 0.5], [0, 0, 0], 0, 1),  # city.json gives each car its own
 }
 
 

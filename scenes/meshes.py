@@ -5,6 +5,7 @@ Everything is deterministic: the same Python 3 writes the same bytes.
 
 import json
 import math
+import struct
 
 
 def add(a, b):
@@ -74,6 +75,22 @@ def uniforms(state):
         z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & mask
         z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & mask
         yield ((z ^ (z >> 31)) >> 11) / 2**53
+
+
+def srgb_text(linear):
+    """A linear value as OBJ files have it, in sRGB: the fewest digits that stand for the same float."""
+    def as_float(value):
+        return struct.pack("f", value)
+
+    def decoded(code):
+        return code / 12.92 if code <= 0.04045 else ((code + 0.055) / 1.055) ** 2.4
+
+    code = 12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055
+    for digits in range(17):
+        text = f"{code:.{digits}f}"
+        if as_float(decoded(float(text))) == as_float(linear):
+            return text
+    return repr(code)
 
 
 class Mesh:
@@ -160,7 +177,9 @@ class Mesh:
             if mtl:
                 out.write(f"mtllib {mtl}\n")
             for i, v in enumerate(self.vertices):
-                color = " " + text(self.colors[i], self.color_digits) if self.colors else ""
+                color = ""
+                if self.colors:
+                    color = " " + " ".join(srgb_text(round(c, self.color_digits)) for c in self.colors[i])
                 out.write(f"v {text(v, self.digits)}{color}\n")
             out.write("s 1\n" if smooth else "s off\n")
             for material, faces in self.faces.items():

@@ -34,6 +34,10 @@ class ObjReports : public ProgramTest {
     const float* const values = &image.pixels[pixel * image.channels.size()];
     return {values[0], values[1], values[2]};
   }
+  /// Which components of a pixel are above one half: texels next to it have a share in it.
+  static glm::vec3 strong(const Image& image, int x, int y) {
+    return glm::vec3(glm::greaterThan(at(image, x, y), glm::vec3(0.5f)));
+  }
   /// Expects all pixels to be of a colour, but for the rounding of floats that shading adds up.
   static void expectAll(const Image& image, const glm::vec3& color, float tolerance = 1e-5f) {
     for (int y = 0; y < image.height; ++y)
@@ -54,18 +58,18 @@ class ObjReports : public ProgramTest {
 TEST_F(ObjReports, OptionsOfMapsScaleAndMoveThem) {
   LUCIOLE_NEEDS_SHARED();
   const Image plain = picture(report("01_mtl_map_options/plain.json"));
-  EXPECT_EQ(at(plain, 3, 3), glm::vec3(1, 0, 0));
-  EXPECT_EQ(at(plain, 12, 3), glm::vec3(0, 1, 0));
-  EXPECT_EQ(at(plain, 12, 12), glm::vec3(1, 1, 1));
+  EXPECT_EQ(strong(plain, 3, 3), glm::vec3(1, 0, 0));
+  EXPECT_EQ(strong(plain, 12, 3), glm::vec3(0, 1, 0));
+  EXPECT_EQ(strong(plain, 12, 12), glm::vec3(1, 1, 1));
   for (const char* same : {"s2", "o2"})
     EXPECT_EQ(picture(report(std::string("01_mtl_map_options/") + same + ".json")).pixels, plain.pixels);
   const Image twice = picture(report("01_mtl_map_options/s3.json"));
-  EXPECT_EQ(at(twice, 1, 1), glm::vec3(1, 0, 0));
-  EXPECT_EQ(at(twice, 6, 1), glm::vec3(0, 1, 0));
-  EXPECT_EQ(at(twice, 9, 9), glm::vec3(1, 0, 0));
+  EXPECT_EQ(strong(twice, 1, 1), glm::vec3(1, 0, 0));
+  EXPECT_EQ(strong(twice, 6, 1), glm::vec3(0, 1, 0));
+  EXPECT_EQ(strong(twice, 9, 9), glm::vec3(1, 0, 0));
   const Image moved = picture(report("01_mtl_map_options/o3.json"));
-  EXPECT_EQ(at(moved, 3, 3), glm::vec3(0, 1, 0));
-  EXPECT_EQ(at(moved, 12, 3), glm::vec3(1, 0, 0));
+  EXPECT_EQ(strong(moved, 3, 3), glm::vec3(0, 1, 0));
+  EXPECT_EQ(strong(moved, 12, 3), glm::vec3(1, 0, 0));
 }
 
 TEST_F(ObjReports, WhatIsNoNumberIsDrawnWithout) {
@@ -164,7 +168,7 @@ TEST_F(ObjReports, NamesInLatin1AreWrittenAsUtf8) {
 TEST_F(ObjReports, PathsOfOtherMachinesAreLookedForBesideTheFile) {
   LUCIOLE_NEEDS_SHARED();
   expectAll(picture(report("34_mtl_absolute_path/q.json")), glm::vec3(1, 0, 0));
-  EXPECT_EQ(err, "");
+  EXPECT_THAT(err, testing::Not(HasSubstr("warning")));
   const Json info =
       Json::parse(succeed("luciole info '" + report("34_mtl_absolute_path/lib.obj") + "' --json -"));
   EXPECT_EQ(info["materials"][0]["name"], "m");

@@ -267,6 +267,19 @@ TEST(GBufferFile, HeaderHasTheCameraAsOpenExrDefinesIt) {
   EXPECT_NEAR(ndc.y / ndc.w, 0.5, kPositionTolerance);
 }
 
+TEST(GBufferFile, ACameraThatSeesToInfinityComesBack) {
+  Camera camera;
+  camera.near = 0.001;
+  camera.far = std::numeric_limits<double>::infinity();
+  const ExrAttributes attributes = cameraAttributes(camera, {40, 30});
+  for (const auto& [name, matrix] : attributes.matrices)
+    for (int i = 0; i < 16; ++i) EXPECT_TRUE(std::isfinite(matrix[i / 4][i % 4])) << name;
+  const std::optional<CameraHeader> header = readCamera(attributes, {40, 30}, "a.exr", {});
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->camera.far, camera.far);
+  EXPECT_EQ(header->camera.near, camera.near);
+}
+
 TEST(GBufferFile, PositionsAndNormalsAloneAreEnough) {
   const TemporaryFolder folder;
   // Channels in an order of their own, one that nobody knows, half floats, normals of length 2.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "base/error.hpp"
 #include "image/image.hpp"
 #include "image/srgb.hpp"
+#include "png_chunk.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {
@@ -163,6 +165,24 @@ TEST(ReadTexture, GreyIsSpreadOverColors) {
   const MipLevel level = readTexture(folder / "a.pgm").levels[0];
   EXPECT_EQ(texel(level, 0, 0), (Texel{2570, 2570, 2570, 65535}));
   EXPECT_EQ(texel(level, 1, 0), (Texel{51400, 51400, 51400, 65535}));
+}
+
+TEST(ReadTexture, WhatAPictureOfGltfSaysOfItsSpaceIsIgnored) {
+  const auto number = [](std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+    return bytes;
+  };
+  const auto first = [](const std::string& bytes) {
+    const Texels texels = readTexture(std::as_bytes(std::span(bytes)), "it").levels[0].texels;
+    return texels[0];
+  };
+  for (const int gamma : {100000, 45455, 55556})
+    for (const bool interlaced : {false, true}) {
+      const std::string chunks = pngChunk("gAMA", number(std::uint32_t(gamma)));
+      EXPECT_EQ(first(pngFile(1, 1, 8, 0, interlaced, chunks, std::string("\0\x80", 2))), 128 * 257);
+      EXPECT_EQ(first(pngFile(1, 1, 16, 0, interlaced, chunks, std::string("\0\x80\x81", 3))), 0x8081);
+    }
 }
 
 TEST(ReadTexture, AFileInMemoryReadsAsOnDisk) {

@@ -53,6 +53,40 @@ TEST(SampleTexture, OneTexelIsTheSameEverywhere) {
     }
 }
 
+TEST(SampleTexture, TheNearestTexelIsTakenWhereAsked) {
+  const Texture texture = chain(2, 2, [](int, int x, int y) { return x == 1 && y == 0; });
+  TextureUse use{0, Wrap::kClampToEdge, Wrap::kClampToEdge, true};
+  for (int i = 0; i < 64; ++i) {
+    const float u = (float(i) + 0.5f) / 64;
+    EXPECT_EQ(sampleTexture(texture, use, {u, 0.25f}, {}, {}, 0), i < 32 ? 0.0f : 1.0f) << i;
+    EXPECT_EQ(sampleTexture(texture, use, {u, 0.75f}, {}, {}, 0), 0.0f) << i;
+  }
+  use.wrap_u = use.wrap_v = Wrap::kRepeat;
+  EXPECT_EQ(sampleTexture(texture, use, {-0.01f, 0.01f}, {}, {}, 0), 1.0f) << "across the edge";
+}
+
+TEST(SampleTexture, MipsAreChosenByName) {
+  // Each level is red where its number is odd.
+  const Texture texture = chain(8, 8, [](int level, int, int) { return level % 2 == 1; });
+  const auto red = [&](Mips mips, float footprint) {
+    TextureUse use;
+    use.mips = mips;
+    return sampleTexture(texture, use, {0.5f, 0.5f}, {footprint / 8, 0}, {}, 0);
+  };
+  EXPECT_EQ(red(Mips::kBlended, 2), 1.0f);
+  EXPECT_EQ(red(Mips::kNone, 2), 0.0f);
+  EXPECT_EQ(red(Mips::kNearest, 2), 1.0f);
+  EXPECT_EQ(red(Mips::kNearest, 1.3f), 0.0f);  // level 0.38
+  EXPECT_EQ(red(Mips::kNearest, 1.5f), 1.0f);  // level 0.58
+  EXPECT_EQ(red(Mips::kNearest, 100), 1.0f) << "the coarsest is level 3";
+  // A minified pixel on the finest level, by the nearest texel.
+  const Texture two = chain(2, 2, [](int, int x, int) { return x == 1; });
+  TextureUse use{0, Wrap::kRepeat, Wrap::kRepeat, false, true, Mips::kNone};
+  EXPECT_EQ(sampleTexture(two, use, {0.6f, 0.25f}, {1, 0}, {}, 0), 1.0f);
+  EXPECT_EQ(sampleTexture(two, use, {0.4f, 0.25f}, {1, 0}, {}, 0), 0.0f);
+  EXPECT_GT(sampleTexture(two, use, {0.4f, 0.25f}, {}, {}, 0), 0.0f) << "magnified texels are mixed";
+}
+
 TEST(SampleTexture, NonFiniteCoordinatesReadAsZero) {
   const Texture texture = chain(4, 4, [](int, int x, int y) { return x == 0 && y == 0; });
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "base/error.hpp"
 #include "raster/raster_scenes.hpp"
 
@@ -71,6 +73,19 @@ TEST(View, ACameraComesBackFromItsView) {
     EXPECT_NEAR(back.far, 100.0, 400 * kEpsilon);
     for (int column = 0; column < 4; ++column)
       EXPECT_LE(glm::length(back.camera_to_world[column] - camera.camera_to_world[column]), 20 * kEpsilon);
+  }
+}
+
+TEST(View, ACameraMaySeeToInfinity) {
+  Camera camera;
+  camera.near = 0.001;
+  camera.far = std::numeric_limits<double>::infinity();
+  const View view = cameraView(camera, {30, 20});
+  EXPECT_EQ(viewCamera(view).far, camera.far);
+  EXPECT_EQ(viewCamera(view).near, camera.near);
+  for (const double depth : {0.001, 1.0, 1e18}) {
+    const glm::dvec4 clip = view.projection * glm::dvec4(0, 0, -depth, 1);
+    EXPECT_NEAR(clip.z / clip.w, camera.near / depth, 4 * kEpsilon * camera.near / depth);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
@@ -49,6 +51,16 @@ TEST_P(FrustumOfView, CornersOfAViewAreThoseOfItsPicture) {
     // An inverse and two products of matrices whose numbers are up to 40 times as large as their results.
     EXPECT_LE(glm::distance(glm::dvec3(clip) / clip.w, expected), 1e3 * 0x1p-53) << i;
   }
+}
+
+TEST(Frustum, AViewWithoutEndIsCutWhereItIsAsked) {
+  Camera camera;
+  camera.near = 0.5;
+  camera.far = std::numeric_limits<double>::infinity();
+  const Corners endless = viewCorners(cameraView(camera, {120, 80}), 20);
+  camera.far = 20;
+  const Corners limited = viewCorners(cameraView(camera, {120, 80}), 20);
+  for (int i = 0; i < 8; ++i) EXPECT_LE(glm::distance(endless[i], limited[i]), 1e3 * 20 * 0x1p-53) << i;
 }
 
 TEST_P(FrustumOfView, APointIsInsideTheCropsPlanesWhereTheCropShowsIt) {

@@ -74,6 +74,14 @@ TEST(HoleMasks, TwoTexturesAndColorsWithAlphaAreLeftToTheHost) {
   EXPECT_TRUE(isLeftToTheHost(masksOf(scene)));
 }
 
+TEST(HoleMasks, TexelsThatAreNotMixedAreLeftToTheHost) {
+  Scene scene = hollowScene(halfOpaque());
+  scene.materials[1].diffuse_map.nearest_minified = true;
+  EXPECT_FALSE(isLeftToTheHost(masksOf(scene))) << "shadows look at the finest level";
+  scene.materials[1].diffuse_map.nearest_magnified = true;
+  EXPECT_TRUE(isLeftToTheHost(masksOf(scene)));
+}
+
 TEST(HoleMasks, CoordinatesThatAreHugeOrNoNumbersAreLeftToTheHost) {
   Scene scene = hollowScene(halfOpaque());
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

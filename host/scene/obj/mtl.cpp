@@ -402,7 +402,7 @@ MtlMaterial readMaterial(const MtlEntry& entry, MtlReading& reading) {
     illumination = 2;
   }
   if (illumination > 1) readColor(source, "ks", material.specular);
-  material.shininess = readNumber(source, "ns", 0);
+  material.shininess = readNumber(source, "ns", 1);
   if (material.shininess < 0) {
     source.repair("Ns is below 0; 0 is taken");
     material.shininess = 0;

@@ -82,7 +82,8 @@ std::vector<std::string> materialPaths(const SearchFolders& where, const std::st
   std::vector<std::string> paths;
   const auto find = [&](const std::string& name) {
     for (const std::string& spelling : spellings(name)) {
-      const auto path = findFile(spelling, where);
+      const std::filesystem::path beside = std::filesystem::path(where.folder) / spelling;
+      const auto path = isFile(beside) ? beside.string() : findFile(spelling, where);
       if (!path) continue;
       paths.push_back(*path);
       return true;
@@ -300,9 +301,9 @@ void addMissingNormals(ObjFile& file, std::vector<Triangle>& triangles) {
 /// that are whole numbers, some above 1, are taken as 0 to 255.
 std::vector<glm::vec4> linearColors(const std::string& path, const ObjFile& file,
                                     std::vector<Warning>& warnings) {
-  float most = 0;
+  double most = 0;
   bool are_whole = true;
-  for (const glm::vec3& color : file.colors)
+  for (const glm::dvec3& color : file.colors)
     for (int i = 0; i < 3; ++i) {
       most = std::max(most, color[i]);
       are_whole &= color[i] == std::floor(color[i]);

@@ -57,7 +57,7 @@ struct Fault {
   std::string what;
 };
 
-constexpr glm::vec3 kNoColor(-1);
+constexpr glm::dvec3 kNoColor(-1);
 
 /// Reads a part of the file, of whole statements. Lines, corners and materials are counted from its start.
 struct Reader {
@@ -100,17 +100,17 @@ void readColor(Reader& reader, std::string_view rest) {
   int count = 0;
   while (count < 4 && !(words[count] = takeWord(rest)).empty()) ++count;
   if (count < 3) return;
-  glm::vec3 color(0);
+  glm::dvec3 color(0);
   for (int i = 0; i < 3; ++i) {
     const std::string_view word = words[count - 3 + i];
-    const std::optional<float> number = finiteNumber(word);
+    const std::optional<double> number = finiteDouble(word);
     if (!number) {
       reader.repair(kColorNoNumber, [&] {
         return fmt::format("'{}' in a vertex's colour is not a finite number", forMessage(word));
       });
       return;
     }
-    color[i] = std::max(*number, 0.0f);
+    color[i] = std::max(*number, 0.0);
   }
   ObjFile& file = reader.file;
   file.colors.resize(file.positions.size() - 1, kNoColor);
@@ -164,7 +164,8 @@ int readIndex(Reader& reader, std::string_view word, List& list, std::optional<R
     return -1;
   };
   if (index == 0)
-    return refuse([&] { return fmt::format("a face refers to {} 0, but indices start at 1", list.name); });
+    return refuse(
+        [&] { return fmt::format("index 0 of a {} in a face, but indices start at 1", list.name); });
   const std::int64_t count = list.before + list.count;
   if (index < 0 && !reader.knows_before) {
     reader.counts_back = true;

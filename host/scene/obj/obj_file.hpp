@@ -34,7 +34,7 @@ struct ObjPart {
 struct ObjFile {
   std::vector<glm::vec3> positions;
   /// One a position, or none at all. As written, but at least 0; those of positions without one are −1.
-  std::vector<glm::vec3> colors;
+  std::vector<glm::dvec3> colors;
   std::vector<glm::vec2> uvs;  ///< v grows upwards
   std::vector<glm::vec3> normals;
   std::vector<ObjCorner> corners;

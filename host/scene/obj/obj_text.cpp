@@ -88,14 +88,19 @@ std::string_view withoutQuotes(std::string_view name) {
   return name;
 }
 
-std::optional<float> finiteNumber(std::string_view word) {
+std::optional<double> finiteDouble(std::string_view word) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return isTooSmall(word) ? std::optional(0.0f) : std::nullopt;
+  if (error == std::errc::result_out_of_range) return isTooSmall(word) ? std::optional(0.0) : std::nullopt;
   if (!(std::abs(value) <= std::numeric_limits<float>::max())) return std::nullopt;
-  return static_cast<float>(value);
+  return value;
+}
+
+std::optional<float> finiteNumber(std::string_view word) {
+  const std::optional<double> number = finiteDouble(word);
+  return number ? std::optional(static_cast<float>(*number)) : std::nullopt;
 }
 
 bool isKeyword(std::string_view word, std::string_view lower) {

@@ -35,6 +35,8 @@ std::string_view withoutQuotes(std::string_view name);
 
 /// A number that a float can hold; one too near to 0 for that is 0. Nothing for nan, inf and other words.
 std::optional<float> finiteNumber(std::string_view word);
+/// The same in double precision, of a number that a float can hold.
+std::optional<double> finiteDouble(std::string_view word);
 
 /// Whether two keywords are the same, but for the case of ASCII letters. `lower` is in small letters.
 bool isKeyword(std::string_view word, std::string_view lower);

@@ -82,7 +82,7 @@ TEST_F(ObjParts, AFileInPartsIsTheFileInOneWhereverItIsCut) {
       const ObjFile whole = read(text, text.size());
       ASSERT_EQ(whole.positions.size(), 4u);
       ASSERT_EQ(whole.colors.size(), 4u);
-      ASSERT_EQ(whole.colors[3], glm::vec3(-1)) << "none";
+      ASSERT_EQ(whole.colors[3], glm::dvec3(-1)) << "none";
       ASSERT_EQ(whole.normals.size(), 3u);
       ASSERT_EQ(whole.faces.size(), 11u);
       ASSERT_EQ(whole.warnings.size(), 5u);

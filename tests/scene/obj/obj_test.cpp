@@ -293,7 +293,7 @@ TEST_F(ObjLoader, WhatIsNoNumberInAMaterialLeavesTheDefaultAndIsTold) {
     const Material& m = scene.materials.at(0);
     EXPECT_EQ(m.diffuse, Material().diffuse) << statement;
     EXPECT_EQ(m.emission, Material().emission) << statement;
-    EXPECT_EQ(m.shininess, Material().shininess) << statement;
+    EXPECT_EQ(m.shininess, 1) << statement;
     ASSERT_EQ(scene.warnings.size(), 1u) << statement;
     EXPECT_TRUE(scene.warnings[0].repaired) << statement;
     EXPECT_THAT(scene.warnings[0].text,
@@ -588,11 +588,12 @@ TEST_F(ObjLoader, EachTriangleHasItsMaterial) {
   write("m.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n");
   const Scene scene = load(std::string("mtllib m.mtl\nusemtl b\n") + kTriangle +
                            "usemtl a\ng x\nf 1 2 3\nusemtl b\nf 3 2 1\n");
-  const Mesh& mesh = scene.meshes[0];
+  ASSERT_EQ(scene.meshes.size(), 2u) << "before the first group, and x";
+  const Mesh &first = scene.meshes[0], &second = scene.meshes[1];
   EXPECT_EQ(scene.materials.size(), 2u);
-  EXPECT_EQ(scene.materials[mesh.triangle_materials[0]].name, "b");
-  EXPECT_EQ(scene.materials[mesh.triangle_materials[1]].name, "a");
-  EXPECT_EQ(mesh.triangle_materials[2], mesh.triangle_materials[0]);
+  EXPECT_EQ(scene.materials[first.triangle_materials[0]].name, "b");
+  EXPECT_EQ(scene.materials[second.triangle_materials[0]].name, "a");
+  EXPECT_EQ(second.triangle_materials[1], first.triangle_materials[0]);
 }
 
 TEST_F(ObjLoader, LinesMayBeContinuedCommentedAndEndAnyWay) {
@@ -617,7 +618,7 @@ TEST_F(ObjLoader, MistakesNameTheLineInOneLine) {
               HasSubstr("line 5: a face refers to vertex 4"));
   EXPECT_THAT(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"),
               HasSubstr("line 4: a face refers to vertex -4"));
-  EXPECT_THAT(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"), HasSubstr("line 4: index 0"));
+  EXPECT_THAT(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"), HasSubstr("line 4: index 0 of a vertex"));
   EXPECT_THAT(error("v 0 0 0\nf 1//99999999999999999999 1 1\n"), HasSubstr("is not an index"));
   EXPECT_THAT(error("v 0 0 0\nf one two three\n"), HasSubstr("line 2: 'one' is not an index"));
   EXPECT_THAT(error("v 0 0 0\n"), HasSubstr("has no faces"));
