@@ -48,8 +48,8 @@ class OutputFile {
   std::uint64_t size_ = 0;  ///< bytes written
 };
 
-/// Removes the hidden files of all OutputFiles that there are, for a process that ends at once. A signal
-/// handler may call it.
+/// Removes the hidden files of all OutputFiles that there are, but those of the module in image/module.hpp,
+/// for a process that ends at once. A signal handler may call it.
 void removeHiddenFiles() noexcept;
 
 /// Throws MachineError where a picture of `bytes` bytes of pixels might become a file larger than this

@@ -59,9 +59,16 @@ DeviceDescription describe(const cl::Platform& platform, const cl::Device& devic
           device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
 }
 
-/// LLVM, the compiler of PoCL and of others, writes two lines and aborts where malloc() fails in it. After
-/// this it throws bad_alloc, as it does where operator new fails in it. Does nothing where no platform
-/// brought a shared library of LLVM along.
+/// Calls `install`(handler, more …) of a library that is loaded, if it has it.
+template <class Handler, class... More>
+void installHandler(void* library, const char* install, Handler handler, More... more) {
+  if (void* const function = library ? dlsym(library, install) : nullptr)
+    reinterpret_cast<void (*)(Handler, More...)>(function)(handler, more...);
+}
+
+/// LLVM, the compiler of PoCL and of others, writes lines and ends the process where malloc() fails in it, or
+/// a file that it keeps can't be written. After this it throws, as it does where operator new fails in it.
+/// Does nothing where no platform brought a shared library of LLVM along.
 void letCompilersThrow() {
   static const bool is_done = [] {
     std::vector<std::string> libraries;
@@ -75,12 +82,13 @@ void letCompilersThrow() {
     for (const std::string& name : libraries) {
       void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_NOLOAD);
       // llvm::install_bad_alloc_error_handler(void (*)(void*, const char*, bool), void*)
-      void* const install =
-          library ? dlsym(library, "_ZN4llvm31install_bad_alloc_error_handlerEPFvPvPKcbES0_") : nullptr;
-      using Handler = void(void*, const char*, bool);
-      if (install)
-        reinterpret_cast<void (*)(Handler*, void*)>(install)(
-            [](void*, const char*, bool) { throw std::bad_alloc(); }, nullptr);
+      installHandler(
+          library, "_ZN4llvm31install_bad_alloc_error_handlerEPFvPvPKcbES0_",
+          +[](void*, const char*, bool) { throw std::bad_alloc(); }, static_cast<void*>(nullptr));
+      installHandler(
+          library, "LLVMInstallFatalErrorHandler", +[](const char* why) {
+            throw MachineError(fmt::format("the compiler of kernels gave up: {}", why));
+          });
     }
     return true;
   }();

@@ -74,11 +74,16 @@ void logEvent(const char* name, const EventFields& fields) {
 double eventMilliseconds(double milliseconds) { return std::round(milliseconds * 1000) / 1000; }
 
 void logFailure(const char* message, int status) noexcept {
+  std::array<char, 200> text{};  // without what JSON would have to escape
+  for (std::size_t i = 0; i + 1 < text.size() && message[i]; ++i)
+    text[i] = message[i] == '"' || message[i] == '\\' || static_cast<unsigned char>(message[i]) < ' '
+                  ? '\''
+                  : message[i];
   std::array<char, 400> line{};
   const int length = std::snprintf(line.data(), line.size(),
                                    R"({"time":"%s","event":"error","message":"%s","status":%d})"
                                    "\n",
-                                   timeText().data(), message, status);
+                                   timeText().data(), text.data(), status);
   writeError({line.data(), std::size_t(length)});
 }
 

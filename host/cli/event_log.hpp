@@ -33,7 +33,7 @@ void logEvent(const char* name, const EventFields& fields = EventFields::object(
 /// Milliseconds as events tell them: to the microsecond.
 double eventMilliseconds(double milliseconds);
 
-/// Writes the event `error` of a process that ends at once, taking no memory. message: without quotes.
+/// Writes the event `error` of a process that ends at once, taking no memory.
 void logFailure(const char* message, int status) noexcept;
 
 }  // namespace luciole

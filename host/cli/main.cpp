@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -23,6 +24,7 @@
 #include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/utf8.hpp"
+#include "cl/driver_call.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/suggest.hpp"
@@ -137,6 +139,8 @@ namespace {
     if (std::current_exception()) throw;
   } catch (const std::bad_alloc&) {
     endAtOnce("out of memory");
+  } catch (const MachineError& error) {
+    endAtOnce(error.what());
   } catch (const std::system_error&) {
     endAtOnce("the system refuses what a library needs");
   } catch (...) {
@@ -144,7 +148,15 @@ namespace {
   endAtOnce("internal error: an exception that nobody catches");
 }
 
-void endAborted(int) { endAtOnce("a library gave up (abort), as some do where memory runs out"); }
+void endAborted(int) { endAtOnce("a library gave up, as some do where memory runs out"); }
+
+/// Drivers and compilers that don't look at what malloc() gave them write to the first page of addresses.
+void endCrashed(int, siginfo_t* fault, void*) {
+  constexpr std::uintptr_t kFirstPage = 4096;
+  if (isInDriver() && reinterpret_cast<std::uintptr_t>(fault->si_addr) < kFirstPage)
+    endAtOnce("OpenCL's driver crashed where it used no memory, as some do where memory runs out");
+  std::signal(SIGSEGV, SIG_DFL);  // and the same again
+}
 
 // Leaks are looked for when main() has returned, and by these tools an abort is told.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -162,7 +174,13 @@ constexpr bool kIsSanitized = false;
 /// What the dynamic loader calls before any library that the program links is started.
 void catchEverything() {
   std::set_terminate(endUncaught);
-  if (!kIsSanitized) std::signal(SIGABRT, endAborted);
+  if (kIsSanitized) return;
+  std::signal(SIGABRT, endAborted);
+  std::signal(SIGTRAP, endAborted);  // GLib's way
+  struct sigaction crash {};
+  crash.sa_sigaction = endCrashed;
+  crash.sa_flags = SA_SIGINFO;
+  sigaction(SIGSEGV, &crash, nullptr);
 }
 __attribute__((section(".preinit_array"), used)) void (*before_libraries)() = catchEverything;
 

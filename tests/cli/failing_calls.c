@@ -6,7 +6,7 @@
 //   FAIL_COUNTS  a file that gets the number of calls of each kind, in this order, as int64_t
 //
 // It allocates nothing, and asks the kernel itself where glibc's own function has no other name. What glibc calls by names of its own
-// (read() in fread()) is not seen: so streams fail as a whole, with their error flag.
+// (read() in fread()) is not seen: so streams fail as a whole, with their error flag; except by EINTR, after which they don't try again.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -125,21 +125,22 @@ int close(int file) {
   return fails(CLOSE) ? -1 : result;
 }
 
+static int stream_fails(enum Kind of) { return fails(of) && error != EINTR; }
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 FILE* fopen(const char* path, const char* mode) { return fails(OPEN) ? NULL : REAL(fopen)(path, mode); }
 FILE* fopen64(const char* path, const char* mode) { return fails(OPEN) ? NULL : REAL(fopen64)(path, mode); }
 size_t fread(void* bytes, size_t size, size_t count, FILE* stream) {
-  if (!fails(READ)) return REAL(fread)(bytes, size, count, stream);
+  if (!stream_fails(READ)) return REAL(fread)(bytes, size, count, stream);
   stream->_flags |= 0x20;  // glibc's _IO_ERR_SEEN
   return 0;
 }
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* stream) {
-  if (!fails(WRITE)) return REAL(fwrite)(bytes, size, count, stream);
+  if (!stream_fails(WRITE)) return REAL(fwrite)(bytes, size, count, stream);
   stream->_flags |= 0x20;
   return 0;
 }
 int fflush(FILE* stream) {
-  if (!fails(WRITE)) return REAL(fflush)(stream);
+  if (!stream_fails(WRITE)) return REAL(fflush)(stream);
   if (stream) stream->_flags |= 0x20;
   return EOF;
 }
