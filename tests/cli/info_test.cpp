@@ -276,7 +276,7 @@ TEST_F(Info, PictureOfAnotherProgramTellsWhatItHas) {
   writeText(folder / "a.exr", foreignExr(true));
   const json info = infoOf("a.exr");
   EXPECT_EQ(info["software"], "Painter");
-  EXPECT_EQ(info["description"], "\uFFFDt\uFFFD 5");
+  EXPECT_EQ(info["description"], "\u00e9t\u00e9 5");
   EXPECT_FALSE(info.contains("command"));
   const json& layer = info["parts"][0]["layers"][0];
   EXPECT_EQ(layer["name"], "sky");
