@@ -195,7 +195,8 @@ bool drawMaskedSamples(const StripTarget& target, const PixelBox& box, const Hol
       if (!surface) surface = makeSurface(holes.scene, holes.objects, number, holes.plane);
       const glm::dvec2 place = glm::dvec2(target.bin_origin + pixel) +
                                glm::dvec2(target.block.x[lane], target.block.y[lane]) / double(kSubpixels);
-      return isHole(holes.scene, *surface, holes.plane, place, target.bin_origin + pixel,
+      return isHole(holes.scene, *surface, holes.plane, place,
+                    target.bin_origin + pixel + glm::ivec2(lane / pattern.stride, 0),
                     {lane % pattern.stride, pattern.count});
     });
   });
