@@ -42,6 +42,13 @@ picture scenes/spheres_cook.jpg render scenes/spheres.json --model cook-torrance
 picture scenes/lesson/flat.jpg render scenes/lesson/shading.json --shading flat --shadows pcf --samples 16 -o
 picture scenes/lesson/gouraud.jpg render scenes/lesson/shading.json --shading gouraud --shadows pcf --samples 16 -o
 picture scenes/lesson/phong.jpg render scenes/lesson/shading.json --shading phong --shadows pcf --samples 16 -o
+picture scenes/lesson/part_ambient.jpg render scenes/lesson/shading.json --set 'objects[1].segments=96' --set 'objects[2].segments=96' --set ambient=0.2 --aov ambient --shadows pcf --samples 16 -o
+picture scenes/lesson/part_diffuse.jpg render scenes/lesson/shading.json --set 'objects[1].segments=96' --set 'objects[2].segments=96' --set ambient=0.2 --aov diffuse_light --shadows pcf --samples 16 -o
+picture scenes/lesson/part_specular.jpg render scenes/lesson/shading.json --set 'objects[1].segments=96' --set 'objects[2].segments=96' --set ambient=0.2 --aov specular_light --shadows pcf --samples 16 -o
+picture scenes/lesson/shininess.jpg render scenes/lesson/shading.json --set 'objects[1].segments=96' --set 'objects[2].segments=96' --sweep materials.red.shininess=4,16,64 --shadows pcf --samples 16 -o
+picture scenes/lesson/normals_flat.jpg render scenes/lesson/shading.json --aov normal --shading flat -o
+picture scenes/lesson/normals_phong.jpg render scenes/lesson/shading.json --aov normal --shading phong -o
+picture scenes/lesson/moving_light.jpg render scenes/lesson/shading.json --size 300x225 --set 'objects[1].segments=96' --set 'objects[2].segments=96' --sweep 'lights[0].position[0]=-5,-1.5,2,5.5' --shadows pcf --samples 16 -o
 picture scenes/lesson/spot_cutoff.jpg render scenes/lesson/spot_cutoff.json --shadows pcf --samples 16 -o
 picture scenes/lesson/spot_exponent.jpg render scenes/lesson/spot_exponent.json --shadows pcf --samples 16 -o
 picture scenes/lesson/attenuation.jpg render scenes/lesson/attenuation.json --shadows pcf --samples 16 -o
@@ -52,6 +59,7 @@ picture scenes/lesson/shadows_hard.jpg render scenes/lesson/shadows.json --shado
 picture scenes/lesson/shadows_pcf.jpg render scenes/lesson/shadows.json --shadows pcf --shadow-size 128 --samples 16 -o
 picture scenes/lesson/shadows_soft.jpg render scenes/lesson/shadows.json --shadows soft --samples 16 -o
 picture scenes/lesson/shadows_exact.jpg render scenes/lesson/shadows.json --shadows exact --shadow-size 128 --samples 16 -o
+picture scenes/lesson/shadow_map.png shadow-map scenes/lesson/shadows.json --light 0 --shadow-size 128 -o
 
 picture scenes/colonnade_rays.jpg reference scenes/colonnade.json --size 960x540 -o
 if wanted scenes/colonnade_error.png; then

@@ -181,6 +181,10 @@ void bake(CommandContext& context, BakeOptions& options) {
                      pngBytes(map.width, map.height, codes), strength, options.gltf);
     }
     if (options.hash) stats.hash = pictureHash(map);
+    if (showsAov(options)) {
+      writeAov(options, map, stats, &context.device);
+      return std::uint64_t(0);
+    }
     return writeImage(map, options.output, pictureMetadata(stats, &context.device),
                       writeOptions(options, space.gbuffer));
   });

@@ -45,6 +45,8 @@ void addShadeCommand(CLI::App& app, CommandContext& context);
 void addRelightCommand(CLI::App& app, CommandContext& context);
 void addBakeCommand(CLI::App& app, CommandContext& context);
 void addMixCommand(CLI::App& app, CommandContext& context);
+void addShowCommand(CLI::App& app, CommandContext& context);
+void addShadowMapCommand(CLI::App& app, CommandContext& context);
 void addReferenceCommand(CLI::App& app, CommandContext& context);
 void addCompareCommand(CLI::App& app, CommandContext& context);
 void addBenchCommand(CLI::App& app, CommandContext& context);

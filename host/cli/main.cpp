@@ -217,6 +217,8 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addRelightCommand(app, context);
   addBakeCommand(app, context);
   addMixCommand(app, context);
+  addShowCommand(app, context);
+  addShadowMapCommand(app, context);
   addReferenceCommand(app, context);
   addCompareCommand(app, context);
   addBenchCommand(app, context);

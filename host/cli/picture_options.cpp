@@ -386,6 +386,15 @@ void addLoadOptions(CLI::App& command, LoadSettings& settings) {
           "a folder in which files are looked for that aren't where the scene says; may stand several times")
       ->expected(1)
       ->take_all();
+  command
+      .add_option(
+          "--set", settings.changes,
+          "a place of the scene's file and its new value, as JSON or text, such as "
+          "materials.box.shininess=4, camera.fov_y=30 or 'lights[0].color=[1,0,0]'; of an .obj, .gltf or "
+          ".glb its materials, lights, ambient, background, fog and lighting; may stand several times")
+      ->expected(1)
+      ->take_all()
+      ->type_name("PATH=VALUE");
 }
 
 std::vector<std::string> typedLoadOptions(const LoadSettings& settings) {
@@ -393,6 +402,7 @@ std::vector<std::string> typedLoadOptions(const LoadSettings& settings) {
                                  settings.missing == MissingTextures::kWarn ? "warn" : "error"};
   if (settings.strict) words.push_back("--strict");
   for (const std::string& folder : settings.search) words.insert(words.end(), {"--search", folder});
+  for (const std::string& change : settings.changes) words.insert(words.end(), {"--set", change});
   return words;
 }
 

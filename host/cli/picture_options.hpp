@@ -83,7 +83,7 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options);
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values);
 void addCastShadowsOption(CLI::App& command, PictureOptions& options);
-/// Adds the options of how a scene's files are read: --missing-textures, --strict, --search.
+/// Adds the options of how a scene's files are read: --missing-textures, --strict, --search, --set.
 void addLoadOptions(CLI::App& command, LoadSettings& settings);
 /// These options as they would be typed.
 std::vector<std::string> typedLoadOptions(const LoadSettings& settings);

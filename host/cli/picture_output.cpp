@@ -14,6 +14,7 @@
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "gbuffer/camera_header.hpp"
+#include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
 #include "render/light_layers.hpp"
@@ -92,10 +93,15 @@ void checkOutput(const PictureOptions& options) {
         "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
         options.tone, options.output));
   const std::vector<Aov> aovs = aovsOf(options);
-  if ((!aovs.empty() || options.light_groups) &&
-      outputFormat(options.output, options.format).extension != "exr")
-    throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
-                                 options.light_groups ? "--light-groups" : "--aov", options.output));
+  if (showsAov(options)) {
+    if (aovs.size() > 1 || aovs.front() == Aov::kMaterial)
+      throw InputError(
+          fmt::format("--aov {}: {} cannot hold layers, an .exr can; it shows one, such as --aov normal",
+                      options.aovs, options.output));
+    if (options.alpha) throw InputError("--alpha: a layer as a picture has no A; leave it out");
+  }
+  if (options.light_groups && outputFormat(options.output, options.format).extension != "exr")
+    throw InputError(fmt::format("--light-groups: {} cannot hold layers, an .exr can", options.output));
   if (std::any_of(aovs.begin(), aovs.end(),
                   [](Aov aov) { return aov == Aov::kCryptoObject || aov == Aov::kCryptoMaterial; }))
     checkLossless(options, "Cryptomattes");
@@ -160,6 +166,60 @@ void reportLightError(const PictureOptions& options, Stats& stats) {
       "--light-error {}: floats can't promise it for this picture; the least that they can is {:.3g}",
       options.light_error, 1.05 * stats.light_error.least));
   if (!options.quiet) tellWarning(stats.warnings.back());
+}
+
+bool showsAov(const PictureOptions& options) {
+  return !options.aovs.empty() && outputFormat(options.output, options.format).extension != "exr";
+}
+
+ShownLayer aovLayer(const std::vector<std::string>& channels) {
+  PicturePart part;
+  part.channels = channels;
+  std::vector<ShownLayer> layers = shownLayers({part});
+  ShownLayer layer = layers.at(1);                 // behind the colours
+  for (std::size_t i = 2; i < layers.size(); ++i)  // the further ranks of a Cryptomatte
+    layer.channels.insert(layer.channels.end(), layers[i].channels.begin(), layers[i].channels.end());
+  return layer;
+}
+
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture) {
+  picture.width = rows.width;
+  picture.height += rows.height;
+  picture.channels.clear();
+  for (const int channel : channels) picture.channels.push_back(rows.channels[std::size_t(channel)]);
+  for (std::size_t at = 0; at < rows.pixels.size(); at += rows.channels.size())
+    for (const int channel : channels) picture.pixels.push_back(rows.pixels[at + std::size_t(channel)]);
+}
+
+void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
+                       const Stats& stats, const Device* device) {
+  const bool is_light = shown.kind == LayerKind::kColor && layer.channels.size() == 3;
+  if (is_light) {
+    layer.channels = {"R", "G", "B"};
+    expose(layer, exposureOf(options));
+  }
+  const LayerPicture picture = layerPicture(shown.name, shown.kind, layer);
+  WriteOptions how = fileOptions(options);
+  how.dither = how.dither && is_light;  // equal values have equal colours
+  how.picture_size = picture.image.picture_size;
+  how.crop_origin = picture.image.crop_origin;
+  writeImage(picture.image, options.output, pictureMetadata(stats, device), how);
+  if (options.quiet) return;
+  for (const std::string& note : picture.notes) {
+    if (logsEvents())
+      logEvent("layer", {{"message", note}});
+    else
+      fmt::print(stderr, "{}: {}\n", options.output, note);
+  }
+}
+
+void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats, const Device* device) {
+  const ShownLayer shown = aovLayer(picture.channels);
+  Image layer;
+  appendRows(picture, shown.channels, layer);
+  PictureOptions exposed = options;
+  exposed.exposure.clear();  // its light is exposed
+  writeLayerPicture(exposed, shown, std::move(layer), stats, device);
 }
 
 Metadata pictureMetadata(const Stats& stats, const Device* device) {

@@ -6,6 +6,7 @@
 
 #include "cl/device.hpp"
 #include "cli/picture_options.hpp"
+#include "cli/shown_layer.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
 #include "render/stats.hpp"
@@ -42,6 +43,23 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
 
 /// Warns if bounds of --light-error are larger than allowed, because floats can't promise so little.
 void reportLightError(const PictureOptions& options, Stats& stats);
+
+/// Whether the picture's file has no place for layers and shows the one that --aov names.
+bool showsAov(const PictureOptions& options);
+
+/// That layer among the channels of a picture that was made with it.
+ShownLayer aovLayer(const std::vector<std::string>& channels);
+
+/// Appends channels of some rows to a picture, whose sizes they were before.
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture);
+
+/// Writes a layer as a picture to look at (see layerPicture), light with the exposure of the options. layer:
+/// its channels alone. Tells what its colours mean where it doesn't itself, unless --quiet. device: as below.
+void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
+                       const Stats& stats, const Device* device);
+
+/// The same of the layer that --aov names, of a picture that was made with it.
+void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats, const Device* device);
 
 /// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
 /// device: null if none was used.

@@ -184,6 +184,10 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   }
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
     if (options.hash) stats.hash = pictureHash(image);
+    if (showsAov(options)) {
+      writeAov(options, image, stats, &device);
+      return std::uint64_t(0);
+    }
     return writeImage(image, options.output, pictureMetadata(stats, &device), writeOptions(options, gbuffer));
   });
   reportHalves(options, limited, stats);

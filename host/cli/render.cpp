@@ -21,10 +21,13 @@
 #include "cli/picture_output.hpp"
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
+#include "cli/sweep.hpp"
 #include "gbuffer/gbuffer_file.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "image/layer_picture.hpp"
 #include "image/picture_hash.hpp"
+#include "image/side_by_side.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/share_picture.hpp"
@@ -42,6 +45,7 @@ struct RenderOptions : PictureOptions {
   std::optional<double> frames_per_second;
   bool resume = false;
   Orbit orbit;
+  std::vector<std::string> sweeps;
 };
 
 /// The settings of a picture of a scene that is posed for the frame.
@@ -70,38 +74,76 @@ std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene,
   return exposures;
 }
 
+/// The settings with the exposure that was measured, if it was.
+RenderSettings withExposure(RenderSettings settings, const Stats& stats) {
+  if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
+  return settings;
+}
+
+/// Renders the scene at its frame, and calls write(rows) from the top down. keeps: see renderShared.
+void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
+                const RenderSettings& settings, bool keeps, const RowSink& write, Stats& stats) {
+  const Crop window = windowOf(settings);
+  std::optional<PictureHash> hash;
+  const auto take = [&](const Image& rows) {
+    timed(stats, Stage::kWrite, [&] {
+      if (options.hash && !hash) hash.emplace(window.width, window.height, rows.channels);
+      if (hash) hash->add(rows);
+      write(rows);
+    });
+  };
+  renderShared(sharers, scene, settings, take, stats, keeps);
+  if (!options.quiet)
+    for (const DeviceShare& share : stats.shares)
+      if (!share.error.empty()) tellWarning(fmt::format("{}; the other devices made its rows", share.error));
+  if (hash) stats.hash = hash->hex();
+  reportLightError(options, stats);
+}
+
+/// Renders the scene and returns the layer that --aov names alone.
+Image renderLayer(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
+                  const RenderSettings& settings, bool keeps, ShownLayer& layer, Stats& stats) {
+  Image picture;
+  const auto take = [&](const Image& rows) {
+    if (picture.height == 0) layer = aovLayer(rows.channels);
+    appendRows(rows, layer.channels, picture);
+  };
+  renderRows(sharers, scene, options, settings, keeps, take, stats);
+  return picture;
+}
+
 /// Renders the scene as it is posed, by these settings of the options, with the exposure that was measured or
-/// that the options say, and writes the picture, to the film unless that is null. keeps: see renderShared.
+/// that the options say. Writes the picture, to the film unless that is null, or where the file has no place
+/// for layers the one that --aov names.
 void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
                    RenderSettings settings, Film* film, const std::function<void(int, int)>& on_pass,
                    bool keeps, Stats& stats) {
+  settings = withExposure(settings, stats);
   settings.on_pass = on_pass;
-  if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
+  Device* const device = sharers.front().device;
+  if (showsAov(options)) {
+    ShownLayer shown;
+    const Image layer = renderLayer(sharers, scene, options, settings, keeps, shown, stats);
+    PictureOptions exposed = options;
+    exposed.exposure.clear();  // its light is exposed
+    timed(stats, Stage::kWrite, [&] { writeLayerPicture(exposed, shown, layer, stats, device); });
+    return;
+  }
   const Crop window = windowOf(settings);
   WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
   how.film = film;
   const Metadata mattes = surfaceIdTexts(scene, settings);
   how.exr.texts.insert(how.exr.texts.end(), mattes.begin(), mattes.end());
   std::optional<ImageWriter> writer;
-  std::optional<PictureHash> hash;
   const auto write = [&](const Image& rows) {
-    timed(stats, Stage::kWrite, [&] {
-      if (options.hash && !hash) hash.emplace(window.width, window.height, rows.channels);
-      if (hash) hash->add(rows);
-      if (!writer)
-        writer.emplace(options.output, window.width, window.height, rows.channels,
-                       pictureMetadata(stats, sharers.front().device), how);
-      writer->write(rows);
-    });
+    if (!writer)
+      writer.emplace(options.output, window.width, window.height, rows.channels,
+                     pictureMetadata(stats, device), how);
+    writer->write(rows);
   };
-  renderShared(sharers, scene, settings, write, stats, keeps);
-  if (!options.quiet)
-    for (const DeviceShare& share : stats.shares)
-      if (!share.error.empty()) tellWarning(fmt::format("{}; the other devices made its rows", share.error));
+  renderRows(sharers, scene, options, settings, keeps, write, stats);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
-  if (hash) stats.hash = hash->hex();
   reportHalves(options, limited, stats);
-  reportLightError(options, stats);
 }
 
 /// Whether a frame's file exists. Files are written as a whole or not at all, so such a frame is done.
@@ -251,6 +293,112 @@ void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
   }
 }
 
+/// Writes a layer of a G-buffer as a picture.
+void showGBuffer(const GBuffer& gbuffer, const std::string& name, const PictureOptions& options,
+                 const Stats& stats) {
+  Image picture;
+  ShownLayer shown;
+  passRows(gbuffer, [&](const Image& rows) {
+    PicturePart part;
+    part.channels = rows.channels;
+    if (picture.height == 0) shown = findShownLayer({part}, name, "--aov");
+    appendRows(rows, shown.channels, picture);
+  });
+  writeLayerPicture(options, shown, std::move(picture), stats, nullptr);
+}
+
+/// Throws InputError for what a sheet of pictures has no place for.
+void checkSheet(const RenderOptions& options) {
+  const bool has_layers = !options.aovs.empty() && !showsAov(options);
+  for (const auto& [is_given, what] :
+       {std::pair{!options.stats.empty(), "--stats"}, std::pair{options.hash, "--hash"},
+        std::pair{options.light_groups, "--light-groups"}, std::pair{has_layers, "--aov"},
+        std::pair{options.alpha, "--alpha"}})
+    if (is_given)
+      throw InputError(
+          fmt::format("{}: is of one picture, and --sweep makes a sheet of several; for a file each put # "
+                      "into the name after -o",
+                      what));
+}
+
+/// Renders what a sheet shows of a picture: its colours, or the layer of --aov.
+Image renderPanel(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
+                  Stats& stats) {
+  const RenderSettings settings = withExposure(renderSettings(options, scene), stats);
+  if (showsAov(options)) {
+    ShownLayer shown;
+    const Image layer = renderLayer(sharers, scene, options, settings, false, shown, stats);
+    return layerPicture(shown.name, shown.kind, layer).image;
+  }
+  Image picture;
+  renderRows(
+      sharers, scene, options, settings, false,
+      [&](const Image& rows) {
+        appendRows(rows, {0, 1, 2}, picture);
+      },
+      stats);
+  return picture;
+}
+
+/// Renders the pictures of --sweep: into a file each where the name has a place for a number, or into one
+/// sheet. All have the exposure of the first. stats: the cost of opening the device.
+void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int frame, Stats stats) {
+  const std::vector<Sweep> sweeps = readSweeps(options.sweeps);
+  const std::vector<SweepPicture> all = sweepPictures(sweeps);
+  const bool makes_files = hasFramePlace(options.output);
+  if (makes_files && !options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
+  if (!makes_files) checkSheet(options);
+  const std::string command = stats.command;
+  std::vector<Image> panels;
+  std::vector<std::string> labels;
+  std::optional<double> exposure;
+  ProgressLine progress(options.quiet);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    RenderOptions one = options;
+    one.load.changes.insert(one.load.changes.end(), all[i].begin(), all[i].end());
+    one.quiet = options.quiet || i > 0;  // the scene's warnings are told once
+    progress.show(std::filesystem::path(options.output).filename(), i, all.size());
+    const Scene scene =
+        timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, frame, one); });
+    const std::vector<PictureOptions> cameras = optionsOfCameras(one, scene);
+    if (cameras.size() > 1) throw InputError("--camera all: --sweep makes pictures of one camera");
+    PictureOptions picture = cameras.front();
+    picture.quiet = options.quiet;
+    if (i == 0 && measuresExposure(options, options.scene))
+      exposure = measureExposure(*sharers.front().device, scene, renderSettings(picture, scene), stats);
+    stats.measured_exposure = exposure;
+    if (makes_files) {
+      picture.output = frameFile(picture.output, int(i) + 1);
+      picture.stats = frameFile(picture.stats, int(i) + 1);
+      checkOutput(picture);
+      renderPicture(sharers, scene, picture, renderSettings(picture, scene), nullptr, {}, false, stats);
+      progress.clear();
+      reportStats(picture, stats, frame);
+      stats = laterStats(command);
+      continue;
+    }
+    panels.push_back(renderPanel(sharers, scene, picture, stats));
+    labels.push_back(fmt::format("{}", fmt::join(all[i], ", ")));
+    if (panels.back().width != panels[0].width || panels.back().height != panels[0].height)
+      throw InputError("--sweep: the pictures differ in size; expected --size");
+  }
+  progress.clear();
+  if (makes_files) return;
+  const Image sheet = labelledSheet(panels, labels, sweepColumns(sweeps));
+  writeImage(sheet, options.output, pictureMetadata(stats, sharers.front().device), fileOptions(options));
+  if (logsEvents())
+    logEvent("sheet_done", {{"file", options.output},
+                            {"pictures", panels.size()},
+                            {"width", sheet.width},
+                            {"height", sheet.height},
+                            {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
+  else if (!options.quiet)
+    fmt::print(stderr, "{}: {} pictures of {}x{}, {}{:.0f} ms\n", options.output, panels.size(),
+               panels[0].width, panels[0].height,
+               exposure ? fmt::format("all with the exposure of the first, {:+.2f} stops, ", *exposure) : "",
+               millisecondsSinceStart());
+}
+
 }  // namespace
 
 void addRenderCommand(CLI::App& app, CommandContext& context) {
@@ -279,11 +427,28 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--shard", options->shard,
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
                       "tasks share them)");
+  command
+      ->add_option(
+          "--sweep", options->sweeps,
+          "a picture for each of several values of a place (see --set), in one sheet with labels, such as "
+          "materials.box.shininess=4,16,64; given twice the second goes from row to row; with # in "
+          "the output's name a file each")
+      ->expected(1)
+      ->take_all()
+      ->type_name("PATH=VALUE,...");
   command->callback([&context, options] {
     options->frames = framesOf(options->frames, options->orbit);
     const FrameChoice choice = chosenFrames(options->frames);
     if (!choice.is_list) useFrame(*options, "render");
     checkOptions(*options, choice);
+    if (!options->sweeps.empty()) {
+      if (choice.is_list) throw InputError("--sweep: makes pictures of one frame, such as --frames 7");
+      readSweeps(options->sweeps);  // before a device is opened
+      Stats stats;
+      stats.command = context.command_line;
+      std::list<Sharer> sharers = startSharers(*options, context);
+      return renderSweep(sharers, *options, choice.frames.front(), std::move(stats));
+    }
     const bool is_film = makesFilm(*options, choice);
     std::vector<int> frames;
     std::optional<FrameClaims> claims;
@@ -357,14 +522,27 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command =
       app.add_subcommand("gbuffer", "stop after rasterizing: positions, normals and materials as an EXR");
   auto options = std::make_shared<PictureOptions>();
-  auto scene_path = std::make_shared<std::string>();
+  auto scene_path = std::make_shared<std::string>(), layer = std::make_shared<std::string>();
   command->add_option("SCENE", *scene_path, "a .json, .obj, .gltf or .glb file (- : JSON on standard input)")
       ->required();
+  command
+      ->add_option("--aov", *layer,
+                   "of a picture that isn't an EXR: the layer to show, such as normal, position or depth")
+      ->type_name("LAYER");
   addModelOption(*command, *options);
   addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
-  command->callback([&context, options, scene_path] {
+  command->callback([&context, options, scene_path, layer] {
     const int frame = useFrame(*options, "gbuffer");
     checkDataOutput(*options, "a G-buffer");
+    const bool shows_layer = outputFormat(options->output, options->format).extension != "exr";
+    if (shows_layer && layer->empty())
+      throw InputError(fmt::format(
+          "{}: a G-buffer has many layers, expected .exr, or --aov to say which to show, such as normal",
+          options->output));
+    if (!shows_layer && !layer->empty())
+      throw InputError(
+          fmt::format("--aov {}: {} has all layers; leave it out, or name a picture, such as .png", *layer,
+                      options->output));
     Stats stats;
     stats.command = context.command_line;
     const Scene scene =
@@ -385,6 +563,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       if (lit) stats.device = device.description;
       const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
       timed(stats, Stage::kWrite, [&] {
+        if (shows_layer) return showGBuffer(gbuffer, *layer, picture, stats);
         writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, lit ? &device : nullptr), picture.format,
                      picture.compression);
       });

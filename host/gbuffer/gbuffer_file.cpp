@@ -79,6 +79,18 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
 
 }  // namespace
 
+void passRows(const GBuffer& gbuffer, const std::function<void(const Image& rows)>& take) {
+  Image rows{gbuffer.width, 0, channelNames(gbuffer), {}};
+  // Some rows at a time: all of them together would take more memory than the G-buffer.
+  constexpr int kRows = 64;
+  for (int y = 0; y < gbuffer.height; y += kRows) {
+    rows.height = std::min(kRows, gbuffer.height - y);
+    rows.pixels.clear();
+    for (int row = y; row < y + rows.height; ++row) addRow(gbuffer, row, rows.pixels);
+    take(rows);
+  }
+}
+
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
                   const std::string& format, const std::string& compression) {
   if (outputFormat(path, format).extension != "exr") {
@@ -91,16 +103,8 @@ void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadat
       .crop_origin = gbuffer.crop_origin,
       .display = gbuffer.display,
       .exr = cameraAttributes(gbuffer.camera, gbuffer.picture_size, gbuffer.display.pixel_aspect)};
-  Image rows{gbuffer.width, 0, channelNames(gbuffer), {}};
-  ImageWriter file(path, gbuffer.width, gbuffer.height, rows.channels, metadata, options);
-  // Some rows at a time: all of them together would take more memory than the G-buffer.
-  constexpr int kRows = 64;
-  for (int y = 0; y < gbuffer.height; y += kRows) {
-    rows.height = std::min(kRows, gbuffer.height - y);
-    rows.pixels.clear();
-    for (int row = y; row < y + rows.height; ++row) addRow(gbuffer, row, rows.pixels);
-    file.write(rows);
-  }
+  ImageWriter file(path, gbuffer.width, gbuffer.height, channelNames(gbuffer), metadata, options);
+  passRows(gbuffer, [&](const Image& rows) { file.write(rows); });
   file.close();
 }
 

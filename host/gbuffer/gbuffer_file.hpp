@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "gbuffer/gbuffer.hpp"
@@ -27,6 +28,9 @@ namespace luciole {
 /// as in WriteOptions. Throws as writeImage does, and InputError for a format other than exr.
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
                   const std::string& format = "", const std::string& compression = "");
+
+/// Calls take(rows) for all pixels, some rows at a time, with the channels that writeGBuffer() writes.
+void passRows(const GBuffer& gbuffer, const std::function<void(const Image& rows)>& take);
 
 /// Reads a G-buffer that this program or another wrote, as gbuffer_input.hpp says, with nothing asked for.
 GBuffer readGBuffer(const std::string& path);

@@ -9,6 +9,9 @@ namespace {
 constexpr int kMinWidth = 480;  ///< pixels that a scale bar and its labels need
 constexpr int kMinTextSize = 14;
 constexpr double kCaptionHeight = 8.6;  ///< in text sizes
+constexpr double kLabelHeight = 1.7;    ///< of a sheet's lines below its pictures, in text sizes
+
+bool continuesCharacter(char byte) { return (byte & 0xC0) == 0x80; }
 
 }  // namespace
 
@@ -20,8 +23,25 @@ CaptionedSize captionedSize(int picture_width, int picture_height) {
   size.left = (size.width - picture_width * size.factor) / 2;
   size.caption_top = picture_height * size.factor;
   size.text_size = std::max(kMinTextSize, size.width / 64);
-  size.height = size.caption_top + int(std::lround(kCaptionHeight * size.text_size));
+  size.height = size.caption_top + captionHeight(size.text_size);
   return size;
+}
+
+int captionHeight(int text_size) { return int(std::lround(kCaptionHeight * text_size)); }
+
+Sheet sheetOf(int count, int columns, int picture_width, int picture_height) {
+  Sheet sheet{};
+  sheet.columns = std::min(columns, count);
+  sheet.rows = (count + sheet.columns - 1) / sheet.columns;
+  const int across = sheet.columns * picture_width;
+  sheet.factor = std::max(1, (kMinWidth + across - 1) / across);
+  sheet.text_size = std::max(kMinTextSize, across * sheet.factor / 64);
+  const int width = picture_width * sheet.factor, height = picture_height * sheet.factor;
+  sheet.step_x = width + sheet.text_size;
+  sheet.step_y = height + int(std::lround(kLabelHeight * sheet.text_size));
+  sheet.width = (sheet.columns - 1) * sheet.step_x + width;
+  sheet.height = sheet.rows * sheet.step_y;
+  return sheet;
 }
 
 Image blankPaper(int width, int height) {
@@ -42,6 +62,19 @@ double Panel::textWidth(const std::string& text) const {
   return box.defined() ? double(box.width()) / text_size : 0;
 }
 
+std::string Panel::fitted(std::string text, double width) const {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  std::string shown = text;
+  for (std::size_t kept = text.size(); kept > 1 && textWidth(shown) > width;) {
+    std::size_t head = --kept / 2, tail = text.size() - (kept - head);
+    while (head > 0 && continuesCharacter(text[head])) --head;
+    while (tail < text.size() && continuesCharacter(text[tail])) ++tail;
+    shown = text.substr(0, head) + "..." + text.substr(tail);
+  }
+  return shown;
+}
+
 void Panel::fill(double x, double y, double across, double down, const LinearColor& color) const {
   const int left = pixels(x), right = left + pixels(across);
   OIIO::ImageBufAlgo::fill(canvas, color, OIIO::ROI(left, right, top + pixels(y), top + pixels(y + down)));
@@ -52,6 +85,14 @@ void Panel::write(double x, double baseline, const std::string& text,
   if (font.empty()) return;
   OIIO::ImageBufAlgo::render_text(canvas, pixels(x), top + pixels(baseline), text, text_size, font, kInk,
                                   align);
+}
+
+void writeLabel(OIIO::ImageBuf& canvas, const Sheet& sheet, int picture, const std::string& text,
+                const std::string& font) {
+  const Panel panel{canvas, sheet.top(picture) + sheet.step_y, sheet.text_size, font};
+  const double width = double(sheet.step_x) / sheet.text_size - 1;
+  panel.write(double(sheet.left(picture)) / sheet.text_size + width / 2, -0.5, panel.fitted(text, width),
+              OIIO::ImageBufAlgo::TextAlignX::Center);
 }
 
 }  // namespace luciole

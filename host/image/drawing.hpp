@@ -30,6 +30,23 @@ struct CaptionedSize {
 /// its height if that is more.
 CaptionedSize captionedSize(int picture_width, int picture_height);
 
+/// The height in pixels of a scale bar with what is written around it.
+int captionHeight(int text_size);
+
+/// Pictures of one size in rows, with a line of text below each.
+struct Sheet {
+  int columns, rows;
+  int factor;          ///< every pixel of a picture is a square of so many a side
+  int text_size;       ///< the gap between pictures, too
+  int step_x, step_y;  ///< from a picture to the next, in pixels
+  int width, height;   ///< of all together
+  int left(int i) const { return i % columns * step_x; }
+  int top(int i) const { return i / columns * step_y; }
+};
+
+/// The sheet of `count` pictures, enlarged by a whole factor where it would be less than 480 pixels wide.
+Sheet sheetOf(int count, int columns, int picture_width, int picture_height);
+
 /// A white picture with channels R G B.
 Image blankPaper(int width, int height);
 
@@ -47,6 +64,9 @@ struct Panel {
   int pixels(double length) const;
   double width() const;
   double textWidth(const std::string& text) const;
+  /// UTF-8 text on one line and no wider than `width` text sizes: what is left out of the middle becomes
+  /// "...".
+  std::string fitted(std::string text, double width) const;
   /// In y both edges are rounded, so that neighbours meet without a gap. In x the width is rounded, so that
   /// equal widths stay equal.
   void fill(double x, double y, double across, double down, const LinearColor& color) const;
@@ -54,5 +74,9 @@ struct Panel {
   void write(double x, double baseline, const std::string& text,
              OIIO::ImageBufAlgo::TextAlignX align = OIIO::ImageBufAlgo::TextAlignX::Left) const;
 };
+
+/// Writes the line below a sheet's picture, in its middle.
+void writeLabel(OIIO::ImageBuf& canvas, const Sheet& sheet, int picture, const std::string& text,
+                const std::string& font);
 
 }  // namespace luciole

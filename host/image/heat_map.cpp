@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,14 +24,18 @@ using OIIO::ImageBufAlgo::TextAlignX;
 constexpr LinearColor kZeroColor{0.0f, 0.0f, 0.0f};
 constexpr LinearColor kNotComparedColor{0.05f, 0.05f, 0.05f};
 constexpr LinearColor kNotFiniteColor{1.0f, 0.0f, 0.0f};
+constexpr LinearColor kInfiniteColor = kNotComparedColor;
 
 constexpr int kMinDecades = 3;
 constexpr int kMaxDecades = 6;
 
-/// From 10^low to 10^high.
+/// From 10^low to 10^high, or from low to high.
 struct Scale {
-  int low = -kMaxDecades;
-  int high = 0;
+  double low = -kMaxDecades;
+  double high = 0;
+  bool is_linear = false;
+
+  bool has(double value) const { return std::isfinite(value) && (is_linear || value > 0); }
 };
 
 /// A colour off the scale and what it means.
@@ -42,34 +47,30 @@ struct Swatch {
 /// What a map shows.
 struct Content {
   int width, height;
-  const std::vector<double>& values;  ///< row-major; values off the scale have a swatch's colour
+  std::span<const double> values;  ///< row-major; values off the scale have a swatch's colour
   Scale scale;
   std::string title, figures;
   double mark;  ///< a value to label on the scale; 0: none
   std::string mark_name;
   std::vector<Swatch> swatches;
+  bool infinity_is_far = false;  ///< it has a colour of its own
 };
-
-bool isOnScale(double value) { return value > 0 && std::isfinite(value); }
 
 Scale errorScale(const std::vector<double>& differences) {
   double smallest = HUGE_VAL, largest = 0;
   for (const double d : differences) {
-    if (!isOnScale(d)) continue;
+    if (!Scale{}.has(d)) continue;
     smallest = std::min(smallest, d);
     largest = std::max(largest, d);
   }
   if (largest == 0) return {};
-  Scale scale;
-  scale.high = int(std::ceil(std::log10(largest)));
-  scale.low =
-      std::clamp(int(std::floor(std::log10(smallest))), scale.high - kMaxDecades, scale.high - kMinDecades);
-  return scale;
+  const double high = std::ceil(std::log10(largest));
+  return {std::clamp(std::floor(std::log10(smallest)), high - kMaxDecades, high - kMinDecades), high};
 }
 
 /// Position of a value on the scale: 0 at its low end, 1 at its high end; < 0 or > 1 off the scale.
 double placeOn(const Scale& scale, double value) {
-  return (std::log10(value) - scale.low) / (scale.high - scale.low);
+  return ((scale.is_linear ? value : std::log10(value)) - scale.low) / (scale.high - scale.low);
 }
 
 /// False colours of values in [0,1].
@@ -81,21 +82,29 @@ ImageBuf falseColors(int width, int height, std::vector<float>& values) {
 ImageBuf colorPixels(const Content& content) {
   std::vector<float> places;
   places.reserve(content.values.size());
+  const Scale& scale = content.scale;
   for (const double value : content.values)
-    places.push_back(isOnScale(value) ? float(std::clamp(placeOn(content.scale, value), 0.0, 1.0)) : 0.0f);
+    places.push_back(scale.has(value) ? float(std::clamp(placeOn(scale, value), 0.0, 1.0)) : 0.0f);
   ImageBuf colors = falseColors(content.width, content.height, places);
   for (std::size_t p = 0; p < content.values.size(); ++p) {
     const double value = content.values[p];
-    if (isOnScale(value)) continue;
-    const LinearColor& color = value == 0              ? kZeroColor
-                               : value == kNotCompared ? kNotComparedColor
-                                                       : kNotFiniteColor;
+    if (scale.has(value)) continue;
+    const LinearColor& color = value == 0                                      ? kZeroColor
+                               : value == kNotCompared                         ? kNotComparedColor
+                               : content.infinity_is_far && !std::isnan(value) ? kInfiniteColor
+                                                                               : kNotFiniteColor;
     colors.setpixel(int(p % content.width), int(p / content.width), color.data());
   }
   return colors;
 }
 
 constexpr double kTickWidth = 0.1;
+
+/// 1, 2 or 5 times a power of ten, of which `span` has four to ten.
+double tickStep(double span) {
+  const double power = std::pow(10.0, std::floor(std::log10(span / 4)));
+  return power * (span >= 20 * power ? 5 : span >= 8 * power ? 2 : 1);
+}
 
 void drawBar(const Panel& panel, const Content& content) {
   constexpr double kTop = 3.6, kHeight = 1.2, kTick = 0.35;
@@ -107,10 +116,15 @@ void drawBar(const Panel& panel, const Content& content) {
   lay(panel.canvas, panel.pixels(kMargin), panel.top + panel.pixels(kTop), falseColors(columns, rows, ramp),
       1);
   const auto tick = [&](double x, double y) { panel.fill(x - kTickWidth / 2, y, kTickWidth, kTick, kInk); };
-  for (int power = scale.low; power <= scale.high; ++power) {
-    const double x = kMargin + length * (power - scale.low) / (scale.high - scale.low);
+  const double step = scale.is_linear ? tickStep(scale.high - scale.low) : 1;
+  for (double i = std::ceil(scale.low / step); i * step <= scale.high; ++i) {
+    const double x = kMargin + length * (i * step - scale.low) / (scale.high - scale.low);
     tick(x, kTop + kHeight);
-    panel.write(x, kTop + kHeight + 1.5, power == 0 ? "1" : fmt::format("1e{}", power), TextAlignX::Center);
+    panel.write(x, kTop + kHeight + 1.5,
+                scale.is_linear ? fmt::format("{:.6g}", i == 0 ? 0.0 : i * step)
+                : i == 0        ? "1"
+                                : fmt::format("1e{}", i),
+                TextAlignX::Center);
   }
   if (content.mark == 0) return;
   const double place = placeOn(scale, content.mark);
@@ -137,6 +151,22 @@ void drawPanel(const Panel& panel, const Content& content) {
   }
 }
 
+/// The scale of what is finite, which gets sorted: linear, but logarithmic where half of the values above 0
+/// would lie in its first twentieth.
+Scale valueScale(std::vector<double>& finite) {
+  std::sort(finite.begin(), finite.end());
+  if (finite.empty()) return {0, 1, true};
+  const double least = finite.front(), most = finite.back();
+  const auto positive = std::upper_bound(finite.begin(), finite.end(), 0.0);
+  if (least >= 0 && most > 0 && most > 20 * positive[(finite.end() - positive) / 2]) {
+    const double high = std::ceil(std::log10(most));
+    return {std::max(std::floor(std::log10(*positive)), high - kMaxDecades), high};
+  }
+  // Values that are all the same have a scale, too.
+  const double room = std::max({most - least, 1e-6 * std::abs(most), 1e-30});
+  return {least, least + room, true};
+}
+
 Image drawMap(const Content& content) {
   const CaptionedSize size = captionedSize(content.width, content.height);
   Image map = blankPaper(size.width, size.height);
@@ -152,7 +182,7 @@ Image errorMap(const ImageDifference& difference) {
   double largest = 0;
   bool all_compared = true;
   for (const double d : difference.of_pixel) {
-    if (isOnScale(d)) largest = std::max(largest, d);
+    if (Scale{}.has(d)) largest = std::max(largest, d);
     all_compared = all_compared && d != kNotCompared;
   }
   std::vector<Swatch> swatches{{kZeroColor, "equal"}};
@@ -177,7 +207,7 @@ Image listMap(int width, int height, const std::vector<float>& list_lengths) {
     largest = std::max(largest, value);
     sum += value;
   }
-  const int decades = std::max(1, int(std::ceil(std::log10(std::max(largest, 1.0)))));
+  const double decades = std::max(1.0, std::ceil(std::log10(std::max(largest, 1.0))));
   return drawMap({.width = width,
                   .height = height,
                   .values = values,
@@ -208,6 +238,49 @@ Image boundMap(int width, int height, const std::vector<float>& bounds) {
                   .mark = 1.0 / 255,
                   .mark_name = "1/255",
                   .swatches = {{kZeroColor, "no surface"}}});
+}
+
+Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, int columns,
+                 const std::string& title) {
+  std::vector<double> values;
+  values.reserve(panels.size() * std::size_t(width) * std::size_t(height));
+  for (const ValuePanel& panel : panels)
+    values.insert(values.end(), panel.values.begin(), panel.values.end());
+  std::vector<double> finite;
+  bool any_infinite = false, any_nan = false;
+  for (const double value : values) {
+    if (std::isfinite(value)) finite.push_back(value);
+    any_infinite = any_infinite || std::isinf(value);
+    any_nan = any_nan || std::isnan(value);
+  }
+  Content content{.width = width,
+                  .height = height,
+                  .values = values,
+                  .scale = valueScale(finite),
+                  .title = title,
+                  .figures = finite.empty()
+                                 ? "no finite value"
+                                 : fmt::format("least {:.4g}, most {:.4g}", finite.front(), finite.back()),
+                  .mark = 0,
+                  .mark_name = {},
+                  .swatches = {},
+                  .infinity_is_far = true};
+  if (!content.scale.is_linear && finite.front() == 0) content.swatches.push_back({kZeroColor, "0"});
+  if (any_infinite) content.swatches.push_back({kInfiniteColor, "infinite"});
+  if (any_nan) content.swatches.push_back({kNotFiniteColor, "not a number"});
+  if (panels.size() == 1) return drawMap(content);
+  const Sheet sheet = sheetOf(int(panels.size()), columns, width, height);
+  Image paper = blankPaper(sheet.width, sheet.height + captionHeight(sheet.text_size));
+  ImageBuf canvas(OIIO::ImageSpec(paper.width, paper.height, 3, OIIO::TypeDesc::FLOAT), paper.pixels.data());
+  const std::string font = findLabelFont();
+  for (int i = 0; i < int(panels.size()); ++i) {
+    Content one = content;
+    one.values = content.values.subspan(std::size_t(i) * width * height, std::size_t(width) * height);
+    lay(canvas, sheet.left(i), sheet.top(i), colorPixels(one), sheet.factor);
+    writeLabel(canvas, sheet, i, panels[std::size_t(i)].label, font);
+  }
+  drawPanel({canvas, sheet.height, sheet.text_size, font}, content);
+  return paper;
 }
 
 }  // namespace luciole

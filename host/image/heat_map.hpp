@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "image/compare.hpp"
@@ -22,5 +23,18 @@ Image listMap(int width, int height, const std::vector<float>& list_lengths);
 /// the same for all pictures, so that the colours of several compare: logarithmic, from 10⁻⁵ to 10⁻¹, whose
 /// ends stand for what lies beyond. Pixels without a bound are black.
 Image boundMap(int width, int height, const std::vector<float>& bounds);
+
+/// Numbers to draw, one a pixel, row-major, and what to write below them.
+struct ValuePanel {
+  std::string label;
+  std::vector<float> values;
+};
+
+/// Draws numbers of any kind in the same way: panels of one size in rows of `columns`, with one scale and one
+/// bar, from the least finite value to the largest. The scale is linear, but logarithmic where half of the
+/// values above 0 would lie in its first twentieth; then 0 is black. Infinite values are dark grey, NaN red.
+/// A single panel has no label.
+Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, int columns,
+                 const std::string& title);
 
 }  // namespace luciole

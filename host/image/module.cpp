@@ -101,6 +101,15 @@ Image boundMap(int width, int height, const std::vector<float>& bounds) {
   return functions().bound_map(width, height, bounds);
 }
 
+Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, int columns,
+                 const std::string& title) {
+  return functions().value_sheet(width, height, panels, columns, title);
+}
+
+Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels, int columns) {
+  return functions().labelled_sheet(pictures, labels, columns);
+}
+
 Image sideBySide(const Image& a, const Image& b, const ImageDifference& difference, const std::string& name_a,
                  const std::string& name_b) {
   return functions().side_by_side(a, b, difference, name_a, name_b);

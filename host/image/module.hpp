@@ -29,7 +29,9 @@ struct ImageFunctions {
   decltype(&errorMap) error_map;
   decltype(&listMap) list_map;
   decltype(&boundMap) bound_map;
+  decltype(&valueSheet) value_sheet;
   decltype(&sideBySide) side_by_side;
+  decltype(&labelledSheet) labelled_sheet;
   decltype(&openImageIOWrites) open_image_io_writes;
 };
 

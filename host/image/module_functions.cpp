@@ -12,7 +12,9 @@ const ImageFunctions luciole_image_functions{
     .error_map = errorMap,
     .list_map = listMap,
     .bound_map = boundMap,
+    .value_sheet = valueSheet,
     .side_by_side = sideBySide,
+    .labelled_sheet = labelledSheet,
     .open_image_io_writes = openImageIOWrites,
 };
 

@@ -43,20 +43,10 @@ std::vector<float> colorsOf(const Image& image) {
   return colors;
 }
 
-bool continuesCharacter(char byte) { return (byte & 0xC0) == 0x80; }
-
-/// UTF-8 text on one line and no wider than `width` text sizes: what is left out of the middle becomes "...".
-std::string fitted(const Panel& panel, std::string text, double width) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
-  std::string shown = text;
-  for (std::size_t kept = text.size(); kept > 1 && panel.textWidth(shown) > width;) {
-    std::size_t head = --kept / 2, tail = text.size() - (kept - head);
-    while (head > 0 && continuesCharacter(text[head])) --head;
-    while (tail < text.size() && continuesCharacter(text[tail])) ++tail;
-    shown = text.substr(0, head) + "..." + text.substr(tail);
-  }
-  return shown;
+/// A picture's colours as three channels that drawing takes. They lie in `colors`.
+OIIO::ImageBuf drawable(const Image& image, std::vector<float>& colors) {
+  colors = colorsOf(image);
+  return {OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT), colors.data()};
 }
 
 /// A picture with lines of text below it.
@@ -64,14 +54,13 @@ Image captioned(const Image& image, const CaptionedSize& size, const std::vector
   Image paper = blankPaper(size.width, size.height);
   OIIO::ImageBuf canvas(OIIO::ImageSpec(paper.width, paper.height, 3, OIIO::TypeDesc::FLOAT),
                         paper.pixels.data());
-  std::vector<float> colors = colorsOf(image);
-  const OIIO::ImageBuf picture(OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT),
-                               colors.data());
+  std::vector<float> colors;
+  const OIIO::ImageBuf picture = drawable(image, colors);
   lay(canvas, size.left, 0, picture, size.factor);
   const Panel panel{canvas, size.caption_top, size.text_size, findLabelFont()};
   double baseline = 1.5;
   for (const std::string& line : lines) {
-    panel.write(kMargin, baseline, fitted(panel, line, panel.width() - 2 * kMargin));
+    panel.write(kMargin, baseline, panel.fitted(line, panel.width() - 2 * kMargin));
     baseline += 1.5;
   }
   return paper;
@@ -108,6 +97,26 @@ Image sideBySide(const Image& a, const Image& b, const ImageDifference& differen
            row, step);
   putInRow(errorMap(difference), row, 2 * step);
   return row;
+}
+
+Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels, int columns) {
+  const Image& first = pictures.front();
+  const Sheet sheet = sheetOf(int(pictures.size()), columns, first.width, first.height);
+  if (std::max(sheet.width, sheet.height) > kLargestSide)
+    throw InputError(fmt::format("the sheet is {} x {} pixels, expected at most {} a side", sheet.width,
+                                 sheet.height, kLargestSide));
+  requireMemory(3.0 * sizeof(float) * sheet.width * (double(sheet.height) + sheet.step_y),
+                fmt::format("a picture of {} x {} pixels", sheet.width, sheet.height));
+  Image paper = blankPaper(sheet.width, sheet.height);
+  OIIO::ImageBuf canvas(OIIO::ImageSpec(paper.width, paper.height, 3, OIIO::TypeDesc::FLOAT),
+                        paper.pixels.data());
+  const std::string font = findLabelFont();
+  for (int i = 0; i < int(pictures.size()); ++i) {
+    std::vector<float> colors;
+    lay(canvas, sheet.left(i), sheet.top(i), drawable(pictures[std::size_t(i)], colors), sheet.factor);
+    writeLabel(canvas, sheet, i, labels[std::size_t(i)], font);
+  }
+  return paper;
 }
 
 }  // namespace luciole

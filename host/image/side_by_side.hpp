@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "image/compare.hpp"
 #include "image/image.hpp"
@@ -14,5 +15,9 @@ namespace luciole {
 /// would be wider than kLargestSide, and MachineError where it doesn't fit into memory.
 Image sideBySide(const Image& a, const Image& b, const ImageDifference& difference, const std::string& name_a,
                  const std::string& name_b);
+
+/// Draws pictures of one size in rows of `columns`, each with a line of text below it, as linear R G B. Small
+/// ones are enlarged by a whole factor. Throws as sideBySide does.
+Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels, int columns);
 
 }  // namespace luciole

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "load/frame.hpp"
@@ -94,12 +95,14 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
   const bool is_mesh_file = isMeshFile(path);
   Scene scene;
   std::vector<LightField> light_fields;
+  std::vector<SceneChange> changes = readChanges(settings.changes);
   if (is_mesh_file) {
     loadMeshFile(path, scene, settings.choice, settings.search);
     scene.name = path;
+    changeMaterials(changes, {std::filesystem::path(path).parent_path().string(), settings.search}, scene);
   } else if (path == "-" || extensionOf(path) == ".json") {
     checkIsGltf(path, settings.choice);
-    SceneFile read = loadJsonScene(path, settings.search);
+    SceneFile read = loadJsonScene(path, settings.search, changes);
     scene = std::move(read.scene);
     light_fields = std::move(read.light_fields);
   } else {
@@ -113,6 +116,7 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
   addLightFields(light_fields, scene);
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);
+  if (is_mesh_file) changeLoaded(changes, scene);
   if (frame != 1) poseScene(scene, frame);
   return scene;
 }

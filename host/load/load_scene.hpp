@@ -17,9 +17,10 @@ enum class MissingTextures : std::uint8_t {
 /// How a scene's files are read.
 struct LoadSettings {
   MissingTextures missing = MissingTextures::kError;
-  bool strict = false;                ///< what breaks a format's rules is refused, not repaired
-  std::vector<std::string> search{};  ///< folders of files that aren't where the scene says, see findFile()
-  GltfChoice choice{};                ///< of a glTF file
+  bool strict = false;                 ///< what breaks a format's rules is refused, not repaired
+  std::vector<std::string> search{};   ///< folders of files that aren't where the scene says, see findFile()
+  GltfChoice choice{};                 ///< of a glTF file
+  std::vector<std::string> changes{};  ///< of the scene, PATH=VALUE, see readChanges()
 };
 
 /// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from

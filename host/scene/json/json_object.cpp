@@ -69,14 +69,15 @@ Model readModel(const JsonNode& node) {
   refuse(node, fmt::format("no model \"{}\"; expected \"{}\"", name, fmt::join(kModelNames, "\", \"")));
 }
 
-Material readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene) {
+}  // namespace
+
+void readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene, Material& material) {
   allowKeys(node, {"ambient", "diffuse", "specular", "emission", "shininess", "diffuse_map", "emission_map",
                    "normal_map", "bump_map", "normal_scale", "alpha_map", "alpha", "alpha_cutoff", "blend",
                    "double_sided", "model"});
-  Material material;
-  material.name = node.key;
+  const bool is_alike = material.ambient == material.diffuse;
   if (const auto n = find(node, "diffuse")) material.diffuse = readColor(*n);
-  material.ambient = material.diffuse;
+  if (is_alike) material.ambient = material.diffuse;
   if (const auto n = find(node, "ambient")) material.ambient = readColor(*n);
   if (const auto n = find(node, "specular")) material.specular = readColor(*n);
   if (const auto n = find(node, "shininess")) {
@@ -109,8 +110,11 @@ Material readMaterial(const JsonNode& node, const SearchFolders& where, Scene& s
     material.alpha_cutoff = static_cast<float>(readNumber(*n, 0, 1));
   if (const auto n = find(node, "double_sided")) material.double_sided = readBool(*n);
   if (const auto n = find(node, "model")) material.model = readModel(*n);
-  return material;
+  // They are another surface's than the file's facets.
+  if (find(node, "specular") || find(node, "shininess")) material.facets.reset();
 }
+
+namespace {
 
 std::string readName(const JsonNode& node) {
   const std::string name = readText(node);
@@ -396,7 +400,10 @@ void readObjects(const JsonNode& top, const SearchFolders& where, Scene& scene) 
     needObject(*materials);
     for (const auto& [name, value] : materials->json->items()) {
       loaded.materials[name] = static_cast<int>(scene.materials.size());
-      scene.materials.push_back(readMaterial(*find(*materials, name), where, scene));
+      Material material = plain;
+      material.name = name;
+      readMaterial(*find(*materials, name), where, scene, material);
+      scene.materials.push_back(std::move(material));
     }
   }
   decodeTextures(scene);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <iterator>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -169,6 +170,26 @@ std::vector<LightField> readLightFields(const JsonNode& node, const SearchFolder
   return fields;
 }
 
+/// Whether all of a list gets another value.
+bool isReplaced(const std::vector<SceneChange>& changes, std::string_view list) {
+  return std::any_of(changes.begin(), changes.end(), [&](const SceneChange& change) {
+    return change.place.size() == 1 && change.place[0].key == list;
+  });
+}
+
+/// Throws InputError for a change of a light or a camera that the file doesn't have.
+void refuseUnmade(const std::vector<SceneChange>& changes, const Scene& scene, std::size_t light_count) {
+  for (const SceneChange& change : changes) {
+    if (change.is_made) continue;
+    std::vector<std::string> known;
+    if (change.place[0].key == "cameras")
+      for (const Camera& camera : scene.cameras) known.push_back(camera.name);
+    else if (light_count > 0)
+      known.push_back(fmt::format("lights[0] to lights[{}]", light_count - 1));
+    refuseChange(change, scene.name, known);
+  }
+}
+
 }  // namespace
 
 void checkPictureSize(glm::ivec2 size, const std::string& where) {
@@ -178,51 +199,73 @@ void checkPictureSize(glm::ivec2 size, const std::string& where) {
   }
 }
 
-SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search) {
-  if (path == "-") return parseJsonScene(readWhole(path), "standard input", {"", search});
-  return parseJsonScene(readWhole(path), path, {std::filesystem::path(path).parent_path().string(), search});
+SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search,
+                        std::vector<SceneChange> changes) {
+  if (path == "-") return parseJsonScene(readWhole(path), "standard input", {"", search}, std::move(changes));
+  return parseJsonScene(readWhole(path), path, {std::filesystem::path(path).parent_path().string(), search},
+                        std::move(changes));
 }
 
-SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where) {
+void readSurroundings(const JsonNode& top, Scene& scene) {
+  if (const auto n = find(top, "background")) scene.background = readColor(*n);
+  if (const auto n = find(top, "ambient")) scene.ambient = readColor(*n);
+  if (const auto n = find(top, "fog")) scene.fog = readFog(*n);
+  if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
+}
+
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where,
+                         std::vector<SceneChange> changes) {
   SceneFile read;
   Scene& scene = read.scene;
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
   // there may be a million, cameras because their order counts and a JSON object has none.
   LightGroupNumbers groups = lightGroupNumbers(scene);
+  std::size_t light_count = 0;
+  const auto read_member = [&](const JsonNode& node) {
+    if (node.parent->key == "lights")
+      readLight(node, groups, scene);
+    else
+      readCamera(node, std::string(node.key), scene);
+  };
   const auto take = [&](const JsonNode& node) {
     const bool in_array = node.index != JsonNode::kNoIndex;
-    if (in_array && node.parent->key == "lights") {
-      readLight(node, groups, scene);
-      return true;
+    if (node.parent->key != (in_array ? "lights" : "cameras")) return false;
+    light_count += in_array;
+    if (changes.empty()) {
+      read_member(node);
+    } else if (!isReplaced(changes, node.parent->key)) {
+      const Json changed = changedMember(node, changes);
+      read_member({&changed, node.parent, node.key, node.index});
     }
-    if (!in_array && node.parent->key == "cameras") {
-      readCamera(node, std::string(node.key), scene);
-      return true;
-    }
-    return false;
+    return true;
   };
-  const Json json = parseJson(text, file, take);
+  Json json = parseJson(text, file, take);
+  changeScene(json, file, changes);
 
   const JsonNode top{&json, nullptr, file, JsonNode::kNoIndex};
   allowKeys(top, {"$schema", "camera", "cameras", "size", "background", "ambient", "fog", "materials",
                   "objects", "lights", "light_fields", "lighting", "frame_rate"});
   if (const auto n = find(top, "$schema")) readText(*n);  // it is the editors'
-  if (const auto n = find(top, "lights")) needArray(*n);
+  // What is left of these two was set in their place.
+  if (const auto n = find(top, "lights")) {
+    needArray(*n);
+    for (std::size_t i = 0; i < n->json->size(); ++i) read_member(element(*n, i));
+  }
   if (const auto n = find(top, "cameras")) {
     refuseKeys(top, {"camera"}, "beside cameras");
     needObject(*n);
+    for (const auto& [name, value] : n->json->items()) read_member(*find(*n, name));
     if (scene.cameras.empty()) refuse(*n, "expected one camera or more");
   }
   if (const auto n = find(top, "camera")) readCamera(*n, "", scene);
   if (const auto n = find(top, "size")) scene.size = readSize(*n);
-  if (const auto n = find(top, "background")) scene.background = readColor(*n);
-  if (const auto n = find(top, "ambient")) scene.ambient = readColor(*n);
-  if (const auto n = find(top, "fog")) scene.fog = readFog(*n);
-  if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
+  readSurroundings(top, scene);
   if (const auto n = find(top, "frame_rate")) scene.animation.frame_rate = readPositive(*n);
   scene.name = file;
   if (const auto n = find(top, "light_fields")) read.light_fields = readLightFields(*n, where, groups, scene);
   readObjects(top, where, scene);
+  changeMaterials(changes, where, scene);
+  refuseUnmade(changes, scene, light_count);
   scene.says_light = saysLight(top);
   return read;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/find_file.hpp"
+#include "scene/json/scene_changes.hpp"
 #include "scene/lights/light_field.hpp"
 #include "scene/scene.hpp"
 
@@ -19,11 +20,18 @@ struct SceneFile {
 /// Reads a Luciole scene, from standard input for "-", and every mesh and texture it names. Throws InputError
 /// "file: place: what is wrong".
 /// Files that aren't where it says are looked for in `search`, too.
-SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search = {});
+/// changes: made to what the file says; all of them, or InputError.
+SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search = {},
+                        std::vector<SceneChange> changes = {});
 
 /// The same of a file's text. `file` is its name for messages; the files it names are looked for as
 /// findFile() does.
-SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where);
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where,
+                         std::vector<SceneChange> changes = {});
+
+/// Reads the members "background", "ambient", "fog" and "lighting" of a scene file, those that there are,
+/// into the scene. Throws InputError.
+void readSurroundings(const JsonNode& top, Scene& scene);
 
 /// Throws InputError "where: …" unless each side is from 1 to kLargestSide pixels.
 void checkPictureSize(glm::ivec2 size, const std::string& where);
