@@ -78,6 +78,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
   const std::string folder = folderOf(place_);
   descriptor_ = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
   if (descriptor_ >= 0) return;
+  const auto lock = undisturbed();
   descriptor_ = makeHidden(folder, beside_, [](const char* name) {
     return open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   });
@@ -89,12 +90,12 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
       throw InputError(message);
     throw MachineError(message);
   }
-  has_name_ = true;
+  name_.emplace([name = beside_] { unlink(name.c_str()); });
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0 && path_ != "-") close(descriptor_);
-  if (has_name_) unlink(beside_.c_str());
+  if (name_) unlink(beside_.c_str());
 }
 
 void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -116,14 +117,15 @@ void OutputFile::putInPlace() {
   // Some file systems can't sync, which is no error.
   if (!is_stream_ && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
-  if (!is_stream_ && !has_name_) {
+  const auto lock = undisturbed();
+  if (!is_stream_ && !name_) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
     // linkat() can't replace a file, rename() can: the file gets a hidden name first.
     if (makeHidden(folderOf(place_), beside_, [&](const char* name) {
           return linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);
         }) != 0)
       throw MachineError(fmt::format("{}: can't put the file in place: {}", path_, systemReason()));
-    has_name_ = true;
+    name_.emplace([name = beside_] { unlink(name.c_str()); });
   }
   const int closed = close(descriptor_);
   descriptor_ = -1;
@@ -131,7 +133,7 @@ void OutputFile::putInPlace() {
   if (is_stream_) return;
   if (std::rename(beside_.c_str(), place_.c_str()) != 0)
     throw InputError(fmt::format("{}: can't put the file in place: {}", path_, systemReason()));
-  has_name_ = false;
+  name_.reset();
 }
 
 }  // namespace luciole

@@ -2,15 +2,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+
+#include "base/cleanup.hpp"
 
 namespace luciole {
 
 /// A file that appears at its path whole or not at all. Until putInPlace() it has no name, so nothing is left
 /// of it however the program ends. Where the file system has no files without a name, it is a hidden file
-/// beside the path, which the destructor removes. Symbolic links stay; the file that they lead to is
-/// replaced.
+/// beside the path, which the destructor removes, or cleanUp(). Symbolic links stay; the file that they lead
+/// to is replaced.
 /// The path "-" is standard output. Standard output, and any path that is neither a regular file nor a folder
 /// (a device, a FIFO), is a stream: bytes reach it at once and in order.
 class OutputFile {
@@ -39,9 +42,9 @@ class OutputFile {
   std::string name() const { return path_ == "-" ? "standard output" : path_; }
 
   std::string path_;
-  std::string place_;      ///< the path with its symbolic links followed
-  std::string beside_;     ///< the hidden name beside it
-  bool has_name_ = false;  ///< whether the hidden name exists
+  std::string place_;            ///< the path with its symbolic links followed
+  std::string beside_;           ///< the hidden name beside it
+  std::optional<Cleanup> name_;  ///< removes the hidden name, as long as there is one
   bool is_stream_ = false;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;  ///< bytes written

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "base/cleanup.hpp"
 #include "image/file_format.hpp"
 #include "image/heat_map.hpp"
 #include "image/image.hpp"
@@ -31,6 +32,7 @@ struct ImageFunctions {
   decltype(&boundMap) bound_map;
   decltype(&sideBySide) side_by_side;
   decltype(&openImageIOWrites) open_image_io_writes;
+  decltype(&useCleanups) use_cleanups;
 };
 
 /// The module's only symbol.

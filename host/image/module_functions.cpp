@@ -14,6 +14,7 @@ const ImageFunctions luciole_image_functions{
     .bound_map = boundMap,
     .side_by_side = sideBySide,
     .open_image_io_writes = openImageIOWrites,
+    .use_cleanups = useCleanups,
 };
 
 }  // namespace luciole
