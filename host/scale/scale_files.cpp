@@ -255,7 +255,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   json["points"] = points;
   json["growth"] = growthRows(summary);
   json["pictures"] = pictures.urls();
-  json["incomplete"] = summary.incomplete;
+  json["incomplete"] = summary.incomplete.size();
   json["violations"] = summary.violations;
   // Names of files and scenes may be in any encoding: what isn't UTF-8 is replaced.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
