@@ -1,6 +1,23 @@
 # What is installed, where GNUInstallDirs says, and the Debian package made of it: cmake --build --preset package.
 include(CMakePackageConfigHelpers)
 
+# What is built for it, all or nothing: a file that is missing is told before the first one is copied. install(CODE) runs in the order
+# of this file.
+set(built $<TARGET_FILE:luciole> $<TARGET_FILE:luciole_library> $<TARGET_FILE:luciole_image_module>)
+foreach(level IN LISTS LUCIOLE_BUILT_LEVELS)
+  list(APPEND built $<TARGET_FILE:luciole_library${level}>)
+endforeach()
+set(TEXTS ${PROJECT_BINARY_DIR}/texts)
+foreach(text changelog.gz CHANGELOG.md.gz README.md.gz NOTICE.gz luciole.1.gz luciole _luciole luciole.fish)
+  list(APPEND built ${TEXTS}/${text})
+endforeach()
+list(JOIN built "\" \"" built_list)
+install(CODE "foreach(file \"${built_list}\")
+  if(NOT EXISTS \"\${file}\")
+    message(FATAL_ERROR \"\${file} isn't built; nothing is installed. Build it all first: cmake --build ${PROJECT_BINARY_DIR} --target installed\")
+  endif()
+endforeach()")
+
 # One path for both places of the program. CMake would fill a shorter one of the build folder up with colons, which to the loader
 # mean the folder that it is called in. In /usr, the loader knows the place.
 if(NOT CMAKE_SKIP_INSTALL_RPATH)
@@ -53,7 +70,6 @@ install(DIRECTORY kernels DESTINATION ${CMAKE_INSTALL_DATADIR}/luciole FILES_MAT
 
 # Debian wants long texts compressed, without the time in them.
 find_program(GZIP gzip REQUIRED)
-set(TEXTS ${PROJECT_BINARY_DIR}/texts)
 file(MAKE_DIRECTORY ${TEXTS})
 configure_file(packaging/changelog.in ${TEXTS}/changelog @ONLY)
 foreach(text ${TEXTS}/changelog ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/NOTICE)
@@ -81,7 +97,12 @@ endfunction()
 install_completion(bash bash-completion/completions luciole)
 install_completion(zsh zsh/${zsh_folder} _luciole)
 install_completion(fish fish/vendor_completions.d luciole.fish)
-add_custom_target(luciole_texts ALL DEPENDS ${documents} ${manual} ${TEXTS}/luciole ${TEXTS}/_luciole ${TEXTS}/luciole.fish)
+# All that is installed. The launcher builds this.
+add_custom_target(installed ALL DEPENDS ${documents} ${manual} ${TEXTS}/luciole ${TEXTS}/_luciole ${TEXTS}/luciole.fish)
+add_dependencies(installed luciole luciole_image_module luciole_library)
+foreach(level IN LISTS LUCIOLE_BUILT_LEVELS)
+  add_dependencies(installed luciole_library${level})
+endforeach()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Luciole authors <maintainers@luciole.example>")

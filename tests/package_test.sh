@@ -74,4 +74,26 @@ InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
   "$build/luciole" compare "$folder/installed.exr" "$folder/built.exr" --max-abs 0
 }
 
+# What the launcher builds, in a folder where nothing is built yet, makes each file that installing wants.
+LaunchersBuildHasAllThatIsInstalled() {
+  local target file lacking=0
+  target=$(sed -n 's/^programIsCurrent || setUp //p' "$checkout/luciole")
+  ninja -C "$build" -t inputs "$target" | sed "s|^$build/||" >"$folder/inputs"
+  for file in luciole lib/luciole/libluciole_image.so texts/{luciole.1.gz,luciole,_luciole,luciole.fish,README.md.gz}; do
+    grep -qxF "$file" "$folder/inputs" || { echo "$target doesn't build $file" && lacking=1; }
+  done
+  ((!lacking)) || return 1
+  grep -q '^lib/libluciole\.so' "$folder/inputs" || { echo "$target doesn't build the library" && return 1; }
+}
+
+WhereSomethingIsntBuiltNothingIsInstalled() {
+  local status=0
+  # What cmake --install reads, of a build folder without texts.
+  sed "s|$build/texts/|$folder/no texts/|" "$build/cmake_install.cmake" >"$folder/cmake_install.cmake"
+  cmake -DCMAKE_INSTALL_PREFIX="$folder/prefix" -P "$folder/cmake_install.cmake" >"$folder/log" 2>&1 || status=$?
+  ((status)) || { echo "it installs without its texts" && return 1; }
+  grep -q "isn't built; nothing is installed" "$folder/log" || { cat "$folder/log" && return 1; }
+  [[ ! -e $folder/prefix ]] || { find "$folder/prefix" && return 1; }
+}
+
 "$2"

@@ -6,20 +6,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
+#include "base/cleanup.hpp"
 #include "base/error.hpp"
 
 namespace luciole {
 namespace {
-
-/// The hidden names that exist. Those beyond are left behind by a process that ends at once.
-constinit std::array<std::atomic<const char*>, 64> hidden_names{};
 
 /// Whether errno means that the caller named a place where no file can be, or may be written.
 bool isPlaceRefused(int code) {
@@ -97,6 +94,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
   const std::string folder = folderOf(place_);
   descriptor_ = again([&] { return open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); });
   if (descriptor_ >= 0) return;
+  const auto lock = undisturbed();
   descriptor_ = makeHidden(folder, beside_, [](const char* name) {
     return open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   });
@@ -120,15 +118,10 @@ OutputFile::~OutputFile() {
 void OutputFile::setHasName(bool has_name) {
   has_name_ = has_name;
   const char* const name = beside_.c_str();
-  for (std::atomic<const char*>& place : hidden_names) {
+  for (std::atomic<const char*>& place : cleanups().hidden_files) {
     const char* before = has_name ? nullptr : name;
     if (place.compare_exchange_strong(before, has_name ? name : nullptr)) return;
   }
-}
-
-void removeHiddenFiles() noexcept {
-  for (const std::atomic<const char*>& place : hidden_names)
-    if (const char* const name = place.load()) unlink(name);
 }
 
 void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -152,6 +145,7 @@ void OutputFile::putInPlace() {
   // Some file systems can't sync, which is no error.
   if (!is_stream_ && again([&] { return fsync(descriptor_); }) != 0 && errno != EINVAL && errno != ENOTSUP)
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
+  const auto lock = undisturbed();
   if (!is_stream_ && !has_name_) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
     // linkat() can't replace a file, rename() can: the file gets a hidden name first.

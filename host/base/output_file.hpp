@@ -9,8 +9,8 @@ namespace luciole {
 
 /// A file that appears at its path whole or not at all. Until putInPlace() it has no name, so nothing is left
 /// of it however the program ends. Where the file system has no files without a name, it is a hidden file
-/// beside the path, which the destructor removes. Symbolic links stay; the file that they lead to is
-/// replaced.
+/// beside the path, which the destructor removes, or cleanUp(). Symbolic links stay; the file that they lead
+/// to is replaced.
 /// The path "-" is standard output. Standard output, and any path that is neither a regular file nor a folder
 /// (a device, a FIFO), is a stream: bytes reach it at once and in order.
 class OutputFile {
@@ -42,15 +42,11 @@ class OutputFile {
   std::string path_;
   std::string place_;      ///< the path with its symbolic links followed
   std::string beside_;     ///< the hidden name beside it
-  bool has_name_ = false;  ///< whether the hidden name exists, which removeHiddenFiles() knows then
+  bool has_name_ = false;  ///< whether the hidden name exists, which cleanUp() knows then
   bool is_stream_ = false;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;  ///< bytes written
 };
-
-/// Removes the hidden files of all OutputFiles that there are, but those of the module in image/module.hpp,
-/// for a process that ends at once. A signal handler may call it.
-void removeHiddenFiles() noexcept;
 
 /// Throws MachineError where a picture of `bytes` bytes of pixels might become a file larger than this
 /// process may write (RLIMIT_FSIZE). Beyond that limit some encoders lose pixels silently and others end the

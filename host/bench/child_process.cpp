@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,12 +65,19 @@ Ended runToEnd(const std::string& program, std::vector<std::string> arguments,
     posix_spawn_file_actions_addopen(&streams, stream, "/dev/null", O_RDWR, 0);
   posix_spawn_file_actions_adddup2(&streams, message[1], STDERR_FILENO);
   pid_t child = 0;
+  auto lock = undisturbed();
   const int error = posix_spawn(&child, program.c_str(), &streams, nullptr, pointersTo(arguments).data(),
                                 pointersTo(environment).data());
   posix_spawn_file_actions_destroy(&streams);
   close(message[1]);
   Ended ended;
   if (error == 0) {
+    // Not before it is gone is its folder removed.
+    const Cleanup killing([child] {
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+    });
+    lock.unlock();
     ended.message = readAll(message[0]);
     while (waitpid(child, &ended.status, 0) < 0 && errno == EINTR) continue;
   }
@@ -85,9 +93,15 @@ ScratchFolder::ScratchFolder() {
   if (!mkdtemp(pattern.data()))
     throw MachineError(fmt::format("{}: no temporary folder can be made: {}", pattern, std::strerror(errno)));
   path_ = pattern;
+  cleanup_.emplace([this] { remove(); });
 }
 
 ScratchFolder::~ScratchFolder() {
+  remove();
+  cleanup_.reset();
+}
+
+void ScratchFolder::remove() const {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/cleanup.hpp"
+
 namespace luciole {
 
-/// A folder for temporary files, which the destructor removes with all that is in it. The constructor throws
-/// MachineError if it can't make one.
+/// A folder for temporary files, which the destructor, or cleanUp(), removes with all that is in it. The
+/// constructor throws MachineError if it can't make one.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -18,7 +21,10 @@ class ScratchFolder {
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
 
  private:
+  void remove() const;
+
   std::filesystem::path path_;
+  std::optional<Cleanup> cleanup_;
 };
 
 /// Variables of an environment, and their values.

@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <mutex>
 #include <string>
 #include <string_view>
 
+#include "base/clock.hpp"
 #include "base/dump_utf8.hpp"
 #include "cli/suggest.hpp"
 
@@ -18,6 +20,9 @@ namespace luciole {
 namespace {
 
 bool is_logging = false;
+
+/// Of whoever writes an event.
+std::mutex writing;
 
 /// The time as ISO 8601 has it, in UTC, to the millisecond.
 std::array<char, 80> timeText() {
@@ -68,10 +73,23 @@ void logEvent(const char* name, const EventFields& fields) {
   if (!is_logging) return;
   EventFields event{{"time", timeText().data()}, {"event", name}};
   event.update(fields);
-  writeError(dumpUtf8(std::move(event)) + "\n");
+  const std::string line = dumpUtf8(std::move(event)) + "\n";
+  const std::lock_guard lock(writing);
+  writeError(line);
 }
 
 double eventMilliseconds(double milliseconds) { return std::round(milliseconds * 1000) / 1000; }
+
+void logEnd(int status) noexcept {
+  if (!is_logging) return;
+  std::array<char, 200> line{};
+  writing.lock();
+  const int length = std::snprintf(line.data(), line.size(),
+                                   R"({"time":"%s","event":"end","status":%d,"milliseconds":%.3f})"
+                                   "\n",
+                                   timeText().data(), status, millisecondsSinceStart());
+  writeError({line.data(), std::size_t(length)});
+}
 
 void logFailure(const char* message, int status) noexcept {
   std::array<char, 200> text{};  // without what JSON would have to escape

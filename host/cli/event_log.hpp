@@ -30,6 +30,9 @@ bool logsEvents();
 /// text that are no UTF-8 become U+FFFD. Without an event log it does nothing.
 void logEvent(const char* name, const EventFields& fields = EventFields::object());
 
+/// Writes the last event, `end`, with the status that the process will have. Later ones wait for good.
+void logEnd(int status) noexcept;
+
 /// Milliseconds as events tell them: to the microsecond.
 double eventMilliseconds(double milliseconds);
 

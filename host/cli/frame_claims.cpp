@@ -14,15 +14,22 @@
 namespace luciole {
 namespace {
 
-/// Locks `count` bytes (0: all) from `first` on for this open file. Returns at once: false if another open
-/// file holds a lock on any of them. On a file system without locks nobody does.
-bool lockBytes(int descriptor, off_t first, off_t count) {
+/// The byte, behind those of all frames, on which each run has a shared lock as long as it is at work.
+constexpr off_t kPresence = off_t(1) << 40;
+
+/// Changes this open file's lock on a byte to F_RDLCK, F_WRLCK or F_UNLCK. False if another open file holds
+/// one that doesn't go with it, unless it waits. On a file system without locks nobody does.
+bool lockByte(int descriptor, off_t byte, short type, bool waits = false) {
   struct flock lock {};
-  lock.l_type = F_WRLCK;
+  lock.l_type = type;
   lock.l_whence = SEEK_SET;
-  lock.l_start = first;
-  lock.l_len = count;
-  return fcntl(descriptor, F_OFD_SETLK, &lock) == 0 || (errno != EAGAIN && errno != EACCES);
+  lock.l_start = byte;
+  lock.l_len = 1;
+  while (fcntl(descriptor, waits ? F_OFD_SETLKW : F_OFD_SETLK, &lock) != 0) {
+    if (errno == EINTR) continue;
+    return errno != EAGAIN && errno != EACCES;
+  }
+  return true;
 }
 
 /// Whether the open file still has a name: another run may have removed it when it ended.
@@ -36,31 +43,49 @@ bool hasName(int descriptor) {
 FrameClaims::FrameClaims(const std::string& pattern)
     : path_(
           fmt::format("{}/.{}.lock", folderOf(pattern), std::filesystem::path(pattern).filename().string())) {
-  openFile();
+  while (true) {
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw InputError(fmt::format("{}: can't be written: {}", path_, systemReason()));
+    // Nobody else is at work: what is marked here is of runs that were killed.
+    const bool is_ready = !lockByte(descriptor_, kPresence, F_WRLCK) || ftruncate(descriptor_, 0) == 0;
+    lockByte(descriptor_, kPresence, F_RDLCK, true);
+    if (is_ready && hasName(descriptor_)) break;
+    const std::string reason = systemReason();
+    close(descriptor_);
+    if (!is_ready) throw InputError(fmt::format("{}: can't be written: {}", path_, reason));
+  }
+  cleanup_.emplace([this] { leave(); });
 }
 
 FrameClaims::~FrameClaims() {
-  // A lock on all bytes means that no other run has a claim. One that is about to claim notices that the name
-  // is gone, and makes a new file.
-  if (lockBytes(descriptor_, 0, 0)) unlink(path_.c_str());
+  leave();
+  cleanup_.reset();
   close(descriptor_);
 }
 
-void FrameClaims::openFile() {
-  descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw InputError(fmt::format("{}: can't be written: {}", path_, systemReason()));
+void FrameClaims::leave() {
+  // One that opens the file meanwhile waits for its shared lock, and then notices that the name is gone.
+  if (lockByte(descriptor_, kPresence, F_WRLCK)) unlink(path_.c_str());
 }
 
-void FrameClaims::claim(int frame) {
-  while (true) {
-    if (!lockBytes(descriptor_, frame, 1))
-      throw InputError(fmt::format(
-          "frame {}: another run is making it, as {} says; expected each task to have a part of its own",
-          frame, path_));
-    if (hasName(descriptor_)) return;
-    close(descriptor_);
-    openFile();
-  }
+bool FrameClaims::claim(int frame) { return claimIf(frame, false); }
+
+bool FrameClaims::await(int frame) { return claimIf(frame, true); }
+
+bool FrameClaims::claimIf(int frame, bool waits) {
+  if (!lockByte(descriptor_, frame, F_WRLCK, waits)) return false;
+  // Read after it is locked: over a network what others wrote is only then sure to be seen.
+  char is_done = 0;
+  if (pread(descriptor_, &is_done, 1, frame) != 1 || is_done == 0) return true;
+  lockByte(descriptor_, frame, F_UNLCK);
+  return false;
+}
+
+void FrameClaims::finish(int frame) {
+  const char is_done = 1;
+  // If it can't be written, others make the frame again.
+  while (pwrite(descriptor_, &is_done, 1, frame) < 0 && errno == EINTR) continue;
+  lockByte(descriptor_, frame, F_UNLCK);
 }
 
 }  // namespace luciole

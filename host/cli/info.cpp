@@ -13,6 +13,7 @@
 #include "base/text_file.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
+#include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
 #include "culling/exact_reason.hpp"
 #include "gbuffer/camera_header.hpp"
@@ -21,6 +22,7 @@
 #include "render/estimate.hpp"
 #include "render/scene_info.hpp"
 #include "scene/json/mesh_file.hpp"
+#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {
@@ -226,6 +228,44 @@ std::string durationText(double milliseconds) {
                       : fmt::format("{:.0f} {}", value < 99.5 ? value : std::round(value / 10) * 10, unit);
 }
 
+/// A duration of hours, too: "2 h 05 min".
+std::string jobText(double milliseconds) {
+  const auto minutes = std::int64_t(std::round(milliseconds / 60000));
+  return minutes < 120 ? durationText(milliseconds)
+                       : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+/// What the pictures of all these frames together would cost, made by one process.
+void addJob(Scene& scene, const std::vector<int>& frames, const InfoOptions& options, Report& report) {
+  double milliseconds = 0, bytes = 0, longest = 0;
+  int slowest = frames.front();
+  std::optional<std::pair<double, double>> of_each;  // where nothing moves: the first one's, and its start
+  const bool moves = sceneInfo(scene).moves.has_value();
+  for (const int frame : frames) {
+    if (!of_each || moves) {
+      poseScene(scene, frame);
+      const PictureWork work = pictureWork(scene, renderSettings(options, scene));
+      of_each = {estimatedMilliseconds(work), estimatedStart(work)};
+      bytes = std::max(bytes, estimatedBytes(work));
+    }
+    const auto [of_frame, start] = *of_each;
+    milliseconds += milliseconds == 0 ? of_frame : of_frame - start;
+    if (of_frame > longest) {
+      longest = of_frame;
+      slowest = frame;
+    }
+  }
+  report.json["job"] = {{"frames", frames.size()},
+                        {"milliseconds", milliseconds},
+                        {"memory_bytes", bytes},
+                        {"slowest_frame", slowest},
+                        {"slowest_milliseconds", longest}};
+  addLine(report, "all frames",
+          fmt::format("{}: about {}, at most {:.0f} MiB; the longest, frame {}, about {}",
+                      counted(frames.size(), "frame"), jobText(milliseconds), bytes / (1 << 20), slowest,
+                      durationText(longest)));
+}
+
 /// What a render with these options would use and cost. Returns what keeps it from being made, or "".
 std::string addRender(const Scene& scene, const RenderSettings& settings, Report& report) {
   const std::vector<std::string> features = featureNames(pictureFeatures(scene, settings).all);
@@ -251,7 +291,8 @@ std::string addRender(const Scene& scene, const RenderSettings& settings, Report
 
 Report sceneReport(InfoOptions options) {
   options.quiet = true;  // the report has the warnings
-  const Scene scene = openLitScene(options.file, 1, options);
+  const FrameChoice choice = chosenFrames(options.frames);
+  Scene scene = openLitScene(options.file, choice.frames.front(), options);
   const RenderSettings settings = renderSettings(options, scene);
   const SceneInfo info = sceneInfo(scene);
   Report report;
@@ -274,6 +315,8 @@ Report sceneReport(InfoOptions options) {
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));
   const std::string obstacle = addRender(scene, settings, report);
+  report.json["job"] = nullptr;
+  if (choice.is_list && obstacle.empty()) addJob(scene, choice.frames, options, report);
   std::vector<Warning> warnings = scene.warnings;
   if (!obstacle.empty()) warnings.push_back({"the picture can't be made: " + obstacle, "obstacle"});
   addWarnings(report, warnings);
@@ -411,6 +454,9 @@ void addInfoCommand(CLI::App& app, CommandContext&) {
   addPictureOptions(
       *command, *options,
       kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption | kManyPictures);
+  command->add_option("--frames", options->frames,
+                      "of a scene that moves: at frame A; or for A-B, A-BxN or a list, also what all these "
+                      "frames together would cost (default: 1)");
   command->add_option("--json", options->json, "write it all as JSON (- : standard output)");
   command->callback([options] { showInfo(*options); });
 }

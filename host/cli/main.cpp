@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/cleanup.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
@@ -27,6 +28,7 @@
 #include "cl/driver_call.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
+#include "cli/signals.hpp"
 #include "cli/suggest.hpp"
 #include "cli/trace_option.hpp"
 
@@ -268,9 +270,11 @@ int main(int argument_count, char** arguments) {
   saveAddresses();
   CommandContext context{joinedArguments(argument_count, arguments)};
   if (asksForEvents(argument_count, arguments)) startEventLog();
+  awaitSignals();
   logEvent("start", {{"command", context.command_line}, {"version", LUCIOLE_VERSION}});
   const int status = flushOutput(runCommand(argument_count, arguments, context));
-  logEvent("end", {{"status", status}, {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
+  ignoreSignals();
+  logEnd(status);
   if (kIsSanitized) return status;
   // All files are closed. To take the device's compiler apart would cost 6 ms, and 100 where it has compiled.
   std::_Exit(status);

@@ -176,34 +176,43 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
   return frames;
 }
 
+/// Tells how many of the frames were left to other runs.
+void tellShared(const RenderOptions& options, std::size_t others, std::size_t all) {
+  if (others == 0) return;
+  if (logsEvents())
+    logEvent("shared", {{"frames_of_other_runs", others}, {"frames", all}});
+  else if (!options.quiet)
+    fmt::print(stderr, "made by other runs: {} of {} frames\n", others, all);
+}
+
 /// Renders frame after frame. A frame that fails is reported and left out, but of a film it is the last one.
 /// exposures: those measured, by one a camera, the same for all frames. film: where frames go, or null for a
-/// file each. claims: null unless other runs may be at work beside this one. started: the cost of loading and
-/// measuring, which goes into the first frame's statistics. Returns the exit status of the first failure.
-/// Throws InputError for a frame that another run has claimed.
+/// file each. claims: by which other runs may share the frames; of a film null. When all others are made,
+/// those are awaited that other runs are at. started: the cost of loading and measuring, which goes into the
+/// first frame's statistics. Returns the exit status of the first failure.
 int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& options,
                  const std::vector<int>& frames, const std::vector<std::optional<double>>& exposures,
                  Film* film, FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);
   const std::string command = started.command;
   int status = kDone;
-  std::vector<int> failed;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (claims) claims->claim(frames[i]);
+  std::vector<int> failed, elsewhere;
+  // Returns false where no other frame can be made.
+  const auto make = [&](int frame, std::size_t i) {
     const auto showPass = [&](int done, int passes) {
-      progress.show(fmt::format("frame {}, {} of {}", frames[i], i + 1, frames.size()),
+      progress.show(fmt::format("frame {}, {} of {}", frame, i + 1, frames.size()),
                     i * passes + std::size_t(done), frames.size() * passes);
     };
-    const TraceSpan span("frame", {{"frame", frames[i]}});
-    logEvent("frame_begun", {{"frame", frames[i]}});
-    progress.frame = frames[i];
+    const TraceSpan span("frame", {{"frame", frame}});
+    logEvent("frame_begun", {{"frame", frame}});
+    progress.frame = frame;
     showPass(0, 1);
     PictureOptions one = options;
-    one.output = frameFile(options.output, frames[i]);
-    one.stats = frameFile(options.stats, frames[i]);
+    one.output = frameFile(options.output, frame);
+    one.stats = frameFile(options.stats, frame);
     one.quiet = options.quiet || film;  // a film is told when it is whole
     try {
-      poseScene(scene, frames[i]);
+      poseScene(scene, frame);
       const std::vector<PictureOptions> pictures = optionsOfCameras(one, scene);
       for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
         const PictureOptions& picture = pictures[camera];
@@ -215,16 +224,35 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
         renderPicture(sharers, scene, picture, settingsAt(frames[i], picture, scene, options.orbit), film,
                       showPass, true, stats);
         progress.clear();
-        reportStats(picture, stats, frames[i]);
+        reportStats(picture, stats, frame);
       }
     } catch (const std::exception&) {
       progress.clear();
-      const int why = tellFailure(frames[i]);
-      if (film) return why;
+      const int why = tellFailure(frame);
       if (status == kDone) status = why;
-      failed.push_back(frames[i]);
+      if (film) return false;
+      failed.push_back(frame);
     }
+    if (claims) claims->finish(frame);
+    return true;
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (claims && !claims->claim(frames[i]))
+      elsewhere.push_back(frames[i]);
+    else if (!make(frames[i], i))
+      return status;
   }
+  std::size_t others = 0;
+  for (const int frame : elsewhere) {
+    progress.show(fmt::format("awaiting frame {}, which another run is at", frame),
+                  frames.size() - elsewhere.size() + others, frames.size());
+    if (!claims->await(frame))
+      ++others;
+    else
+      make(frame, frames.size() - 1);
+  }
+  progress.clear();
+  tellShared(options, others, frames.size());
   if (!failed.empty())
     tellError(fmt::format("{} of {} frames failed: {}", failed.size(), frames.size(), listFrames(failed)),
               status);
@@ -461,8 +489,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
             options->output, shard.index + 1, shard.count));
       frames = framesToMake(*options, choice.frames, shard);
       if (frames.empty()) return;
-      if (shard.is_chosen && !is_film)
-        claims.emplace(options->output).claim(frames.front());  // before any work is done
+      // Before any work is done: what other runs make from here on is theirs.
+      if (!is_film) claims.emplace(options->output);
     }
     Stats stats;
     stats.command = context.command_line;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,20 +41,35 @@ void checkDrawing(const std::string& plot) {
   checkPlace(plot);
 }
 
-/// Writes all files that are made from a log. Returns the exit status.
+/// The points named in one line: ten at most, then how many more.
+std::string listPoints(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t shown = std::min(names.size(), kMost);
+  std::string list = fmt::format("{}", fmt::join(names.begin(), names.begin() + std::ptrdiff_t(shown), "; "));
+  if (shown < names.size()) list += fmt::format("; and {} more", names.size() - shown);
+  return list;
+}
+
+/// Writes all files that are made from a log. Returns the exit status. is_all: of all shards together, so
+/// that no point may be missing.
 int writeResults(const ScaleResults& results, const std::string& folder, const std::string& plot,
-                 const std::string& command_line, bool quiet) {
+                 const std::string& command_line, bool quiet, bool is_all) {
   const ScaleSummary summary = summarizeScale(results);
   writeTextFile(folder + "/results.csv", scaleCsv(summary));
   writeTextFile(folder + "/growth.json", growthJson(summary));
   writeTextFile(folder + "/report.html", experimentPage(pageData(summary, folder, command_line)));
   if (!plot.empty() && !summary.points.empty()) writeTextFile(plot, scalePlot(summary));
   if (!quiet) fmt::print("{}", scaleTable(summary));
-  if (summary.incomplete > 0)
-    writeError(fmt::format("{}: {} of {} points are not complete\n", folder, summary.incomplete,
-                           summary.description.points.size()));
+  const bool is_lacking = is_all && !summary.incomplete.empty();
+  if (is_lacking)
+    tellError(fmt::format("{}: {} of {} points are not complete: {}", folder, summary.incomplete.size(),
+                          summary.description.points.size(), listPoints(summary.incomplete)),
+              kDifferent);
+  else if (!summary.incomplete.empty())
+    fmt::print(stderr, "{}: {} of {} points are not complete\n", folder, summary.incomplete.size(),
+               summary.description.points.size());
   for (const std::string& violation : summary.violations) tellError(violation, kDifferent);
-  return summary.violations.empty() ? kDone : kDifferent;
+  return summary.violations.empty() && !is_lacking ? kDone : kDifferent;
 }
 
 /// Returns the exit status.
@@ -98,7 +114,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   for (const ScaleFailure& failure : failures)
     writeError(fmt::format("luciole: {}: {}\n", failure.point, failure.reason));
   const int status =
-      writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet);
+      writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet, false);
   return failures.empty() ? status : kMachineFailed;
 }
 
@@ -201,7 +217,7 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   merge->callback([&context, merging] {
     checkDrawing(merging->plot);
     context.status = writeResults(mergeScaleLogs(merging->folders, merging->output, merging->mixes_devices),
-                                  merging->output, merging->plot, context.command_line, false);
+                                  merging->output, merging->plot, context.command_line, false, true);
   });
   command->callback([&context, command, merge, options] {
     if (!merge->parsed()) context.status = scale(*command, *options, context.command_line);

@@ -60,7 +60,7 @@ Shard slurmShard() {
     throw InputError(
         fmt::format("SLURM_ARRAY_TASK_ID: {} is none of the {} tasks {}, {}, …; say which one by --shard", id,
                     count, first, std::int64_t(first) + step));
-  return {steps, count, true};
+  return {steps, count};
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ Shard chosenShard(const std::string& option) {
   if (number < 1 || number > count)
     throw InputError(fmt::format(
         "--shard {}: expected I/N with I from 1 to N, such as 2/8 for the second of eight", option));
-  return {number - 1, count, true};
+  return {number - 1, count};
 }
 
 }  // namespace luciole

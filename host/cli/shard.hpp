@@ -10,7 +10,6 @@ namespace luciole {
 struct Shard {
   int index = 0;  ///< 0 ≤ index < count
   int count = 1;
-  bool is_chosen = false;  ///< given by the option or by Slurm, so that other runs may be at work beside it
 };
 
 /// The shard that --shard names ("2/8": the second of eight). If `option` is empty: this task of a Slurm job

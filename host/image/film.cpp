@@ -16,10 +16,12 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "base/cleanup.hpp"
 #include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/write_file.hpp"
@@ -143,6 +145,7 @@ struct Film::State {
   Descriptor messages;  ///< what ffmpeg says: a file in memory, which never makes it wait
   Descriptor input{-1};
   pid_t child = -1;
+  std::optional<Cleanup> killing;  ///< of the child
 
   /// Frames go through a socket, because writing to a pipe that nobody reads any more ends the process.
   void start(const FilmFormat& format, int width, int height, double rate) {
@@ -161,10 +164,19 @@ struct Film::State {
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, messages.number, STDERR_FILENO);
     posix_spawn_file_actions_adddup2(&actions, file.descriptor(), kFilmDescriptor);
+    // It takes signals, whatever this program does with them.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    const auto lock = undisturbed();
     const int error =
-        posix_spawn(&child, findProgram("ffmpeg").c_str(), &actions, nullptr, pointers.data(), environ);
+        posix_spawn(&child, findProgram("ffmpeg").c_str(), &actions, &attributes, pointers.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
-    if (error == 0) return;
+    if (error == 0) return void(killing.emplace([pid = child] { kill(pid, SIGKILL); }));
     child = -1;
     throw MachineError(fmt::format("{}: can't start ffmpeg: {}", path, std::strerror(error)));
   }
@@ -174,6 +186,7 @@ struct Film::State {
     input.close();
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+    killing.reset();
     child = -1;
     return status;
   }

@@ -43,7 +43,9 @@ const ImageFunctions& load() {
   void* functions = module ? dlsym(module, "luciole_image_functions") : nullptr;
   if (!functions)
     throw MachineError(fmt::format("can't load the part that reads and writes pictures: {}", dlerror()));
-  return *static_cast<const ImageFunctions*>(functions);
+  const ImageFunctions& all = *static_cast<const ImageFunctions*>(functions);
+  all.use_cleanups(cleanups());
+  return all;
 }
 
 const ImageFunctions& functions() {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "base/cleanup.hpp"
 #include "image/file_format.hpp"
 #include "image/heat_map.hpp"
 #include "image/image.hpp"
@@ -33,6 +34,7 @@ struct ImageFunctions {
   decltype(&sideBySide) side_by_side;
   decltype(&labelledSheet) labelled_sheet;
   decltype(&openImageIOWrites) open_image_io_writes;
+  decltype(&useCleanups) use_cleanups;
 };
 
 /// The module's only symbol.

@@ -16,6 +16,7 @@
 #include "raster/resolve_square.hpp"
 #include "raster/seen_surface.hpp"
 #include "raster/shading_points.hpp"
+#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -81,6 +82,10 @@ std::vector<glm::vec2> lightMapUvs(const Scene& scene, const Mesh& mesh) {
 
 TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm::ivec2 size,
                                    const Camera& camera, PlaneSet planes) {
+  validateScene(scene);
+  if (object >= scene.objects.size())
+    throw InputError(fmt::format("object: {}, but there are {} objects", object, scene.objects.size()));
+  if (const std::string fault = cameraFault(camera); !fault.empty()) throw InputError("camera." + fault);
   const Mesh& mesh = scene.meshes[scene.objects[object].mesh];
   const std::vector<glm::vec2> uvs = lightMapUvs(scene, mesh);
   Camera before;

@@ -26,8 +26,8 @@ struct TextureSpace {
 };
 
 /// Draws an object (an index into scene.objects) in texture space. Holes in its materials stay covered.
-/// Throws InputError for a size out of range, MachineError for one that doesn't fit into memory, and as
-/// lightMapUvs() and rasterize() do.
+/// Throws InputError for a size or an object out of range, MachineError for a size that doesn't fit into
+/// memory, and as validateScene(), lightMapUvs() and rasterize() do.
 TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm::ivec2 size,
                                    const Camera& camera, PlaneSet planes);
 

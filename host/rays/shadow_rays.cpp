@@ -6,6 +6,7 @@
 
 #include "kernels/shared.h"
 #include "raster/opacity.hpp"
+#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -39,6 +40,7 @@ struct Blockers {
 }  // namespace
 
 RayScene buildShadowRays(const Scene& scene, const glm::dvec3& eye) {
+  validateScene(scene);
   auto blockers = std::make_shared<const Blockers>(
       Blockers{scene, eye, placeObjects(scene, allObjects(scene), glm::dmat4(1))});
   return buildRayScene(

@@ -1,5 +1,6 @@
 #include "reference/reference.hpp"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -8,8 +9,11 @@
 #include <limits>
 #include <mutex>
 
+#include "base/error.hpp"
 #include "gbuffer/packed_normal.hpp"
+#include "gbuffer/validate_gbuffer.hpp"
 #include "reference/models.hpp"
+#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -178,6 +182,14 @@ std::vector<glm::ivec2> allPixels(const glm::ivec2& size) {
 std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings) {
+  validateScene(scene);
+  if (settings.shadow_samples < 1)
+    throw InputError(
+        fmt::format("settings.shadow_samples: {}, expected at least 1", settings.shadow_samples));
+  for (const glm::ivec2& pixel : pixels)
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= gbuffer.width || pixel.y >= gbuffer.height)
+      throw InputError(fmt::format("pixels: ({}, {}) is not inside the G-buffer of {}x{}", pixel.x, pixel.y,
+                                   gbuffer.width, gbuffer.height));
   std::vector<glm::dvec3> colors(pixels.size());
   std::size_t done = 0;
   std::mutex progress;
@@ -197,6 +209,7 @@ float pictureValue(double channel) {
 }
 
 Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings) {
+  validateGBuffer(gbuffer);
   const std::vector<glm::ivec2> pixels = allPixels({gbuffer.width, gbuffer.height});
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, {}};
   for (const glm::dvec3& color : referencePixels(scene, gbuffer, pixels, settings))

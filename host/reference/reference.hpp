@@ -49,8 +49,9 @@ struct ReferenceSettings {
 /// All pixels of a picture of this size, row by row from the top left.
 std::vector<glm::ivec2> allPixels(const glm::ivec2& size);
 
-/// Shades some pixels of a G-buffer, counted from its top left. Returns the linear R G B of each. Works on
-/// all cores; the result depends neither on their number nor on which other pixels are asked for.
+/// Shades some pixels of a G-buffer, counted from its top left. Returns the linear R G B of each. The result
+/// depends neither on threads nor on the other pixels asked for. Throws as validateScene(), or for a pixel
+/// outside.
 std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings);
@@ -58,7 +59,8 @@ std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuff
 /// A colour's channel as pictures store it: rounded to float, at most the largest finite one.
 float pictureValue(double channel);
 
-/// All pixels of a G-buffer, as a picture with channels R G B.
+/// All pixels of a G-buffer, as a picture with channels R G B. Throws as validateGBuffer() and
+/// validateScene().
 Image referenceShade(const Scene& scene, const GBuffer& gbuffer, const ReferenceSettings& settings);
 
 }  // namespace luciole

@@ -4,6 +4,7 @@
 
 #include "image/exposure.hpp"
 #include "scene/tangents.hpp"
+#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -28,6 +29,7 @@ std::vector<glm::vec3> lightVertices(const Scene& scene, const std::vector<std::
 std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, Shading shading, int samples,
                                          std::span<const glm::ivec2> pixels,
                                          const ReferenceSettings& settings) {
+  validateScene(scene);
   const std::vector<std::uint32_t> objects = allObjects(scene);
   std::vector<glm::vec3> vertex_colors;
   if (shading == Shading::kGouraud) vertex_colors = lightVertices(scene, objects, view, settings);
@@ -57,6 +59,7 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
 
 double referenceExposure(const Scene& scene, const Camera& camera, glm::ivec2 size, Shading shading,
                          const ReferenceSettings& settings) {
+  validateScene(scene);
   const View view = cameraView(camera, measuringSize(size));
   const std::vector<glm::ivec2> pixels = allPixels(view.crop_size);
   const GBuffer surfaces = rasterize(scene, allObjects(scene), view, Shading::kPhong, {});
@@ -85,6 +88,7 @@ std::vector<double> referenceCoverage(const GBuffer& gbuffer, std::span<const gl
 
 std::vector<double> referenceCoverage(const Scene& scene, const View& view, int samples,
                                       std::span<const glm::ivec2> pixels) {
+  validateScene(scene);
   std::vector<double> covered(pixels.size());
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {

@@ -8,10 +8,13 @@
 namespace luciole {
 
 // Of each sum the parts are in the order of their stages. Costs are milliseconds a pixel, triangle, light …
+double estimatedStart(const PictureWork& work) {
+  const double start = 80, rays = work.frames_scene ? 25 : 0;
+  return start + rays + 4e-4 * work.mesh_triangles + 9e-6 * work.texels + 17e-5 * work.lights;
+}
+
 double estimatedMilliseconds(const PictureWork& work) {
-  const double start = 80, rays = work.frames_scene ? 25 : 0,
-               tree = work.beam_pairs > 0 ? 2e-4 * work.triangles : 0;
-  const double load = 4e-4 * work.mesh_triangles + 9e-6 * work.texels + 17e-5 * work.lights;
+  const double tree = work.beam_pairs > 0 ? 2e-4 * work.triangles : 0;
   const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.bands * work.triangles;
   const double cull = 3e-5 * work.list_entries +
                       work.shadings * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
@@ -29,7 +32,7 @@ double estimatedMilliseconds(const PictureWork& work) {
   // share.
   const int together = work.samples - work.passes;
   const double drawings = work.passes + (together > 0 ? 1.5 + 0.08 * together : 0);
-  return start + rays + tree + load + drawings * raster + cull + shade + shadow_maps + write;
+  return estimatedStart(work) + tree + drawings * raster + cull + shade + shadow_maps + write;
 }
 
 double estimatedBytes(const PictureWork& work) {

@@ -13,6 +13,9 @@ inline constexpr const char* kEstimateMachine = "two cores of an AMD EPYC of 202
 /// kEstimateMachine.
 double estimatedMilliseconds(const PictureWork& work);
 
+/// The part of these that pictures after the first one of a process don't take: starting and loading.
+double estimatedStart(const PictureWork& work);
+
 /// The most memory that the process takes, in bytes, about.
 double estimatedBytes(const PictureWork& work);
 

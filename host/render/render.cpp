@@ -14,6 +14,7 @@
 #include "cl/device_error.hpp"
 #include "culling/fog_cull.hpp"
 #include "gbuffer/planes.hpp"
+#include "gbuffer/validate_gbuffer.hpp"
 #include "raster/bins.hpp"
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
@@ -26,6 +27,8 @@
 #include "render/sample_passes.hpp"
 #include "render/shadow_ways.hpp"
 #include "render/surface_ids.hpp"
+#include "render/validate.hpp"
+#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -182,6 +185,9 @@ int bandEnd(int first, const BandLimits& limits) {
 
 void renderChosenBands(Device& device, const Scene& scene, const RenderSettings& settings,
                        const NextBand& next, const BandSink& take, Stats& stats, KeptShadows* kept) {
+  // What an earlier picture kept is of this scene, so that was valid, and stays so at every pose.
+  if (!kept || kept->maps_objects.empty()) validateScene(scene);
+  validateSettings(settings, scene.lights.size());
   const TrafficMeter meter{device, stats};
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   const TraceSpan span("picture", {{"width", view.crop_size.x},
@@ -302,6 +308,9 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
 }
 
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+  validate(scene, settings);
+  if (settings.shading == Shading::kGouraud && !device)
+    throw InputError("settings.shading: kGouraud lights vertices, expected a device for that");
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   requireMemory(double(kGBufferBytesPerPixel) * view.crop_size.x * view.crop_size.y,
                 fmt::format("a G-buffer of {}x{} pixels", view.crop_size.x, view.crop_size.y));
@@ -343,14 +352,16 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
 
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats) {
-  const TrafficMeter meter{device, stats};
-  const TraceSpan span(
-      "picture",
-      {{"width", gbuffer.width}, {"height", gbuffer.height}, {"lights", std::int64_t(scene.lights.size())}});
+  validateGBuffer(gbuffer);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;
   one_sample.camera = gbuffer.camera;
   one_sample.size = gbuffer.picture_size;
+  validate(scene, one_sample);
+  const TrafficMeter meter{device, stats};
+  const TraceSpan span(
+      "picture",
+      {{"width", gbuffer.width}, {"height", gbuffer.height}, {"lights", std::int64_t(scene.lights.size())}});
   const SurfaceTraits surfaces{anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
                                gbuffer.knows_unbent, modelChoices(gbuffer)};
   ShadeSettings shade = pictureShading(scene, one_sample);

@@ -126,8 +126,8 @@ void renderChosenBands(Device& device, const Scene& scene, const RenderSettings&
 
 /// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
 /// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. kept: for pictures
-/// of one scene at several poses, one after another; they are the same bits as without it, sooner. Throws
-/// InputError for a crop outside the picture, MachineError, and what `take` throws.
+/// of one scene at several poses, one after another; they are the same bits as without it, sooner. Throws as
+/// validate() does, InputError for a crop outside the picture, MachineError, and what `take` throws.
 void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
                  Stats& stats, KeptShadows* kept = nullptr);
 
@@ -135,13 +135,13 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
 Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
 /// The first half of renderScene(): the G-buffer with every group. `device` is needed for Shading::kGouraud,
-/// which lights vertices; otherwise it may be null. Throws InputError for a crop outside the picture, and
-/// MachineError.
+/// which lights vertices; otherwise it may be null. Throws as validate() does, InputError for a crop outside
+/// the picture, and MachineError.
 GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats);
 
 /// The second half: lights a G-buffer by the scene's lights, ambient light and fog, with shadows that the
 /// scene's objects cast. Uses of the settings `shade`, `aovs`, `exposure`, `alpha` and `count_lights` only;
-/// the camera is the G-buffer's. Throws MachineError.
+/// the camera is the G-buffer's. Throws as validate() and validateGBuffer() do, and MachineError.
 Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
                    Stats& stats);
 

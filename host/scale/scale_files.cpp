@@ -240,7 +240,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   json["points"] = points;
   json["growth"] = growthRows(summary);
   json["pictures"] = pictures.urls();
-  json["incomplete"] = summary.incomplete;
+  json["incomplete"] = summary.incomplete.size();
   json["violations"] = summary.violations;
   return dumpUtf8(std::move(json));
 }

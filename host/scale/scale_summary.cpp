@@ -115,13 +115,15 @@ ScaleSummary summarizeScale(const ScaleResults& results) {
   summary.description = results.description;
   summary.machines = results.machines;
   for (const ScalePoint& point : results.description.points) {
-    const auto found = results.records.find(pointName(results.description, point));
+    const std::string name = pointName(results.description, point);
+    const auto found = results.records.find(name);
     const bool is_checked = found != results.records.end() && found->second.check;
     if (is_checked && found->second.check->bounds && found->second.check->bounds->violations > 0)
       summary.violations.push_back(fmt::format("{}: {} of {} values are wrong by more than their bounds",
                                                found->first, found->second.check->bounds->violations,
                                                found->second.check->bounds->values));
-    if (!is_checked || int(found->second.runs.size()) < results.description.repeats) ++summary.incomplete;
+    if (!is_checked || int(found->second.runs.size()) < results.description.repeats)
+      summary.incomplete.push_back(name);
     if (is_checked && !found->second.runs.empty())
       summary.points.push_back(summarizePoint(results.description, point, found->second));
   }

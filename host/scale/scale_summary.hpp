@@ -42,7 +42,7 @@ struct ScaleSummary {
   std::vector<Machine> machines;
   std::vector<PointSummary> points;  ///< in the order of the description
   std::vector<StageGrowth> growth;
-  std::size_t incomplete = 0;  ///< points that lack their check or one of their runs
+  std::vector<std::string> incomplete;  ///< names of points that lack their check or one of their runs
   /// Points whose picture breaks its bounds, a line each, for people: a fault of the program.
   std::vector<std::string> violations;
 };

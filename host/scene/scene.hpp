@@ -174,7 +174,7 @@ struct Camera {
 };
 
 /// Everything a picture is made of: the output of the loaders, and the input of every later stage.
-/// Indices are checked by the loaders; every number is finite unless its comment says otherwise.
+/// Indices are valid, and numbers finite unless their comment says otherwise: see validateScene().
 struct Scene {
   std::string name;               ///< the file, for messages and metadata
   std::vector<Warning> warnings;  ///< all of them; the command line prints them

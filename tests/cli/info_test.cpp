@@ -42,6 +42,24 @@ std::uint64_t trianglesOfObj(const std::string& path) {
   return triangles;
 }
 
+TEST_F(Info, FramesTogetherCostWhatEachDoesButForTheStart) {
+  const std::string scene = "'" + kOwnScenes + "fireflies.json' --size 320x180";
+  const json one = infoOf(scene + " --frames 40"), other = infoOf(scene + " --frames 80");
+  EXPECT_TRUE(one["job"].is_null());
+  EXPECT_NE(one["render"]["milliseconds"], other["render"]["milliseconds"]) << "it is at another place";
+  const json job = infoOf(scene + " --frames 40,80")["job"];
+  EXPECT_EQ(job["frames"], 2);
+  const double first = one["render"]["milliseconds"], second = other["render"]["milliseconds"];
+  EXPECT_LT(job["milliseconds"], first + second);
+  EXPECT_GT(job["milliseconds"], std::max(first, second));
+  EXPECT_EQ(job["slowest_frame"], first < second ? 80 : 40);
+  EXPECT_EQ(job["slowest_milliseconds"], std::max(first, second));
+  EXPECT_EQ(job["memory_bytes"],
+            std::max<double>(one["render"]["memory_bytes"], other["render"]["memory_bytes"]));
+  EXPECT_THAT(succeed("luciole info " + scene + " --frames 1-9"), HasSubstr("all frames   9 frames: about "));
+  refuse("luciole info " + scene + " --frames x", 2, "--frames x");
+}
+
 TEST_F(Info, CountsWhatAnObjFileHas) {
   LUCIOLE_NEEDS_SHARED();
   const std::string path = (sharedScenes() / "stanford/stanford-bunny.obj").string();

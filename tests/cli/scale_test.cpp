@@ -207,6 +207,18 @@ TEST_F(ScaleCommand, MergedShardsEqualOneRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "twice"));
 }
 
+TEST_F(ScaleCommand, MergeOfSomeShardsWritesThemNamesWhatIsMissingAndEndsWithOne) {
+  succeed("--lights 1,10,100 --vary culling --repeat 1 --shard 1/2 -o one");
+  const Outcome merged = runLine(folder, "luciole scale merge one -o all");
+  EXPECT_EQ(merged.status, 1);
+  EXPECT_TRUE(isOneLine(merged.err)) << merged.err;
+  EXPECT_EQ(merged.err,
+            "luciole: all: 3 of 6 points are not complete: lights=1 culling=tiles; lights=10 culling=tiles; "
+            "lights=100 culling=tiles\n");
+  EXPECT_EQ(readCsv(folder / "all/results.csv").size(), 3u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "all/report.html"));
+}
+
 TEST_F(ScaleCommand, ShardWithoutAnyPointLeavesNothingToMergeAndNoError) {
   succeed("--lights 1 --repeat 1 --shard 1/2 -o one");
   succeed("--lights 1 --repeat 1 --shard 2/2 -o two --plot two.svg");

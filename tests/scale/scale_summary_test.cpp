@@ -44,7 +44,7 @@ TEST(ScaleSummary, TotalsStagesAndQuartilesAreThoseOfTheRuns) {
   EXPECT_EQ(point.stages[0].milliseconds.median, 2);
   EXPECT_EQ(point.stages[1].milliseconds.high, 10);
   EXPECT_EQ(point.peak_bytes, 2000u);
-  EXPECT_EQ(summary.incomplete, 1u);
+  EXPECT_EQ(summary.incomplete.size(), 1u);
 }
 
 TEST(ScaleSummary, FrontComparesPicturesByAsManyLights) {
@@ -96,7 +96,7 @@ TEST(ScaleSummary, PointsWithoutCheckOrRunAreIncompleteAndLeftOut) {
   const ScaleSummary summary = summarizeScale(results);
   ASSERT_EQ(summary.points.size(), 1u);
   EXPECT_EQ(summary.points[0].point.lights, 100u);
-  EXPECT_EQ(summary.incomplete, 4u);
+  EXPECT_EQ(summary.incomplete.size(), 4u);
 }
 
 TEST(ScaleSummary, EachStageOfEachVariantHasItsGrowth) {
