@@ -115,6 +115,8 @@ void addLight(const GltfModel& model, const PlacedNode& placed, double index, Li
   const std::string fault = attachLight(placed.to_world, light);
   if (!fault.empty()) failGltf(model, nodePlace(placed.node), fault);
   light.group = groupOf(model, placed.node, source, groups, scene);
+  const std::string& node_name = model.file.nodes[placed.node].name;
+  light.name = node_name.empty() ? source.name : node_name;
   if (placed.moving >= 0)
     scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
                                                static_cast<std::uint32_t>(placed.moving), placed.since});
