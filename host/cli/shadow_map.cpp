@@ -37,6 +37,11 @@ struct ShadowMapOptions : PictureOptions {
 
 std::uint32_t lightNamed(const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (scene.lights[i].name.empty()) continue;
+    if (scene.lights[i].name == name) return std::uint32_t(i);
+    names.push_back(forMessage(scene.lights[i].name));
+  }
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   const bool is_number = error == std::errc() && end == name.data() + name.size();
@@ -105,7 +110,7 @@ void shadowMap(const CommandContext& context, ShadowMapOptions& options) {
   if (map.faces.empty()) throw InputError(scene.name + ": has no surface, so shadow maps show nothing");
   timed(stats, Stage::kWrite, [&] {
     const bool has_layers = outputFormat(options.output, options.format).extension == "exr";
-    const std::string name = fmt::format("light {}", number);
+    const std::string name = light.name.empty() ? fmt::format("light {}", number) : light.name;
     WriteOptions how = fileOptions(options);
     how.dither = false;
     writeImage(has_layers ? faceLayers(map) : pictureOf(map, fmt::format("{}, metres", name)), options.output,

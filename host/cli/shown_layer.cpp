@@ -121,13 +121,15 @@ std::vector<std::string> namesOfRole(const std::string& role) {
   return names;
 }
 
-/// The first layer whose name, in whole or behind a dot, is this one.
+/// The first layer whose name, in whole, behind a dot or before its component, is this one.
 const ShownLayer* layerNamed(const std::vector<ShownLayer>& layers, const std::string& name) {
   const std::string wanted = lowered(name);
   for (const ShownLayer& layer : layers)
     if (layer.name == name) return &layer;
   for (const ShownLayer& layer : layers)
     if (lowered(layer.name) == wanted || lowered(layer.name).ends_with("." + wanted)) return &layer;
+  for (const ShownLayer& layer : layers)
+    if (lowered(layer.name).starts_with(wanted + ".")) return &layer;
   return nullptr;
 }
 

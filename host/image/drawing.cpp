@@ -91,7 +91,11 @@ void writeLabel(OIIO::ImageBuf& canvas, const Sheet& sheet, int picture, const s
                 const std::string& font) {
   const Panel panel{canvas, sheet.top(picture) + sheet.step_y, sheet.text_size, font};
   const double width = double(sheet.step_x) / sheet.text_size - 1;
-  panel.write(double(sheet.left(picture)) / sheet.text_size + width / 2, -0.5, panel.fitted(text, width),
+  // What is too long loses its beginning: the value is at the end.
+  std::string shown = text;
+  for (std::size_t cut = 1; cut < text.size() && panel.textWidth(shown) > width; ++cut)
+    if (!continuesCharacter(text[cut])) shown = "..." + text.substr(cut);
+  panel.write(double(sheet.left(picture)) / sheet.text_size + width / 2, -0.5, shown,
               OIIO::ImageBufAlgo::TextAlignX::Center);
 }
 

@@ -116,15 +116,26 @@ void drawBar(const Panel& panel, const Content& content) {
   lay(panel.canvas, panel.pixels(kMargin), panel.top + panel.pixels(kTop), falseColors(columns, rows, ramp),
       1);
   const auto tick = [&](double x, double y) { panel.fill(x - kTickWidth / 2, y, kTickWidth, kTick, kInk); };
-  const double step = scale.is_linear ? tickStep(scale.high - scale.low) : 1;
-  for (double i = std::ceil(scale.low / step); i * step <= scale.high; ++i) {
-    const double x = kMargin + length * (i * step - scale.low) / (scale.high - scale.low);
+  const auto label = [&](double value, const std::string& text) {
+    const double x = kMargin + length * placeOn(scale, value);
     tick(x, kTop + kHeight);
-    panel.write(x, kTop + kHeight + 1.5,
-                scale.is_linear ? fmt::format("{:.6g}", i == 0 ? 0.0 : i * step)
-                : i == 0        ? "1"
-                                : fmt::format("1e{}", i),
-                TextAlignX::Center);
+    panel.write(x, kTop + kHeight + 1.5, text, TextAlignX::Center);
+  };
+  const double span = scale.high - scale.low;
+  if (scale.is_linear) {
+    const double step = tickStep(span);
+    for (double i = std::ceil(scale.low / step); i * step <= scale.high; ++i)
+      label(i * step, fmt::format("{:.6g}", i == 0 ? 0.0 : i * step));
+  } else {
+    for (double power = std::floor(scale.low); power <= scale.high; ++power)
+      for (const double digit : {1.0, 2.0, 3.0, 5.0, 7.0}) {
+        const bool is_wanted = digit == 1 || (span < 1) || (span < kMinDecades && (digit == 2 || digit == 5));
+        const double place = power + std::log10(digit);
+        if (!is_wanted || place < scale.low || place > scale.high) continue;
+        const double value = digit * std::pow(10.0, power);
+        const bool is_short = power == 0 || span < kMinDecades;
+        label(value, is_short ? fmt::format("{:g}", value) : fmt::format("1e{}", power));
+      }
   }
   if (content.mark == 0) return;
   const double place = placeOn(scale, content.mark);
@@ -151,14 +162,15 @@ void drawPanel(const Panel& panel, const Content& content) {
   }
 }
 
-/// The scale of what is finite, which gets sorted: linear, but logarithmic where half of the values above 0
-/// would lie in its first twentieth.
+/// The scale of what is finite, which gets sorted: linear, or logarithmic, see valueSheet().
 Scale valueScale(std::vector<double>& finite) {
   std::sort(finite.begin(), finite.end());
   if (finite.empty()) return {0, 1, true};
   const double least = finite.front(), most = finite.back();
   const auto positive = std::upper_bound(finite.begin(), finite.end(), 0.0);
-  if (least >= 0 && most > 0 && most > 20 * positive[(finite.end() - positive) / 2]) {
+  const double median = positive == finite.end() ? most : positive[(finite.end() - positive) / 2];
+  if (least > 0 && most > 4 * median) return {std::log10(least), std::log10(most)};
+  if (least == 0 && most > 20 * median) {
     const double high = std::ceil(std::log10(most));
     return {std::max(std::floor(std::log10(*positive)), high - kMaxDecades), high};
   }

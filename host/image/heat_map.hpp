@@ -32,8 +32,8 @@ struct ValuePanel {
 
 /// Draws numbers of any kind in the same way: panels of one size in rows of `columns`, with one scale and one
 /// bar, from the least finite value to the largest. The scale is linear, but logarithmic where half of the
-/// values above 0 would lie in its first twentieth; then 0 is black. Infinite values are dark grey, NaN red.
-/// A single panel has no label.
+/// values would lie in its first quarter, about; with zeros, which then are black, half of the others in the
+/// first twentieth. Infinite values are dark grey, NaN red. A single panel has no label.
 Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, int columns,
                  const std::string& title);
 

@@ -142,6 +142,7 @@ struct Light {
   double radius = 0.0;      ///< point and spot: of a sphere, metres
   double half_angle = 0.0;  ///< directional: half its angular diameter, radians, 0 to π/4
   std::uint32_t group = 0;  ///< of those whose light --light-groups keeps apart: indexes Scene::light_groups
+  std::string name = {};    ///< may be empty, or that of several
 
   bool operator==(const Light&) const = default;
 };

@@ -46,9 +46,9 @@ void withFields(T& object, Visit&& visit) {
 template <Is<Light> T, class Visit>
 void withFields(T& light, Visit&& visit) {
   auto& [kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
-         inner_cone, exponent, shadow, radius, half_angle, group] = light;
+         inner_cone, exponent, shadow, radius, half_angle, group, name] = light;
   visit(kind, position, direction, ambient, diffuse, specular, attenuation, range, window, falloff, cutoff,
-        inner_cone, exponent, shadow, radius, half_angle, group);
+        inner_cone, exponent, shadow, radius, half_angle, group, name);
 }
 template <Is<Fog> T, class Visit>
 void withFields(T& fog, Visit&& visit) {

@@ -66,7 +66,7 @@ TEST_F(ShowCommand, ShowsLayersOfAGBufferByTheirNameOrByWhatTheyHold) {
 TEST_F(ShowCommand, ALayerThatIsNotThereIsToldWithThoseThatAre) {
   succeed("luciole gbuffer wall.json --quiet -o g.exr");
   refuse("luciole show g.exr -o x.png", 2, "g.exr: which layer? Expected one of ");
-  refuse("luciole show g.exr --layer difuse -o x.png", 2, "no layer difuse (did you mean diffuse?)");
+  refuse("luciole show g.exr --layer difuse -o x.png", 2, "no layer difuse; did you mean diffuse?");
   refuse("luciole show g.exr --layer nothing -o x.png", 2, "expected one of ");
   refuse("luciole show wall.json -o x.png", 2, "wall.json: not an EXR file");
   refuse("luciole show none.exr -o x.png", 2, "none.exr");
@@ -162,7 +162,7 @@ TEST_F(ShadowMapCommand, HasSixFacesOfAPointLightAndCascadesOfASun) {
   EXPECT_LT(*std::min_element(sun.begin(), sun.end()), 1e-3) << "the wall is the first thing that it meets";
   for (const char* light : {"near", "lamp", "2"})
     succeed(std::string("luciole shadow-map wall.json --shadow-size 64 --quiet -o x.png --light ") + light);
-  succeed("luciole show lamp.exr --layer negative_z.Z --quiet -o face.png");
+  succeed("luciole show lamp.exr --layer negative_z --quiet -o face.png");
 }
 
 TEST_F(ShadowMapCommand, LightsWithoutShadowsOrThatAreNotThereAreTold) {
@@ -170,7 +170,7 @@ TEST_F(ShadowMapCommand, LightsWithoutShadowsOrThatAreNotThereAreTold) {
          "casts no shadow in wall.json; with --cast-shadows all it does");
   succeed("luciole shadow-map wall.json --light 3 --cast-shadows all --shadow-size 64 --quiet -o x.png");
   refuse("luciole shadow-map wall.json --light 4 -o x.png", 2, "wall.json has the lights 0 to 3");
-  refuse("luciole shadow-map wall.json --light lmap -o x.png", 2, "(did you mean lamp?)");
+  refuse("luciole shadow-map wall.json --light lmap -o x.png", 2, "did you mean lamp?");
   writeText(folder / "empty.json",
             R"({"lights": [{"type": "point", "position": [0, 0, 0], "shadow": true}]})");
   refuse("luciole shadow-map empty.json --light 0 -o x.png", 2, "empty.json: has no surface");
@@ -190,7 +190,7 @@ TEST_F(SetOption, EqualsAFileThatSaysIt) {
        {"gbuffer wall.json", "reference wall.json", "render wall.json", "info wall.json"})
     refuse(std::string("luciole ") + command + " --set materials.wal.diffuse=1" +
                (command[0] == 'i' ? "" : " -o x.exr"),
-           2, "(did you mean wall?)");
+           2, "did you mean wall?");
 }
 
 using SweepOption = ShowCommand;
@@ -237,7 +237,7 @@ TEST_F(SweepOption, WhatMakesNoSenseIsTold) {
   refuse("luciole render wall.json -o s.png --sweep materials.wall.shininess", 2,
          "--sweep materials.wall.shininess: expected PATH=VALUE");
   refuse("luciole render wall.json -o s.png --sweep ambient=1,", 2, "a value is empty");
-  refuse("luciole render wall.json -o s.png --sweep materials.wal.shininess=1,2", 2, "(did you mean wall?)");
+  refuse("luciole render wall.json -o s.png --sweep materials.wal.shininess=1,2", 2, "did you mean wall?");
   refuse("luciole render wall.json -o s.png --sweep 'size=[64,64],[32,32]'", 2,
          "the pictures differ in size");
 }

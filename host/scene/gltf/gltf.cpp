@@ -156,6 +156,8 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   const std::string fault = is_hidden ? "its scale is 0" : attachLight(placed.to_world, light);
   if (!fault.empty()) return leftOut(model, nodePlace(placed.node), fault + "; left out", "light");
   light.group = groupOf(model, placed.node, source, groups, scene);
+  const std::string& node_name = model.file.nodes[placed.node].name;
+  light.name = node_name.empty() ? source.name : node_name;
   if (placed.moving >= 0)
     scene.animation.attached_lights.push_back({static_cast<std::uint32_t>(scene.lights.size()),
                                                static_cast<std::uint32_t>(placed.moving), placed.since});

@@ -225,7 +225,7 @@ void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
   allowKeys(node, {"type",     "position",   "direction",     "target",      "color",  "intensity",
                    "ambient",  "diffuse",    "specular",      "attenuation", "range",  "cutoff",
                    "exponent", "inner_cone", "outer_cone",    "shadow",      "radius", "angle",
-                   "enabled",  "keys",       "interpolation", "group"});
+                   "enabled",  "keys",       "interpolation", "group",       "name"});
   Light light;
   light.kind = readKind(need(node, "type"));
   if (light.kind == LightKind::kDirectional) {
@@ -248,6 +248,7 @@ void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
   readColors(node, light);
   if (const auto n = find(node, "shadow")) light.shadow = readBool(*n);
   light.group = readGroup(node, groups, scene);
+  if (const auto n = find(node, "name")) light.name = readText(*n);
   std::optional<LightMotion> motion = readLightMotion(node, light);
   if (const auto n = find(node, "enabled"); n && !readBool(*n)) return;
   if (motion) {

@@ -146,9 +146,6 @@ void makeChange(Json& json, SceneChange& change, std::size_t first, const std::s
 
 bool isOf(const SceneChange& change, const char* key) { return change.place.front().key == key; }
 
-const std::string& calledBy(const Material& material) { return material.name; }
-std::string calledBy(const Light&) { return ""; }
-
 /// The place of a change in its scene's materials or lights; throws where there is none.
 template <class T>
 std::vector<std::size_t> placesOf(const SceneChange& change, const std::vector<T>& list,
@@ -158,8 +155,8 @@ std::vector<std::size_t> placesOf(const SceneChange& change, const std::vector<T
   const ChangeStep& step = change.place[1];
   for (std::size_t i = 0; i < list.size(); ++i) {
     const bool by_index = step.index != JsonNode::kNoIndex;
-    if (by_index ? step.index == i : calledBy(list[i]) == step.key) places.push_back(i);
-    if (!calledBy(list[i]).empty()) names.push_back(forMessage(calledBy(list[i])));
+    if (by_index ? step.index == i : list[i].name == step.key) places.push_back(i);
+    if (!list[i].name.empty()) names.push_back(forMessage(list[i].name));
   }
   if (!places.empty()) return places;
   if (names.empty() && !list.empty()) names.push_back(fmt::format("[0] to [{}]", list.size() - 1));
@@ -232,6 +229,7 @@ void changeLight(const SceneChange& change, std::size_t number, Scene& scene) {
     }
     Light changed = read.lights.front();
     changed.window = light.window;
+    if (!find(node, "name")) changed.name = light.name;
     if (!find(node, "group")) changed.group = light.group;
     light = changed;
   });

@@ -75,10 +75,10 @@ TEST(Set, TheLastOfSeveralForOnePlaceCounts) {
 
 TEST(Set, APlaceThatIsNotThereIsToldWithASuggestion) {
   EXPECT_EQ(faultOf("materials.bix.shininess=4"),
-            "--set materials.bix.shininess=4: scene.json has no materials.bix (did you mean box?)");
+            "--set materials.bix.shininess=4: scene.json has no materials.bix; did you mean box?");
   EXPECT_THAT(faultOf("lights[2].intensity=1"), HasSubstr("has no lights[2]; it has lights[0] to lights[1]"));
-  EXPECT_THAT(faultOf("cameras.abov.fov_y=30"), HasSubstr("(did you mean above?)"));
-  EXPECT_THAT(faultOf("camera.fov_y=30"), HasSubstr("has no camera (did you mean cameras?)"));
+  EXPECT_THAT(faultOf("cameras.abov.fov_y=30"), HasSubstr("did you mean above?"));
+  EXPECT_THAT(faultOf("camera.fov_y=30"), HasSubstr("has no camera; did you mean cameras?"));
   EXPECT_THAT(faultOf("objects[5].translate=[0,0,0]"), HasSubstr("has no objects[5]; it has [0] to [1]"));
   EXPECT_THAT(faultOf("materials.box.shinines=4"),
               HasSubstr("unknown key \"shinines\" (did you mean \"shininess\"?)"));
@@ -145,7 +145,7 @@ TEST_F(SetOfAMesh, ChangesLightsThatWereAddedToo) {
 
 TEST_F(SetOfAMesh, IsCheckedAsASceneFileIs) {
   EXPECT_THAT(faultOf("materials.rad.shininess=4"),
-              HasSubstr("a.obj has no materials.rad (did you mean red?)"));
+              HasSubstr("a.obj has no materials.rad; did you mean red?"));
   EXPECT_THAT(faultOf("materials.red.shinines=4"), HasSubstr("unknown key \"shinines\""));
   EXPECT_THAT(faultOf("materials.red.shininess=x"),
               HasSubstr("materials.red.shininess: expected a finite number"));
