@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "scene/gltf/gltf_model.hpp"
 
 namespace luciole {
@@ -382,41 +383,6 @@ void checkNesting(const GltfModel& model, std::string_view json) {
   }
 }
 
-/// How many bytes of valid UTF-8 a text begins with for its first letter; 0: it isn't one.
-std::size_t utf8Length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xc2 && first < 0xe0   ? 2
-                             : first >= 0xe0 && first < 0xf0 ? 3
-                             : first >= 0xf0 && first < 0xf5 ? 4
-                                                             : 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Forms that are too long, surrogates, and numbers beyond the last letter's.
-  const unsigned second = byte(1);
-  const bool is_odd = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
-                      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
-  return is_odd ? 0 : length;
-}
-
-/// The text with bytes that are no UTF-8 as letters of Latin-1, which older exporters write.
-std::string asUtf8(std::string_view text) {
-  std::string valid;
-  while (!text.empty()) {
-    const std::size_t length = utf8Length(text);
-    if (length > 0) {
-      valid += text.substr(0, length);
-    } else {
-      const unsigned byte = static_cast<unsigned char>(text[0]);
-      valid += static_cast<char>(0xc0 | byte >> 6);
-      valid += static_cast<char>(0x80 | (byte & 0x3f));
-    }
-    text.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return valid;
-}
-
 /// What the parser says is wrong without its own name and number.
 std::string parserWords(const std::exception& error) {
   const std::string words = error.what();
@@ -428,7 +394,7 @@ GltfJson parseJson(std::string_view text, const GltfModel& model) {
   try {
     return GltfJson::parse(text);
   } catch (const GltfJson::exception& error) {
-    const std::string valid = asUtf8(text);
+    const std::string valid = utf8Of(text);
     if (valid == text)
       throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(error)));
     try {
