@@ -11,6 +11,7 @@
 #include "base/dump_utf8.hpp"
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/picture_options.hpp"
@@ -37,7 +38,8 @@ struct Report {
 };
 
 /// Text from a file, fit for a line of its own.
-std::string printable(std::string text) {
+std::string printable(std::string_view words) {
+  std::string text = utf8Of(words);
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return text;
