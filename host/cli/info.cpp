@@ -11,13 +11,13 @@
 #include "base/dump_utf8.hpp"
 #include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "base/write_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/frames.hpp"
 #include "cli/picture_options.hpp"
 #include "culling/exact_reason.hpp"
 #include "gbuffer/camera_header.hpp"
-#include "image/header_text.hpp"
 #include "image/layers.hpp"
 #include "render/estimate.hpp"
 #include "render/scene_info.hpp"
@@ -40,8 +40,8 @@ struct Report {
 };
 
 /// Text from a file, fit for a line of its own.
-std::string printable(const std::string& bytes) {
-  std::string text = headerText(bytes);
+std::string printable(std::string_view words) {
+  std::string text = utf8Of(words);
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return text;

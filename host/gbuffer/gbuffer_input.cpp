@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/file_view.hpp"
 #include "gbuffer/gbuffer_file.hpp"
@@ -19,7 +20,6 @@
 #include "gbuffer/packed_normal.hpp"
 #include "gbuffer/planes.hpp"
 #include "gbuffer/rebuild_normals.hpp"
-#include "image/header_text.hpp"
 
 namespace luciole {
 namespace {
@@ -362,7 +362,7 @@ class Conversion {
                                       : role == Role::kDiffuse && request_.albedo ? " (Kd = albedo / pi)"
                                                                                   : "";
       taken.push_back(fmt::format("{} = {}{}", kRoleNames[i],
-                                  layer.name.empty() ? "R G B" : forMessage(headerText(layer.name)), remark));
+                                  layer.name.empty() ? "R G B" : forMessage(utf8Of(layer.name)), remark));
     }
     std::vector<std::string> lines;
     lines.push_back(

@@ -20,10 +20,10 @@
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "base/text_file.hpp"
+#include "base/utf8.hpp"
 #include "image/exr_header.hpp"
 #include "image/exr_threads.hpp"
 #include "image/exr_zip.hpp"
-#include "image/header_text.hpp"
 #include "image/picture_claims.hpp"
 
 namespace luciole {
@@ -69,7 +69,7 @@ PicturePart partOf(const Imf::Header& header) {
                    .is_deep = isDeep(header)};
   for (auto i = header.begin(); i != header.end(); ++i) {
     if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute()))
-      part.attributes.texts.emplace_back(i.name(), headerText(text->value()));
+      part.attributes.texts.emplace_back(i.name(), utf8Of(text->value()));
     else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&i.attribute()))
       part.attributes.matrices.emplace_back(i.name(), matrixOf(matrix->value()));
     else if (const auto* wide = dynamic_cast<const Imf::M44dAttribute*>(&i.attribute()))

@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
-#include "image/header_text.hpp"
+#include "base/utf8.hpp"
 #include "image/layers.hpp"
 #include "image/oiio.hpp"
 #include "image/picture_file.hpp"
@@ -54,7 +54,7 @@ ExrAttributes attributesOf(const OIIO::ImageSpec& spec) {
   for (const OIIO::ParamValue& value : spec.extra_attribs) {
     const std::string name = value.name().string();
     if (value.type() == OIIO::TypeDesc::STRING)
-      attributes.texts.emplace_back(name, headerText(value.get_string()));
+      attributes.texts.emplace_back(name, utf8Of(value.get_string()));
     else if (value.type() == kMatrix)
       attributes.matrices.emplace_back(name, glm::make_mat4(static_cast<const float*>(value.data())));
   }

@@ -22,7 +22,7 @@
 #include "base/threads.hpp"
 #include "base/utf8.hpp"
 #include "image/deflate.hpp"
-#include "image/header_text.hpp"
+
 #include "image/png_filters.hpp"
 #include "image/row_file.hpp"
 

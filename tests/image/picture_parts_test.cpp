@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 #include "image/exr_input.hpp"
-#include "image/header_text.hpp"
 #include "image/layers.hpp"
 #include "shared_files.hpp"
 
@@ -43,9 +43,9 @@ void writeTwoParts(const std::string& path) {
 }
 
 TEST(PictureParts, TextsOfHeadersAreUtf8) {
-  EXPECT_EQ(headerText("Caf\xe9 \xa0"), "Caf\u00e9 \u00a0");
-  EXPECT_EQ(headerText("Caf\u00e9, 灯"), "Caf\u00e9, 灯");
-  EXPECT_EQ(headerText("\xc3"), "\u00c3") << "cut off in a character";
+  EXPECT_EQ(utf8Of("Caf\xe9 \xa0"), "Caf\u00e9 \u00a0");
+  EXPECT_EQ(utf8Of("Caf\u00e9, 灯"), "Caf\u00e9, 灯");
+  EXPECT_EQ(utf8Of("\xc3"), "\u00c3") << "cut off in a character";
   const TemporaryFolder folder;
   const std::string path = folder / "a.exr";
   writeImage({1, 1, {"Y"}, {0}}, path, {},
