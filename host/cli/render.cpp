@@ -18,6 +18,7 @@
 #include "cli/open_devices.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/probe.hpp"
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "gbuffer/gbuffer_file.hpp"
@@ -40,6 +41,7 @@ struct RenderOptions : PictureOptions {
   std::string shard;
   std::optional<double> frames_per_second;
   bool resume = false;
+  std::string probe;
 };
 
 /// The part of the picture that is made.
@@ -63,9 +65,11 @@ std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene,
 /// Renders the scene at its frame, with the exposure that was measured or that the options say, and writes
 /// the picture, to the film unless that is null. keeps: see renderShared.
 void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options, Film* film,
-                   const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
+                   ProgressLine& progress, const std::function<void(int, int)>& on_pass, bool keeps,
+                   Stats& stats) {
   RenderSettings settings = renderSettings(options, scene);
   settings.on_pass = on_pass;
+  settings.on_long_compile = [&] { progress.tell("compiling kernels"); };
   if (stats.measured_exposure) settings.exposure = float(*stats.measured_exposure);
   const Crop window = windowOf(settings);
   WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
@@ -160,7 +164,7 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
-        renderPicture(sharers, scene, picture, film, showPass, true, stats);
+        renderPicture(sharers, scene, picture, film, progress, showPass, true, stats);
         progress.clear();
         reportStats(picture, stats, frames[i]);
       }
@@ -223,7 +227,21 @@ void checkFilmOptions(const RenderOptions& options) {
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
 }
 
+/// The pixel that --probe names.
+std::optional<glm::ivec2> probedPixel(const RenderOptions& options) {
+  if (options.probe.empty()) return std::nullopt;
+  const std::vector<int> at = parseInts(options.probe, ',', 2, "--probe", "X,Y, such as 320,180");
+  return glm::ivec2(at[0], at[1]);
+}
+
 void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
+  if (probedPixel(options)) {
+    if (choice.is_list) throw InputError("--probe: goes with one frame, such as --frames 3");
+    if (options.output == "-" || options.stats == "-")
+      throw InputError("--probe: standard output can't take it and another - together; name a file");
+    if (options.output.empty()) return;
+  }
+  if (options.output.empty()) throw InputError("render: -o is required, or --probe X,Y");
   const bool is_film = makesFilm(options, choice);
   if (options.frames_per_second && !is_film)
     throw InputError("--fps: goes with a film, as --frames A-B -o film.mp4");
@@ -263,6 +281,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
           "frames a second of a film: --frames A-B -o film.mp4, .webm or .webp, which ffmpeg encodes "
           "(default: 24)")
       ->check(CLI::Range(1.0, 240.0));
+  // A probe needs no picture: checkOptions() asks for it.
+  command->get_option("--output")->required(false);
+  command->add_option(
+      "--probe", options->probe,
+      "print what makes a pixel: its surface, what each light adds to it by the reference, and "
+      "the colour that the device makes of it; without -o no picture is made");
   command->add_flag("--resume", options->resume, "leave frames alone whose file is there");
   command->add_option("--shard", options->shard,
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
@@ -310,6 +334,15 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       return;
     }
     const int frame = choice.frames.front();
+    if (const std::optional<glm::ivec2> pixel = probedPixel(*options)) {
+      RenderSettings settings = renderSettings(*options, scene);
+      // What is measured depends on the file, if there is one.
+      if ((!options->output.empty() || !options->exposure.empty()) &&
+          measuresExposure(*options, options->scene))
+        settings.exposure = float(measureExposure(device, scene, settings, stats));
+      fmt::print("{}", probeText(device, scene, settings, *pixel));
+      if (options->output.empty()) return;
+    }
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     for (const PictureOptions& picture : pictures) checkOutput(picture);
     logEvent("frame_begun", {{"frame", frame}});
@@ -326,7 +359,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
                       std::size_t(passes));
       };
       stats.measured_exposure = exposures[i];
-      renderPicture(sharers, scene, pictures[i], nullptr, showPass, false, stats);
+      renderPicture(sharers, scene, pictures[i], nullptr, progress, showPass, false, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);
