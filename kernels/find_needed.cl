@@ -26,9 +26,9 @@ INLINE void add_needed(__global const ShadowFace *face, int reach, __global uint
   // The bits of floats ≥ 0, as integers, are in the same order.
   uint depth = (uint)smallest_lane(mask ? as_intL(max_lanes(point->depth, (floatL)(0.0f))) : none);
   int last = (int)face->bins - 1;
-  for (int y = max(low_y, 0) / kShadowBin; y <= min(max(high_y, 0) / kShadowBin, last); ++y) {
-    for (int x = max(low_x, 0) / kShadowBin; x <= min(max(high_x, 0) / kShadowBin, last); ++x) {
-      uint bin = face->first_bin + y * (last + 1) + x;
+  for (int row = max(low_y, 0) / kShadowBin; row <= min(max(high_y, 0) / kShadowBin, last); ++row) {
+    for (int column = max(low_x, 0) / kShadowBin; column <= min(max(high_x, 0) / kShadowBin, last); ++column) {
+      uint bin = face->first_bin + row * (last + 1) + column;
       if (bin == last_noted->bin && depth >= last_noted->depth) continue;
       last_noted->bin = bin;
       last_noted->depth = depth;

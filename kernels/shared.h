@@ -225,7 +225,7 @@ enum { kPairWords = kTilePixels / 32 };
 #define kNotNeeded 0xffffffffu
 
 // kPhongModel …
-#define MODEL_NUMBER(name, typed, shown, meaning) k##name##Model,
+#define MODEL_NUMBER(name, typed, shown, meaning, diffuse, specular) k##name##Model,
 enum { EACH_MODEL(MODEL_NUMBER) kModelCount };
 #undef MODEL_NUMBER
 

@@ -2,6 +2,8 @@
 # tidy.sh [BASE]: clang-format and clang-tidy, by .clang-format and .clang-tidy, over the C++ files that differ from commit BASE;
 # over all without one. A header is looked at through the source file of its name, or else through the first that includes it.
 # A file takes clang-tidy some 20 s.
+# Kernels, all of them if any differs, get the house's warnings at every width, with all features and with none that are shadows of a
+# size. clang-format leaves them alone: their longest lines and their tables are by hand.
 #
 # Exit status: 1 for findings, which it shows; 77 where a tool is not installed, which it says.
 set -euo pipefail
@@ -10,19 +12,30 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Versions format differently: this is the one that the files are formatted with.
 format=$(command -v clang-format-14 || true)
 tidy=$(command -v clang-tidy-14 || true)
-if [[ -z $format || -z $tidy ]] || ! command -v clang++-14 >/dev/null; then
+if [[ -z $format || -z $tidy ]] || ! command -v clang++-14 >/dev/null || ! command -v clang-14 >/dev/null; then
   echo "tidy.sh: NOT CHECKED: it takes clang-format, clang-tidy and clang++ 14 (apt install clang-format-14 clang-tidy-14 clang-14)" >&2
   exit 77
 fi
 
+kernels_status=0
+if ! (($#)) || [[ -n $(git diff --name-only "$1" -- kernels tests/kernels/*.cl tests/cl/*.cl) ]]; then
+  for lanes in 1 4 8 16; do
+    for features in "" -DSOFT_EXACT=0 "-DHOLES=0 -DSOFT_EXACT=0"; do
+      # shellcheck disable=SC2086  # several words, or none
+      git ls-files 'kernels/*.cl' 'kernels/*.clh' 'kernels/*.h' 'tests/kernels/*.cl' 'tests/cl/*.cl' |
+        xargs clang-14 -x cl -cl-std=CL1.2 -I kernels -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only \
+          -Wall -Wextra -Wshadow -Werror -Wno-unused-parameter -Wno-unused-function -DLANES=$lanes $features || kernels_status=1
+    done
+  done
+fi
 if (($#)); then
   mapfile -t files < <(git diff --name-only --diff-filter=d "$1" -- 'host/*.[ch]pp' 'tests/*.[ch]pp')
 else
   mapfile -t files < <(git ls-files 'host/*.[ch]pp' 'tests/*.[ch]pp')
 fi
-((${#files[@]})) || { echo "tidy.sh: no C++ file differs from $1" && exit; }
+((${#files[@]})) || { echo "tidy.sh: no C++ file differs from $1" && exit "$kernels_status"; }
 
-status=0
+status=$kernels_status
 "$format" --dry-run --Werror "${files[@]}" || status=1
 
 sources=()

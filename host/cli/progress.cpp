@@ -32,6 +32,21 @@ void ProgressLine::show(const std::string& what, std::size_t done, std::size_t t
   std::string line = what;
   if (total > 0) line += fmt::format(": {} %", percent_done);
   if (done > 0) line += fmt::format(", {} left", duration(left));
+  put(line);
+}
+
+void ProgressLine::tell(const std::string& what) {
+  if (logsEvents()) {
+    EventFields fields;
+    if (frame) fields["frame"] = *frame;
+    fields["what"] = what;
+    logEvent("progress", fields);
+  } else if (is_shown) {
+    put(what);
+  }
+}
+
+void ProgressLine::put(const std::string& line) {
   if (line == text) return;
   text = line;
   writeError(fmt::format("\r\x1b[K{}", text));

@@ -16,6 +16,8 @@ struct ProgressLine {
 
   /// Shows that `done` of `total` are done, in units that take about equally long.
   void show(const std::string& what, std::size_t done, std::size_t total);
+  /// Says what is waited for, and nobody knows how long.
+  void tell(const std::string& what);
   /// Removes the line. Call it before something else is printed, and at the end.
   void clear();
 
@@ -24,6 +26,9 @@ struct ProgressLine {
   std::string text;          ///< the line as it is shown
   std::optional<int> frame;  ///< that is being made, for the event
   int percent = -1;          ///< that the last event told
+
+ private:
+  void put(const std::string& line);
 };
 
 /// A time in minutes and seconds, from an hour on in hours, too: "0:07", "12:34" or "1:02:03".

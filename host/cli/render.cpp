@@ -19,6 +19,7 @@
 #include "cli/orbit.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/probe.hpp"
 #include "cli/progress.hpp"
 #include "cli/shard.hpp"
 #include "cli/sweep.hpp"
@@ -46,6 +47,7 @@ struct RenderOptions : PictureOptions {
   bool resume = false;
   Orbit orbit;
   std::vector<std::string> sweeps;
+  std::string probe;
 };
 
 /// The settings of a picture of a scene that is posed for the frame.
@@ -116,10 +118,11 @@ Image renderLayer(std::list<Sharer>& sharers, const Scene& scene, const PictureO
 /// that the options say. Writes the picture, to the film unless that is null, or where the file has no place
 /// for layers the one that --aov names.
 void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
-                   RenderSettings settings, Film* film, const std::function<void(int, int)>& on_pass,
-                   bool keeps, Stats& stats) {
+                   RenderSettings settings, Film* film, ProgressLine& progress,
+                   const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
   settings = withExposure(settings, stats);
   settings.on_pass = on_pass;
+  settings.on_long_compile = [&] { progress.tell("compiling kernels"); };
   Device* const device = sharers.front().device;
   if (showsAov(options)) {
     ShownLayer shown;
@@ -222,7 +225,7 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
         renderPicture(sharers, scene, picture, settingsAt(frames[i], picture, scene, options.orbit), film,
-                      showPass, true, stats);
+                      progress, showPass, true, stats);
         progress.clear();
         reportStats(picture, stats, frame);
       }
@@ -304,7 +307,21 @@ void checkFilmOptions(const RenderOptions& options) {
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
 }
 
+/// The pixel that --probe names.
+std::optional<glm::ivec2> probedPixel(const RenderOptions& options) {
+  if (options.probe.empty()) return std::nullopt;
+  const std::vector<int> at = parseInts(options.probe, ',', 2, "--probe", "X,Y, such as 320,180");
+  return glm::ivec2(at[0], at[1]);
+}
+
 void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
+  if (probedPixel(options)) {
+    if (choice.is_list) throw InputError("--probe: goes with one frame, such as --frames 3");
+    if (options.output == "-" || options.stats == "-")
+      throw InputError("--probe: standard output can't take it and another - together; name a file");
+    if (options.output.empty()) return;
+  }
+  if (options.output.empty()) throw InputError("render: -o is required, or --probe X,Y");
   const bool is_film = makesFilm(options, choice);
   if (options.frames_per_second && !is_film)
     throw InputError("--fps: goes with a film, as --frames A-B -o film.mp4");
@@ -399,7 +416,8 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
       picture.output = frameFile(picture.output, int(i) + 1);
       picture.stats = frameFile(picture.stats, int(i) + 1);
       checkOutput(picture);
-      renderPicture(sharers, scene, picture, renderSettings(picture, scene), nullptr, {}, false, stats);
+      renderPicture(sharers, scene, picture, renderSettings(picture, scene), nullptr, progress, {}, false,
+                    stats);
       progress.clear();
       reportStats(picture, stats, frame);
       stats = laterStats(command);
@@ -451,6 +469,12 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
           "frames a second of a film: --frames A-B -o film.mp4, .webm or .webp, which ffmpeg encodes "
           "(default: 24)")
       ->check(CLI::Range(1.0, 240.0));
+  // A probe needs no picture: checkOptions() asks for it.
+  command->get_option("--output")->required(false);
+  command->add_option(
+      "--probe", options->probe,
+      "print what makes a pixel: its surface, what each light adds to it by the reference, and "
+      "the colour that the device makes of it; without -o no picture is made");
   command->add_flag("--resume", options->resume, "leave frames alone whose file is there");
   command->add_option("--shard", options->shard,
                       "I/N: only every Nth of the frames, from the Ith on (default in a Slurm job array: its "
@@ -521,6 +545,15 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       return;
     }
     const int frame = choice.frames.front();
+    if (const std::optional<glm::ivec2> pixel = probedPixel(*options)) {
+      RenderSettings settings = renderSettings(*options, scene);
+      // What is measured depends on the file, if there is one.
+      if ((!options->output.empty() || !options->exposure.empty()) &&
+          measuresExposure(*options, options->scene))
+        settings.exposure = float(measureExposure(device, scene, settings, stats));
+      fmt::print("{}", probeText(device, scene, settings, *pixel));
+      if (options->output.empty()) return;
+    }
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     for (const PictureOptions& picture : pictures) checkOutput(picture);
     logEvent("frame_begun", {{"frame", frame}});
@@ -538,7 +571,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       };
       stats.measured_exposure = exposures[i];
       renderPicture(sharers, scene, pictures[i], settingsAt(frame, pictures[i], scene, options->orbit),
-                    nullptr, showPass, false, stats);
+                    nullptr, progress, showPass, false, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);

@@ -13,7 +13,8 @@ const std::map<std::string, std::string> kValueNames{
     {"scene", "FILE"},     {"csv", "FILE"},    {"reference", "FILE"},    {"size", "WxH"},
     {"crop", "X,Y,W,H"},   {"camera", "NAME"}, {"format", "NAME"},       {"device", "NAME"},
     {"field", "NAME"},     {"shape", "NAME"},  {"frames", "FRAMES"},     {"shard", "I/N"},
-    {"exposure", "STOPS"}, {"aov", "LAYERS"},  {"lights", "COUNTS"},     {"trace", "FILE"}};
+    {"exposure", "STOPS"}, {"aov", "LAYERS"},  {"probe", "X,Y"},         {"lights", "COUNTS"},
+    {"trace", "FILE"}};
 
 }  // namespace
 

@@ -51,16 +51,6 @@ struct Fogged {
   double gain = 0;
 };
 
-/// Upper bound of a highlight by `model`. Phong's and Blinn's lobes and the toon model's highlight are at
-/// most 1. Cook and Torrance's is at most α²/facets² · N·L/smith(N·L) / smith(N·V) with facets ≥ α²,
-/// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/cook_torrance.clh): 1/(2α³), times the larger of F0 and F90.
-glm::dvec3 largestHighlight(const Material& material, Model model) {
-  const glm::dvec3 specular(material.specular);
-  if (model != Model::kCookTorrance) return specular;
-  const double alpha2 = std::max(1 / (0.5 * material.shininess + 1), 0x1p-40);
-  return glm::max(specular, glm::min(50.0 * specular, 1.0)) / (2 * alpha2 * std::sqrt(alpha2));
-}
-
 /// Texels are at most 1, vertex colours may be more. In a scene without lighting the diffuse colour takes the
 /// place of the ambient one.
 Response responseOf(const Scene& scene, const Object& object, Model model) {
@@ -71,10 +61,14 @@ Response responseOf(const Scene& scene, const Object& object, Model model) {
   const auto cover = [&](const Material& material) {
     const glm::dvec3 diffuse(material.diffuse);
     const glm::dvec3 ambient = scene.lighting ? glm::dvec3(material.ambient) : diffuse;
-    const Model own = material.model.value_or(model);
-    // Oren and Nayar's model gives at most A + B ≤ 1.13 of a light.
-    const double rough = own == Model::kOrenNayar ? 1.13 : 1;
-    response.cover({ambient * tint, rough * diffuse * tint, largestHighlight(material, own)});
+    Response own{.ambient = ambient * tint};
+    for (int c = 0; c < 3; ++c) {
+      const ModelBounds most =
+          modelBounds(material.model.value_or(model), material.specular[c], material.shininess);
+      own.diffuse[c] = most.diffuse * diffuse[c] * tint[c];
+      own.specular[c] = most.specular;
+    }
+    response.cover(own);
   };
   if (object.material >= 0) {
     cover(scene.materials[object.material]);

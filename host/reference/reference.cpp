@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 
 #include "base/error.hpp"
 #include "gbuffer/packed_normal.hpp"
@@ -93,13 +94,22 @@ std::uint32_t pixelSeed(const glm::ivec2& pixel) {
   return bits ^ bits >> 13;
 }
 
-glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
-                      const ReferenceSettings& settings) {
+/// What a pixel of a G-buffer shows.
+struct ShownPoint {
+  SurfacePoint point;
+  Model model = Model::kPhong;
+  Visibility visibility;
+};
+
+/// Nothing for the background. `scene` and the settings' rays must outlive the result.
+std::optional<ShownPoint> shownPoint(const GBuffer& gbuffer, const glm::ivec2& pixel,
+                                     const ReferenceSettings& settings) {
   const std::size_t stride = gbuffer.pixels(), place = gbuffer.index(pixel.x, pixel.y);
   const glm::dvec3 view_position = triple(gbuffer.position, stride, place);
-  if (!std::isfinite(view_position.z)) return scene.background;
+  if (!std::isfinite(view_position.z)) return std::nullopt;
   const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
-  SurfacePoint point;
+  ShownPoint shown;
+  SurfacePoint& point = shown.point;
   point.position = glm::dvec3(to_world * glm::dvec4(view_position, 1));
   point.normal = glm::dmat3(to_world) * triple(gbuffer.normal, stride, place);
   if (gbuffer.knows_unbent)
@@ -110,17 +120,24 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
   point.emission = triple(gbuffer.emission, stride, place);
   point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
   const std::uint32_t seed = pixelSeed(pixel + gbuffer.crop_origin);
-  Visibility visibility;
   // Shadow rays start on the smooth surface above the facet (Hanika 2021, see raster/lift.hpp).
   glm::dvec3 start = point.position;
   if (!gbuffer.lift.empty()) start += double(gbuffer.lift[place]) * unitOrZero(point.normal);
   if (settings.shadow_rays)
-    visibility = [&](const Light& light) {
+    shown.visibility = [&settings, start, seed](const Light& light) {
       return lightVisibility(*settings.shadow_rays, light, start, settings.shadow_samples, seed);
     };
-  const Model model = modelOfNumber(gbuffer.model.empty() ? 0 : gbuffer.model[place], settings.model);
-  const glm::dvec3 radiance = referenceRadiance(scene, gbuffer.camera, point, model, visibility);
-  return settings.fog ? referenceFog(scene.fog, gbuffer.camera, point.position, radiance) : radiance;
+  shown.model = modelOfNumber(gbuffer.model.empty() ? 0 : gbuffer.model[place], settings.model);
+  return shown;
+}
+
+glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                      const ReferenceSettings& settings) {
+  const std::optional<ShownPoint> shown = shownPoint(gbuffer, pixel, settings);
+  if (!shown) return scene.background;
+  const glm::dvec3 radiance =
+      referenceRadiance(scene, gbuffer.camera, shown->point, shown->model, shown->visibility);
+  return settings.fog ? referenceFog(scene.fog, gbuffer.camera, shown->point.position, radiance) : radiance;
 }
 
 }  // namespace
@@ -129,34 +146,74 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
 /// behind a surface counts as before it, as in kernels/shading.clh.
 static constexpr double kPackedNormalMargin = 0x1p-13;
 
+/// Calls take(LightTerm) for each light that reaches the point, in the scene's order.
 // The lighting equation of OpenGL 1.x (The OpenGL Graphics System: A Specification, section "Lighting") with
 // a local viewer. Its highlight is replaced by Phong's, or by another model's.
-glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
-                             const Visibility& visibility) {
-  if (!scene.lighting) return point.emission + point.diffuse;
+template <class Take>
+static void eachLightTerm(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
+                          const Visibility& visibility, const Take& take) {
   // Normalized again in double: an exponent of 10⁶ turns an error in a float's last bit into one of 10 %.
   const glm::dvec3 normal = unitOrZero(point.normal);
   const glm::dvec3 to_eye =
       unitOrZero(camera.orthographic ? backward(camera) : eyePosition(camera) - point.position);
-  glm::dvec3 radiance = point.emission + glm::dvec3(scene.ambient) * point.ambient;
-  for (const Light& light : scene.lights) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
     const Incoming incoming = incomingLight(light, point.position);
     if (incoming.share == 0) continue;
-    glm::dvec3 reflected = glm::dvec3(light.ambient) * point.ambient;
-    const double n_dot_l = glm::dot(normal, incoming.to_light);
+    LightTerm term;
+    term.light = i;
+    term.falloff = incoming.share;
+    term.ambient = glm::dvec3(light.ambient) * point.ambient;
+    term.n_dot_l = glm::dot(normal, incoming.to_light);
     const bool behind = glm::dot(point.unbent, incoming.to_light) <= -kPackedNormalMargin;
-    const double visible = n_dot_l <= 0 || behind       ? 0.0
-                           : light.shadow && visibility ? visibility(light)
-                                                        : 1.0;
-    if (visible > 0) {
+    term.visibility = term.n_dot_l <= 0 || behind  ? 0.0
+                      : light.shadow && visibility ? visibility(light)
+                                                   : 1.0;
+    if (term.visibility > 0) {
       const auto [diffuse, specular] =
           reflectedLight(model, {normal, incoming.to_light, to_eye}, point.specular, point.shininess);
-      reflected += glm::dvec3(light.diffuse) * point.diffuse * (diffuse * visible);
-      reflected += glm::dvec3(light.specular) * specular * visible;
+      term.diffuse = glm::dvec3(light.diffuse) * point.diffuse * (diffuse * term.visibility);
+      term.specular = glm::dvec3(light.specular) * specular * term.visibility;
     }
-    radiance += reflected * incoming.share;
+    take(term);
   }
+}
+
+/// What leaves the point without any light's help.
+static glm::dvec3 ownRadiance(const Scene& scene, const SurfacePoint& point) {
+  return scene.lighting ? point.emission + glm::dvec3(scene.ambient) * point.ambient
+                        : point.emission + point.diffuse;
+}
+
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
+                             const Visibility& visibility) {
+  glm::dvec3 radiance = ownRadiance(scene, point);
+  if (scene.lighting)
+    eachLightTerm(scene, camera, point, model, visibility,
+                  [&](const LightTerm& term) { radiance += term.sum(); });
   return radiance;
+}
+
+std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                                         const ReferenceSettings& settings) {
+  const std::optional<ShownPoint> shown = shownPoint(gbuffer, pixel, settings);
+  if (!shown) return std::nullopt;
+  PixelTerms terms;
+  terms.point = shown->point;
+  terms.model = shown->model;
+  terms.own = ownRadiance(scene, terms.point) - terms.point.emission;
+  glm::dvec3 radiance = ownRadiance(scene, terms.point);
+  if (scene.lighting)
+    eachLightTerm(scene, gbuffer.camera, terms.point, terms.model, shown->visibility,
+                  [&](const LightTerm& term) {
+                    radiance += term.sum();
+                    terms.lights.push_back(term);
+                  });
+  terms.fog_share = referenceFog(
+      {scene.fog.mode, scene.fog.radial, scene.fog.density, scene.fog.start, scene.fog.end, glm::vec3(0.0f)},
+      gbuffer.camera, terms.point.position, glm::dvec3(1.0));
+  terms.color = referenceFog(scene.fog, gbuffer.camera, terms.point.position, radiance);
+  return terms;
 }
 
 glm::dvec3 referenceFog(const Fog& fog, const Camera& camera, const glm::dvec3& position,

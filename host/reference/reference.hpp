@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,6 +56,33 @@ std::vector<glm::ivec2> allPixels(const glm::ivec2& size);
 std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuffer,
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings);
+
+/// What a light adds to the radiance that leaves a point.
+struct LightTerm {
+  std::size_t light = 0;  ///< of Scene::lights
+  double n_dot_l = 0;     ///< the cosine between the normal and the way to the light
+  double falloff = 0;     ///< by attenuation, range and spot: a factor of all that follows
+  double visibility = 0;  ///< the share that nothing hides, which diffuse and specular have in them; 0 behind
+  glm::dvec3 ambient{0.0};  ///< the light's own ambient light
+  glm::dvec3 diffuse{0.0}, specular{0.0};
+
+  glm::dvec3 sum() const { return (ambient + diffuse + specular) * falloff; }
+};
+
+/// All that makes a pixel's colour.
+struct PixelTerms {
+  SurfacePoint point;
+  Model model = Model::kPhong;
+  glm::dvec3 own{0.0};  ///< the scene's ambient light that it reflects; without lighting its diffuse colour
+  std::vector<LightTerm> lights;  ///< those that reach the point, in the scene's order
+  glm::dvec3 fog_share{1.0};  ///< of the radiance that gets through the fog, whose colour makes up the rest
+  glm::dvec3 color{0.0};      ///< as referencePixels() has it
+};
+
+/// The terms of a pixel, counted from the G-buffer's top left; nothing for the background. O(lights) time
+/// and, of lights that reach it, memory.
+std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                                         const ReferenceSettings& settings);
 
 /// A colour's channel as pictures store it: rounded to float, at most the largest finite one.
 float pictureValue(double channel);

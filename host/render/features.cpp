@@ -23,7 +23,7 @@ const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
     {"SMOOTH_WINDOW", "smooth window", "ranges that fade as (1 - (d/r)^4)^2"},
     {"KHR_WINDOW", "KHR window", "ranges that fade as 1 - (d/r)^4"},
     {"SPECULAR", "specular", "highlights"},
-#define MODEL_ROW(name, typed, shown, meaning) {"k" #name "Model", shown, meaning},
+#define MODEL_ROW(name, typed, shown, meaning, diffuse, specular) {"k" #name "Model", shown, meaning},
     EACH_MODEL(MODEL_ROW)
 #undef MODEL_ROW
         {"AMBIENT", "ambient", "ambient reflection"},

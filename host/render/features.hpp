@@ -24,7 +24,7 @@ enum class Feature : unsigned {
   kSmoothWindow,
   kKhrWindow,
   kSpecular,
-#define MODEL_FEATURE(name, typed, shown, meaning) k##name,
+#define MODEL_FEATURE(name, typed, shown, meaning, diffuse, specular) k##name,
   EACH_MODEL(MODEL_FEATURE)  // in the order of Model
 #undef MODEL_FEATURE
   kAmbient,

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <future>
@@ -97,8 +98,13 @@ void addPassesOf(const std::vector<LightLayer>& layers, const FeatureSet& featur
   }
 }
 
-void awaitKernels(std::future<double>& compiling, Device& device, Stats& stats) {
-  const double milliseconds = timed(stats, Stage::kWaitForKernels, [&] { return compiling.get(); });
+void awaitKernels(std::future<double>& compiling, Device& device, const RenderSettings& settings,
+                  Stats& stats) {
+  const double milliseconds = timed(stats, Stage::kWaitForKernels, [&] {
+    if (settings.on_long_compile && compiling.wait_for(std::chrono::seconds(1)) != std::future_status::ready)
+      settings.on_long_compile();
+    return compiling.get();
+  });
   addStage(stats, Stage::kCompileKernels, milliseconds);
   addStage(stats, Stage::kOpenDevice, std::exchange(device.milliseconds_to_open, 0));
   stats.beside = {Stage::kCompileKernels, Stage::kOpenDevice};
@@ -213,7 +219,7 @@ void renderChosenBands(Device& device, const Scene& scene, const RenderSettings&
   if (settings.alpha) prepared.lighting.frame.background = {};
   prepared.layers = timed(stats, Stage::kPrepareLights,
                           [&] { return prepareLayers(device, scene, prepared.lighting, std::move(layers)); });
-  awaitKernels(compiling, device, stats);
+  awaitKernels(compiling, device, settings, stats);
   if (gouraud)
     prepared.vertex_colors = lightVertices(device, scene, prepared.objects, view, prepared.lighting, stats);
 
@@ -382,7 +388,7 @@ Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, c
   std::vector<LayerLighting> layer_lightings = timed(stats, Stage::kPrepareLights, [&] {
     return prepareLayers(device, scene, lighting, std::move(layers));
   });
-  awaitKernels(compiling, device, stats);
+  awaitKernels(compiling, device, settings, stats);
   describeScene(scene, features, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;

@@ -189,6 +189,7 @@ void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSe
   SharedRows rows{bottom, top, top, 0};
   RenderSettings without_report = settings;
   without_report.on_pass = nullptr;
+  without_report.on_long_compile = nullptr;
   std::list<Worker> workers;
   for (Sharer& sharer : sharers)
     if (sharer.error.empty()) workers.push_back({sharers, sharer, rows, view.crop_size.y});

@@ -18,10 +18,13 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-/// What the program writes to a terminal of its own, on which it runs in the folder.
-std::string runOnTerminal(const TemporaryFolder& folder, const std::string& arguments) {
+/// What the program writes to a terminal of its own, on which it runs in the folder, after a line of the
+/// shell.
+std::string runOnTerminal(const TemporaryFolder& folder, const std::string& arguments,
+                          const std::string& first = "") {
   int terminal = -1;
-  const std::string line = "cd '" + folder.path().string() + "' && exec '" LUCIOLE_BINARY "' " + arguments;
+  const std::string line =
+      "cd '" + folder.path().string() + "' && " + first + "exec '" LUCIOLE_BINARY "' " + arguments;
   const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (child == 0) {
     execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
@@ -73,6 +76,18 @@ TEST_F(Progress, OfTheReferenceAndOfAnExperimentShowsTheTimeLeft) {
   const std::string scale = runOnTerminal(
       folder, "scale scene.json --lights 1,10 --size 32x18 --repeat 2 --check-pixels 16 -o run");
   EXPECT_THAT(scale, ContainsRegex("run 2 of 4: lights=1[^\r]* left"));
+}
+
+TEST_F(Progress, SaysThatKernelsAreCompiledAfterASecond) {
+  // With an empty cache exact shadows take seconds.
+  const auto cold = [](const std::string& name) {
+    return "export POCL_CACHE_DIR=$PWD/" + name + " XDG_CACHE_HOME=$PWD/" + name + "; mkdir " + name + "; ";
+  };
+  const std::string line = "render scene.json --shadows exact -o out.png";
+  EXPECT_THAT(runOnTerminal(folder, line, cold("terminal")), HasSubstr("\r\x1b[Kcompiling kernels\r\x1b[K"));
+  EXPECT_THAT(runLine(folder, cold("pipe") + "luciole " + line).err, Not(HasSubstr("compiling")));
+  EXPECT_THAT(runLine(folder, cold("log") + "luciole " + line + " --log json").err,
+              HasSubstr("\"what\":\"compiling kernels\"}"));
 }
 
 TEST_F(Progress, IsNotInAPipeNorWhereQuietIsAsked) {

@@ -50,6 +50,7 @@ constexpr NotRun kNotRun[] = {
     {"oiiotool ", "reads what an array of 50 tasks made"},
     {"ffmpeg ", "reads what an array of 50 tasks made"},
     {"python3 tests/kernels/instruction_counts.py", "takes a build folder, and shows figures to look at"},
+    {"oclgrind ", "is not on every system; tests/kernels/checked_test.cpp runs it where it is"},
     {"POCL_", "takes a build folder, and leaves machine code to look at"},
     {"objdump ", "shows machine code to look at"},
 };

@@ -69,7 +69,7 @@ Compiled compile(const std::string& clang, const std::string& options) {
 void expectClean(const std::string& clang, const std::string& options) {
   const Compiled compiled = compile(
       clang,
-      "-Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only -Wall -Wextra "
+      "-Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only -Wall -Wextra -Wshadow "
       "-Werror -Wno-unused-parameter -Wno-unused-function " +
           options);
   EXPECT_TRUE(compiled.succeeded) << options << "\n" << compiled.output;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace luciole::test {
 namespace {
@@ -98,11 +100,29 @@ TEST(OrenNayarModel, IsLambertsWhereSmoothAndLightAndEyeMayChangePlaces) {
   EXPECT_NEAR(orenNayar({kUp, l, v}, 1) / l.z, orenNayar({kUp, v, l}, 1) / v.z, kRounding);
 }
 
-TEST(OrenNayarModel, IsAtMostWhatCullingByFogTakesItFor) {
-  for (double n = 0; n < 100; n = 1.1 * n + 0.1)
-    for (double a = 0; a < 1.57; a += 0.05)
-      for (double b = 0; b < 1.57; b += 0.05)
-        EXPECT_LE(orenNayar({kUp, leaning(a), leaning(b)}, n), 1.13) << n << ", " << a << ", " << b;
+// Also at a glance, where Cook and Torrance's highlight is brightest, and with the light almost behind. Each
+// bound of diffuse light is reached by some surface.
+TEST(Models, StayWithinTheBoundsThatTheyState) {
+  std::vector<glm::dvec3> directions;
+  for (const double angle : {0.0, 0.02, 0.1, 0.3, 0.6, 0.9, 1.2, 1.4, 1.5, 1.55, 1.57})
+    for (const double around : {0.0, 0.1, 1.0, 2.0, 3.0, std::numbers::pi})
+      directions.push_back(leaning(angle, around));
+  for (const Model model : kAllModels) {
+    double brightest = 0;
+    for (const double n : {0.0, 0.5, 1.0, 3.0, 8.0, 30.0, 100.0, 1e4, 1e6})
+      for (const double f0 : {0.0, 0.004, 0.02, 0.3, 1.0, 2.0})
+        for (const glm::dvec3& to_light : directions)
+          for (const glm::dvec3& to_eye : directions) {
+            const Reflected seen = reflectedLight(model, {kUp, to_light, to_eye}, glm::dvec3(f0), n);
+            const ModelBounds most = modelBounds(model, f0, n);
+            // N·H rounds, which an exponent of 10⁶ makes 10⁶ times as much.
+            ASSERT_LE(seen.diffuse, most.diffuse + kRounding) << modelName(model) << " n " << n;
+            ASSERT_LE(seen.specular.x, most.specular * (1 + 1e6 * kRounding))
+                << modelName(model) << " n " << n << " f0 " << f0;
+            brightest = std::max(brightest, seen.diffuse / most.diffuse);
+          }
+    EXPECT_GT(brightest, 0.999) << modelName(model);
+  }
 }
 
 TEST(Models, OnlyToonAndOrenNayarChangeDiffuseLight) {
