@@ -22,7 +22,7 @@ class Signals : public ProgramTest {
                const std::string& before = "") {
     return runLine(folder,
                    fmt::format("{}(exec '" LUCIOLE_BINARY
-                               "' {} --log json 2>log) & until grep -q '\"{}\"' log; do sleep 0.01; done; "
+                               "' {} --log json 2>log) & until grep -q '\"{}\"' log || ! kill -0 $!; do sleep 0.01; done; "
                                "kill -{} $!; wait $!",
                                before, arguments, event, signal));
   }
