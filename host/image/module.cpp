@@ -70,16 +70,7 @@ std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int
   return functions().open_picture_file(path, width, height, channels, format, metadata, options);
 }
 
-std::vector<PicturePart> readParts(const std::string& path) {
-  const std::optional<Image> array = readNpy(path);
-  if (!array) return functions().read_parts(path);
-  const glm::ivec2 size(array->width, array->height);
-  return {{.name = "",
-           .size = size,
-           .picture_size = size,
-           .channels = array->channels,
-           .types = std::vector<std::string>(array->channels.size(), "float")}};
-}
+std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
 
 Texture readTexture(const std::string& path) {
   const TraceSpan span("read texture", {{"file", path}});
