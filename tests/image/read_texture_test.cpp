@@ -20,6 +20,8 @@
 namespace luciole {
 namespace {
 
+using test::pngChunk;
+using test::pngFile;
 using test::TemporaryFolder;
 using Texel = std::array<std::uint16_t, 4>;
 

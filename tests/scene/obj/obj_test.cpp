@@ -325,9 +325,10 @@ TEST_F(ObjLoader, OptionsOfMapsAreReadByTheirArguments) {
       "-bm 2",           "-boost 1",       "-texres 64", "-imfchan m",      "-type sphere",
       "-s 1 1 1 -o 0 0", "-clamp on -s 2", "-S 2\t2",    "-colorspace sRGB"};
   for (const std::string& those : options) {
-    for (const std::string& statement :
-         {"map_Kd " + those + " a b.png", "map_Kd\t" + those + "\ta b.png \t", "map_kd a b.png " + those,
-          "MAP_KD " + those + " a b.png # a comment"}) {
+    const std::vector<std::string> statements{"map_Kd " + those + " a b.png",
+                                              "map_Kd\t" + those + "\ta b.png \t", "map_kd a b.png " + those,
+                                              "MAP_KD " + those + " a b.png # a comment"};
+    for (const std::string& statement : statements) {
       write("m.mtl", "newmtl x\n" + statement + "\n");
       const Scene scene = load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle);
       EXPECT_EQ(scene.missing_textures, std::vector<std::string>()) << statement;
