@@ -54,8 +54,8 @@ TEST_F(Info, FramesTogetherCostWhatEachDoesButForTheStart) {
   EXPECT_GT(job["milliseconds"], std::max(first, second));
   EXPECT_EQ(job["slowest_frame"], first < second ? 80 : 40);
   EXPECT_EQ(job["slowest_milliseconds"], std::max(first, second));
-  EXPECT_EQ(job["memory_bytes"],
-            std::max<double>(one["render"]["memory_bytes"], other["render"]["memory_bytes"]));
+  EXPECT_EQ(job["memory_bytes"], std::max(one["render"]["memory_bytes"].get<double>(),
+                                          other["render"]["memory_bytes"].get<double>()));
   EXPECT_THAT(succeed("luciole info " + scene + " --frames 1-9"), HasSubstr("all frames   9 frames: about "));
   refuse("luciole info " + scene + " --frames x", 2, "--frames x");
 }
