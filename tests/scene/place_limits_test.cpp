@@ -75,7 +75,7 @@ TEST_F(PlaceLimits, HoldForLightsCamerasAndPosesToo) {
   file.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
   EXPECT_THAT(ofFile(file), HasSubstr("camera 0 '': a coordinate of 2e+18"));
   file.root["nodes"][1] = {{"camera", 0}, {"scale", {1e200, 1e200, 1e200}}};
-  EXPECT_THAT(error(file), HasSubstr("its scale leaves a camera no direction"));
+  EXPECT_EQ(ofFile(file), "no error") << "left out with a warning, for its scale leaves it no direction";
   file.root["nodes"][1].erase("scale");
   file.root["cameras"] = {
       {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1e30}, {"znear", 1}, {"zfar", 2}}}}};

@@ -130,7 +130,7 @@ void findBuffer(std::size_t index, std::string_view binary, const SearchFolders&
   GltfBuffer& buffer = model.file.buffers[index];
   const std::string place = fmt::format("buffers[{}]", index);
   if (!buffer.uri) {
-    buffer.bytes = asBytes(binary);
+    if (index == 0) buffer.bytes = asBytes(binary);  // no other buffer may be the GLB's
     // Without data there may be a buffer that an extension gives a meaning. Who reads from it is told.
     if (buffer.bytes.empty()) return;
   } else if (isData(*buffer.uri)) {
