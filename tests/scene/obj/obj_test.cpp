@@ -664,7 +664,7 @@ TEST(Triangulate, FacesOfManyCornersAreCutInTime) {
   // Whole numbers below 2^53, so nothing is rounded.
   EXPECT_EQ(area, 100.0 * (kCorners / 4) + 2.0 * (kCorners / 4));
   std::vector<glm::dvec3> tangled;
-  for (int i = 0; i < kCorners; ++i) tangled.emplace_back(i * 7919 % 1009, i * 104729 % 1013, 0);
+  for (std::int64_t i = 0; i < kCorners; ++i) tangled.emplace_back(i * 7919 % 1009, i * 104729 % 1013, 0);
   EXPECT_EQ(triangulate(tangled).size(), std::size_t(kCorners - 2));
 }
 
