@@ -491,10 +491,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   command->callback([&context, options] {
     options->frames = framesOf(options->frames, options->orbit);
     const FrameChoice choice = chosenFrames(options->frames);
+    if (choice.is_list && !options->sweeps.empty())
+      throw InputError("--sweep: makes pictures of one frame, such as --frames 7");
     if (!choice.is_list) useFrame(*options, "render");
     checkOptions(*options, choice);
     if (!options->sweeps.empty()) {
-      if (choice.is_list) throw InputError("--sweep: makes pictures of one frame, such as --frames 7");
       readSweeps(options->sweeps);  // before a device is opened
       Stats stats;
       stats.command = context.command_line;
