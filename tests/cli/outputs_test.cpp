@@ -75,7 +75,7 @@ TEST_F(Outputs, FormatSaysWhatANameDoesNot) {
       "nothing");
   refuse("luciole render scene.json --quiet -o nothing", 2, "--format");
   refuse("luciole render scene.json --quiet --format pgn -o nothing", 2, "pgn");
-  refuse("luciole render scene.json --quiet --format png --aov normal -o out.exr", 2, "--aov");
+  refuse("luciole render scene.json --quiet --format png --aov normal,depth -o out.exr", 2, "--aov");
   refuse("luciole gbuffer scene.json --quiet --format png -o out.exr", 2, "expected .exr");
   refuse("ln -s /dev/full full && luciole render scene.json --quiet --format png -o full", 3,
          "No space left");
