@@ -440,7 +440,7 @@ MUTANTS = {
     ],
     "find_needed.cl": [
         Mutant("smallest_lane(mask ? y : none)", "smallest_lane(mask ? x : none)"),
-        Mutant("y * (last + 1) + x", "y * last + x"),
+        Mutant("row * (last + 1) + column", "row * last + column"),
         Mutant("depth >= last_noted->depth", "depth <= last_noted->depth"),
         Mutant("(int)face->bins - 1", "(int)face->bins - 2"),
         Mutant("receives &= point.inside", "receives |= point.inside",
