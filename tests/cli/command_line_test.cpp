@@ -171,7 +171,7 @@ TEST_F(CommandLine, AovsBecomeLayers) {
 }
 
 TEST_F(CommandLine, AovsNeedAFormatWithLayers) {
-  refuse("luciole render scene.json --aov normal -o out.png", 2, "--aov");
+  refuse("luciole render scene.json --aov normal,depth -o out.png", 2, "--aov");
 }
 
 TEST_F(CommandLine, StatsNameEveryStageAndCount) {
