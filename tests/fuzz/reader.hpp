@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "gbuffer/gbuffer_input.hpp"
+#include "image/image.hpp"
 #include "image/light_mixer.hpp"
 #include "load/load_scene.hpp"
 #include "scale/scale_files.hpp"
@@ -16,6 +17,7 @@
 #include "scale/scale_plot.hpp"
 #include "scale/scale_summary.hpp"
 #include "scale/scale_table.hpp"
+#include "scene/json/light_list.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/obj/mtl.hpp"
 #include "scene/pose.hpp"
@@ -84,8 +86,15 @@ inline void readStrangersGroups(const std::string& path) {
   smallGroups(path, groups, 1000);
 }
 
+/// Lights, a line each.
+inline void readStrangersLights(const std::string& path) {
+  Scene scene;
+  scene.lights = readLightList(path);
+  if (const std::string fault = sceneFault(scene); !fault.empty()) throw std::logic_error(fault);
+}
+
 /// Reads a stranger's file as its extension says: .exr is a G-buffer and a picture of groups of lights, .mtl
-/// materials, .jsonl the log of an experiment, all else a scene. A file that is refused in one line, or
+/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, all else a scene. A file that is refused in one line, or
 /// doesn't fit the machine, has been dealt with; anything else that goes wrong gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
@@ -99,6 +108,10 @@ inline void readStrangersFile(const std::string& path) {
       readStrangersMaterials(path);
     } else if (path.ends_with(".jsonl")) {
       readStrangersLog(path);
+    } else if (path.ends_with(".csv")) {
+      readStrangersLights(path);
+    } else if (path.ends_with(".npy")) {
+      readImage(path);
     } else {
       readStrangersScene(path);
     }

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kernels/probe.hpp"
@@ -119,8 +121,10 @@ const std::map<std::string, std::regex> kAlsoFixed{{"fma_lanes", std::regex("llv
 /// Of a program in LLVM's text what isn't fixed, a line each: the function, and what it does.
 std::set<std::string> looseArithmetic(const std::string& program) {
   const std::regex defined("define .*@([\\w.]+)\\(.*"), called(".*\\bcall .*@([\\w.]+)\\(.*");
-  const std::regex inexact(".* (fdiv|frem) (<|float|double).*"),
-      loosened(".* (fast|nnan|ninf|nsz|arcp|contract|afn|reassoc) .*"), indirect(".*\\bcall [^@]*%\\w+\\(.*");
+  const std::regex indirect(".*\\bcall [^@]*%\\w+\\(.*");
+  // Quotients, and flags that loosen what is computed.
+  const std::array inexact{" fdiv ", " frem ", " fast ",     " nnan ", " ninf ",
+                           " nsz ",  " arcp ", " contract ", " afn ",  " reassoc "};
   std::set<std::string> own, loose;
   std::istringstream first(program), second(program);
   std::smatch match;
@@ -135,13 +139,15 @@ std::set<std::string> looseArithmetic(const std::string& program) {
       if (also != kAlsoFixed.end() && std::regex_match(what, also->second)) return;
       loose.insert(function + ": " + what);
     };
-    if (line.find("call ") != std::string::npos && std::regex_match(line, match, called)) {
-      if (!own.count(match[1]) && !std::regex_match(match[1].str(), kFixedFunctions)) judge(match[1]);
-    } else if (std::regex_match(line, match, inexact) || std::regex_match(line, match, loosened)) {
-      judge(match[1]);
-    } else if (std::regex_match(line, indirect)) {
-      judge("a pointer to a function");
+    if (line.find("call ") != std::string::npos) {
+      if (std::regex_match(line, match, called)) {
+        if (!own.count(match[1]) && !std::regex_match(match[1].str(), kFixedFunctions)) judge(match[1]);
+      } else if (std::regex_match(line, indirect)) {
+        judge("a pointer to a function");
+      }
     }
+    for (const std::string_view word : inexact)
+      if (line.find(word) != std::string::npos) judge(std::string(word.substr(1, word.size() - 2)));
   }
   return loose;
 }
