@@ -9,7 +9,7 @@
 namespace luciole {
 namespace {
 
-bool isBlank(char c) { return c == ' ' || c == '\t'; }
+bool isBlank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
 /// Whether a decimal number that no double can hold is too near to 0, rather than too large: by the power of
 /// ten of its first digit above 0.
@@ -58,7 +58,11 @@ std::string_view takeLine(std::string_view& rest) {
 
 std::string_view takeStatement(std::string_view& rest, std::string& joined, int& lines) {
   std::string_view statement = takeLine(rest);
-  for (lines = 1; statement.ends_with('\\') && !statement.starts_with('#'); ++lines) {
+  // The path that a comment ends with may end with a backslash, which continues nothing.
+  const auto goes_on = [&] {
+    return statement.ends_with('\\') && nameWithoutComment(statement, true).size() == statement.size();
+  };
+  for (lines = 1; goes_on(); ++lines) {
     if (lines == 1) joined = statement;
     joined.back() = ' ';
     joined += takeLine(rest);
@@ -73,10 +77,11 @@ std::string_view withoutComment(std::string_view words) {
   return words;
 }
 
-std::string_view nameWithoutComment(std::string_view name) {
+std::string_view nameWithoutComment(std::string_view name, bool any_word) {
   for (std::size_t at = name.find('#'); at != name.npos; at = name.find('#', at + 1)) {
     const bool begins = at == 0 || isBlank(name[at - 1]);
-    if (begins && (at + 1 == name.size() || isBlank(name[at + 1]))) return trimmed(name.substr(0, at));
+    const bool ends = any_word || at + 1 == name.size() || isBlank(name[at + 1]);
+    if (begins && ends) return trimmed(name.substr(0, at));
   }
   return name;
 }
