@@ -212,7 +212,7 @@ class Ring {
     corner.is_ear = turns_left && isEmpty(triangle);
     if (corner.is_ear)
       ears_.push(number);
-    else if (isInLine(triangle))
+    else if (knows_in_line_ && isInLine(triangle))
       in_line_.push_back(number);
   }
 
@@ -249,6 +249,7 @@ class Ring {
 
   /// -1: none.
   int takeInLine() {
+    if (!std::exchange(knows_in_line_, true)) lookAtAll();
     while (!in_line_.empty()) {
       const int corner = in_line_.back();
       in_line_.pop_back();
@@ -265,6 +266,7 @@ class Ring {
   ReflexGrid grid_;
   std::vector<Corner> corners_;
   std::priority_queue<int, std::vector<int>, std::greater<>> ears_;  ///< some are no ears any more
+  bool knows_in_line_ = false;                                       ///< few polygons need to
   std::vector<int> in_line_;  ///< those that were no ears; some are in line no more, or cut off
   double tests_left_;         ///< of points in triangles; afterwards all corners that turn left are ears
   /// Of corners where none is known to be an ear: before those in line are cut off, and afterwards.

@@ -15,7 +15,7 @@ bool isBlank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 /// ten of its first digit above 0.
 bool isTooSmall(std::string_view word) {
   const std::size_t e = word.find_first_of("eE");
-  std::int64_t power = 0;
+  int power = 0;
   if (e != word.npos) {
     std::string_view digits = word.substr(e + 1);
     if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -57,15 +57,16 @@ std::string_view takeLine(std::string_view& rest) {
 }
 
 std::string_view takeStatement(std::string_view& rest, std::string& joined, int& lines) {
-  std::string_view statement = takeLine(rest);
-  // The path that a comment ends with may end with a backslash, which continues nothing.
+  std::string_view line = takeLine(rest), statement = line;
+  // A comment may end with the backslash of a path, which continues nothing.
   const auto goes_on = [&] {
-    return statement.ends_with('\\') && nameWithoutComment(statement, true).size() == statement.size();
+    return line.ends_with('\\') && nameWithoutComment(line, true).size() == line.size();
   };
   for (lines = 1; goes_on(); ++lines) {
-    if (lines == 1) joined = statement;
+    if (lines == 1) joined = line;
     joined.back() = ' ';
-    joined += takeLine(rest);
+    line = takeLine(rest);
+    joined += line;
     statement = joined;
   }
   return statement;
