@@ -29,6 +29,8 @@ namespace {
 
 /// A limit of vertex colours, far above any that is meant.
 constexpr double kMostColor = 1e6;
+/// An sRGB value above which colours are hardly meant so; linear it is 900 times white.
+constexpr double kMostSrgb = 16;
 
 struct Triangle {
   std::array<ObjCorner, 3> corners;
@@ -319,7 +321,7 @@ std::vector<glm::vec4> linearColors(const std::string& path, const ObjFile& file
     warnings.push_back(
         {fmt::format("{}: has vertex colours up to {}, expected 0 to 1; taken as 0 to 255", path, most),
          "vertex colours above 1", true});
-  else if (most > 1)
+  else if (most > kMostSrgb)
     warnings.push_back(
         {fmt::format("{}: has vertex colours up to {}, expected 0 to 1; drawn brighter than white", path,
                      most),

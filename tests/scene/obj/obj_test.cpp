@@ -193,9 +193,11 @@ TEST_F(ObjLoader, VertexColoursInBytesAreTakenAsSuch) {
   EXPECT_TRUE(scene.warnings[0].repaired);
 }
 
-TEST_F(ObjLoader, VertexColoursBrighterThanWhiteAreTold) {
-  const Scene scene = load("v 0 0 0 1.5 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 1 1 1\nf 1 2 3\n");
-  EXPECT_THAT(test::textsOf(scene.warnings), testing::ElementsAre(HasSubstr("has vertex colours up to 1.5")));
+TEST_F(ObjLoader, VertexColoursFarBrighterThanWhiteAreTold) {
+  EXPECT_EQ(load("v 0 0 0 1.5 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 1 1 1\nf 1 2 3\n").warnings.size(), 0u);
+  const Scene scene = load("v 0 0 0 65535 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 1 1 1\nf 1 2 3\n");
+  EXPECT_THAT(test::textsOf(scene.warnings),
+              testing::ElementsAre(HasSubstr("has vertex colours up to 65535")));
   EXPECT_FALSE(scene.warnings[0].repaired);
 }
 
