@@ -46,7 +46,8 @@ std::string forMessage(std::string_view words) {
   while (!words.empty()) {
     const std::string character = utf8Of(words.substr(0, std::max<std::size_t>(utf8Length(words), 1)));
     if (line.size() + character.size() > kLongest) break;
-    line += character;
+    // U+0080 to U+009F are control characters, too.
+    line += character.size() == 2 && character < "\xc2\xa0" ? " " : character;
     words.remove_prefix(std::max<std::size_t>(utf8Length(words), 1));
   }
   for (char& c : line) {

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "base/picture_size.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "gbuffer/camera_header.hpp"
@@ -70,6 +71,11 @@ class Conversion {
     const FoundLayer& main =
         found_[Role::kPosition].isThere() ? found_[Role::kPosition] : found_[Role::kDepth];
     part_ = reader_.parts()[std::size_t(main.part)];
+    if (glm::any(glm::greaterThan(glm::abs(part_.crop_origin), glm::ivec2(kLargestSide))))
+      throw InputError(
+          fmt::format("{}: the data window begins ({}, {}) pixels from the display window, expected {} "
+                      "at most",
+                      path, part_.crop_origin.x, part_.crop_origin.y, kLargestSide));
     // Some writers put what is common into the first part alone.
     for (const PicturePart& part : reader_.parts()) {
       ExrAttributes& all = part_.attributes;

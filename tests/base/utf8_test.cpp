@@ -42,5 +42,11 @@ TEST(Utf8, MessagesAreCutBetweenCharacters) {
   EXPECT_EQ(forMessage("gr\xfcn\n"), "gr\xc3\xbcn");
 }
 
+TEST(Utf8, MessagesHoldNoControlCharacters) {
+  EXPECT_EQ(forMessage("a\x1b[1mb\x7f\x9b"
+                       "1m\xc2\x85\xc2\xa0z"),
+            "a [1mb  1m \xc2\xa0z");
+}
+
 }  // namespace
 }  // namespace luciole

@@ -164,6 +164,18 @@ TEST_F(GBufferInputTest, ADataWindowInsideTheDisplayWindowIsACrop) {
   EXPECT_THAT(input.notes, Each(Not(HasSubstr("elsewhere"))));
 }
 
+TEST_F(GBufferInputTest, ADataWindowFarFromTheDisplayWindowIsRefused) {
+  ForeignPart part =
+      surfaces([](int, int) { return glm::vec3(0, 0, -3); }, [](int, int) { return glm::vec3(0, 0, 1); });
+  part.header = [](OIIO::ImageSpec& spec) {
+    spec.full_x = 1'000'000;
+    spec.full_width = spec.full_height = kWidth;
+  };
+  write({part}, 30, 20);
+  expectError(
+      "in.exr: the data window begins (-1000000, 0) pixels from the display window, expected 32768 at most");
+}
+
 TEST_F(GBufferInputTest, HolesMayBeZeroNaNInfiniteOrFarAndAreTold) {
   for (const auto& [hole, word] : {std::pair(0.0f, "(zero)"), {kNaN, "(NaN)"}, {INFINITY, "(infinite)"}}) {
     write(

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
@@ -72,12 +73,9 @@ bool isOneOf(const std::string& keyword, const std::string_view (&list)[kCount])
 
 MtlSource readStatements(const MtlEntry& entry, MtlReading& reading) {
   MtlSource source{entry, reading};
-  std::string_view rest = entry.statements;
-  std::string joined;
-  for (int lines = 0; !rest.empty();) {
-    std::string_view words = takeStatement(rest, joined, lines);
+  for (std::string_view rest = entry.statements; !rest.empty();) {
+    std::string_view words = takeLine(rest);
     const std::string_view keyword = takeWord(words);
-    if (keyword.empty() || keyword.starts_with('#')) continue;
     const std::string small = inSmallLetters(keyword);
     const bool is_ignored = isOneOf(small, kIgnoredMaps);
     if (is_ignored)
@@ -273,8 +271,11 @@ std::optional<std::string> findPicture(const MtlSource& source, const std::strin
   if (!name.starts_with('-')) return std::nullopt;
   std::string_view rest = name;
   const std::string_view option = takeWord(rest);
+  MapOptions others = options;
   while (!trimmed(rest).empty()) {
+    takeOptions(source, keyword, true, rest, others);
     if (const auto path = findSpelling(trimmed(rest), where)) {
+      options = others;
       source.ignore("unknown option",
                     fmt::format("{}: the option {} is not known; left out", keyword, forMessage(option)));
       return path;
@@ -339,9 +340,9 @@ void passOpacity(const MtlSource& source) {
     std::string_view rest = withoutComment(statement->words);
     std::string_view word = takeWord(rest);
     if (isKeyword(word, "-halo")) word = takeWord(rest);
-    if (finiteNumber(word).value_or(opaque) != opaque)
+    if (finiteNumber(word) != opaque)
       source.ignore(name, fmt::format("{} {} is ignored: surfaces are opaque but for their maps' holes",
-                                      statement->keyword, word));
+                                      statement->keyword, forMessage(word)));
   }
 }
 
@@ -353,13 +354,15 @@ std::vector<std::string> spellings(std::string_view words) {
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(std::move(name));
   };
-  const std::string_view bare = nameWithoutComment(words);
-  add(std::string(bare));
-  add(std::string(withoutQuotes(bare)));
-  std::string unescaped;
-  for (std::size_t i = 0; i < bare.size(); ++i)
-    if (bare.substr(i, 2) != "\\ ") unescaped += bare[i];
-  add(std::move(unescaped));
+  for (const bool any_word : {false, true}) {
+    const std::string_view bare = nameWithoutComment(words, any_word);
+    add(std::string(bare));
+    add(std::string(withoutQuotes(bare)));
+    std::string unescaped;
+    for (std::size_t i = 0; i < bare.size(); ++i)
+      if (bare.substr(i, 2) != "\\ ") unescaped += bare[i];
+    add(std::move(unescaped));
+  }
   return names;
 }
 
@@ -372,14 +375,22 @@ std::vector<MtlEntry> readMtl(const std::string& path, std::vector<Warning>& war
     return entries;
   }
   std::string_view rest = withoutMark(text);
-  while (!rest.empty()) {
-    const std::string_view line = takeLine(rest);
-    std::string_view words = line;
-    if (isKeyword(takeWord(words), "newmtl")) {
+  std::string joined;
+  bool has_stray = false;
+  for (int line = 1, lines = 0; !rest.empty(); line += lines) {
+    const std::string_view statement = takeStatement(rest, joined, lines);
+    std::string_view words = statement;
+    const std::string_view keyword = takeWord(words);
+    if (keyword.empty() || keyword.starts_with('#')) continue;
+    if (isKeyword(keyword, "newmtl")) {
       entries.push_back({utf8Of(trimmed(words)), path, ""});
-    } else if (!entries.empty() && !line.empty()) {
-      entries.back().statements += line;
+    } else if (!entries.empty()) {
+      entries.back().statements += statement;
       entries.back().statements += '\n';
+    } else if (!std::exchange(has_stray, true)) {
+      warnings.push_back({fmt::format("{}: line {}: '{}' stands before the first newmtl; left out", path,
+                                      line, forMessage(keyword)),
+                          "statement of no material", true});
     }
   }
   return entries;

@@ -14,12 +14,12 @@ namespace luciole {
 struct MtlEntry {
   std::string name;             ///< UTF-8
   std::string file;             ///< the .mtl file's path
-  std::string statements;       ///< the lines after its newmtl
+  std::string statements;       ///< those after its newmtl, one a line, without comments' lines
   bool is_given_twice = false;  ///< there is another of its name with other statements, which doesn't count
 };
 
-/// The materials of a .mtl file in order. Of a file that is no text there are none, and a warning. Throws
-/// InputError.
+/// The materials of a .mtl file in order. Of a file that is no text there are none, and a warning, as for
+/// statements before the first material. Throws InputError.
 std::vector<MtlEntry> readMtl(const std::string& path, std::vector<Warning>& warnings);
 
 /// Where a map lies on a surface, by MTL's options -s and -o: scale · uv + offset, v growing upwards.
@@ -62,7 +62,8 @@ MtlMaterial readMaterial(const MtlEntry& entry, MtlReading& reading);
 void cutHoles(Material& material, const Scene& scene);
 
 /// The names that a statement's words may mean, the likeliest first: as they are, without a comment behind
-/// them, without quotes, with blanks for backslashes before blanks.
+/// them, without quotes, with blanks for backslashes before blanks; all of it again without what may be a
+/// comment.
 std::vector<std::string> spellings(std::string_view words);
 
 }  // namespace luciole

@@ -29,6 +29,8 @@ namespace {
 
 /// A limit of vertex colours, far above any that is meant.
 constexpr double kMostColor = 1e6;
+/// An sRGB value above which colours are hardly meant so; linear it is 900 times white.
+constexpr double kMostSrgb = 16;
 
 struct Triangle {
   std::array<ObjCorner, 3> corners;
@@ -96,6 +98,7 @@ std::vector<std::string> materialPaths(const SearchFolders& where, const std::st
     std::string_view rest = name;
     if (name.find(' ') != name.npos)
       for (std::string_view word; !(word = takeWord(rest)).empty();) any_word |= find(std::string(word));
+    if (name.starts_with('#')) break;  // a comment
     if (!any_word) miss(name);
   }
   return paths;
@@ -123,7 +126,8 @@ std::vector<MtlEntry> readEntries(const std::string& path, const std::vector<std
   return entries;
 }
 
-/// Finds the entries of names. A comment behind a name counts only where there is a material of all of it.
+/// Finds the entries of names. What may be quotes or a comment is part of a name where there is a material of
+/// all of it.
 class EntryNames {
  public:
   /// Of entries with one name the first counts.
@@ -134,7 +138,8 @@ class EntryNames {
         entries[first->second].is_given_twice = true;
     }
     for (const MtlEntry& entry : entries)
-      indices_.emplace(nameWithoutComment(entry.name), static_cast<int>(&entry - entries.data()));
+      for (std::string& spelling : spellings(entry.name))
+        indices_.emplace(std::move(spelling), static_cast<int>(&entry - entries.data()));
   }
 
   /// -1: there is none.
@@ -202,6 +207,9 @@ Parts partsOf(const std::string& path, const ObjFile& file, std::vector<Warning>
   Parts objects = partsBy(file, is_used, true);
   if (objects.names.size() == 1) {
     Parts groups = partsBy(file, is_used, false);
+    // Faces before the first g are the object's.
+    for (std::string& name : groups.names)
+      if (name.empty()) name = objects.names[0];
     if (groups.names.size() > 1 || objects.names[0].empty()) objects = std::move(groups);
   }
   if (objects.names.size() <= kMostParts) return objects;
@@ -313,6 +321,11 @@ std::vector<glm::vec4> linearColors(const std::string& path, const ObjFile& file
     warnings.push_back(
         {fmt::format("{}: has vertex colours up to {}, expected 0 to 1; taken as 0 to 255", path, most),
          "vertex colours above 1", true});
+  else if (most > kMostSrgb)
+    warnings.push_back(
+        {fmt::format("{}: has vertex colours up to {}, expected 0 to 1; drawn brighter than white", path,
+                     most),
+         "bright vertex colours"});
   const double scale = are_bytes ? 255 : 1;
   std::vector<glm::vec4> linear(file.colors.size(), glm::vec4(1));
   for (std::size_t i = 0; i < linear.size(); ++i)
@@ -459,7 +472,7 @@ std::uint32_t loadObj(const std::string& path, Scene& scene, const std::vector<s
   ObjFile file = readObjFile(path);
   if (file.faces.empty())
     throw InputError(fmt::format("{}: has {}, expected an OBJ file with at least one", path,
-                                 file.has_lines ? "points or lines, but no faces" : "no faces"));
+                                 file.has_lines ? "points, lines or curves, but no faces" : "no faces"));
   scene.warnings.insert(scene.warnings.end(), file.warnings.begin(), file.warnings.end());
   std::vector<MtlEntry> entries = readEntries(path, file.material_files, search, scene);
   const std::vector<int> entry_of_material = findEntries(path, file, entries, scene.warnings);

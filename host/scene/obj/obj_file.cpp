@@ -21,18 +21,30 @@
 namespace luciole {
 namespace {
 
-/// Faults that are repaired.
-enum Repair { kUvNoNumber, kNormalNoNumber, kColorNoNumber, kNoSuchUv, kNoSuchNormal, kFewCorners };
+/// What is repaired or left out.
+enum Repair {
+  kUvNoNumber,
+  kNormalNoNumber,
+  kColorNoNumber,
+  kNoSuchUv,
+  kNoSuchNormal,
+  kFewCorners,
+  kNoFace,
+  kUnknown
+};
 struct RepairWords {
   const char* kind;
   const char* outcome;
+  bool is_fault = true;  ///< of the file, rather than what isn't drawn
 };
 constexpr RepairWords kRepairs[] = {{"texture coordinate without number", "taken as 0"},
                                     {"normal without number", "taken from the faces"},
                                     {"vertex colour without number", "taken as white"},
                                     {"missing texture coordinate", "drawn without"},
                                     {"missing normal", "drawn without"},
-                                    {"face of few corners", "left out"}};
+                                    {"face of few corners", "left out"},
+                                    {"points, lines and curves", "left out", false},
+                                    {"unknown statement", "left out", false}};
 
 /// The faults of one kind: how many, and the first.
 struct Repaired {
@@ -229,15 +241,23 @@ void readPartName(Reader& reader, std::string_view rest, bool is_object) {
   reader.file.parts.push_back({std::move(name), is_object});
 }
 
-/// "on" is group 1; "off" and other words are no group.
+/// "on" is group 1; "off" and other words are no group. Numbers beyond `unsigned` are one group.
 void readSmoothing(Reader& reader, std::string_view group) {
   reader.has_smoothing = true;
   if (group.empty()) return;
   if (!reader.smoothing) reader.faces_before_smoothing = reader.file.faces.size();
-  unsigned number = group == "on";
-  std::from_chars(group.data(), group.data() + group.size(), number);
-  reader.smoothing = number;
+  unsigned number = isKeyword(group, "on");
+  const auto [end, error] = std::from_chars(group.data(), group.data() + group.size(), number);
+  reader.smoothing = error == std::errc::result_out_of_range ? ~0u : number;
 }
+
+/// Elements that are no faces, and statements that change nothing here: of curves, levels of detail and ways
+/// of drawing.
+constexpr std::string_view kNoFaces[] = {"p", "l", "curv", "curv2", "surf", "bsp", "bzp", "cdc", "cdp"};
+constexpr std::string_view kUnread[] = {"vp",       "cstype", "deg",        "bmat",     "step",  "parm",
+                                        "trim",     "hole",   "scrv",       "sp",       "end",   "con",
+                                        "mg",       "lod",    "res",        "bevel",    "ctech", "c_interp",
+                                        "d_interp", "stech",  "shadow_obj", "trace_obj"};
 
 /// Statements other than those of points and faces.
 void readOther(Reader& reader, std::string_view keyword, std::string_view rest) {
@@ -252,8 +272,14 @@ void readOther(Reader& reader, std::string_view keyword, std::string_view rest) 
   } else if (is("s")) {
     std::string_view words = withoutComment(rest);
     readSmoothing(reader, takeWord(words));
-  } else if (is("l") || is("p")) {
+  } else if (std::any_of(std::begin(kNoFaces), std::end(kNoFaces), is)) {
     file.has_lines = true;
+    reader.repair(kNoFace, [&] { return fmt::format("'{}' makes no face", keyword); });
+  } else if (!keyword.empty() && !keyword.starts_with('#') &&
+             std::none_of(std::begin(kUnread), std::end(kUnread), is)) {
+    reader.repair(kUnknown, [&] {
+      return fmt::format("'{}' is no statement that is known here", forMessage(keyword));
+    });
   }
 }
 
@@ -268,7 +294,7 @@ void readStatement(Reader& reader, std::string_view rest) {
     file.uvs.push_back(takeUv(reader, withoutComment(rest)));
   } else if (isKeyword(keyword, "vn")) {
     file.normals.push_back(takeNormal(reader, withoutComment(rest)));
-  } else if (isKeyword(keyword, "f")) {
+  } else if (isKeyword(keyword, "f") || isKeyword(keyword, "fo")) {
     readFace(reader, withoutComment(rest));
   } else {
     readOther(reader, keyword, rest);
@@ -368,7 +394,7 @@ std::vector<Warning> repairsOf(const std::string& path, const std::vector<Reader
     if (all.count == 0) continue;
     warnings.push_back({fmt::format("{}: line {}: {}; {}{}", path, all.line, all.what, kRepairs[kind].outcome,
                                     all.count > 1 ? fmt::format(", as {} more are", all.count - 1) : ""),
-                        kRepairs[kind].kind, true});
+                        kRepairs[kind].kind, kRepairs[kind].is_fault});
   }
   return warnings;
 }

@@ -42,17 +42,17 @@ struct ObjFile {
   std::vector<std::string> material_names;  ///< one a usemtl statement
   std::vector<std::string> material_files;  ///< arguments of the mtllib statements, as written
   std::vector<ObjPart> parts;               ///< one an o or g statement
-  bool has_lines = false;                   ///< or points, which are left out
-  std::vector<Warning> warnings;            ///< what was repaired: one of each kind
+  bool has_lines = false;                   ///< or points, curves or surfaces, which are left out
+  std::vector<Warning> warnings;            ///< what was repaired or left out: one of each kind
 };
 
-/// Reads the statements v, vt, vn, f, o, g, s, usemtl and mtllib in any case, and leaves out all others. In a
-/// file without any "s", all faces are of smoothing group 1. Texture coordinates that are no numbers are 0,
-/// such normals (0,0,0). A face that refers to a texture coordinate or a normal that isn't there has none,
-/// and one of fewer than 3 corners is left out; each kind of these with one warning of its first place and
-/// its number. Throws InputError naming the line where a position is no number or isn't there. O(bytes of
-/// the file), on all cores: parts of about `part_bytes` are read at the same time, and the result doesn't
-/// depend on it.
+/// Reads the statements v, vt, vn, f (fo), o, g, s, usemtl and mtllib in any case, and leaves out all others,
+/// with a warning for elements that are no faces and one for what is unknown. In a file without any "s", all
+/// faces are of smoothing group 1. Texture coordinates that are no numbers are 0, such normals (0,0,0). A
+/// face that refers to a texture coordinate or a normal that isn't there has none, and one of fewer than 3
+/// corners is left out; each kind of these with one warning of its first place and its number. Throws
+/// InputError naming the line where a position is no number or isn't there. O(bytes of the file), on all
+/// cores: parts of about `part_bytes` are read at the same time, and the result doesn't depend on it.
 ObjFile readObjFile(const std::string& path, std::size_t part_bytes = std::size_t(1) << 20);
 
 }  // namespace luciole

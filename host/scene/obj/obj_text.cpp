@@ -9,13 +9,13 @@
 namespace luciole {
 namespace {
 
-bool isBlank(char c) { return c == ' ' || c == '\t'; }
+bool isBlank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
 /// Whether a decimal number that no double can hold is too near to 0, rather than too large: by the power of
 /// ten of its first digit above 0.
 bool isTooSmall(std::string_view word) {
   const std::size_t e = word.find_first_of("eE");
-  std::int64_t power = 0;
+  int power = 0;
   if (e != word.npos) {
     std::string_view digits = word.substr(e + 1);
     if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -57,11 +57,16 @@ std::string_view takeLine(std::string_view& rest) {
 }
 
 std::string_view takeStatement(std::string_view& rest, std::string& joined, int& lines) {
-  std::string_view statement = takeLine(rest);
-  for (lines = 1; statement.ends_with('\\') && !statement.starts_with('#'); ++lines) {
-    if (lines == 1) joined = statement;
+  std::string_view line = takeLine(rest), statement = line;
+  // A comment may end with the backslash of a path, which continues nothing.
+  const auto goes_on = [&] {
+    return line.ends_with('\\') && nameWithoutComment(line, true).size() == line.size();
+  };
+  for (lines = 1; goes_on(); ++lines) {
+    if (lines == 1) joined = line;
     joined.back() = ' ';
-    joined += takeLine(rest);
+    line = takeLine(rest);
+    joined += line;
     statement = joined;
   }
   return statement;
@@ -73,10 +78,11 @@ std::string_view withoutComment(std::string_view words) {
   return words;
 }
 
-std::string_view nameWithoutComment(std::string_view name) {
+std::string_view nameWithoutComment(std::string_view name, bool any_word) {
   for (std::size_t at = name.find('#'); at != name.npos; at = name.find('#', at + 1)) {
     const bool begins = at == 0 || isBlank(name[at - 1]);
-    if (begins && (at + 1 == name.size() || isBlank(name[at + 1]))) return trimmed(name.substr(0, at));
+    const bool ends = any_word || at + 1 == name.size() || isBlank(name[at + 1]);
+    if (begins && ends) return trimmed(name.substr(0, at));
   }
   return name;
 }

@@ -7,7 +7,7 @@
 
 namespace luciole {
 
-/// Text of OBJ and MTL files: lines of words that blanks or tabs separate.
+/// Text of OBJ and MTL files: lines of words that blanks and control characters separate.
 
 /// The text without a UTF-8 byte order mark at its start.
 std::string_view withoutMark(std::string_view text);
@@ -20,15 +20,17 @@ std::string_view takeWord(std::string_view& rest);
 /// Takes the next line off the front of `rest`, trimmed. Lines end with \n, \r or \r\n.
 std::string_view takeLine(std::string_view& rest);
 
-/// Takes the next line off the front of `rest`, with those that a backslash at its end continues, and sets
-/// how many `lines` these were. `joined` keeps the characters of a statement of several lines.
+/// Takes the next line off the front of `rest`, with those that a backslash at its end continues, unless it
+/// ends a comment, and sets how many `lines` these were. `joined` keeps the characters of a statement of
+/// several lines.
 std::string_view takeStatement(std::string_view& rest, std::string& joined, int& lines);
 
 /// What stands before a comment. The # of "1.#IND", as some programs write what is no number, begins none.
 std::string_view withoutComment(std::string_view words);
 
-/// A name without a comment behind it: a # between blanks, or a blank and the end.
-std::string_view nameWithoutComment(std::string_view name);
+/// A name without a comment behind it: a # between blanks, or a blank and the end. With `any_word` a word
+/// that begins with # begins one, too, such as that of "wood #brown"; there are names like that.
+std::string_view nameWithoutComment(std::string_view name, bool any_word = false);
 
 /// A name without quotes around it.
 std::string_view withoutQuotes(std::string_view name);

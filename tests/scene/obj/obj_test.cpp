@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +13,6 @@
 
 #include "base/error.hpp"
 #include "image/image.hpp"
-#include "scene/triangulate.hpp"
 #include "scene/warning_texts.hpp"
 #include "shared_files.hpp"
 
@@ -124,39 +122,6 @@ TEST_F(ObjLoader, AConcaveQuadIsCutThroughItsNotch) {
     EXPECT_EQ(faceNormal(scene.meshes[0], t), glm::dvec3(0, 0, 1));
 }
 
-TEST(Triangulate, AStarOf255CornersIsCoveredOnceWherever) {
-  std::vector<glm::dvec3> star;
-  double expected = 0;
-  constexpr int kCorners = 254;
-  const double step = 2 * std::acos(-1.0) / kCorners;
-  for (int i = 0; i < kCorners; ++i) {
-    const double radius = i % 2 ? 1 : 3;
-    star.emplace_back(1000 + radius * std::cos(i * step), 2000 + radius * std::sin(i * step), -500);
-    expected += 0.5 * 1 * 3 * std::sin(step);
-  }
-  double sum = 0;
-  const auto triangles = triangulate(star);
-  EXPECT_EQ(triangles.size(), std::size_t{kCorners - 2});
-  for (const auto& [a, b, c] : triangles) {
-    const double twice = glm::cross(star[b] - star[a], star[c] - star[a]).z;
-    EXPECT_GT(twice, 0) << "turned over";
-    sum += twice / 2;
-  }
-  // Corners are rounded to 2^-42 (ulp/2 of 2000 is below it) and edges are at most 6 long: 254 areas, each
-  // off by less than 4 x 6 x 2^-42.
-  EXPECT_NEAR(sum, expected, kCorners * 4 * 6 * std::ldexp(1.0, -42));
-}
-
-TEST(Triangulate, AConvexPolygonBecomesAFan) {
-  using Fan = std::vector<std::array<int, 3>>;
-  EXPECT_EQ(triangulate({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), (Fan{{0, 1, 2}, {0, 2, 3}}));
-}
-
-TEST(Triangulate, PolygonsWithoutAreaStillEnd) {
-  EXPECT_EQ(triangulate(std::vector<glm::dvec3>(9, glm::dvec3(1, 2, 3))).size(), 7u);
-  EXPECT_EQ(triangulate({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u) << "a bow tie";
-}
-
 TEST_F(ObjLoader, MissingNormalsAreSmoothWithoutAnySmoothingStatement) {
   // A corner of a cube: at the corner three faces of 90 degrees each meet, whatever way they are cut.
   const std::string cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n";
@@ -180,6 +145,8 @@ TEST_F(ObjLoader, SmoothingGroupsKeepTheEdgesBetweenThem) {
   EXPECT_EQ(two.positions.size(), 6u);
   const Mesh on = load(roof + "s on\nf 1 3 2\nf 1 2 4\n").meshes[0];
   EXPECT_EQ(on.normals, one.normals);
+  for (const char* group : {"ON", "4294967296", "99999999999999999999"})
+    EXPECT_EQ(load(roof + "s " + group + "\nf 1 3 2\nf 1 2 4\n").meshes[0].normals, one.normals) << group;
   const Mesh off = load(roof + "s off\nf 1 3 2\nf 1 2 4\n").meshes[0];
   EXPECT_EQ(off.positions.size(), 6u);
   for (const glm::uvec3& t : off.triangles)
@@ -224,6 +191,14 @@ TEST_F(ObjLoader, VertexColoursInBytesAreTakenAsSuch) {
   EXPECT_EQ(scene.meshes[0].colors, (std::vector<glm::vec4>{{1, 0, 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}}));
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_TRUE(scene.warnings[0].repaired);
+}
+
+TEST_F(ObjLoader, VertexColoursFarBrighterThanWhiteAreTold) {
+  EXPECT_EQ(load("v 0 0 0 1.5 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 1 1 1\nf 1 2 3\n").warnings.size(), 0u);
+  const Scene scene = load("v 0 0 0 65535 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0 1 1 1\nf 1 2 3\n");
+  EXPECT_THAT(test::textsOf(scene.warnings),
+              testing::ElementsAre(HasSubstr("has vertex colours up to 65535")));
+  EXPECT_FALSE(scene.warnings[0].repaired);
 }
 
 TEST_F(ObjLoader, MaterialsAreRead) {
@@ -286,6 +261,10 @@ TEST_F(ObjLoader, ColoursInXyzAreConverted) {
 }
 
 TEST_F(ObjLoader, WhatIsNoNumberInAMaterialLeavesTheDefaultAndIsTold) {
+  for (const char* statement : {"d nan", "Tr x", "d"}) {
+    write("m.mtl", std::string("newmtl x\n") + statement + "\n");
+    EXPECT_EQ(load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle).warnings.size(), 1u) << statement;
+  }
   for (const char* statement : {"Kd nan 0 0", "Kd inf", "Kd red", "Kd 0.5 0,5 0.5", "Kd", "Ns nan", "Ns x",
                                 "Ke 1e999", "illum two", "illum 99", "Kd xyz 1 x 1"}) {
     write("m.mtl", std::string("newmtl x\n") + statement + "\n");
@@ -315,6 +294,14 @@ TEST_F(ObjLoader, WhatIsIgnoredIsToldOnceAFile) {
   EXPECT_THAT(kinds, testing::UnorderedElementsAre("ignored -mm", "ignored -texres", "ignored map_ks",
                                                    "ignored kd spectral", "ignored d", "ignored tr",
                                                    "ignored unknown statement"));
+}
+
+TEST_F(ObjLoader, StatementsBeforeTheFirstMaterialAreTold) {
+  write("m.mtl", "# a comment\nKd 1 0 0\nNs 3\nnewmtl x\nKd 0 1 0\n");
+  const Scene scene = load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle);
+  EXPECT_EQ(scene.materials.at(0).diffuse, glm::vec3(0, 1, 0));
+  EXPECT_THAT(test::textsOf(scene.warnings),
+              testing::ElementsAre(folder / "m.mtl: line 2: 'Kd' stands before the first newmtl; left out"));
 }
 
 TEST_F(ObjLoader, OptionsOfMapsAreReadByTheirArguments) {
@@ -360,6 +347,19 @@ TEST_F(ObjLoader, ScaleAndOffsetOfEachMapMoveItsTextureCoordinates) {
   EXPECT_EQ(mesh.emission_uvs, with({{0, 0.75f}, {1, 0.75f}, {0, -0.25f}}));
   EXPECT_EQ(mesh.normal_uvs, with({{0, 1}, {3, 1}, {0, 0}}));
   EXPECT_EQ(mesh.lightmap_uvs, with(plain));
+}
+
+TEST_F(ObjLoader, OptionsBehindAnUnknownOneAreRead) {
+  writePicture("a.png", {1, 0, 0});
+  for (const char* options :
+       {"-new 1 -s 2 2 1", "-new -s 2 2", "-s 2 2 -new on -cc off", "-new 1 2 3 -s 2 2 1 -bm 1"}) {
+    write("m.mtl", std::string("newmtl x\nmap_Kd ") + options + " a.png\n");
+    const Scene scene =
+        load("mtllib m.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/2 3/1\n");
+    EXPECT_EQ(scene.meshes[0].uvs[1], glm::vec2(2, -1)) << options;
+    EXPECT_THAT(test::textsOf(scene.warnings),
+                testing::ElementsAre(HasSubstr("map_Kd: the option -new is not known")));
+  }
 }
 
 TEST_F(ObjLoader, DissolveMakesNoHoles) {
@@ -453,7 +453,9 @@ TEST_F(ObjLoader, MaterialsThatAreNotFoundAreAllTold) {
 }
 
 TEST_F(ObjLoader, NamesAreFoundThroughCommentsQuotesAndPathsOfOtherMachines) {
-  write("m.mtl", "newmtl red\nKd 1 0 0\nnewmtl green # not red\nKd 0 1 0\nnewmtl blue #1\nKd 0 0 1\n");
+  write("m.mtl",
+        "newmtl red\nKd 1 0 0\nnewmtl green # not red\nKd 0 1 0\nnewmtl blue #1\nKd 0 0 1\nnewmtl "
+        "\"grey\"\nKd 0.5\n");
   write("my file.mtl", "newmtl white\nKd 1 1 1\n");
   std::filesystem::create_directory(folder / "other");
   write("other/far.mtl", "newmtl black\nKd 0 0 0\n");
@@ -470,6 +472,10 @@ TEST_F(ObjLoader, NamesAreFoundThroughCommentsQuotesAndPathsOfOtherMachines) {
   EXPECT_EQ(diffuse("m.mtl", "green # not red"), glm::vec3(0, 1, 0));
   EXPECT_EQ(diffuse("m.mtl", "blue #1"), glm::vec3(0, 0, 1));
   EXPECT_EQ(diffuse("\"m.mtl\"", "red"), glm::vec3(1, 0, 0));
+  EXPECT_EQ(diffuse("m.mtl", "red #a comment"), glm::vec3(1, 0, 0));
+  EXPECT_EQ(diffuse("m.mtl", "blue"), glm::vec3(0, 0, 1));
+  EXPECT_EQ(diffuse("m.mtl", "grey"), glm::vec3(0.5f));
+  EXPECT_EQ(diffuse("m.mtl #all materials", "red"), glm::vec3(1, 0, 0));
   EXPECT_EQ(diffuse("m.mtl # materials", "red"), glm::vec3(1, 0, 0));
   EXPECT_EQ(diffuse("\"my file.mtl\" \"m.mtl\"", "white"), glm::vec3(1));
   EXPECT_EQ(diffuse("my file.mtl m.mtl", "red"), glm::vec3(1, 0, 0));
@@ -485,6 +491,9 @@ TEST_F(ObjLoader, OfMaterialsOfOneNameTheFirstCountsAndThatIsTold) {
   EXPECT_EQ(scene.materials.at(0).diffuse, glm::vec3(1, 0, 0));
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_THAT(scene.warnings[0].text, HasSubstr("material 'x': is given again"));
+  write("m.mtl", "newmtl x\nKd 1 0 0\n# the next one\n\nnewmtl x\nKd 1 0 0\n");
+  EXPECT_EQ(load(std::string("mtllib m.mtl\nusemtl x\n") + kTriangle).warnings.size(), 0u)
+      << "the same again";
 }
 
 TEST_F(ObjLoader, FilesMayBeginWithAMarkAndEndLinesAnyWay) {
@@ -529,6 +538,7 @@ TEST_F(ObjLoader, NamedObjectsAreObjectsOfTheirOwn) {
   EXPECT_EQ(partsOf(load(v + "o a\ng x\n" + f + "g y\n" + f)), (Parts{{"x", 1}, {"y", 1}}))
       << "one object only";
   EXPECT_EQ(partsOf(load(v + "o a\ng x\n" + f)), (Parts{{"a", 1}}));
+  EXPECT_EQ(partsOf(load(v + "o a\n" + f + "g y\n" + f)), (Parts{{"a", 1}, {"y", 1}}));
 }
 
 TEST_F(ObjLoader, NormalsAreSmoothFromObjectToObject) {
@@ -601,13 +611,22 @@ TEST_F(ObjLoader, LinesMayBeContinuedCommentedAndEndAnyWay) {
   const Mesh expected = load(kTriangle).meshes[0];
   for (const char* text : {"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
                            "\xef\xbb\xbfv 0 0 0 # origin\n  v\t1 0 0\nv 0 1 0\nf 1 2 \\\n 3\n",
-                           "v 0 0 0\nv 1 0 0\nv +0 1e0 .0\nf 1// 2// 3//  \n"}) {
+                           "v 0 0 0\nv 1 0 0\nv +0 1e0 .0\nf 1// 2// 3//  \n",
+                           "v 0 0 0 # of C:\\\nv 1 0 0\nv 0 1 0\n# to C:\\\nf 1 2 3#\\\n",
+                           "v\v0\f0 0\nv\t1 0 0\n\fv 0 1 0\nfo 1 2 3\x1a"}) {
     EXPECT_EQ(load(text).meshes[0].positions, expected.positions) << text;
   }
 }
 
-TEST_F(ObjLoader, LinesPointsAndUnknownStatementsAreIgnored) {
-  EXPECT_EQ(load(std::string("p 0\nl 7 8\nvp 1\ncurv2 x\n") + kTriangle).meshes[0].triangles.size(), 1u);
+TEST_F(ObjLoader, WhatMakesNoFaceIsLeftOutAndTold) {
+  const Scene scene =
+      load(std::string("p 0\nl 7 8\nvp 1\ncstype bezier\ncurv2 x\nusemap wood\n") + kTriangle);
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);
+  EXPECT_THAT(
+      test::textsOf(scene.warnings),
+      testing::ElementsAre(folder / "a.obj: line 1: 'p' makes no face; left out, as 2 more are",
+                           folder / "a.obj: line 6: 'usemap' is no statement that is known here; left out"));
+  for (const Warning& warning : scene.warnings) EXPECT_FALSE(warning.repaired);
 }
 
 TEST_F(ObjLoader, MistakesNameTheLineInOneLine) {
@@ -628,44 +647,8 @@ TEST_F(ObjLoader, MistakesNameTheLineInOneLine) {
 }
 
 TEST_F(ObjLoader, AFileOfPointsAndLinesIsRefusedAsSuch) {
-  EXPECT_THAT(error("v 0 0 0\nv 1 0 0\np 1\nl 1 2\n"), HasSubstr("has points or lines, but no faces"));
-}
-
-/// A comb of teeth, whose corners between teeth turn right: 4 corners a tooth.
-std::vector<glm::dvec3> comb(int teeth) {
-  std::vector<glm::dvec3> polygon;
-  for (int i = 0; i < teeth; ++i) {
-    polygon.emplace_back(2 * i, 100, 0);
-    polygon.emplace_back(2 * i, 0, 0);
-    polygon.emplace_back(2 * i + 1, 0, 0);
-    polygon.emplace_back(2 * i + 1, 100, 0);
-  }
-  polygon.emplace_back(2 * teeth, 100, 0);
-  polygon.emplace_back(2 * teeth, 101, 0);
-  polygon.emplace_back(0, 101, 0);
-  return polygon;
-}
-
-TEST(Triangulate, FacesOfManyCornersAreCutInTime) {
-  std::vector<glm::dvec3> disc;
-  constexpr int kCorners = 100'000;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2 * std::acos(-1.0) * i / kCorners;
-    disc.emplace_back(std::cos(angle), std::sin(angle), 0);
-  }
-  EXPECT_EQ(triangulate(disc).size(), std::size_t(kCorners - 2));
-  const std::vector<glm::dvec3> teeth = comb(kCorners / 4);
-  double area = 0;
-  for (const auto& [a, b, c] : triangulate(teeth)) {
-    const double twice = glm::cross(teeth[b] - teeth[a], teeth[c] - teeth[a]).z;
-    ASSERT_GE(twice, 0) << "turned over";
-    area += twice / 2;
-  }
-  // Whole numbers below 2^53, so nothing is rounded.
-  EXPECT_EQ(area, 100.0 * (kCorners / 4) + 2.0 * (kCorners / 4));
-  std::vector<glm::dvec3> tangled;
-  for (std::int64_t i = 0; i < kCorners; ++i) tangled.emplace_back(i * 7919 % 1009, i * 104729 % 1013, 0);
-  EXPECT_EQ(triangulate(tangled).size(), std::size_t(kCorners - 2));
+  EXPECT_THAT(error("v 0 0 0\nv 1 0 0\np 1\nl 1 2\n"),
+              HasSubstr("has points, lines or curves, but no faces"));
 }
 
 TEST_F(ObjLoader, RealScenesHaveTheirTriangles) {
