@@ -57,10 +57,6 @@ const GltfJson& memberOf(const GltfJson& value, const char* name);
 /// A JSON value as an index; −1 where it isn't one that a file could have.
 int indexOf(const GltfJson& value);
 
-/// A member of one of a thing's extensions as a number; `otherwise` where there is none or it isn't a number.
-double extensionNumber(const GltfJson& extensions, const char* extension, const char* member,
-                       double otherwise);
-
 /// Adds a warning that the file breaks the format's rules: "path: place: what". `kind`: as Warning has it.
 void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
 
