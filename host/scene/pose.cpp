@@ -28,7 +28,7 @@ constexpr double kLeastSine = 1e-8;
 
 std::string cameraName(const Scene& scene, std::size_t index) {
   const std::string& name = scene.cameras[index].name;
-  return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", name);
+  return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", forMessage(name));
 }
 
 /// Whether a vector's length is above 0 and finite, and so is its square.
