@@ -89,11 +89,13 @@ std::vector<std::string> variantNames(const GltfModel& model) {
   if (extension.is_null()) return names;
   const std::string place = "extensions.KHR_materials_variants.variants";
   const GltfJson& list = memberOf(extension, "variants");
+  if (extension.is_object() && list.is_null()) return names;
   if (!list.is_array()) failGltf(model, place, "expected a list");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const GltfJson& name = memberOf(list[i], "name");
-    if (!name.is_string()) failGltf(model, fmt::format("{}[{}]", place, i), "has no name");
-    names.push_back(name.get<std::string>());
+    if (!name.is_string())
+      repaired(model, fmt::format("{}[{}]", place, i), fmt::format("has no name, called '{}'", i), "variant");
+    names.push_back(name.is_string() ? name.get<std::string>() : std::to_string(i));
   }
   return names;
 }

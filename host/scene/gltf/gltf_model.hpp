@@ -25,8 +25,8 @@ struct GltfModel {
   int animation = -1;  ///< which of the file's runs; −1: all
 };
 
-/// The names of the file's variants (KHR_materials_variants). Throws InputError where they aren't a list of
-/// names.
+/// The names of the file's variants (KHR_materials_variants); those without one are called by their number,
+/// with a warning. Throws InputError where they aren't a list.
 std::vector<std::string> variantNames(const GltfModel& model);
 
 /// What the file's animations are called: by name, or by index where they have none.

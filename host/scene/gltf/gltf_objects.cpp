@@ -42,7 +42,10 @@ std::vector<glm::dmat4> instancesOf(const GltfModel& model, int index) {
   };
   const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                            scales = read("SCALE", 3);
-  if (count == 0) failGltf(model, place, "has none of TRANSLATION, ROTATION, SCALE");
+  if (count == 0) {
+    repaired(model, place, "has none of TRANSLATION, ROTATION, SCALE; drawn once", "no instances");
+    return {glm::dmat4(1.0)};
+  }
   std::vector<glm::dmat4> instances;
   bool is_unit = true;
   for (std::size_t i = 0; i < count; ++i) {

@@ -177,6 +177,16 @@ TEST_F(GltfRepair, GreatestIndicesEndRuns) {
   EXPECT_THAT(error(file), HasSubstr("index 255, but it has only 3 vertices"));
 }
 
+TEST_F(GltfRepair, VariantsWithoutANameAreCalledByTheirNumber) {
+  GltfFile file = triangleFile();
+  json& extension = file.root["extensions"]["KHR_materials_variants"];
+  extension["variants"] = {{{"name", "a"}}, json::object()};
+  EXPECT_THAT(repair(file), HasSubstr("KHR_materials_variants.variants[1]: has no name, called '1'"));
+  EXPECT_EQ(load(file).variants, (std::vector<std::string>{"a", "1"}));
+  extension = json::object();
+  EXPECT_TRUE(load(file).warnings.empty());
+}
+
 TEST_F(GltfRepair, AParentOutsideTheSceneCountsForNothing) {
   GltfFile file = triangleFile();
   file.root["nodes"].push_back({{"translation", {5, 0, 0}}, {"children", {0}}});
