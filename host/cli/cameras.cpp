@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 
 namespace luciole {
 namespace {
@@ -41,7 +42,7 @@ std::size_t findCamera(const Scene& scene, const std::string& wanted) {
   for (const Camera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
   throw InputError(fmt::format("--camera {}: {} has {} ({}), by name or counted from 0", wanted, scene.name,
                                cameras.size() == 1 ? "one camera" : fmt::format("{} cameras", cameras.size()),
-                               names.empty() ? "unnamed" : names));
+                               names.empty() ? "unnamed" : forMessage(names)));
 }
 
 std::vector<std::size_t> chosenCameras(const Scene& scene, const std::string& option) {

@@ -447,10 +447,12 @@ void warnOfDither(Scene& scene, const PictureOptions& options) {
   const std::vector<std::uint32_t> materials = blendedMaterials(scene);
   if (materials.empty()) return;
   const std::string& name = scene.materials[materials.front()].name;
+  const std::string first =
+      name.empty() ? std::to_string(materials.front()) : fmt::format("'{}'", forMessage(name));
   const std::string others = materials.size() > 1 ? fmt::format(" and {} more", materials.size() - 1) : "";
   scene.warnings.push_back(
-      {fmt::format("{}: material '{}'{}: blended by dithering, one sample a pixel; more --samples smooth it",
-                   scene.name, forMessage(name), others),
+      {fmt::format("{}: material {}{}: blended by dithering, one sample a pixel; more --samples smooth it",
+                   scene.name, first, others),
        "dithered"});
   if (!options.quiet) tellWarning(scene.warnings.back().text);
 }

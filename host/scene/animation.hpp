@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "scene/curve.hpp"
@@ -26,6 +27,9 @@ struct Attachment {
   std::uint32_t node = 0;   ///< in Animation::nodes
   glm::dmat4 after{1.0};
   std::uint32_t mesh = 0;  ///< of an object: its mesh, unless a scale of 0 flattens it
+  /// Of a light that a scale of 0 hides at this pose: its ambient, diffuse and specular colours, which are 0
+  /// meanwhile.
+  std::optional<glm::mat3> hidden_colors = {};
 };
 
 /// A camera that looks from a moving place at a moving target. `eye` and `target` have at least one key.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -27,7 +28,7 @@ constexpr double kLeastSine = 1e-8;
 
 std::string cameraName(const Scene& scene, std::size_t index) {
   const std::string& name = scene.cameras[index].name;
-  return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", name);
+  return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera '{}'", forMessage(name));
 }
 
 /// Whether a vector's length is above 0 and finite, and so is its square.
@@ -83,6 +84,20 @@ void poseMesh(Scene& scene, const std::vector<glm::dmat4>& worlds, double frame,
   deformation.pose = std::move(pose);
 }
 
+/// Lets a light give nothing while a scale of 0 hides it, and its own colours again afterwards.
+void showLight(bool shown, Light& light, Attachment& attachment) {
+  std::optional<glm::mat3>& kept = attachment.hidden_colors;
+  if (shown == !kept.has_value()) return;
+  const glm::mat3 colors = kept.value_or(glm::mat3(0.0f));
+  if (shown)
+    kept.reset();
+  else
+    kept = glm::mat3(light.ambient, light.diffuse, light.specular);
+  light.ambient = colors[0];
+  light.diffuse = colors[1];
+  light.specular = colors[2];
+}
+
 }  // namespace
 
 glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
@@ -112,9 +127,9 @@ void poseScene(Scene& scene, double frame) {
     const std::string fault = attachCamera(placeOf(attachment), scene.cameras[attachment.index]);
     if (!fault.empty()) fail(scene, frame, cameraName(scene, attachment.index), fault);
   }
-  for (const Attachment& attachment : animation.attached_lights) {
-    const std::string fault = attachLight(placeOf(attachment), scene.lights[attachment.index]);
-    if (!fault.empty()) fail(scene, frame, fmt::format("light {}", attachment.index), fault);
+  for (Attachment& attachment : animation.attached_lights) {
+    Light& light = scene.lights[attachment.index];
+    showLight(attachLight(placeOf(attachment), light).empty(), light, attachment);
   }
   for (const CameraMotion& motion : animation.cameras) {
     const std::string fault = poseCamera(motion, frame, scene.cameras[motion.camera]);
@@ -219,6 +234,7 @@ std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera) {
 }
 
 std::string attachLight(const glm::dmat4& node_to_world, Light& light) {
+  if (glm::dmat3(node_to_world) == glm::dmat3(0.0)) return "its scale is 0";
   light.position = glm::dvec3(node_to_world[3]);
   if (light.kind == LightKind::kPoint) return "";
   const glm::dvec3 back(node_to_world[2]);

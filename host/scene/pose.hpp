@@ -43,7 +43,7 @@ glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& 
                                  const glm::dvec3& scale);
 
 /// Places a camera or light that is attached to a node: it looks along the node's −z. Returns what is wrong,
-/// or "".
+/// such as a scale of 0 that leaves it no direction or hides a light, or "".
 std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera);
 std::string attachLight(const glm::dmat4& node_to_world, Light& light);
 

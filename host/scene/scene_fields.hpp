@@ -87,8 +87,8 @@ void withFields(T& node, Visit&& visit) {
 }
 template <Is<Attachment> T, class Visit>
 void withFields(T& attachment, Visit&& visit) {
-  auto& [index, node, after, mesh] = attachment;
-  visit(index, node, after, mesh);
+  auto& [index, node, after, mesh, hidden_colors] = attachment;
+  visit(index, node, after, mesh, hidden_colors);
 }
 template <Is<CameraMotion> T, class Visit>
 void withFields(T& motion, Visit&& visit) {

@@ -218,6 +218,8 @@ std::string mapFault(const Scene& scene, const char* field, const TextureUse& us
                       scene.textures.size());
   if (!isOneOf(use.wrap_u, Wrap::kClampToEdge) || !isOneOf(use.wrap_v, Wrap::kClampToEdge))
     return fmt::format("{}: wraps as no Wrap says", field);
+  if (!isOneOf(use.mips, Mips::kNone))
+    return wrong(fmt::format("{}.mips", field).c_str(), int(use.mips), "a Mips");
   if (of_normals && use.texture >= 0 && scene.textures[std::size_t(use.texture)].kind == TextureKind::kColor)
     return fmt::format("{}.texture: {} is a texture of colours, expected one of normals", field, use.texture);
   return "";

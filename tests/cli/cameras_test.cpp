@@ -37,6 +37,14 @@ TEST_F(AllCameras, EachPictureIsThatOfItsCamera) {
   }
 }
 
+TEST_F(AllCameras, NamesWithEndsOfLinesAreToldInOne) {
+  writeScene("scene.json", {R"(a\nb\u0007c)"});
+  const Outcome outcome = runLine(folder, "luciole render scene.json --camera d -o x.png");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err,
+            "luciole: --camera d: scene.json has one camera (a b c), by name or counted from 0\n");
+}
+
 TEST_F(AllCameras, StatisticsAndFramesHaveTheirOwnNames) {
   writeScene("scene.json", {"a", "b"});
   succeed(

@@ -211,6 +211,8 @@ TEST(Validate, TellsThePlaceAndWhatIsWrong) {
        scene([](Scene& s) { s.meshes[0].positions[1].x = kNan; })},
       {"meshes[0].triangle_materials[0]: 2, but there are 2 materials",
        scene([](Scene& s) { s.meshes[0].triangle_materials[0] = 2; })},
+      {"materials[0].emission_map.mips: 7, expected a Mips",
+       scene([](Scene& s) { s.materials[0].emission_map.mips = Mips(7); })},
       {"meshes[0].divided.uvs: has 1 elements, expected 3, as positions", scene([](Scene& s) {
          Mesh divided = *s.meshes[0].divided;
          divided.uvs.resize(1);

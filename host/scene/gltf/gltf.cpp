@@ -39,19 +39,24 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   camera.name = source.name.empty() ? node.name : source.name;
   const std::string fault = attachCamera(placed.to_world, camera);
   if (!fault.empty()) return leftOut(model, nodePlace(placed.node), fault + "; left out", "camera");
-  camera.orthographic = source.type == "orthographic";
+  camera.orthographic = source.orthographic;
   camera.far = source.far.value_or(std::numeric_limits<double>::infinity());
-  camera.near = source.near;
+  camera.near = source.near.value_or(0);
   if (camera.orthographic) {
-    camera.half_height = std::abs(source.ymag);
+    camera.half_height = std::abs(source.ymag.value_or(0));
+    if (!source.ymag) return leaveOut("has no ymag");
     if (!(camera.half_height > 0)) return leaveOut("ymag is 0");
+    if (*source.ymag < 0)
+      repaired(model, place, fmt::format("ymag is {}, taken for {}", *source.ymag, camera.half_height),
+               "ymag");
+    if (!source.far) return leaveOut("has no zfar");
     if (!std::isfinite(camera.far) || !(camera.far > std::max(camera.near, 0.0)))
-      return leaveOut(
-          fmt::format("zfar is {}, expected more than znear {}", source.far.value_or(0), camera.near));
+      return leaveOut(fmt::format("zfar is {}, expected more than znear {}", camera.far, camera.near));
     // glTF allows 0 here; Camera::near must be above 0.
     if (camera.near == 0) camera.near = kNearOfFar * camera.far;
   } else {
-    camera.fov_y = source.yfov;
+    if (!source.yfov) return leaveOut("has no yfov");
+    camera.fov_y = *source.yfov;
     if (!(camera.fov_y > 0 && camera.fov_y < kPi))
       return leaveOut(fmt::format("yfov is {}, expected one between 0 and pi", camera.fov_y));
     if (!(camera.far > std::max(camera.near, 0.0))) {
@@ -64,9 +69,13 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   }
   if (!(camera.near > 0)) {
     const double near = std::isfinite(camera.far) ? kNearOfFar * camera.far : 1e-3;
-    repaired(model, place, fmt::format("znear is {}, taken for {}", camera.near, near), "znear");
+    const std::string what = source.near ? fmt::format("znear is {}", camera.near) : "has no znear";
+    repaired(model, place, fmt::format("{}, taken for {:.6g}", what, near), "znear");
     camera.near = near;
   }
+  const char* const type = camera.orthographic ? "orthographic" : "perspective";
+  if (source.type != type)
+    repaired(model, place, fmt::format("type is '{}', taken for {}", forMessage(source.type), type), "type");
   if (placed.moving >= 0)
     scene.animation.attached_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
                                                 static_cast<std::uint32_t>(placed.moving), placed.since});
@@ -124,6 +133,8 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   const auto kind = [&](const char* name) { return equalIgnoringCase(source.type, name); };
   Light light;
   glm::vec3 color(1);
+  if (!source.color.empty() && source.color.size() != 3)
+    repaired(model, place, fmt::format("color has {} numbers, expected 3", source.color.size()), "color");
   for (std::size_t i = 0; i < std::min<std::size_t>(source.color.size(), 3); ++i) {
     if (source.color[i] < 0)
       repaired(model, place, fmt::format("color has {}, taken for 0", source.color[i]), "negative light");
@@ -152,9 +163,10 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   } else {
     return;
   }
-  const bool is_hidden = placed.moving < 0 && glm::dmat3(placed.to_world) == glm::dmat3(0.0);
-  const std::string fault = is_hidden ? "its scale is 0" : attachLight(placed.to_world, light);
-  if (!fault.empty()) return leftOut(model, nodePlace(placed.node), fault + "; left out", "light");
+  const std::string fault = attachLight(placed.to_world, light);
+  // What moves may have a scale of 0 for a while, and is kept.
+  if (placed.moving < 0 && !fault.empty())
+    return leftOut(model, nodePlace(placed.node), fault + "; left out", "light");
   light.group = groupOf(model, placed.node, source, groups, scene);
   const std::string& node_name = model.file.nodes[placed.node].name;
   light.name = node_name.empty() ? source.name : node_name;

@@ -91,6 +91,7 @@ std::string accessorPlace(int accessor) { return fmt::format("accessors[{}]", ac
 Elements baseElements(const GltfModel& model, int index, int components, const std::string& place) {
   const GltfAccessor& accessor = element(model, model.file.accessors, index, place, "accessor");
   const std::string here = accessorPlace(index);
+  if (accessor.components == 0) failGltf(model, here, "its type is none of glTF's");
   if (accessor.components != components) {
     failGltf(
         model, here,

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -55,10 +57,10 @@ class ObjectReader {
     return "";
   }
 
-  bool truth(const char* name) const {
+  bool truth(const char* name, bool otherwise = false) const {
     const GltfJson* found = find(name);
     if (found && !found->is_boolean()) fail(name, "expected true or false");
-    return found && found->get<bool>();
+    return found ? found->get<bool>() : otherwise;
   }
 
   double number(const char* name, double otherwise) const {
@@ -77,9 +79,9 @@ class ObjectReader {
     return values;
   }
 
-  std::size_t size(const char* name, std::size_t otherwise = 0) const {
+  std::size_t size(const char* name) const {
     const GltfJson* found = find(name);
-    if (!found) return otherwise;
+    if (!found) return 0;
     if (found->is_number_unsigned()) return found->get<std::size_t>();
     constexpr double kMostExact = 9007199254740992.0;  // 2^53
     const double value = numberOf(*found, name);
@@ -93,10 +95,11 @@ class ObjectReader {
     return found ? indexOf(*found, name) : -1;
   }
 
-  /// A number that names something, such as 9729 for a filter.
+  /// A whole number that names something, such as 5126 for floats. It may be one that names nothing.
   int code(const char* name, int otherwise) const {
-    const std::size_t value = size(name, static_cast<std::size_t>(otherwise));
-    return value < 1'000'000'000 ? static_cast<int>(value) : -1;
+    const double value = number(name, otherwise);
+    if (value != std::floor(value)) fail(name, fmt::format("{}, expected a whole number", value));
+    return static_cast<int>(std::clamp(value, -1e9, 1e9));
   }
 
   std::vector<int> indices(const char* name) const {
@@ -225,28 +228,52 @@ GltfAccessor parseAccessor(const ObjectReader& from) {
 }
 
 GltfTextureInfo parseTextureInfo(const ObjectReader& owner, const char* name) {
-  const ObjectReader from = owner.object(name);
+  const ObjectReader from = owner.object(name), extensions = from.object("extensions"),
+                     transform = extensions.object("KHR_texture_transform");
+  const int uv_set = from.index("texCoord"), transformed_set = transform.index("texCoord");
   return {.texture = from.index("index"),
-          .uv_set = std::max(from.index("texCoord"), 0),
+          .uv_set = std::max(transformed_set >= 0 ? transformed_set : uv_set, 0),
           .scale = from.number("scale", 1),
-          .extensions = from.extensions()};
+          .uv_offset = transform.numbers("offset"),
+          .uv_scale = transform.numbers("scale"),
+          .uv_rotation = transform.number("rotation", 0)};
+}
+
+std::optional<GltfGlossy> parseGlossy(const ObjectReader& extensions) {
+  constexpr const char* kName = "KHR_materials_pbrSpecularGlossiness";
+  if (!extensions.has(kName)) return {};
+  const ObjectReader from = extensions.object(kName);
+  return GltfGlossy{.diffuse_factor = from.numbers("diffuseFactor"),
+                    .specular_factor = from.numbers("specularFactor"),
+                    .glossiness = from.number("glossinessFactor", 1),
+                    .diffuse = parseTextureInfo(from, "diffuseTexture"),
+                    .specular_glossiness = parseTextureInfo(from, "specularGlossinessTexture")};
 }
 
 GltfMaterial parseMaterial(const ObjectReader& from) {
-  const ObjectReader pbr = from.object("pbrMetallicRoughness");
-  return {.name = from.name(),
-          .base_factor = pbr.numbers("baseColorFactor"),
-          .emissive_factor = from.numbers("emissiveFactor"),
-          .metallic = pbr.number("metallicFactor", 1),
-          .roughness = pbr.number("roughnessFactor", 1),
-          .alpha_cutoff = from.number("alphaCutoff", 0.5),
-          .base = parseTextureInfo(pbr, "baseColorTexture"),
-          .metallic_roughness = parseTextureInfo(pbr, "metallicRoughnessTexture"),
-          .normal = parseTextureInfo(from, "normalTexture"),
-          .emissive = parseTextureInfo(from, "emissiveTexture"),
-          .alpha_mode = from.text("alphaMode", "OPAQUE"),
-          .double_sided = from.truth("doubleSided"),
-          .extensions = from.extensions()};
+  const ObjectReader pbr = from.object("pbrMetallicRoughness"), extensions = from.object("extensions"),
+                     specular = extensions.object("KHR_materials_specular");
+  return {
+      .name = from.name(),
+      .base_factor = pbr.numbers("baseColorFactor"),
+      .emissive_factor = from.numbers("emissiveFactor"),
+      .metallic = pbr.number("metallicFactor", 1),
+      .roughness = pbr.number("roughnessFactor", 1),
+      .alpha_cutoff = from.number("alphaCutoff", 0.5),
+      .base = parseTextureInfo(pbr, "baseColorTexture"),
+      .metallic_roughness = parseTextureInfo(pbr, "metallicRoughnessTexture"),
+      .normal = parseTextureInfo(from, "normalTexture"),
+      .emissive = parseTextureInfo(from, "emissiveTexture"),
+      .alpha_mode = from.text("alphaMode", "OPAQUE"),
+      .double_sided = from.truth("doubleSided"),
+      .unlit = extensions.has("KHR_materials_unlit"),
+      .emissive_strength = extensions.object("KHR_materials_emissive_strength").number("emissiveStrength", 1),
+      .ior = extensions.object("KHR_materials_ior").number("ior", 1.5),
+      .specular = {.factor = specular.number("specularFactor", 1),
+                   .color_factor = specular.numbers("specularColorFactor"),
+                   .texture = parseTextureInfo(specular, "specularTexture"),
+                   .color_texture = parseTextureInfo(specular, "specularColorTexture")},
+      .glossy = parseGlossy(extensions)};
 }
 
 GltfPrimitive parsePrimitive(const ObjectReader& from) {
@@ -269,17 +296,19 @@ GltfMesh parseMesh(const ObjectReader& from) {
 }
 
 GltfNode parseNode(const ObjectReader& from) {
+  const ObjectReader extensions = from.object("extensions");
   GltfNode node{.name = from.name(),
                 .children = from.indices("children"),
                 .mesh = from.index("mesh"),
                 .camera = from.index("camera"),
                 .skin = from.index("skin"),
-                .light = from.object("extensions").object("KHR_lights_punctual").index("light"),
+                .light = extensions.object("KHR_lights_punctual").index("light"),
                 .matrix = from.numbers("matrix"),
                 .translation = from.numbers("translation"),
                 .rotation = from.numbers("rotation"),
                 .scale = from.numbers("scale"),
                 .weights = from.numbers("weights"),
+                .hidden = !extensions.object("KHR_node_visibility").truth("visible", true),
                 .group = from.group(),
                 .extensions = {}};
   node.extensions = from.extensions();
@@ -300,13 +329,18 @@ GltfAnimationEntry parseAnimationEntry(const ObjectReader& from) {
 }
 
 GltfCamera parseCamera(const ObjectReader& from) {
-  GltfCamera camera{.name = from.name(), .type = from.text("type"), .far = {}};
-  const ObjectReader lens = from.object(camera.type == "orthographic" ? "orthographic" : "perspective");
-  camera.ymag = lens.number("ymag", 0);
-  camera.yfov = lens.number("yfov", 0);
-  camera.near = lens.number("znear", 0);
-  camera.far = lens.optionalNumber("zfar");
-  return camera;
+  const std::string type = from.text("type");
+  const bool is_known = equalIgnoringCase(type, "orthographic") || equalIgnoringCase(type, "perspective");
+  const bool is_orthographic = is_known ? equalIgnoringCase(type, "orthographic")
+                                        : from.has("orthographic") && !from.has("perspective");
+  const ObjectReader lens = from.object(is_orthographic ? "orthographic" : "perspective");
+  return {.name = from.name(),
+          .type = type,
+          .orthographic = is_orthographic,
+          .ymag = lens.optionalNumber("ymag"),
+          .yfov = lens.optionalNumber("yfov"),
+          .near = lens.optionalNumber("znear"),
+          .far = lens.optionalNumber("zfar")};
 }
 
 GltfLight parseLight(const ObjectReader& from) {
@@ -343,11 +377,13 @@ void parseFile(const ObjectReader& root, GltfFile& file) {
     return GltfImage{from.name(), from.text("uri"), from.index("bufferView"), {}, {}};
   });
   list(root, "samplers", file.samplers, [](const ObjectReader& from) {
-    return GltfSampler{from.code("wrapS", 0), from.code("wrapT", 0), from.code("magFilter", 0),
-                       from.code("minFilter", 0)};
+    return GltfSampler{from.optionalNumber("wrapS"), from.optionalNumber("wrapT"),
+                       from.optionalNumber("magFilter"), from.optionalNumber("minFilter")};
   });
   list(root, "textures", file.textures, [](const ObjectReader& from) {
-    return GltfTexture{from.index("sampler"), from.index("source"), from.extensions()};
+    return GltfTexture{from.index("sampler"), from.index("source"),
+                       from.object("extensions").object("EXT_texture_webp").index("source"),
+                       from.extensions()};
   });
   list(root, "materials", file.materials, parseMaterial);
   list(root, "meshes", file.meshes, parseMesh);
@@ -390,16 +426,45 @@ std::string parserWords(const std::exception& error) {
   return forMessage(end == std::string::npos ? words : words.substr(end + 2));
 }
 
+/// The UTF-16 unit of an escape \uXXXX that `text` has at a place; 0: there is none.
+std::uint32_t unitAt(std::string_view text, std::size_t place) {
+  std::uint32_t unit = 0;
+  if (text.substr(place, 2) != "\\u" || text.size() < place + 6) return 0;
+  const char* const first = text.data() + place + 2;
+  return std::from_chars(first, first + 4, unit, 16).ptr == first + 4 ? unit : 0;
+}
+
+/// The text with each escape of half a pair of UTF-16 units, which is no letter, as one: the Latin-1 letter
+/// of a byte that Python wrote so, else U+FFFD.
+std::string withoutHalfPairs(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\\') continue;
+    const std::uint32_t unit = unitAt(text, i), next = unit == 0 ? 0 : unitAt(text, i + 6);
+    const bool is_first = unit >= 0xd800 && unit < 0xdc00, is_second = unit >= 0xdc00 && unit < 0xe000;
+    if (is_first && next >= 0xdc00 && next < 0xe000)
+      i += 6;
+    else if (unit >= 0xdc80 && unit < 0xdd00)
+      text.replace(i + 2, 2, "00");
+    else if (is_first || is_second)
+      text.replace(i + 2, 4, "fffd");
+    ++i;  // what is escaped may be a backslash
+  }
+  return text;
+}
+
 GltfJson parseJson(std::string_view text, const GltfModel& model) {
   try {
     return GltfJson::parse(text);
   } catch (const GltfJson::exception& error) {
-    const std::string valid = utf8Of(text);
+    const std::string valid = withoutHalfPairs(utf8Of(text));
     if (valid == text)
       throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(error)));
     try {
       GltfJson json = GltfJson::parse(valid);
-      repaired(model, "its JSON", "is not UTF-8; other bytes are taken for Latin-1", "text");
+      repaired(model, "its JSON",
+               isUtf8(text) ? "has escapes of half a letter; taken for Latin-1 or U+FFFD"
+                            : "is not UTF-8; other bytes are taken for Latin-1",
+               "text");
       return json;
     } catch (const GltfJson::exception& second) {
       throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(second)));
@@ -410,6 +475,14 @@ GltfJson parseJson(std::string_view text, const GltfModel& model) {
 }  // namespace
 
 void parseGltf(std::string_view text, GltfModel& model) {
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    if (text.find_first_not_of(std::string_view("\0 \t\r\n", 5), zero) != std::string_view::npos)
+      throw InputError(
+          fmt::format("{}: is not valid JSON: byte {} is 0, expected UTF-8", model.path, zero + 1));
+    repaired(model, "its JSON", fmt::format("ends in {} zeros, expected blanks", text.size() - zero),
+             "zeros");
+    text = text.substr(0, zero);
+  }
   checkNesting(model, text);
   GltfJson json = parseJson(text, model);
   parseFile(ObjectReader(model, json), model.file);

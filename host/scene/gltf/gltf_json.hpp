@@ -62,13 +62,14 @@ struct GltfImage {
   std::span<const std::byte> bytes;  ///< of a data URI
 };
 
-/// The numbers of glTF's samplers; 0: the file says nothing.
+/// The numbers of glTF's samplers, which may be any.
 struct GltfSampler {
-  int wrap_u = 0, wrap_v = 0, magnified = 0, minified = 0;
+  std::optional<double> wrap_u, wrap_v, magnified, minified;
 };
 
 struct GltfTexture {
   int sampler = -1, source = -1;
+  int webp = -1;  ///< EXT_texture_webp's source
   GltfJson extensions;
 };
 
@@ -76,7 +77,23 @@ struct GltfTexture {
 struct GltfTextureInfo {
   int texture = -1, uv_set = 0;
   double scale = 1;  ///< of normals
-  GltfJson extensions;
+  /// KHR_texture_transform's offset, scale and rotation; empty: the file says nothing.
+  std::vector<double> uv_offset, uv_scale;
+  double uv_rotation = 0;
+};
+
+/// KHR_materials_specular.
+struct GltfSpecular {
+  double factor = 1;
+  std::vector<double> color_factor;
+  GltfTextureInfo texture, color_texture;
+};
+
+/// KHR_materials_pbrSpecularGlossiness.
+struct GltfGlossy {
+  std::vector<double> diffuse_factor, specular_factor;
+  double glossiness = 1;
+  GltfTextureInfo diffuse, specular_glossiness;
 };
 
 struct GltfMaterial {
@@ -85,8 +102,10 @@ struct GltfMaterial {
   double metallic = 1, roughness = 1, alpha_cutoff = 0.5;
   GltfTextureInfo base, metallic_roughness, normal, emissive;
   std::string alpha_mode = "OPAQUE";
-  bool double_sided = false;
-  GltfJson extensions;
+  bool double_sided = false, unlit = false;
+  double emissive_strength = 1, ior = 1.5;
+  GltfSpecular specular;
+  std::optional<GltfGlossy> glossy;
 };
 
 using GltfAttributes = std::map<std::string, int>;  ///< name -> accessor
@@ -109,6 +128,7 @@ struct GltfNode {
   std::vector<int> children;
   int mesh = -1, camera = -1, skin = -1, light = -1;
   std::vector<double> matrix, translation, rotation, scale, weights;
+  bool hidden = false;               ///< with all below it (KHR_node_visibility)
   std::optional<std::string> group;  ///< a text "group" of its extras
   GltfJson extensions;
 };
@@ -136,8 +156,8 @@ struct GltfAnimationEntry {
 
 struct GltfCamera {
   std::string name, type;
-  double ymag = 0, yfov = 0, near = 0;
-  std::optional<double> far;
+  bool orthographic = false;  ///< by its type, else by what it has
+  std::optional<double> ymag, yfov, near, far;
 };
 
 struct GltfLight {
@@ -173,7 +193,7 @@ struct GltfModel;
 
 /// Reads a file's JSON into `model.file`. Throws InputError, which names the place, for what isn't JSON, is
 /// nested too deep, or has a value of another kind than the specification says. Negative indices become -1,
-/// and bytes that are no UTF-8 Latin-1's letters, each with a warning.
+/// bytes that are no UTF-8 Latin-1's letters, and zeros behind it are left out, each with a warning.
 void parseGltf(std::string_view text, GltfModel& model);
 
 /// The bytes of a component of an accessor; 0 for a type that isn't one of glTF's.

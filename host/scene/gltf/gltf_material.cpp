@@ -26,29 +26,16 @@ struct Pictures {
   std::map<int, Texture> decoded;
   std::map<int, int> in_scene;
   std::map<int, int> normals_in_scene;
+  std::set<int> told_samplers;  ///< whose faults are known
 };
-
-constexpr const char* kSpecular = "KHR_materials_specular";
-constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
 /// The index of a texture's picture; -1 where there is no texture, or none that can be read.
 int imageOf(const GltfModel& model, int texture, const std::string& place) {
   if (texture < 0) return -1;
   const GltfTexture& entry = element(model, model.file.textures, texture, place, "texture");
-  const int webp = indexOf(memberOf(memberOf(entry.extensions, "EXT_texture_webp"), "source"));
-  const int image = webp < 0 ? entry.source : webp;
+  const int image = entry.webp < 0 ? entry.source : entry.webp;
   if (image >= 0) element(model, model.file.images, image, fmt::format("textures[{}]", texture), "image");
   return image;
-}
-
-/// A texture that an extension's JSON names; −1: none.
-int textureIn(const GltfJson& extension, const char* member) {
-  return indexOf(memberOf(memberOf(extension, member), "index"));
-}
-
-/// The index of one of KHR_materials_specular's textures, or −1.
-int specularTexture(const GltfMaterial& material, const char* member) {
-  return textureIn(memberOf(material.extensions, kSpecular), member);
 }
 
 /// Warns of a texture whose picture only an extension names that is not supported.
@@ -68,12 +55,11 @@ Pictures decodePictures(const GltfModel& model, const std::vector<int>& material
   std::set<int> without_source;
   for (const int index : materials) {
     const GltfMaterial& material = gltfMaterial(model, index);
-    const GltfJson& glossy = memberOf(material.extensions, kSpecularGlossiness);
+    const GltfGlossy glossy = material.glossy.value_or(GltfGlossy());
     for (const int texture :
          {material.base.texture, material.metallic_roughness.texture, material.emissive.texture,
-          material.normal.texture, specularTexture(material, "specularTexture"),
-          specularTexture(material, "specularColorTexture"), textureIn(glossy, "diffuseTexture"),
-          textureIn(glossy, "specularGlossinessTexture")}) {
+          material.normal.texture, material.specular.texture.texture, material.specular.color_texture.texture,
+          glossy.diffuse.texture, glossy.specular_glossiness.texture}) {
       const int image = imageOf(model, texture, gltfMaterialPlace(index));
       if (image >= 0) pictures.decoded.try_emplace(image);
       if (image < 0 && texture >= 0 && without_source.insert(texture).second) tellOfNoSource(model, texture);
@@ -111,16 +97,20 @@ constexpr int kGlRepeat = 10497, kGlClampToEdge = 33071, kGlMirroredRepeat = 336
 constexpr int kGlNearest = 9728, kGlLinear = 9729, kGlNearestMipmapNearest = 9984,
               kGlLinearMipmapNearest = 9985, kGlNearestMipmapLinear = 9986, kGlLinearMipmapLinear = 9987;
 
-/// Sets what a sampler says. Of numbers that mean nothing, which are told, the default counts.
-void setSampler(const GltfModel& model, int index, TextureUse& use) {
+/// Sets what a sampler says. Of numbers that mean nothing the default counts. tell: such are told.
+void setSampler(const GltfModel& model, int index, bool tell, TextureUse& use) {
   const GltfSampler& sampler = model.file.samplers[std::size_t(index)];
-  const auto known = [&](int number, const char* member, std::initializer_list<int> numbers) {
-    if (number == 0 || std::find(numbers.begin(), numbers.end(), number) != numbers.end()) return number;
-    repaired(model, fmt::format("samplers[{}]", index),
-             fmt::format("{} is {}, none of glTF's", member, number), "sampler");
+  const auto known = [&](const std::optional<double>& number, const char* member,
+                         std::initializer_list<int> numbers) {
+    if (!number) return 0;
+    for (const int one : numbers)
+      if (*number == one) return one;
+    if (tell)
+      repaired(model, fmt::format("samplers[{}]", index),
+               fmt::format("{} is {}, none of glTF's; taken for the default", member, *number), "sampler");
     return 0;
   };
-  const auto wrapOf = [&](int number, const char* member) {
+  const auto wrapOf = [&](const std::optional<double>& number, const char* member) {
     switch (known(number, member, {kGlRepeat, kGlClampToEdge, kGlMirroredRepeat})) {
       case kGlClampToEdge:
         return Wrap::kClampToEdge;
@@ -155,10 +145,15 @@ TextureUse textureUse(const GltfModel& model, int texture, const std::string& pl
   }
   use.texture = entry->second;
   const int sampler = model.file.textures[std::size_t(texture)].sampler;
-  if (sampler >= 0) {
-    element(model, model.file.samplers, sampler, fmt::format("textures[{}]", texture), "sampler");
-    setSampler(model, sampler, use);
-  }
+  if (sampler < 0) return use;
+  const bool tell = pictures.told_samplers.insert(sampler).second;
+  if (std::size_t(sampler) < model.file.samplers.size())
+    setSampler(model, sampler, tell, use);
+  else if (tell)
+    repaired(model, fmt::format("textures[{}]", texture),
+             fmt::format("refers to sampler {}, but the file has {} of them; taken for the default", sampler,
+                         model.file.samplers.size()),
+             "no sampler");
   return use;
 }
 
@@ -196,24 +191,15 @@ double within(const GltfModel& model, double value, double least, double most, c
   return clamped;
 }
 
-/// A colour of `count` factors, each within 0 and 1; those that the file leaves out are `otherwise`.
+/// A colour of `count` factors, each within 0 and `most`; those that the file leaves out are `otherwise`.
 glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, int count, double otherwise,
-                  const std::string& place, const char* name) {
+                  const std::string& place, const char* name, double most = 1) {
   glm::dvec4 result(otherwise);
   if (!values.empty() && values.size() != std::size_t(count))
     repaired(model, place, fmt::format("{} has {} numbers, expected {}", name, values.size(), count), name);
   for (int i = 0; i < count && std::size_t(i) < values.size(); ++i)
-    result[i] = within(model, values[std::size_t(i)], 0, 1, place, name);
+    result[i] = within(model, values[std::size_t(i)], 0, most, place, name);
   return result;
-}
-
-/// A list of numbers in an extension's JSON.
-std::vector<double> numbersIn(const GltfJson& extension, const char* member) {
-  std::vector<double> numbers;
-  const GltfJson& list = memberOf(extension, member);
-  for (std::size_t i = 0; list.is_array() && i < list.size(); ++i)
-    numbers.push_back(list[i].is_number() ? list[i].get<double>() : 1.0);
-  return numbers;
 }
 
 /// What a material reflects.
@@ -243,23 +229,16 @@ void setReflection(const Reflection& reflection, Material& material) {
 glm::dvec3 dielectricReflection(const GltfModel& model, const GltfMaterial& source, const std::string& place,
                                 const Pictures& pictures) {
   constexpr double kMost = std::numeric_limits<double>::max();
-  double ior = extensionNumber(source.extensions, "KHR_materials_ior", "ior", 1.5);
-  if (ior != 0) ior = within(model, ior, 1, kMost, place, "ior");
+  const double ior = source.ior == 0 ? 0 : within(model, source.ior, 1, kMost, place, "ior");
   const double plain = ior == 0 ? 1.0 : std::pow((ior - 1) / (ior + 1), 2);
-  const GltfJson& extension = memberOf(source.extensions, kSpecular);
-  if (extension.is_null()) return glm::dvec3(plain);
-  double factor = within(model, extensionNumber(source.extensions, kSpecular, "specularFactor", 1.0), 0, 1,
-                         place, "specularFactor");
-  glm::dvec3 color(1);
-  const std::vector<double> colors = numbersIn(extension, "specularColorFactor");
-  for (int i = 0; i < 3 && colors.size() == 3; ++i)
-    color[i] = within(model, colors[std::size_t(i)], 0, kMost, place, "specularColorFactor");
-  if (const Texture* texture = pictureOf(model, specularTexture(source, "specularTexture"), place, pictures))
-    factor *= double(texture->levels.back().texels[3]) / 65535;
-  if (const Texture* texture =
-          pictureOf(model, specularTexture(source, "specularColorTexture"), place, pictures))
+  const GltfSpecular& specular = source.specular;
+  double share = within(model, specular.factor, 0, 1, place, "specularFactor");
+  glm::dvec3 color = factor(model, specular.color_factor, 3, 1, place, "specularColorFactor", kMost);
+  if (const Texture* texture = pictureOf(model, specular.texture.texture, place, pictures))
+    share *= double(texture->levels.back().texels[3]) / 65535;
+  if (const Texture* texture = pictureOf(model, specular.color_texture.texture, place, pictures))
     color *= meanColor(*texture);
-  return glm::min(plain * color, glm::dvec3(1)) * factor;
+  return glm::min(plain * color, glm::dvec3(1)) * share;
 }
 
 Reflection metallicRoughness(const GltfModel& model, const GltfMaterial& source, const std::string& place,
@@ -282,17 +261,13 @@ Reflection metallicRoughness(const GltfModel& model, const GltfMaterial& source,
 }
 
 /// KHR_materials_pbrSpecularGlossiness.
-Reflection specularGlossiness(const GltfModel& model, const GltfMaterial& source, const std::string& place,
+Reflection specularGlossiness(const GltfModel& model, const GltfGlossy& source, const std::string& place,
                               const Pictures& pictures) {
-  const GltfJson& extension = memberOf(source.extensions, kSpecularGlossiness);
   Reflection reflection;
-  reflection.base = factor(model, numbersIn(extension, "diffuseFactor"), 4, 1, place, "diffuseFactor");
-  reflection.f0 = factor(model, numbersIn(extension, "specularFactor"), 3, 1, place, "specularFactor");
-  double glossiness =
-      within(model, extensionNumber(source.extensions, kSpecularGlossiness, "glossinessFactor", 1.0), 0, 1,
-             place, "glossinessFactor");
-  if (const Texture* texture =
-          pictureOf(model, textureIn(extension, "specularGlossinessTexture"), place, pictures)) {
+  reflection.base = factor(model, source.diffuse_factor, 4, 1, place, "diffuseFactor");
+  reflection.f0 = factor(model, source.specular_factor, 3, 1, place, "specularFactor");
+  double glossiness = within(model, source.glossiness, 0, 1, place, "glossinessFactor");
+  if (const Texture* texture = pictureOf(model, source.specular_glossiness.texture, place, pictures)) {
     reflection.f0 *= meanColor(*texture);
     glossiness *= double(texture->levels.back().texels[3]) / 65535;
   }
@@ -319,32 +294,30 @@ double cutoffOf(const GltfModel& model, const GltfMaterial& source, const std::s
 Material convert(const GltfModel& model, int index, Pictures& pictures, Scene& scene) {
   const GltfMaterial& source = gltfMaterial(model, index);
   const std::string place = gltfMaterialPlace(index);
-  const Reflection reflection = memberOf(source.extensions, kSpecularGlossiness).is_object()
-                                    ? specularGlossiness(model, source, place, pictures)
-                                    : metallicRoughness(model, source, place, pictures);
+  const Reflection reflection = source.glossy ? specularGlossiness(model, *source.glossy, place, pictures)
+                                              : metallicRoughness(model, source, place, pictures);
   const glm::dvec3 emission = factor(model, source.emissive_factor, 3, 0, place, "emissiveFactor");
 
   Material material;
   material.name = index < 0 ? "default" : source.name;
   setReflection(reflection, material);
   material.diffuse_map = textureUse(model, baseTexture(model, index).texture, place, pictures, scene);
-  const double strength = within(
-      model, extensionNumber(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0),
-      0, std::numeric_limits<double>::max(), place, "emissiveStrength");
+  const double strength = within(model, source.emissive_strength, 0, std::numeric_limits<double>::max(),
+                                 place, "emissiveStrength");
   material.emission = glm::vec3(emission * strength);
   if (!std::isfinite(material.emission.x + material.emission.y + material.emission.z))
     failGltf(model, place, "emissiveStrength is too large");
   material.emission_map = textureUse(model, source.emissive.texture, place, pictures, scene);
   // Where the picture of the emission is missing, there is no emission.
   if (source.emissive.texture >= 0 && material.emission_map.texture < 0) material.emission = glm::vec3(0);
-  if (isUnlit(source)) {
+  if (source.unlit) {
     material.emission = glm::vec3(reflection.base);
     material.emission_map = material.diffuse_map;
     material.colored_emission = true;
     material.ambient = material.diffuse = material.specular = glm::vec3(0);
     material.facets.reset();
   }
-  if (!isUnlit(source)) {
+  if (!source.unlit) {
     material.normal_map =
         textureUse(model, source.normal.texture, place, pictures, scene, TextureKind::kNormals);
     material.normal_scale = static_cast<float>(within(model, source.normal.scale, -kMostNormalScale,
@@ -366,18 +339,9 @@ const GltfMaterial& gltfMaterial(const GltfModel& model, int material) {
 
 std::string gltfMaterialPlace(int material) { return fmt::format("materials[{}]", material); }
 
-bool isUnlit(const GltfMaterial& material) {
-  return !memberOf(material.extensions, "KHR_materials_unlit").is_null();
-}
-
-GltfTextureInfo baseTexture(const GltfModel& model, int material) {
+const GltfTextureInfo& baseTexture(const GltfModel& model, int material) {
   const GltfMaterial& source = gltfMaterial(model, material);
-  const GltfJson& glossy = memberOf(source.extensions, kSpecularGlossiness);
-  if (!glossy.is_object()) return source.base;
-  const GltfJson& info = memberOf(glossy, "diffuseTexture");
-  return {.texture = indexOf(memberOf(info, "index")),
-          .uv_set = std::max(indexOf(memberOf(info, "texCoord")), 0),
-          .extensions = memberOf(info, "extensions")};
+  return source.glossy ? source.glossy->diffuse : source.base;
 }
 
 void addGltfMaterials(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {

@@ -12,10 +12,8 @@ namespace luciole {
 const GltfMaterial& gltfMaterial(const GltfModel& model, int material);
 /// The name of a material in messages.
 std::string gltfMaterialPlace(int material);
-/// Whether a material shows its base colour unlit (KHR_materials_unlit).
-bool isUnlit(const GltfMaterial& material);
 /// The texture of its base colour: KHR_materials_pbrSpecularGlossiness' diffuse one where it has that.
-GltfTextureInfo baseTexture(const GltfModel& model, int material);
+const GltfTextureInfo& baseTexture(const GltfModel& model, int material);
 
 /// Appends the materials in the order given, −1 being glTF's default one, and their textures. Throws
 /// InputError.
@@ -33,8 +31,8 @@ GltfTextureInfo baseTexture(const GltfModel& model, int material);
 /// exponent is that of Walter et al., "Microfacet Models for Refraction" (2007), for the half vector; a
 /// quarter of it is for the reflected vector. 1 / (4 α²) is the peak of the GGX lobe relative to a Lambertian
 /// 1/π, limited to 1 to keep the highlight in range. r is at least 0.15 (shininess 987), since a sharper
-/// highlight falls between pixels. alphaMode BLEND is Material::blended, and of its shadows a cutoff of 0.5. An
-/// unlit material reflects nothing and has its base colour as emission, to the bit.
+/// highlight falls between pixels. alphaMode BLEND is Material::blended, and of its shadows a cutoff of 0.5.
+/// An unlit material reflects nothing and has its base colour as emission, to the bit.
 ///
 /// KHR_materials_pbrSpecularGlossiness comes before metallic-roughness: base is its diffuse colour, F0 its
 /// specular colour, r is 1 − glossiness, of textures' means, and diffuse = base · (1 − the largest of F0).

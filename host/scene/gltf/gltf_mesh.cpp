@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <span>
 
 #include "scene/gltf/gltf_accessor.hpp"
 #include "scene/gltf/gltf_rest.hpp"
@@ -18,49 +19,91 @@ namespace {
 /// The three vertices of a strip's triangle i; every other one is wound the other way round.
 glm::uvec3 stripTriangle(std::uint32_t i) { return {i, i + 1 + i % 2, i + 2 - i % 2}; }
 
+/// Appends the triangles of a run of vertices, by a primitive's mode.
+void appendTriangles(int mode, std::span<const std::uint32_t> order, std::vector<glm::uvec3>& triangles) {
+  const std::uint32_t count = static_cast<std::uint32_t>(order.size());
+  const std::size_t before = triangles.size();
+  if (mode == kGltfTriangles) {
+    for (std::uint32_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(i, i + 1, i + 2);
+  } else if (mode == kGltfStrip) {
+    for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.push_back(stripTriangle(i));
+  } else {
+    for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.emplace_back(i + 1, i + 2, 0);
+  }
+  for (std::size_t i = before; i < triangles.size(); ++i) {
+    glm::uvec3& triangle = triangles[i];
+    triangle = {order[triangle.x], order[triangle.y], order[triangle.z]};
+  }
+}
+
+/// The index that WebGL takes for the end of a run of vertices: a type's greatest, which glTF forbids.
+std::uint32_t restartIndex(const GltfModel& model, int accessor) {
+  const int type = model.file.accessors[std::size_t(accessor)].type;
+  return type == kGltfUnsignedByte ? 0xff : type == kGltfUnsignedShort ? 0xffff : 0xffffffff;
+}
+
 /// Triangles of vertex numbers, by the primitive's mode and indices.
 std::vector<glm::uvec3> readTriangles(const GltfModel& model, const GltfPrimitive& primitive,
                                       std::size_t vertices, const std::string& place) {
   std::vector<std::uint32_t> order(vertices);
   std::iota(order.begin(), order.end(), 0);
-  if (primitive.indices >= 0) order = readIndices(model, primitive.indices, place + ".indices");
+  std::uint32_t restart = 0;
+  if (primitive.indices >= 0) {
+    order = readIndices(model, primitive.indices, place + ".indices");
+    restart = restartIndex(model, primitive.indices);
+  }
+  std::size_t restarts = 0;
   for (const std::uint32_t index : order) {
-    if (index >= vertices)
+    if (index < vertices) continue;
+    if (index != restart)
       failGltf(model, place, fmt::format("index {}, but it has only {} vertices", index, vertices));
+    ++restarts;
   }
-  const std::uint32_t count = static_cast<std::uint32_t>(order.size());
+  if (restarts > 0)
+    repaired(model, place,
+             fmt::format("{} of its indices are {}, but it has only {} vertices; taken for ends of runs",
+                         restarts, restart, vertices),
+             "restart");
+  else if (primitive.mode == kGltfTriangles && order.size() % 3 != 0)
+    repaired(model, place, fmt::format("{} corners, expected a multiple of 3", order.size()), "corners");
   std::vector<glm::uvec3> triangles;
-  if (primitive.mode == kGltfTriangles) {
-    if (count % 3 != 0)
-      repaired(model, place, fmt::format("{} corners, expected a multiple of 3", count), "corners");
-    for (std::uint32_t i = 0; i + 2 < count; i += 3) triangles.emplace_back(i, i + 1, i + 2);
-  } else if (primitive.mode == kGltfStrip) {
-    for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.push_back(stripTriangle(i));
-  } else {
-    for (std::uint32_t i = 0; i + 2 < count; ++i) triangles.emplace_back(i + 1, i + 2, 0);
+  auto begin = order.begin();
+  while (restarts > 0) {
+    const auto end = std::find(begin, order.end(), restart);
+    appendTriangles(primitive.mode, {begin, end}, triangles);
+    if (end == order.end()) return triangles;
+    begin = end + 1;
   }
-  for (glm::uvec3& triangle : triangles) triangle = {order[triangle.x], order[triangle.y], order[triangle.z]};
+  appendTriangles(primitive.mode, order, triangles);
   return triangles;
 }
 
-/// An attribute's values as vectors; empty where the primitive doesn't have it.
+/// An attribute's values as vectors, one a vertex; empty where the primitive doesn't have it, or too few.
 template <typename Vector>
 std::vector<Vector> readAttribute(const GltfModel& model, const GltfPrimitive& primitive,
-                                  const std::string& name, const std::string& place) {
+                                  const std::string& name, std::size_t vertices, const std::string& place) {
   const auto found = primitive.attributes.find(name);
   if (found == primitive.attributes.end()) return {};
-  return readVectors<Vector>(model, found->second, place + "." + name);
+  std::vector<Vector> values = readVectors<Vector>(model, found->second, place + "." + name);
+  if (values.empty() || values.size() == vertices) return values;
+  const bool is_longer = values.size() > vertices;
+  repaired(model, place,
+           fmt::format("{} has {} elements for {} vertices; {}", name, values.size(), vertices,
+                       is_longer ? "the last are left out" : "drawn as if without"),
+           "elements");
+  values.resize(is_longer ? vertices : 0);
+  return values;
 }
 
 std::vector<glm::vec4> readColors(const GltfModel& model, const GltfPrimitive& primitive,
-                                  const std::string& place) {
+                                  std::size_t vertices, const std::string& place) {
   const auto found = primitive.attributes.find("COLOR_0");
   if (found == primitive.attributes.end()) return {};
   if (accessorComponents(model, found->second, place) == 4) {
-    return readAttribute<glm::vec4>(model, primitive, "COLOR_0", place);
+    return readAttribute<glm::vec4>(model, primitive, "COLOR_0", vertices, place);
   }
   std::vector<glm::vec4> colors;
-  for (const glm::vec3& rgb : readAttribute<glm::vec3>(model, primitive, "COLOR_0", place)) {
+  for (const glm::vec3& rgb : readAttribute<glm::vec3>(model, primitive, "COLOR_0", vertices, place)) {
     colors.emplace_back(rgb, 1.0f);
   }
   return colors;
@@ -160,14 +203,16 @@ int materialOf(const GltfModel& model, const GltfPrimitive& primitive) {
   return primitive.material;
 }
 
-/// Texture coordinates with the texture's transform applied; empty where the primitive doesn't have them.
+/// Texture coordinates with the texture's transform applied; all of 0 0 where the primitive doesn't have
+/// them, as in WebGL.
 std::vector<glm::vec2> uvsOf(const GltfModel& model, const GltfPrimitive& primitive, const GltfUvs& use,
-                             const std::string& place) {
+                             std::size_t vertices, const std::string& place) {
   const std::string name = fmt::format("TEXCOORD_{}", use.set);
-  auto uvs = readAttribute<glm::vec2>(model, primitive, name, place);
+  auto uvs = readAttribute<glm::vec2>(model, primitive, name, vertices, place);
   if (!primitive.attributes.count(name))
     repaired(model, place,
              fmt::format("has no {}, which a texture of its material wants; drawn with 0 0", name), "no uvs");
+  uvs.resize(vertices, glm::vec2(0));
   repairNumbers(model, glm::vec2(0), place + "." + name, uvs);
   if (use.matrix != glm::dmat2(1) || use.offset != glm::dvec2(0))
     for (glm::vec2& uv : uvs) uv = glm::vec2(use.matrix * glm::dvec2(uv) + use.offset);
@@ -177,19 +222,28 @@ std::vector<glm::vec2> uvsOf(const GltfModel& model, const GltfPrimitive& primit
 /// A primitive has one material, so the transforms of its textures can be applied to its vertices'
 /// coordinates.
 void readUvs(const GltfModel& model, const GltfPrimitive& primitive, const std::string& place, Mesh& mesh) {
+  const std::size_t vertices = mesh.positions.size();
+  // No picture needs these, so others than glTF's are none.
+  const auto lightmapUvs = [&](const char* name) {
+    const auto found = primitive.attributes.find(name);
+    const bool has = found != primitive.attributes.end() &&
+                     accessorComponents(model, found->second, place + "." + name) == 2;
+    return has ? readAttribute<glm::vec2>(model, primitive, name, vertices, place) : std::vector<glm::vec2>();
+  };
   const GltfUvs base = baseColorUvs(model, materialOf(model, primitive)),
                 emission = emissionUvs(model, materialOf(model, primitive)),
                 bent = normalUvs(model, materialOf(model, primitive));
-  if (bent.set >= 0 && base.set < 0) mesh.uvs = uvsOf(model, primitive, bent, place);
-  if (bent.set >= 0 && base.set >= 0 && bent != base) mesh.normal_uvs = uvsOf(model, primitive, bent, place);
-  if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, place);
+  if (bent.set >= 0 && base.set < 0) mesh.uvs = uvsOf(model, primitive, bent, vertices, place);
+  if (bent.set >= 0 && base.set >= 0 && bent != base)
+    mesh.normal_uvs = uvsOf(model, primitive, bent, vertices, place);
+  if (base.set >= 0) mesh.uvs = uvsOf(model, primitive, base, vertices, place);
   const bool has_uvs = base.set >= 0 || bent.set >= 0;
-  mesh.lightmap_uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_1", place);
+  mesh.lightmap_uvs = lightmapUvs("TEXCOORD_1");
   if (mesh.lightmap_uvs.empty() && !has_uvs && emission.set < 0)
-    mesh.lightmap_uvs = readAttribute<glm::vec2>(model, primitive, "TEXCOORD_0", place);
+    mesh.lightmap_uvs = lightmapUvs("TEXCOORD_0");
   if (emission.set < 0 || emission == (base.set >= 0 ? base : bent)) return;
   std::vector<glm::vec2>& uvs = has_uvs ? mesh.emission_uvs : mesh.uvs;
-  uvs = uvsOf(model, primitive, emission, place);
+  uvs = uvsOf(model, primitive, emission, vertices, place);
 }
 
 /// rest: null, or what its shape at rest is appended to.
@@ -207,21 +261,19 @@ Mesh readPrimitive(const GltfModel& model, const GltfPrimitive& primitive, const
             "points and lines");
     return mesh;
   }
-  mesh.positions = readAttribute<glm::vec3>(model, primitive, "POSITION", place);
-  if (mesh.positions.empty())
-    return mesh;  // glTF lets an extension say where such vertices are: nothing to draw
-  readUvs(model, primitive, place, mesh);
-  mesh.normals = readAttribute<glm::vec3>(model, primitive, "NORMAL", place);
-  mesh.colors = readColors(model, primitive, place);
-  if (normalUvs(model, materialOf(model, primitive)).set >= 0)
-    mesh.tangents = readAttribute<glm::vec4>(model, primitive, "TANGENT", place);
-  for (const std::size_t count :
-       {mesh.uvs.size(), mesh.emission_uvs.size(), mesh.normal_uvs.size(), mesh.lightmap_uvs.size(),
-        mesh.tangents.size(), mesh.normals.size(), mesh.colors.size()}) {
-    if (count == 0 || count == mesh.positions.size()) continue;
-    failGltf(model, place,
-             fmt::format("its attributes have {} and {} elements", mesh.positions.size(), count));
+  const auto position = primitive.attributes.find("POSITION");
+  if (position == primitive.attributes.end()) {
+    leftOut(model, place, "has no POSITION; left out", "no positions");  // glTF permits it
+    return mesh;
   }
+  mesh.positions = readVectors<glm::vec3>(model, position->second, place + ".POSITION");
+  const std::size_t vertices = mesh.positions.size();
+  if (vertices == 0) return mesh;
+  readUvs(model, primitive, place, mesh);
+  mesh.normals = readAttribute<glm::vec3>(model, primitive, "NORMAL", vertices, place);
+  mesh.colors = readColors(model, primitive, vertices, place);
+  if (normalUvs(model, materialOf(model, primitive)).set >= 0)
+    mesh.tangents = readAttribute<glm::vec4>(model, primitive, "TANGENT", vertices, place);
   checkFinite(model, mesh.positions, place + ".POSITION");
   // A transform of textures may overflow.
   checkFinite(model, mesh.uvs, place + ".TEXCOORD");
@@ -290,9 +342,11 @@ Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials
     repaired(model, place, "has no primitives, expected at least one", "no primitives");
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const GltfPrimitive& primitive = source.primitives[i];
-    const Mesh part = readPrimitive(model, primitive, fmt::format("{}.primitives[{}]", place, i), rest);
-    if (part.triangles.empty()) continue;
+    const std::string here = fmt::format("{}.primitives[{}]", place, i);
     const int material = materialOf(model, primitive);
+    if (material >= 0) element(model, model.file.materials, material, here, "material");
+    const Mesh part = readPrimitive(model, primitive, here, rest);
+    if (part.triangles.empty()) continue;
     auto known = std::find(materials.begin(), materials.end(), material);
     if (known == materials.end()) known = materials.insert(known, material);
     append(mesh, part, first_material + static_cast<std::uint32_t>(known - materials.begin()));

@@ -65,7 +65,8 @@ std::span<const std::byte> viewBytes(const GltfModel& model, int buffer_view, co
   if (view.offset > size || view.length > size - view.offset) {
     failGltf(model, here,
              !buffer.uri && size == 0
-                 ? fmt::format("buffers[{}] has no uri, and the file no BIN chunk", view.buffer)
+                 ? fmt::format("buffers[{}] has no uri, and {}", view.buffer,
+                               view.buffer == 0 ? "the file no BIN chunk" : "is not a GLB's first")
                  : fmt::format("{} bytes from {} on reach past its buffer of {} bytes", view.length,
                                view.offset, size));
   }
@@ -88,11 +89,13 @@ std::vector<std::string> variantNames(const GltfModel& model) {
   if (extension.is_null()) return names;
   const std::string place = "extensions.KHR_materials_variants.variants";
   const GltfJson& list = memberOf(extension, "variants");
+  if (extension.is_object() && list.is_null()) return names;
   if (!list.is_array()) failGltf(model, place, "expected a list");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const GltfJson& name = memberOf(list[i], "name");
-    if (!name.is_string()) failGltf(model, fmt::format("{}[{}]", place, i), "has no name");
-    names.push_back(name.get<std::string>());
+    if (!name.is_string())
+      repaired(model, fmt::format("{}[{}]", place, i), fmt::format("has no name, called '{}'", i), "variant");
+    names.push_back(name.is_string() ? name.get<std::string>() : std::to_string(i));
   }
   return names;
 }
@@ -114,12 +117,6 @@ const GltfJson& memberOf(const GltfJson& value, const char* name) {
 int indexOf(const GltfJson& value) {
   const double number = value.is_number() ? value.get<double>() : -1;
   return number >= 0 && number < 1e9 ? static_cast<int>(number) : -1;
-}
-
-double extensionNumber(const GltfJson& extensions, const char* extension, const char* member,
-                       double otherwise) {
-  const GltfJson& value = memberOf(memberOf(extensions, extension), member);
-  return value.is_number() ? value.get<double>() : otherwise;
 }
 
 void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind) {

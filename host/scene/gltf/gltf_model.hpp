@@ -25,8 +25,8 @@ struct GltfModel {
   int animation = -1;  ///< which of the file's runs; −1: all
 };
 
-/// The names of the file's variants (KHR_materials_variants). Throws InputError where they aren't a list of
-/// names.
+/// The names of the file's variants (KHR_materials_variants); those without one are called by their number,
+/// with a warning. Throws InputError where they aren't a list.
 std::vector<std::string> variantNames(const GltfModel& model);
 
 /// What the file's animations are called: by name, or by index where they have none.
@@ -56,10 +56,6 @@ const GltfJson& memberOf(const GltfJson& value, const char* name);
 
 /// A JSON value as an index; −1 where it isn't one that a file could have.
 int indexOf(const GltfJson& value);
-
-/// A member of one of a thing's extensions as a number; `otherwise` where there is none or it isn't a number.
-double extensionNumber(const GltfJson& extensions, const char* extension, const char* member,
-                       double otherwise);
 
 /// Adds a warning that the file breaks the format's rules: "path: place: what". `kind`: as Warning has it.
 void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);

@@ -108,27 +108,48 @@ std::vector<int> rootNodes(const GltfModel& model) {
   return roots;
 }
 
-/// Whether a node hides itself and all below it (KHR_node_visibility).
-bool isHidden(const GltfNode& node) {
-  return memberOf(memberOf(node.extensions, "KHR_node_visibility"), "visible") == GltfJson(false);
-}
-
 /// Of each node the one that it is a child of; -1: none. Throws InputError unless every node has one parent
-/// at most, and roots have none.
+/// at most. A root may have one outside the scene, which counts for nothing.
 std::vector<int> parentsOf(const GltfModel& model, const std::vector<int>& roots) {
   const std::vector<GltfNode>& nodes = model.file.nodes;
-  std::vector<int> parents(nodes.size(), -1), uses(nodes.size(), 0);
+  std::vector<int> parents(nodes.size(), -1), in_scene;
+  std::vector<bool> is_used(nodes.size(), false), is_root(nodes.size(), false),
+      is_in_scene(nodes.size(), false);
   const auto use = [&](int node, const std::string& place) {
     element(model, nodes, node, place, "node");
-    if (++uses[node] > 1)
+    if (is_used[node])
       failGltf(model, nodePlace(node), "has two parents or contains itself, expected a tree");
+    is_used[node] = true;
   };
-  for (const int root : roots) use(root, "scene");
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (const int child : nodes[i].children) {
-      use(child, nodePlace(static_cast<int>(i)));
-      parents[child] = static_cast<int>(i);
+  const auto useChild = [&](int node, int parent) {
+    use(node, nodePlace(parent));
+    parents[node] = parent;
+  };
+  for (const int root : roots) {
+    use(root, "scene");
+    is_root[root] = true;
+    in_scene.push_back(root);
+  }
+  for (std::size_t i = 0; i < in_scene.size(); ++i) {
+    const int parent = in_scene[i];
+    is_in_scene[parent] = true;
+    for (const int child : nodes[parent].children) {
+      useChild(child, parent);
+      in_scene.push_back(child);
     }
+  }
+  for (int parent = 0; parent < static_cast<int>(nodes.size()); ++parent) {
+    if (is_in_scene[parent]) continue;
+    for (const int child : nodes[parent].children) {
+      if (child < 0 || std::size_t(child) >= nodes.size() || !is_root[child])
+        useChild(child, parent);
+      else
+        repaired(model, nodePlace(child),
+                 fmt::format("is the scene's and nodes[{}]'s, which is not in the scene; drawn without that",
+                             parent),
+                 "parent");
+    }
+  }
   return parents;
 }
 
@@ -152,7 +173,7 @@ void placeTree(const GltfModel& model, int root, bool shown, bool with_hidden,
   while (!stack.empty()) {
     PlacedNode next = stack.back();
     stack.pop_back();
-    if (isHidden(nodes[next.node])) next.shown = false;
+    if (nodes[next.node].hidden) next.shown = false;
     if (!next.shown && !with_hidden) continue;
     LocalTransform local = localTransform(model, next.node);
     next.to_world = next.to_world * local.matrix;

@@ -42,16 +42,28 @@ std::vector<glm::dmat4> instancesOf(const GltfModel& model, int index) {
   };
   const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                            scales = read("SCALE", 3);
-  if (count == 0) failGltf(model, place, "has none of TRANSLATION, ROTATION, SCALE");
+  if (count == 0) {
+    repaired(model, place, "has none of TRANSLATION, ROTATION, SCALE; drawn once", "no instances");
+    return {glm::dmat4(1.0)};
+  }
   std::vector<glm::dmat4> instances;
+  bool is_unit = true;
   for (std::size_t i = 0; i < count; ++i) {
     glm::dvec3 translate(0), scale(1);
     glm::dvec4 rotation(0, 0, 0, 1);
     for (int c = 0; c < 3 && !translations.empty(); ++c) translate[c] = translations[3 * i + std::size_t(c)];
     for (int c = 0; c < 4 && !rotations.empty(); ++c) rotation[c] = rotations[4 * i + std::size_t(c)];
     for (int c = 0; c < 3 && !scales.empty(); ++c) scale[c] = scales[3 * i + std::size_t(c)];
+    if (const double length = glm::length(rotation); !isUnitLength(length)) {
+      if (is_unit)
+        repaired(model, place,
+                 fmt::format("instance {}: rotation is of length {}, expected unit quaternions", i, length),
+                 "rotation");
+      is_unit = false;
+      if (!(length > 0)) rotation = {0, 0, 0, 1};
+    }
     instances.push_back(placementByQuaternion(translate, rotation, scale));
-    if (!(glm::length(rotation) > 0) || !isFinite(instances.back()))
+    if (!isFinite(instances.back()))
       failGltf(model, place, fmt::format("instance {} has no finite transform", i));
   }
   return instances;
@@ -88,9 +100,19 @@ glm::dmat4 frameOf(const RestShape& rest, std::span<const double> pose, std::siz
   return frame;
 }
 
+/// The skin of a node; -1 where it has none, or no primitive of its mesh follows joints.
+int skinOf(const GltfModel& model, int node) {
+  const GltfNode& source = model.file.nodes[std::size_t(node)];
+  const auto followsJoints = [](const GltfPrimitive& primitive) {
+    return primitive.attributes.count("JOINTS_0") + primitive.attributes.count("WEIGHTS_0") > 0;
+  };
+  const std::vector<GltfPrimitive>& primitives = model.file.meshes[std::size_t(source.mesh)].primitives;
+  return std::ranges::any_of(primitives, followsJoints) ? source.skin : -1;
+}
+
 /// The joints of a node's skin. still: where they are without animation.
 std::vector<Joint> jointsOf(const Source& source, const PlacedNode& placed, bool still) {
-  const int index = source.model.file.nodes[std::size_t(placed.node)].skin;
+  const int index = skinOf(source.model, placed.node);
   if (index < 0) return {};
   const GltfSkin skin = readGltfSkin(source.model, index, nodePlace(placed.node));
   std::vector<Joint> joints;
@@ -163,7 +185,7 @@ int addDeforming(Source& source, const PlacedNode& placed, Scene& scene, glm::dm
 
 /// Whether a node shows its mesh in another shape than that at rest.
 bool isDeformed(const Source& source, int node) {
-  if (source.model.file.nodes[node].skin >= 0) return true;
+  if (skinOf(source.model, node) >= 0) return true;
   const auto curves = source.curves.find(node);
   if (curves != source.curves.end() && !curves->second.weights.empty()) return true;
   return std::ranges::any_of(targetWeights(source.model, node), [](double weight) { return weight != 0; });
@@ -206,11 +228,15 @@ void addGltfObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes
     const GltfNode& node = model.file.nodes[std::size_t(placed.node)];
     if (node.mesh < 0 || !placed.shown) continue;
     element(model, model.file.meshes, node.mesh, nodePlace(placed.node), "mesh");
+    const bool has_skin = skinOf(model, placed.node) >= 0;
+    if (node.skin >= 0 && !has_skin)
+      repaired(model, nodePlace(placed.node),
+               "has a skin, but its mesh no JOINTS_0 and WEIGHTS_0; drawn without", "no joints");
     glm::dmat4 frame(1.0);
     const int mesh = isDeformed(source, placed.node) ? addDeforming(source, placed, scene, frame)
                                                      : addRigid(source, node.mesh, scene);
     if (mesh < 0) continue;
-    if (node.skin < 0) {
+    if (!has_skin) {
       placeWithNode(source, placed, static_cast<std::uint32_t>(mesh), scene);
     } else {
       if (!memberOf(node.extensions, kInstancing).is_null())

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -93,25 +94,58 @@ std::optional<std::string> fromBase64(std::string_view text) {
 
 bool isData(std::string_view uri) { return uri.size() >= 5 && equalIgnoringCase(uri.substr(0, 5), "data:"); }
 
+std::string_view withoutBlanks(std::string_view text) {
+  constexpr const char* kBlanks = " \t\r\n";
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+}
+
+/// Whether what stands before a data URI's comma has the parameter base64. It should be the last one.
+bool saysBase64(std::string_view header) {
+  for (std::size_t at = header.find(';'); at != std::string_view::npos; at = header.find(';')) {
+    header.remove_prefix(at + 1);
+    if (equalIgnoringCase(withoutBlanks(header.substr(0, header.find(';'))), "base64")) return true;
+  }
+  return false;
+}
+
 /// What a data URI holds (RFC 2397), whatever its media type says. Throws InputError.
 std::string dataOf(std::string_view uri, const std::string& place, const GltfModel& model) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) failGltf(model, place, "is a data URI without a comma");
-  const std::string_view header = uri.substr(0, comma), data = uri.substr(comma + 1);
-  const std::string_view last = header.substr(std::min(header.rfind(';'), header.size()));
-  if (!equalIgnoringCase(last, ";base64")) return withoutEscapes(data);
+  const std::string_view data = uri.substr(comma + 1);
+  if (!saysBase64(uri.substr(0, comma))) return withoutEscapes(data);
   std::optional<std::string> bytes =
       data.find('%') == std::string_view::npos ? fromBase64(data) : fromBase64(withoutEscapes(data));
   if (!bytes) failGltf(model, place, "its data is not base64");
   return std::move(*bytes);
 }
 
-/// The file that a URI means: escaped, or else as it is written.
+/// A name in UTF-8 as Latin-1; nothing where it has letters that are none of Latin-1's.
+std::optional<std::string> latin1Of(std::string_view name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(name[i]);
+    if (byte >= 0x80 && byte != 0xc2 && byte != 0xc3) return {};
+    if (byte >= 0x80 && ++i == name.size()) return {};
+    text += static_cast<char>(byte == 0xc3 ? name[i] | 0x40 : name[i]);
+  }
+  return text;
+}
+
+/// The file that a URI means: without escapes, or as it is written, or without what only the web has. Names
+/// of a file in Latin-1 are UTF-8 here (parseGltf()), and on its disk Latin-1.
 std::optional<std::string> findUri(const std::string& uri, const SearchFolders& where) {
-  const std::string name = withoutEscapes(uri);
-  if (name.empty() || name.find('\0') != std::string::npos) return {};
-  std::optional<std::string> found = findFile(name, where);
-  return found || name == uri ? found : findFile(uri, where);
+  std::string_view path = withoutBlanks(uri);
+  path = path.substr(0, path.find_first_of("?#"));
+  constexpr std::string_view kFile = "file://";
+  if (equalIgnoringCase(path.substr(0, kFile.size()), kFile)) path.remove_prefix(kFile.size());
+  const std::string plain = withoutEscapes(path);
+  for (const std::string& name : {withoutEscapes(uri), uri, plain, latin1Of(plain).value_or("")}) {
+    if (name.empty() || name.find('\0') != std::string::npos) continue;
+    if (std::optional<std::string> found = findFile(name, where)) return found;
+  }
+  return {};
 }
 
 bool isEmptyFile(const std::string& path) {
@@ -129,10 +163,14 @@ std::span<const std::byte> keep(std::string bytes, GltfModel& model) {
 void findBuffer(std::size_t index, std::string_view binary, const SearchFolders& where, GltfModel& model) {
   GltfBuffer& buffer = model.file.buffers[index];
   const std::string place = fmt::format("buffers[{}]", index);
+  if (buffer.uri && buffer.uri->empty()) {
+    repaired(model, place, "uri is '', taken for none", "empty uri");
+    buffer.uri.reset();
+  }
   if (!buffer.uri) {
-    if (index == 0) buffer.bytes = asBytes(binary);  // no other buffer may be the GLB's
-    // Without data there may be a buffer that an extension gives a meaning. Who reads from it is told.
-    if (buffer.bytes.empty()) return;
+    // No other buffer may be the GLB's. Without data there may be a buffer that an extension gives a meaning.
+    // Who reads from it is told.
+    if (index == 0) buffer.bytes = asBytes(binary);
   } else if (isData(*buffer.uri)) {
     buffer.bytes = keep(dataOf(*buffer.uri, place + ".uri", model), model);
     buffer.uri->clear();
@@ -141,10 +179,38 @@ void findBuffer(std::size_t index, std::string_view binary, const SearchFolders&
     if (!file) failGltf(model, place, fmt::format("there is no file '{}'", forMessage(*buffer.uri)));
     buffer.bytes = keep(readFile(*file), model);
   }
-  if (buffer.bytes.size() < buffer.length)
-    failGltf(
-        model, place,
-        fmt::format("byteLength is {}, but there are only {} bytes", buffer.length, buffer.bytes.size()));
+}
+
+/// Warns of buffers whose data is shorter or longer than they say, and of which that matters not. Throws
+/// InputError where a view misses data.
+void checkLengths(const GltfModel& model) {
+  const std::vector<GltfBuffer>& buffers = model.file.buffers;
+  const auto fits = [](const GltfView& view, std::size_t bytes) {
+    return view.offset <= bytes && view.length <= bytes - view.offset;
+  };
+  std::vector<bool> misses(buffers.size(), false);
+  for (std::size_t i = 0; i < model.file.views.size(); ++i) {
+    const GltfView& view = model.file.views[i];
+    if (view.buffer < 0 || std::size_t(view.buffer) >= buffers.size()) continue;
+    const GltfBuffer& buffer = buffers[std::size_t(view.buffer)];
+    if (!fits(view, buffer.bytes.size()))
+      misses[std::size_t(view.buffer)] = true;
+    else if (!fits(view, buffer.length))
+      repaired(model, fmt::format("bufferViews[{}]", i),
+               fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
+                           view.length, view.offset, buffer.length),
+               "view past byteLength");
+  }
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const GltfBuffer& buffer = buffers[i];
+    const bool has_none = !buffer.uri && buffer.bytes.empty();
+    if (has_none || buffer.bytes.size() >= buffer.length) continue;
+    const std::string place = fmt::format("buffers[{}]", i),
+                      what = fmt::format("byteLength is {}, but there are only {} bytes", buffer.length,
+                                         buffer.bytes.size());
+    if (misses[i]) failGltf(model, place, what);
+    repaired(model, place, what, "byteLength");
+  }
 }
 
 void findImage(std::size_t index, const SearchFolders& where, GltfModel& model) {
@@ -172,24 +238,34 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
   if (wordAt(bytes, 8) != bytes.size())
     repaired(model, "its header", fmt::format("length is {}, the file's {}", wordAt(bytes, 8), bytes.size()),
              "GLB length");
-  if (!startsChunk(bytes, kHeader, kJsonChunk)) fail("its first chunk is no JSON");
-  const std::size_t json = kHeader + kChunkHeader, length = wordAt(bytes, kHeader);
-  if (length > bytes.size() - json)
-    fail(fmt::format("its JSON has {} bytes, but only {} follow", length, bytes.size() - json));
-  GltfParts parts{bytes.substr(json, length), {}};
-  std::size_t place = json + length;
-  if (place % 4 != 0) {
-    repaired(model, "its JSON chunk", fmt::format("{} bytes, expected a multiple of 4", length),
-             "GLB padding");
-    const std::size_t padded = (place + 3) / 4 * 4;
-    if (!startsChunk(bytes, place, kBinChunk) && startsChunk(bytes, padded, kBinChunk)) place = padded;
-  }
-  while (place + kChunkHeader <= bytes.size() && parts.binary.empty()) {
-    const std::size_t size = wordAt(bytes, place), begin = place + kChunkHeader;
+  const bool knows_its_end = wordAt(bytes, 8) == bytes.size();
+  GltfParts parts;
+  bool has_json = false;
+  std::size_t place = kHeader;
+  while (place + kChunkHeader <= bytes.size()) {
+    const std::size_t length = wordAt(bytes, place), begin = place + kChunkHeader;
+    const std::uint32_t kind = wordAt(bytes, place + 4);
+    const bool is_json = kind == kJsonChunk && !has_json, is_binary = kind == kBinChunk;
+    if (is_json && length > bytes.size() - begin)
+      fail(fmt::format("its JSON has {} bytes, but only {} follow", length, bytes.size() - begin));
+    if (is_json && place != kHeader) repaired(model, "its JSON chunk", "is not the first", "GLB order");
     // One that is cut short is refused where a buffer needs more.
-    if (wordAt(bytes, place + 4) == kBinChunk) parts.binary = bytes.substr(begin, size);
-    place = begin + size;
+    if (is_json) parts.json = bytes.substr(begin, length);
+    if (is_binary && parts.binary.empty()) parts.binary = bytes.substr(begin, length);
+    has_json = has_json || is_json;
+    place = begin + length;
+    if (length % 4 == 0 || place > bytes.size() || !(is_json || is_binary)) continue;
+    repaired(model, is_json ? "its JSON chunk" : "its BIN chunk",
+             fmt::format("{} bytes, expected a multiple of 4", length), "GLB padding");
+    const std::size_t padded = (place + 3) / 4 * 4;
+    if (!startsChunk(bytes, place, kBinChunk) &&
+        (startsChunk(bytes, padded, kBinChunk) || padded == bytes.size()))
+      place = padded;
   }
+  if (!has_json) fail("it has no JSON chunk");
+  if (knows_its_end && place != bytes.size())
+    repaired(model, "its chunks", fmt::format("end at byte {}, the file at {}", place, bytes.size()),
+             "GLB length");
   return parts;
 }
 
@@ -197,19 +273,7 @@ void findResources(std::string_view binary, const std::vector<std::string>& sear
   const SearchFolders where{std::filesystem::path(model.path).parent_path().string(), search};
   for (std::size_t i = 0; i < model.file.buffers.size(); ++i) findBuffer(i, binary, where, model);
   for (std::size_t i = 0; i < model.file.images.size(); ++i) findImage(i, where, model);
-  for (std::size_t i = 0; i < model.file.views.size(); ++i) {
-    const GltfView& view = model.file.views[i];
-    if (view.buffer < 0 || std::size_t(view.buffer) >= model.file.buffers.size()) continue;
-    const GltfBuffer& buffer = model.file.buffers[std::size_t(view.buffer)];
-    const auto fitsInto = [&](std::size_t bytes) {
-      return view.offset <= bytes && view.length <= bytes - view.offset;
-    };
-    if (!fitsInto(buffer.length) && fitsInto(buffer.bytes.size()))
-      repaired(model, fmt::format("bufferViews[{}]", i),
-               fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
-                           view.length, view.offset, buffer.length),
-               "view past byteLength");
-  }
+  checkLengths(model);
 }
 
 }  // namespace luciole

@@ -13,14 +13,15 @@ struct GltfParts {
   std::string_view json, binary;
 };
 
-/// Cuts a file's bytes into its parts. Lengths and paddings of a GLB that are off by a few bytes are mended,
-/// each with a warning, and unknown chunks left out. Throws InputError.
+/// Cuts a file's bytes into its parts. Lengths, paddings and the order of a GLB's chunks are mended, each
+/// with a warning, and unknown chunks left out. Throws InputError.
 GltfParts splitGltf(std::string_view bytes, const GltfModel& model);
 
 /// Finds what the file's buffers hold: the BIN chunk, data in their URI, or files beside the glTF file or in
-/// the folders `search` (see findFile). Throws InputError where a file isn't found, and where data is shorter
-/// than the file says; it may be longer. Finds the files of the images, and the data of those that have it in
-/// their URI; where there is none, GltfImage::file and GltfImage::bytes stay empty.
+/// the folders `search` (see findFile). Throws InputError where a file isn't found, and where a buffer view
+/// misses data; what no view needs may be missing, with a warning. Finds the files of the images, and the
+/// data of those that have it in their URI; where there is none, GltfImage::file and GltfImage::bytes stay
+/// empty.
 void findResources(std::string_view binary, const std::vector<std::string>& search, GltfModel& model);
 
 }  // namespace luciole

@@ -121,18 +121,31 @@ void appendRest(const GltfModel& model, const GltfPrimitive& primitive, const Me
     appendTarget(model, primitive.targets[t], first, vertices, fmt::format("{}.targets[{}]", place, t),
                  rest.targets[t]);
   const std::vector<InfluenceSet> sets = readInfluenceSets(model, primitive, vertices, place);
+  constexpr double kMostOff = 0.02;  // four of 8 bits are off by half of that at most
+  std::size_t off = 0;
+  std::string first_off;
   for (std::size_t i = 0; i < vertices; ++i) {
     const std::size_t before = rest.influence_joints.size();
+    double sum = 0;
     const auto add = [&](float joint, float weight) {
       rest.influence_joints.push_back(static_cast<std::uint32_t>(joint));
       rest.influence_weights.push_back(weight);
     };
     for (const InfluenceSet& set : sets)
       for (int c = 0; c < 4; ++c)
-        if (set.weights[i][c] > 0) add(set.joints[i][c], set.weights[i][c]);
+        if (set.weights[i][c] > 0) {
+          add(set.joints[i][c], set.weights[i][c]);
+          sum += double(set.weights[i][c]);
+        }
+    if (!sets.empty() && !(std::abs(sum - 1) <= kMostOff) && off++ == 0)
+      first_off = fmt::format("{:.6g} of element {}", sum, i);
     if (rest.influence_joints.size() == before && !sets.empty()) add(sets[0].joints[i][0], 1);
     rest.first_influence.push_back(static_cast<std::uint32_t>(rest.influence_joints.size()));
   }
+  if (off > 0)
+    repaired(model, place + ".WEIGHTS_0",
+             fmt::format("{} elements have another sum than 1, {} the first; scaled to it", off, first_off),
+             "sums of weights");
 }
 
 void checkInfluences(const GltfModel& model, const RestShape& rest, std::size_t joints,

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "scene/json/json_fields.hpp"
 
@@ -115,6 +116,9 @@ class Builder : public nlohmann::json_sax<Json> {
 
 Json parseJson(const std::string& text, const std::string& file,
                const std::function<bool(const JsonNode&)>& take) {
+  // The parser takes a zero for the end of the text.
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos)
+    throw InputError(fmt::format("{}: byte {} is 0, expected text in UTF-8", file, zero + 1));
   Builder builder(file, take);
   Json::sax_parse(text, &builder, Json::input_format_t::json, true, true);
   return builder.takeWhole();

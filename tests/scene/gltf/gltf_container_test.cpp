@@ -1,4 +1,5 @@
 // Where a glTF file's bytes lie: GLB chunks, data in URIs, files beside it and elsewhere.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -113,13 +114,52 @@ TEST_F(GltfContainer, ChunksMayBeEmptyUnknownUnpaddedOrFollowedByMore) {
                 ElementsAre(HasSubstr("its JSON chunk: ")))
         << blanks << ", padded, but not counted";
   }
-  EXPECT_THAT(told(glb(chunk(kJson, inGlb() + std::string(4, '\0')) + bin)), IsEmpty()) << "padded by zeros";
+  EXPECT_THAT(told(glb(chunk(kJson, inGlb() + std::string(4, '\0')) + bin)),
+              ElementsAre(HasSubstr("its JSON: ends in 4 zeros, expected blanks")));
+  const std::string json = chunk(kJson, inGlb());
+  EXPECT_THAT(told(glb(json + word(40) + kBin + file.data)),
+              ElementsAre(HasSubstr(fmt::format("its chunks: end at byte {}, the file at {}",
+                                                json.size() + 60, json.size() + 56))));
+  EXPECT_THAT(told(glb(json + bin + "abc")), ElementsAre(HasSubstr("its chunks: end at byte")));
+  EXPECT_THAT(told(glb(json + chunk(kBin, file.data + "x"))),
+              ElementsAre(HasSubstr("its BIN chunk: 37 bytes, expected a multiple of 4")));
+  EXPECT_THAT(told(glb(json + chunk(kBin, file.data + "x") + std::string(3, '\0'))),
+              ElementsAre(HasSubstr("its BIN chunk: 37 bytes")));
+  EXPECT_THAT(told(glb(bin + json)), ElementsAre(HasSubstr("its JSON chunk: is not the first")));
+  EXPECT_THAT(told(glb(chunk("MINE", "1234") + json + bin)),
+              ElementsAre(HasSubstr("its JSON chunk: is not the first")));
+}
+
+TEST_F(GltfContainer, DataThatNoViewNeedsMayBeMissing) {
+  const auto told = [&](const std::string& bytes) {
+    const Scene scene = loadBytes(bytes);
+    EXPECT_EQ(scene.objects.size(), 1u);
+    for (const Warning& warning : scene.warnings) EXPECT_TRUE(warning.repaired);
+    return textsOf(scene.warnings);
+  };
+  const char* const what = "buffers[0]: byteLength is 40, but there are only 36 bytes";
+  std::ofstream(folder / "data.bin", std::ios::binary) << file.data;
+  EXPECT_THAT(told(withUri("data.bin", 40)), ElementsAre(HasSubstr(what)));
+  EXPECT_THAT(told(withUri("data:;base64," + base64(file.data), 40)), ElementsAre(HasSubstr(what)));
+  EXPECT_THAT(told(glb(chunk(kJson, json4({{"byteLength", 40}})) + chunk(kBin, file.data))),
+              ElementsAre(HasSubstr(what)));
+  EXPECT_THAT(told(glb(chunk(kJson, withUri("", 36)) + chunk(kBin, file.data))),
+              ElementsAre(HasSubstr("buffers[0]: uri is '', taken for none")));
+}
+
+TEST_F(GltfContainer, OnlyTheFirstBufferIsTheGlbs) {
+  file.root["buffers"] = {{{"byteLength", 36}}, {{"byteLength", 36}}};
+  file.root["bufferViews"][0]["buffer"] = 1;
+  std::string json = file.root.dump();
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  EXPECT_THAT(fault(glb(chunk(kJson, json) + chunk(kBin, file.data))),
+              HasSubstr("buffers[1] has no uri, and is not a GLB's first"));
 }
 
 TEST_F(GltfContainer, WhatIsNoGlbIsRefused) {
   EXPECT_THAT(fault("glTF"), HasSubstr("is no GLB file: it is cut short"));
   EXPECT_THAT(fault("glTF" + word(1) + word(20) + chunk(kJson, "")), HasSubstr("version 1, expected 2"));
-  EXPECT_THAT(fault(glb(chunk(kBin, "12345678"))), HasSubstr("its first chunk is no JSON"));
+  EXPECT_THAT(fault(glb(chunk(kBin, "12345678"))), HasSubstr("it has no JSON chunk"));
   EXPECT_THAT(fault(glb(word(4000) + kJson + "{}")), HasSubstr("its JSON has 4000 bytes, but only 2 follow"));
   EXPECT_THAT(fault(glb(chunk(kJson, inGlb()))),
               HasSubstr("buffers[0] has no uri, and the file no BIN chunk"));
@@ -148,7 +188,8 @@ TEST_F(GltfContainer, DataOfAnyMediaTypeAndCodingIsRead) {
        {"data:application/octet-stream;base64," + text, "data:application/gltf-buffer;base64," + text,
         "data:;base64," + text, "data:application/octet-stream;charset=utf-8;base64," + text,
         "DATA:made/up;a=b;BASE64," + text, "data:application/octet-stream," + escaped, "data:;base64," + half,
-        "data:;base64," + lines, "data:;base64," + bare}) {
+        "data:;base64," + lines, "data:;base64," + bare, "data:a/b; base64 ," + text,
+        "data:a/b;base64;charset=utf-8," + text}) {
     const Scene scene = loadBytes(withUri(uri));
     EXPECT_EQ(scene.meshes.at(0).positions.at(1), glm::vec3(1, 0, 0)) << uri;
     EXPECT_THAT(scene.warnings, IsEmpty()) << uri;
@@ -165,8 +206,10 @@ TEST_F(GltfContainer, FilesAreFoundByTheirUri) {
     std::ofstream(folder / name, std::ios::binary) << file.data;
   for (const char* uri :
        {"sub/a%20b.bin", "sub/a b.bin", "sub\\a b.bin", ".\\sub\\a%20b.bin", "c%2520d.bin", "c%20d.bin",
-        "100% e.bin", "f.bin", "deep/g.bin", "C:\\Users\\me\\h.bin", "/home/me/h.bin", "file:///C:/me/h.bin"})
+        "100% e.bin", "h.bin?v=3", "h.bin#part", "sub/a%20b.bin?x=/y", " h.bin\n", "f.bin", "deep/g.bin",
+        "C:\\Users\\me\\h.bin", "/home/me/h.bin", "file:///C:/me/h.bin"})
     EXPECT_THAT(loadBytes(withUri(uri), {folder / "else"}).warnings, IsEmpty()) << uri;
+  EXPECT_THAT(loadBytes(withUri("file://" + (folder / "sub/a%20b.bin"))).warnings, IsEmpty());
   EXPECT_THAT(fault(withUri("nowhere\\x.bin")), HasSubstr("buffers[0]: there is no file 'nowhere\\x.bin'"));
   EXPECT_THAT(fault(withUri("sub")), HasSubstr("buffers[0]: there is no file 'sub'"));
 }
@@ -207,7 +250,36 @@ TEST_F(GltfContainer, TextThatIsNoUtf8IsTakenForLatin1) {
   }
 }
 
+TEST_F(GltfContainer, FilesWithNamesInLatin1AreFound) {
+  std::ofstream(folder / "k\xfc.bin", std::ios::binary) << file.data;
+  std::string text = withUri("k?.bin");
+  text[text.find("k?") + 1] = '\xfc';
+  EXPECT_THAT(textsOf(loadBytes(text).warnings), ElementsAre(HasSubstr("is not UTF-8")));
+  EXPECT_THAT(loadBytes(withUri("k%FC.bin")).warnings, IsEmpty());
+  EXPECT_THAT(loadBytes(withUri("k%C3%BC.bin")).warnings, IsEmpty());
+}
+
+TEST_F(GltfContainer, EscapesOfHalfALetterAreMended) {
+  const struct {
+    const char *written, *name;
+  } kNames[] = {{R"(k\udcfcche)",
+                 "k\xc3\xbc"
+                 "che"},
+                {R"(a\ud800b)",
+                 "a\xef\xbf\xbd"
+                 "b"},
+                {R"(\ud83d\ude00\udfff\\ud800)", "\xf0\x9f\x98\x80\xef\xbf\xbd\\ud800"}};
+  for (const auto& [written, name] : kNames) {
+    std::string text = withUri("data:;base64," + base64(file.data));
+    text.replace(text.find("\"mesh\":0"), 8, std::string("\"name\":\"") + written + "\",\"mesh\":0");
+    const Scene scene = loadBytes(text);
+    EXPECT_EQ(scene.objects.at(0).name, name) << written;
+    EXPECT_THAT(textsOf(scene.warnings), ElementsAre(HasSubstr("its JSON: has escapes of half a letter")));
+  }
+}
+
 TEST_F(GltfContainer, WhatIsNoJsonIsRefusedInALine) {
+  EXPECT_THAT(fault(std::string("{}\0{}", 5)), HasSubstr("is not valid JSON: byte 3 is 0"));
   for (const char* text : {"", "\xef\xbb\xbf", "{", "[1, 2", "{\"asset\": \xff", "nonsense"})
     EXPECT_THAT(fault(text), HasSubstr("a.gltf: is not valid JSON: ")) << text;
   EXPECT_THAT(fault("[]"), HasSubstr("its JSON: expected an object"));

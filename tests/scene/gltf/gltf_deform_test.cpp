@@ -389,6 +389,24 @@ TEST_F(GltfDeform, ASceneFilePlacesWhatDeforms) {
   }
 }
 
+TEST_F(GltfDeform, ASkinThatNoVertexFollowsIsLeftOut) {
+  GltfFile file = bendingFile();
+  for (const char* name : {"JOINTS_0", "WEIGHTS_0"}) file.primitive()["attributes"].erase(name);
+  file.root.erase("animations");
+  file.root["nodes"][0]["translation"] = {5, 0, 0};
+  EXPECT_THAT(repair(file), HasSubstr("nodes[0]: has a skin, but its mesh no JOINTS_0 and WEIGHTS_0"));
+  EXPECT_EQ(load(file).objects.at(0).object_to_world[3], glm::dvec4(5, 0, 0, 1)) << "where its node is";
+}
+
+TEST_F(GltfDeform, WeightsOfAnotherSumAreScaledToOne) {
+  GltfFile file = bendingFile();
+  std::vector<float> weights(24, 0);
+  for (std::size_t i = 0; i < 6; ++i) weights[4 * i] = i == 1 ? 0.0f : i == 2 ? 3.0f : 1.004f;
+  file.primitive()["attributes"]["WEIGHTS_0"] = file.addAccessor("VEC4", kFloat, 4, weights);
+  EXPECT_THAT(repair(file), HasSubstr("meshes[0].primitives[0].WEIGHTS_0: 2 elements have another sum than "
+                                      "1, 0 of element 1 the first"));
+}
+
 TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
   const auto refuses = [&](GltfFile file, const char* what, const std::function<void(GltfFile&)>& change) {
     change(file);
@@ -405,8 +423,10 @@ TEST_F(GltfDeform, WrongSkinsAndTargetsAreRefused) {
   refuses(bar, "a vertex follows joint 1, but its skin has 1",
           [](GltfFile& f) { f.root["skins"][0]["joints"] = {1}; });
   refuses(bar, "without JOINTS_0", [&](GltfFile& f) {
-    attributes(f).erase("JOINTS_0");
-    attributes(f).erase("WEIGHTS_0");
+    json bare = f.primitive();
+    bare["attributes"].erase("JOINTS_0");
+    bare["attributes"].erase("WEIGHTS_0");
+    f.root["meshes"][0]["primitives"].push_back(bare);
   });
   refuses(bar, "has one of JOINTS_0 and WEIGHTS_0", [&](GltfFile& f) { attributes(f).erase("WEIGHTS_0"); });
   refuses(bar, "WEIGHTS_0: element 0 is not finite", [&](GltfFile& f) {

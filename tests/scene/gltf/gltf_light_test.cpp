@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "scene/gltf/gltf_loader.hpp"
+#include "scene/pose.hpp"
 #include "scene/warning_texts.hpp"
 
 namespace luciole::test {
@@ -97,7 +98,37 @@ TEST_F(GltfLoader, ImpossibleLightsAreMendedOrLeftOut) {
   EXPECT_EQ(spot.inner_cone, 0.6);
   EXPECT_EQ(mended(cone(-0.5, 1), "innerConeAngle is -0.5").at(0).inner_cone, 0);
   EXPECT_TRUE(mended(cone(0, 0), "outerConeAngle is 0").empty());
+  EXPECT_EQ(
+      mended({{"type", "point"}, {"color", {0.5, 0.25}}}, "color has 2 numbers, expected 3").at(0).diffuse,
+      glm::vec3(glm::dvec3(0.5, 0.25, 1) / kPi));
   EXPECT_THROW(light({{"type", "point"}, {"intensity", 1e300}}), InputError);
+}
+
+TEST_F(GltfLoader, LampsThatAScaleOfZeroHidesForAWhileAreDarkMeanwhile) {
+  GltfFile file = triangleFile();
+  file.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}}, {{"type", "point"}}};
+  file.root["nodes"] = {{{"mesh", 0}}, {{"scale", {0, 0, 0}}, {"children", {2, 3}}}};
+  for (const int lamp : {0, 1})
+    file.root["nodes"].push_back(
+        {{"translation", {2, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", lamp}}}}}});
+  file.root["scenes"][0]["nodes"] = {0, 1};
+  const int times = file.addAccessor<float>("SCALAR", kFloat, 1, {0, 1, 2});
+  const int scales = file.addAccessor<float>("VEC3", kFloat, 3, {0, 0, 0, 1, 1, 1, 0, 0, 0});
+  file.root["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "scale"}}}}}},
+                              {"samplers", {{{"input", times}, {"output", scales}}}}}};
+  Scene scene = load(file);
+  EXPECT_TRUE(scene.warnings.empty());
+  ASSERT_EQ(scene.lights.size(), 2u);
+  for (int round = 0; round < 2; ++round) {
+    for (const double frame : {1, 1, 25, 25, 49}) {
+      poseScene(scene, frame);
+      for (const Light& lamp : scene.lights) {
+        EXPECT_EQ(lamp.diffuse, glm::vec3(frame == 25 ? float(1 / kPi) : 0.0f)) << frame;
+        EXPECT_EQ(lamp.specular, lamp.diffuse);
+        EXPECT_TRUE(frame != 25 || lamp.position == glm::dvec3(2, 0, 0));
+      }
+    }
+  }
 }
 
 TEST_F(GltfLoader, LampsAndCamerasBelowAScaleOfZeroAreLeftOutWithAWarning) {

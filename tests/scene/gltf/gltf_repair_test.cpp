@@ -1,5 +1,6 @@
 // What breaks glTF's rules and is drawn by every viewer: it is mended, with one warning that --strict
 // refuses.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -86,6 +87,113 @@ TEST_F(GltfRepair, UnknownWordsAndNumbersAreTakenForTheNearest) {
   EXPECT_TRUE(load(file).warnings.empty());
 }
 
+TEST_F(GltfRepair, NumbersThatNameNothingAreTakenForTheDefault) {
+  GltfFile file = triangleFile();
+  json odd = file.primitive();
+  odd["mode"] = -1;
+  file.root["meshes"][0]["primitives"].push_back(odd);
+  EXPECT_THAT(repair(file), HasSubstr("meshes[0].primitives[1]: mode -1 is not one of glTF's; left out"));
+  writePicture("a.png", {1, 0, 0});
+  file = withMaterial({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                       {"emissiveTexture", {{"index", 0}}}});
+  file.primitive()["attributes"]["TEXCOORD_0"] =
+      file.addAccessor<float>("VEC2", kFloat, 2, {0, 0, 1, 0, 0, 1});
+  file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  file.root["images"] = {{{"uri", "a.png"}}};
+  for (const json& number : {json(0), json(-5), json(5.5), json(1e15)})
+    for (const char* name : {"wrapS", "wrapT", "magFilter", "minFilter"}) {
+      file.root["samplers"] = {{{name, number}}};
+      EXPECT_THAT(repair(file), HasSubstr(fmt::format("samplers[0]: {} is {}, none of glTF's", name,
+                                                      number.get<double>())));
+    }
+  file.root["samplers"] = json::array();
+  EXPECT_THAT(repair(file), HasSubstr("textures[0]: refers to sampler 0, but the file has 0 of them"));
+}
+
+TEST_F(GltfRepair, CamerasOfOddTypesAndLensesAreMended) {
+  const json lens{{"ymag", -2}, {"znear", 1}, {"zfar", 5}}, view{{"yfov", 1}, {"znear", 0.5}};
+  const auto mendedCamera = [&](const json& camera, const char* what) {
+    GltfFile file = triangleFile();
+    file.root["cameras"] = {camera};
+    file.root["nodes"][0]["camera"] = 0;
+    EXPECT_THAT(repair(file), HasSubstr(std::string("cameras[0]: ") + what));
+    return load(file).cameras;
+  };
+  EXPECT_EQ(mendedCamera({{"type", "orthographic"}, {"orthographic", lens}}, "ymag is -2, taken for 2")
+                .at(0)
+                .half_height,
+            2);
+  json plain = lens;
+  plain["ymag"] = 2;
+  for (const char* type : {"Orthographic", "fisheye"})
+    EXPECT_TRUE(mendedCamera({{"type", type}, {"orthographic", plain}},
+                             (std::string("type is '") + type + "', taken for orthographic").c_str())
+                    .at(0)
+                    .orthographic);
+  EXPECT_FALSE(mendedCamera({{"perspective", view}}, "type is '', taken for perspective").at(0).orthographic);
+  EXPECT_TRUE(mendedCamera({{"type", "perspective"}}, "has no yfov; left out").empty());
+  plain.erase("zfar");
+  EXPECT_TRUE(
+      mendedCamera({{"type", "orthographic"}, {"orthographic", plain}}, "has no zfar; left out").empty());
+}
+
+TEST_F(GltfRepair, AttributesOfOtherLengthsAreCutOrLeftOut) {
+  GltfFile file = triangleFile();
+  json& attributes = file.primitive()["attributes"];
+  attributes["COLOR_0"] = file.addAccessor<float>("VEC3", kFloat, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1});
+  EXPECT_THAT(repair(file),
+              HasSubstr("meshes[0].primitives[0]: COLOR_0 has 4 elements for 3 vertices; the last"));
+  EXPECT_EQ(load(file).meshes.at(0).colors.size(), 3u);
+  attributes.erase("COLOR_0");
+  attributes["NORMAL"] = file.addAccessor<float>("VEC3", kFloat, 3, {1, 0, 0, 1, 0, 0});
+  EXPECT_THAT(repair(file), HasSubstr("NORMAL has 2 elements for 3 vertices; drawn as if without"));
+  EXPECT_EQ(load(file).meshes.at(0).normals.at(0), glm::vec3(0, 0, 1)) << "the faces'";
+  attributes.erase("NORMAL");
+  attributes["TEXCOORD_1"] = file.addAccessor<float>("VEC3", kFloat, 3, {1, 0, 0, 1, 0, 0});
+  EXPECT_TRUE(load(file).warnings.empty()) << "no texture needs them";
+  attributes.erase("POSITION");
+  file.root["nodes"].push_back({{"camera", 0}});
+  file.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  file.root["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = load(file);
+  EXPECT_THAT(textsOf(scene.warnings), testing::ElementsAre(HasSubstr("has no POSITION; left out")));
+  EXPECT_TRUE(scene.objects.empty());
+}
+
+TEST_F(GltfRepair, GreatestIndicesEndRuns) {
+  const auto triangles = [&](int mode, const std::vector<std::uint16_t>& indices) {
+    GltfFile file = vertexFile();
+    file.primitive()["mode"] = mode;
+    file.primitive()["indices"] = file.addAccessor<std::uint16_t>("SCALAR", kUnsignedShort, 1, indices);
+    EXPECT_THAT(repair(file), HasSubstr("meshes[0].primitives[0]: 1 of its indices are 65535"));
+    return load(file).meshes.at(0).triangles.size();
+  };
+  EXPECT_EQ(triangles(4, {0, 1, 2, 65535, 0, 2, 3}), 2u);
+  EXPECT_EQ(triangles(4, {0, 1, 2, 65535}), 1u);
+  EXPECT_EQ(triangles(5, {0, 1, 2, 3, 65535, 1, 2, 3}), 3u);
+  EXPECT_EQ(triangles(6, {65535, 0, 1, 2, 3}), 2u);
+  GltfFile file = triangleFile();
+  file.primitive()["indices"] = file.addAccessor<std::uint16_t>("SCALAR", kUnsignedShort, 1, {0, 1, 255});
+  EXPECT_THAT(error(file), HasSubstr("index 255, but it has only 3 vertices"));
+}
+
+TEST_F(GltfRepair, VariantsWithoutANameAreCalledByTheirNumber) {
+  GltfFile file = triangleFile();
+  json& extension = file.root["extensions"]["KHR_materials_variants"];
+  extension["variants"] = {{{"name", "a"}}, json::object()};
+  EXPECT_THAT(repair(file), HasSubstr("KHR_materials_variants.variants[1]: has no name, called '1'"));
+  EXPECT_EQ(load(file).variants, (std::vector<std::string>{"a", "1"}));
+  extension = json::object();
+  EXPECT_TRUE(load(file).warnings.empty());
+}
+
+TEST_F(GltfRepair, AParentOutsideTheSceneCountsForNothing) {
+  GltfFile file = triangleFile();
+  file.root["nodes"].push_back({{"translation", {5, 0, 0}}, {"children", {0}}});
+  EXPECT_THAT(repair(file), HasSubstr("nodes[0]: is the scene's and nodes[1]'s, which is not in the scene"));
+  EXPECT_EQ(load(file).objects.at(0).object_to_world, glm::dmat4(1.0));
+}
+
 TEST_F(GltfRepair, OtherKindsOfValuesAreRefusedByTheirPlace) {
   const auto broken = [&](const std::function<void(json&)>& change) {
     GltfFile file = triangleFile();
@@ -111,6 +219,24 @@ TEST_F(GltfRepair, OtherKindsOfValuesAreRefusedByTheirPlace) {
                 r["nodes"][0]["translation"] = {1, 2};
               }),
               HasSubstr("nodes[0]: translation has 2 numbers, expected 3"));
+  const auto inMaterial = [&](const char* extension, const json& members) {
+    return broken([&](json& r) { r["materials"] = {{{"extensions", {{extension, members}}}}}; });
+  };
+  const std::string place = "materials[0].extensions.";
+  EXPECT_THAT(inMaterial("KHR_materials_emissive_strength", {{"emissiveStrength", "5"}}),
+              HasSubstr(place + "KHR_materials_emissive_strength.emissiveStrength: expected a number"));
+  EXPECT_THAT(inMaterial("KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", "red"}}),
+              HasSubstr(place + "KHR_materials_pbrSpecularGlossiness.diffuseFactor: expected a list"));
+  EXPECT_THAT(inMaterial("KHR_materials_pbrSpecularGlossiness", json::array()),
+              HasSubstr(place + "KHR_materials_pbrSpecularGlossiness: expected an object"));
+  EXPECT_THAT(inMaterial("KHR_materials_specular", {{"specularColorFactor", {1, "a", 1}}}),
+              HasSubstr(place + "KHR_materials_specular.specularColorFactor: expected a number"));
+  EXPECT_THAT(broken([](json& r) { r["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = 0; }),
+              HasSubstr("nodes[0].extensions.KHR_node_visibility.visible: expected true or false"));
+  EXPECT_THAT(broken([](json& r) { r["meshes"][0]["primitives"][0]["material"] = 3; }),
+              HasSubstr("meshes[0].primitives[0]: refers to material 3"));
+  EXPECT_THAT(broken([](json& r) { r["accessors"][0]["type"] = "vec3"; }),
+              HasSubstr("accessors[0]: its type is none of glTF's"));
   EXPECT_THAT(broken([](json& r) {
                 r = json::array({1});
                 r = {{"x", r}};
@@ -156,6 +282,7 @@ TEST_F(GltfRepair, NumbersOfVerticesThatAreNoneAreMended) {
   file.root["textures"] = {{{"source", 0}}};
   file.root["images"] = {{{"uri", "a.png"}}};
   EXPECT_THAT(repair(file), HasSubstr("meshes[0].primitives[0]: has no TEXCOORD_0"));
+  EXPECT_EQ(load(file).meshes.at(0).uvs, std::vector<glm::vec2>(3, {0, 0})) << "not without its texture";
   json& attributes = file.primitive()["attributes"];
   attributes["TEXCOORD_0"] = file.addAccessor<float>("VEC2", kFloat, 2, {0.5f, 0.5f, NAN, 0, 0, INFINITY});
   EXPECT_THAT(repair(file),

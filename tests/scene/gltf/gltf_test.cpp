@@ -44,9 +44,12 @@ TEST_F(GltfLoader, InstancesArePlacedInTheirNodesSpace) {
   attributes["SCALE"] = file.addAccessor<float>("VEC3", kFloat, 3, {1, 1, 1});
   EXPECT_THAT(error(file), HasSubstr("its attributes have 2 and 1 elements"));
   attributes = json::object();
-  EXPECT_THAT(error(file), HasSubstr("has none of TRANSLATION, ROTATION, SCALE"));
-  attributes = {{"ROTATION", file.addAccessor<float>("VEC4", kFloat, 4, {0, 0, 0, 0})}};
+  EXPECT_THAT(repair(file), HasSubstr("has none of TRANSLATION, ROTATION, SCALE; drawn once"));
+  EXPECT_EQ(load(file).objects.size(), 1u);
+  attributes = {{"SCALE", file.addAccessor<float>("VEC3", kFloat, 3, {1, INFINITY, 1})}};
   EXPECT_THAT(error(file), HasSubstr("instance 0 has no finite transform"));
+  attributes = {{"ROTATION", file.addAccessor<float>("VEC4", kFloat, 4, {0, 0, 0, 0})}};
+  EXPECT_THAT(repair(file), HasSubstr("instance 0: rotation is of length 0"));
   attributes = {{"TRANSLATION", "x"}};
   EXPECT_THAT(error(file), HasSubstr("TRANSLATION"));
 }
@@ -85,6 +88,10 @@ TEST_F(GltfLoader, NodesThatAreNoTreeAreRefused) {
   EXPECT_THAT(error(file), HasSubstr("expected a tree"));
   file.root["nodes"] = {{{"children", {1, 2}}}, {{"children", {2}}}, {{"mesh", 0}}};
   EXPECT_THAT(error(file), HasSubstr("nodes[2]: has two parents"));
+  file.root["scenes"][0]["nodes"] = {0, 2};
+  file.root["nodes"] = {{{"children", {1}}}, {{"children", {2}}}, {{"mesh", 0}}};
+  EXPECT_THAT(error(file), HasSubstr("nodes[2]: has two parents")) << "both in the scene";
+  file.root["scenes"][0]["nodes"] = {0};
   file.root["nodes"] = {{{"children", {7}}}};
   EXPECT_THAT(error(file), HasSubstr("nodes[0]: refers to node 7, but the file has 1 of them"));
 }

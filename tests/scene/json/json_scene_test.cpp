@@ -205,6 +205,8 @@ TEST_F(JsonScene, MessagesNameFilePlaceFaultAndExpectation) {
             "scene.json: objects[0].material: no material is called \"gold\"");
   EXPECT_EQ(refusal(R"({"size": [0, 5]})"), "scene.json: size: 0x5 pixels, expected 1 to 32768 a side");
   EXPECT_THAT(refusal("{\n  \"size\": [1,\n  2\n"), HasSubstr("scene.json: line 4, column 1: syntax error"));
+  EXPECT_THAT(refusal(std::string("{}\0{}", 5)),
+              HasSubstr("scene.json: byte 3 is 0, expected text in UTF-8"));
   EXPECT_THAT(refusal(R"({"ambient": [0, 1e999, 0]})"),
               HasSubstr("scene.json: ambient[1]: expected a finite number"));
   EXPECT_THAT(refusal(R"({"ambient": 1, "ambient": 2})"),
