@@ -10,8 +10,8 @@ struct Warning {
   /// The same for warnings that differ in place and value alone, such as "unknown material". Of each kind a
   /// terminal shows ten at most.
   std::string kind;
-  /// The file breaks its format's rules, and a value was taken that common viewers take. --strict makes it an
-  /// error.
+  /// The file breaks its format's rules, and a value was taken that common viewers take; or a mesh's points
+  /// or lines aren't drawn. --strict makes it an error.
   bool repaired = false;
 };
 

@@ -255,10 +255,10 @@ Mesh readPrimitive(const GltfModel& model, const GltfPrimitive& primitive, const
     return mesh;
   }
   if (primitive.mode < kGltfTriangles) {
-    leftOut(model, place,
-            fmt::format("mode {} is of {}, which are not drawn; left out", primitive.mode,
-                        primitive.mode == 0 ? "points" : "lines"),
-            "points and lines");
+    repaired(model, place,
+             fmt::format("mode {} is of {}, which are not drawn; left out", primitive.mode,
+                         primitive.mode == 0 ? "points" : "lines"),
+             "points and lines");
     return mesh;
   }
   const auto position = primitive.attributes.find("POSITION");
