@@ -21,7 +21,8 @@ Kernel makeKernelOf(Device& device, const std::string& key, const char* name, co
                     Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
-    const std::string options = fmt::format("-cl-std=CL1.2 {} -cl-kernel-arg-info -DLANES={} {}",
+    // -w: clang counts its warnings on standard error, and has some of vectors wider than the processor's.
+    const std::string options = fmt::format("-cl-std=CL1.2 -w {} -cl-kernel-arg-info -DLANES={} {}",
                                             device.arithmetic, device.description.lanes, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {

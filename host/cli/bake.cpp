@@ -14,6 +14,7 @@
 #include "cli/open_devices.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/progress.hpp"
 #include "cli/suggest.hpp"
 #include "image/dilate.hpp"
 #include "image/picture_hash.hpp"
@@ -167,7 +168,10 @@ void bake(CommandContext& context, BakeOptions& options) {
   });
   judgeOverlap(options, space);
   leaveLight(options, space.gbuffer);
+  ProgressLine progress(options.quiet);
+  settings.on_long_compile = tellsCompiling(progress);
   Image map = shadeGBuffer(context.device, scene, space.gbuffer, settings, stats);
+  progress.clear();
   logDevice(context.device.description);
   timed(stats, Stage::kResolve, [&] {
     if (!options.alpha) dilate(map, shownTexels(space.gbuffer), kSeamTexels);

@@ -47,6 +47,11 @@ int bench(const BenchOptions& options) {
                       options.plot, kLightErrors));
     checkPlace(options.plot);
   }
+  constexpr const char* kCullAndShade = "cull and shade";
+  if (!options.gbuffer.empty() && !options.only.empty() &&
+      std::find(options.only.begin(), options.only.end(), kCullAndShade) == options.only.end())
+    throw InputError(
+        fmt::format("--gbuffer {}: is for \"{}\", which --only leaves out", options.gbuffer, kCullAndShade));
   const Scene scene = options.scene.empty() ? makeBenchScene() : openScene(options.scene, 1, options.picture);
   BenchSettings settings;
   settings.picture = renderSettings(options.picture, scene);
@@ -71,7 +76,7 @@ int bench(const BenchOptions& options) {
   if (!options.gbuffer.empty()) {
     choice.given = {options.gbuffer, readGBuffer(options.gbuffer),
                     openScene(options.lights, 1, options.picture), modelOf(options.picture)};
-    if (choice.only.empty()) choice.only = {"cull and shade"};
+    if (choice.only.empty()) choice.only = {kCullAndShade};
   }
   const BenchResult result = runBench(scene, settings, choice);
   if (progress) progress->clear();

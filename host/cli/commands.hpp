@@ -32,8 +32,9 @@ void tellError(const std::string& message, int status);
 
 /// Writes a warning to standard error, as a line or an event.
 void tellWarning(const std::string& text);
-/// Lines for people: of each kind of warning ten at most, in order, then how many more there are.
-std::vector<std::string> shownWarnings(const std::vector<Warning>& warnings);
+/// Lines for people: of each kind of warning ten at most, in order, then how many more there are, which the
+/// option lists.
+std::vector<std::string> shownWarnings(const std::vector<Warning>& warnings, const std::string& option);
 /// Writes a scene's warnings to standard error: the lines above, or all of them as events.
 void tellWarnings(const std::vector<Warning>& warnings);
 

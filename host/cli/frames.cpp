@@ -127,6 +127,11 @@ std::string frameFile(const std::string& pattern, int frame) {
   return fmt::format("{}{:0{}}{}", name.before, frame, name.digits, name.after);
 }
 
+std::string hashPattern(const std::string& pattern) {
+  const NamePattern name = parsePattern(pattern);
+  return name.before + std::string(std::size_t(name.digits), '#') + name.after;
+}
+
 bool hasFramePlace(const std::string& pattern) { return parsePattern(pattern).digits > 0; }
 
 void checkPattern(const std::string& pattern, const std::string& option) {

@@ -29,6 +29,9 @@ std::string frameFile(const std::string& pattern, int frame);
 /// number. option: the pattern's option, for the message.
 void checkPattern(const std::string& pattern, const std::string& option);
 
+/// The pattern with # for each digit of the number: the same for all that name the same files.
+std::string hashPattern(const std::string& pattern);
+
 /// Whether a file's name has a place for the frame's number. Throws InputError as frameFile() does.
 bool hasFramePlace(const std::string& pattern);
 

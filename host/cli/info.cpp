@@ -63,7 +63,8 @@ std::string counted(std::size_t count, const std::string& thing) {
 void addWarnings(Report& report, const std::vector<Warning>& warnings) {
   report.json["warnings"] = Json::array();
   for (const Warning& warning : warnings) report.json["warnings"].push_back(warning.text);
-  for (const std::string& line : shownWarnings(warnings)) addLine(report, "warning", printable(line));
+  for (const std::string& line : shownWarnings(warnings, "--json"))
+    addLine(report, "warning", printable(line));
 }
 
 Json cameraJson(const Camera& camera) {
@@ -235,20 +236,26 @@ std::string jobText(double milliseconds) {
                        : fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
+/// Of a scene that moves so many frames are looked at, at most, each for those up to the next: to look at one
+/// may take half as long as to make it.
+constexpr std::size_t kFramesPosed = 25;
+
 /// What the pictures of all these frames together would cost, made by one process.
 void addJob(Scene& scene, const std::vector<int>& frames, const InfoOptions& options, Report& report) {
   double milliseconds = 0, bytes = 0, longest = 0;
   int slowest = frames.front();
-  std::optional<std::pair<double, double>> of_each;  // where nothing moves: the first one's, and its start
+  std::pair<double, double> of_each;  // the last one's that was looked at, and its start
   const bool moves = sceneInfo(scene).moves.has_value();
-  for (const int frame : frames) {
-    if (!of_each || moves) {
+  const std::size_t step = moves ? (frames.size() + kFramesPosed - 1) / kFramesPosed : frames.size();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const int frame = frames[i];
+    if (i % step == 0) {
       poseScene(scene, frame);
       const PictureWork work = pictureWork(scene, renderSettings(options, scene));
       of_each = {estimatedMilliseconds(work), estimatedStart(work)};
       bytes = std::max(bytes, estimatedBytes(work));
     }
-    const auto [of_frame, start] = *of_each;
+    const auto [of_frame, start] = of_each;
     milliseconds += milliseconds == 0 ? of_frame : of_frame - start;
     if (of_frame > longest) {
       longest = of_frame;
@@ -260,10 +267,11 @@ void addJob(Scene& scene, const std::vector<int>& frames, const InfoOptions& opt
                         {"memory_bytes", bytes},
                         {"slowest_frame", slowest},
                         {"slowest_milliseconds", longest}};
-  addLine(report, "all frames",
-          fmt::format("{}: about {}, at most {:.0f} MiB; the longest, frame {}, about {}",
-                      counted(frames.size(), "frame"), jobText(milliseconds), bytes / (1 << 20), slowest,
-                      durationText(longest)));
+  addLine(
+      report, "all frames",
+      fmt::format("{}: about {}, at most {:.0f} MiB; the longest{}, frame {}, about {}",
+                  counted(frames.size(), "frame"), jobText(milliseconds), bytes / (1 << 20),
+                  moves && step > 1 ? fmt::format(" of 1 in {}", step) : "", slowest, durationText(longest)));
 }
 
 /// What a render with these options would use and cost. Returns what keeps it from being made, or "".

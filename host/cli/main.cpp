@@ -97,7 +97,8 @@ void luciole::tellWarning(const std::string& text) {
     writeError(fmt::format("luciole: warning: {}\n", text));
 }
 
-std::vector<std::string> luciole::shownWarnings(const std::vector<Warning>& warnings) {
+std::vector<std::string> luciole::shownWarnings(const std::vector<Warning>& warnings,
+                                                const std::string& option) {
   constexpr std::size_t kMostOfAKind = 10;
   std::vector<std::string> lines;
   std::map<std::string, std::size_t> counts;
@@ -105,7 +106,7 @@ std::vector<std::string> luciole::shownWarnings(const std::vector<Warning>& warn
     if (++counts[warning.kind] <= kMostOfAKind) lines.push_back(warning.text);
   for (const auto& [kind, count] : counts)
     if (count > kMostOfAKind)
-      lines.push_back(fmt::format("{}: {} more, which --stats lists", kind, count - kMostOfAKind));
+      lines.push_back(fmt::format("{}: {} more, which {} lists", kind, count - kMostOfAKind, option));
   return lines;
 }
 
@@ -113,7 +114,7 @@ void luciole::tellWarnings(const std::vector<Warning>& warnings) {
   if (logsEvents())
     for (const Warning& warning : warnings) tellWarning(warning.text);
   else
-    for (const std::string& line : shownWarnings(warnings)) tellWarning(line);
+    for (const std::string& line : shownWarnings(warnings, "--stats")) tellWarning(line);
 }
 
 namespace {

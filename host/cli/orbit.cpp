@@ -37,10 +37,12 @@ std::string framesOf(const std::string& typed, const Orbit& orbit) {
   return typed.empty() && orbit.frames > 0 ? fmt::format("1-{}", orbit.frames) : typed;
 }
 
-void setMiddle(Scene& scene, Orbit& orbit) {
+void setMiddle(Scene& scene, int frame, Orbit& orbit) {
+  if (orbit.frames == 0) return;
   poseScene(scene, 1);
   const Bounds bounds = sceneBounds(scene);
   if (bounds.low.x <= bounds.high.x) orbit.middle = bounds.low + (bounds.high - bounds.low) / 2.0;
+  poseScene(scene, frame);
 }
 
 Camera orbiting(const Camera& camera, const Orbit& orbit, int frame) {

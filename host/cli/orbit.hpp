@@ -19,8 +19,9 @@ void addOrbitOption(CLI::App& command, Orbit& orbit);
 /// The frames that --frames says; without it those of the turn.
 std::string framesOf(const std::string& typed, const Orbit& orbit);
 
-/// Finds the scene's middle, for cameras without a target. Leaves the scene posed for frame 1.
-void setMiddle(Scene& scene, Orbit& orbit);
+/// For an orbit finds the scene's middle, for cameras without a target, and leaves the scene posed for the
+/// frame.
+void setMiddle(Scene& scene, int frame, Orbit& orbit);
 
 /// A camera, as the scene has it at a frame, turned for that frame: at frame 1 it is itself, and from one to
 /// the next its azimuth grows by 360° / frames, about its `up` through its target. Without a target that is

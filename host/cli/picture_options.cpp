@@ -385,7 +385,8 @@ void addLoadOptions(CLI::App& command, LoadSettings& settings) {
           "--search", settings.search,
           "a folder in which files are looked for that aren't where the scene says; may stand several times")
       ->expected(1)
-      ->take_all();
+      ->take_all()
+      ->type_name("FOLDER");
   command
       .add_option(
           "--set", settings.changes,
@@ -447,12 +448,12 @@ void warnOfDither(Scene& scene, const PictureOptions& options) {
   const std::vector<std::uint32_t> materials = blendedMaterials(scene);
   if (materials.empty()) return;
   const std::string& name = scene.materials[materials.front()].name;
-  const std::string first =
-      name.empty() ? std::to_string(materials.front()) : fmt::format("'{}'", forMessage(name));
+  const std::string what = name.empty() ? fmt::format("materials[{}]", materials.front())
+                                        : fmt::format("material '{}'", forMessage(name));
   const std::string others = materials.size() > 1 ? fmt::format(" and {} more", materials.size() - 1) : "";
   scene.warnings.push_back(
-      {fmt::format("{}: material {}{}: blended by dithering, one sample a pixel; more --samples smooth it",
-                   scene.name, first, others),
+      {fmt::format("{}: {}{}: blended by dithering, one sample a pixel; more --samples smooth it", scene.name,
+                   what, others),
        "dithered"});
   if (!options.quiet) tellWarning(scene.warnings.back().text);
 }

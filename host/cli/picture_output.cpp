@@ -96,7 +96,7 @@ void checkOutput(const PictureOptions& options) {
   if (showsAov(options)) {
     if (aovs.size() > 1 || aovs.front() == Aov::kMaterial)
       throw InputError(
-          fmt::format("--aov {}: {} cannot hold layers, an .exr can; it shows one, such as --aov normal",
+          fmt::format("--aov {}: several layers, and {} shows one, such as --aov normal; an .exr holds all",
                       options.aovs, options.output));
     if (options.alpha) throw InputError("--alpha: a layer as a picture has no A; leave it out");
   }

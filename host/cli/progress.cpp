@@ -58,6 +58,10 @@ void ProgressLine::clear() {
   writeError("\r\x1b[K");
 }
 
+std::function<void()> tellsCompiling(ProgressLine& progress) {
+  return [&progress] { progress.tell("compiling kernels"); };
+}
+
 std::string duration(double seconds) {
   const auto whole = std::int64_t(seconds + 0.5);
   return whole < 3600 ? fmt::format("{}:{:02}", whole / 60, whole % 60)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -30,6 +31,9 @@ struct ProgressLine {
  private:
   void put(const std::string& line);
 };
+
+/// What tells that kernels are being compiled, for RenderSettings::on_long_compile.
+std::function<void()> tellsCompiling(ProgressLine& progress);
 
 /// A time in minutes and seconds, from an hour on in hours, too: "0:07", "12:34" or "1:02:03".
 std::string duration(double seconds);

@@ -20,6 +20,7 @@
 #include "cli/open_devices.hpp"
 #include "cli/picture_options.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/progress.hpp"
 #include "cli/suggest.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/gbuffer_input.hpp"
@@ -170,7 +171,10 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   const float exposure = settings.exposure;
   if (adds) settings.exposure = 0;
   logEvent("frame_begun", {{"frame", frame}});
+  ProgressLine progress(options.quiet);
+  settings.on_long_compile = tellsCompiling(progress);
   Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
+  progress.clear();
   logDevice(device.description);
   if (adds) {
     image = sumOf(picture, image);

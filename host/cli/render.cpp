@@ -70,9 +70,13 @@ std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene,
   std::vector<std::optional<double>> exposures(pictures.size());
   if (!measuresExposure(options, options.scene)) return exposures;
   poseScene(scene, frame);
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    exposures[i] =
-        measureExposure(device, scene, settingsAt(frame, pictures[i], scene, options.orbit), stats);
+  ProgressLine progress(options.quiet);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    RenderSettings settings = settingsAt(frame, pictures[i], scene, options.orbit);
+    settings.on_long_compile = tellsCompiling(progress);
+    exposures[i] = measureExposure(device, scene, settings, stats);
+  }
+  progress.clear();
   return exposures;
 }
 
@@ -122,7 +126,7 @@ void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const Picture
                    const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
   settings = withExposure(settings, stats);
   settings.on_pass = on_pass;
-  settings.on_long_compile = [&] { progress.tell("compiling kernels"); };
+  settings.on_long_compile = tellsCompiling(progress);
   Device* const device = sharers.front().device;
   if (showsAov(options)) {
     ShownLayer shown;
@@ -224,7 +228,7 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
-        renderPicture(sharers, scene, picture, settingsAt(frames[i], picture, scene, options.orbit), film,
+        renderPicture(sharers, scene, picture, settingsAt(frame, picture, scene, options.orbit), film,
                       progress, showPass, true, stats);
         progress.clear();
         reportStats(picture, stats, frame);
@@ -317,8 +321,12 @@ std::optional<glm::ivec2> probedPixel(const RenderOptions& options) {
 void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
   if (probedPixel(options)) {
     if (choice.is_list) throw InputError("--probe: goes with one frame, such as --frames 3");
+    if (!options.sweeps.empty()) throw InputError("--probe: is of one picture, and --sweep makes several");
     if (options.output == "-" || options.stats == "-")
       throw InputError("--probe: standard output can't take it and another - together; name a file");
+    if (options.output.empty() && (options.hash || !options.stats.empty()))
+      throw InputError(fmt::format("{}: is of a picture, and --probe makes none without -o",
+                                   options.hash ? "--hash" : "--stats"));
     if (options.output.empty()) return;
   }
   if (options.output.empty()) throw InputError("render: -o is required, or --probe X,Y");
@@ -329,9 +337,13 @@ void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
   if (isFilm(options.output, options.format) && formatName(options.output, options.format) != "webp")
     throw InputError(fmt::format(
         "-o {}: a film goes with --frames A-B, and has no frame's number in its name", options.output));
+  if (choice.is_list && !hasFramePlace(options.output))
+    throw InputError(
+        fmt::format("-o {}: expected a name with #### or %04d in the place of the frame's number, such as "
+                    "frame.####.png, or a film's, .mp4, .webm or .webp",
+                    options.output));
   checkOutput(options);
   if (choice.is_list) {
-    checkPattern(options.output, "-o");
     if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
   } else if (options.resume || !options.shard.empty()) {
     throw InputError(fmt::format("{}: goes with --frames A-B", options.resume ? "--resume" : "--shard"));
@@ -368,8 +380,7 @@ void checkSheet(const RenderOptions& options) {
 
 /// Renders what a sheet shows of a picture: its colours, or the layer of --aov.
 Image renderPanel(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
-                  Stats& stats) {
-  const RenderSettings settings = withExposure(renderSettings(options, scene), stats);
+                  const RenderSettings& settings, Stats& stats) {
   if (showsAov(options)) {
     ShownLayer shown;
     const Image layer = renderLayer(sharers, scene, options, settings, false, shown, stats);
@@ -395,7 +406,7 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
   if (!makes_files) checkSheet(options);
   const std::string command = stats.command;
   std::vector<Image> panels;
-  std::vector<std::string> labels;
+  std::vector<std::string> labels, brief;
   std::optional<double> exposure;
   ProgressLine progress(options.quiet);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -403,34 +414,36 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
     one.load.changes.insert(one.load.changes.end(), all[i].begin(), all[i].end());
     one.quiet = options.quiet || i > 0;  // the scene's warnings are told once
     progress.show(std::filesystem::path(options.output).filename(), i, all.size());
-    const Scene scene =
-        timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, frame, one); });
+    Scene scene = timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, frame, one); });
+    setMiddle(scene, frame, one.orbit);
     const std::vector<PictureOptions> cameras = optionsOfCameras(one, scene);
     if (cameras.size() > 1) throw InputError("--camera all: --sweep makes pictures of one camera");
     PictureOptions picture = cameras.front();
     picture.quiet = options.quiet;
+    RenderSettings settings = settingsAt(frame, picture, scene, one.orbit);
+    settings.on_long_compile = tellsCompiling(progress);
     if (i == 0 && measuresExposure(options, options.scene))
-      exposure = measureExposure(*sharers.front().device, scene, renderSettings(picture, scene), stats);
+      exposure = measureExposure(*sharers.front().device, scene, settings, stats);
     stats.measured_exposure = exposure;
     if (makes_files) {
       picture.output = frameFile(picture.output, int(i) + 1);
       picture.stats = frameFile(picture.stats, int(i) + 1);
       checkOutput(picture);
-      renderPicture(sharers, scene, picture, renderSettings(picture, scene), nullptr, progress, {}, false,
-                    stats);
+      renderPicture(sharers, scene, picture, settings, nullptr, progress, {}, false, stats);
       progress.clear();
       reportStats(picture, stats, frame);
       stats = laterStats(command);
       continue;
     }
-    panels.push_back(renderPanel(sharers, scene, picture, stats));
+    panels.push_back(renderPanel(sharers, scene, picture, withExposure(settings, stats), stats));
     labels.push_back(fmt::format("{}", fmt::join(all[i], ", ")));
+    brief.push_back(briefLabel(all[i]));
     if (panels.back().width != panels[0].width || panels.back().height != panels[0].height)
       throw InputError("--sweep: the pictures differ in size; expected --size");
   }
   progress.clear();
   if (makes_files) return;
-  const Image sheet = labelledSheet(panels, labels, sweepColumns(sweeps));
+  const Image sheet = labelledSheet(panels, labels, brief, sweepColumns(sweeps));
   writeImage(sheet, options.output, pictureMetadata(stats, sharers.front().device), fileOptions(options));
   if (logsEvents())
     logEvent("sheet_done", {{"file", options.output},
@@ -439,8 +452,8 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
                             {"height", sheet.height},
                             {"milliseconds", eventMilliseconds(millisecondsSinceStart())}});
   else if (!options.quiet)
-    fmt::print(stderr, "{}: {} pictures of {}x{}, {}{:.0f} ms\n", options.output, panels.size(),
-               panels[0].width, panels[0].height,
+    fmt::print(stderr, "{}: {} picture{} of {}x{}, {}{:.0f} ms\n", options.output, panels.size(),
+               panels.size() == 1 ? "" : "s", panels[0].width, panels[0].height,
                exposure ? fmt::format("all with the exposure of the first, {:+.2f} stops, ", *exposure) : "",
                millisecondsSinceStart());
 }
@@ -493,7 +506,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     const FrameChoice choice = chosenFrames(options->frames);
     if (choice.is_list && !options->sweeps.empty())
       throw InputError("--sweep: makes pictures of one frame, such as --frames 7");
-    if (!choice.is_list) useFrame(*options, "render");
+    // Of a sweep # is the place of a picture's number, not of the frame's.
+    if (!choice.is_list && options->sweeps.empty()) useFrame(*options, "render");
     checkOptions(*options, choice);
     if (!options->sweeps.empty()) {
       readSweeps(options->sweeps);  // before a device is opened
@@ -515,7 +529,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       frames = framesToMake(*options, choice.frames, shard);
       if (frames.empty()) return;
       // Before any work is done: what other runs make from here on is theirs.
-      if (!is_film) claims.emplace(options->output);
+      if (!is_film) claims.emplace(hashPattern(options->output));
     }
     Stats stats;
     stats.command = context.command_line;
@@ -525,10 +539,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
     warnOfDither(scene, *options);
-    if (options->orbit.frames > 0) {
-      setMiddle(scene, options->orbit);
-      if (!choice.is_list) poseScene(scene, choice.frames.front());
-    }
+    setMiddle(scene, choice.frames.front(), options->orbit);
     if (choice.is_list) {
       // Before any frame: what is wrong with it is so with all.
       const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);

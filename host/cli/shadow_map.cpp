@@ -54,10 +54,12 @@ std::uint32_t lightNamed(const Scene& scene, const std::string& name) {
           : fmt::format("; names are {}{}",
                         fmt::join(names.begin(), names.begin() + std::ptrdiff_t(told), ", "),
                         told < names.size() ? " ..." : "");
-  throw InputError(fmt::format(
-      "--light {}: {} has {}{}{}", forMessage(name), scene.name,
-      scene.lights.empty() ? "no lights" : fmt::format("the lights 0 to {}", scene.lights.size() - 1), guess,
-      list));
+  throw InputError(fmt::format("--light {}: {} has {}{}{}", forMessage(name), scene.name,
+                               scene.lights.empty() ? "no lights"
+                               : scene.lights.size() == 1
+                                   ? "light 0 alone"
+                                   : fmt::format("the lights 0 to {}", scene.lights.size() - 1),
+                               guess, list));
 }
 
 /// All faces as layers of floats: Z, or NAME.Z of each.

@@ -76,7 +76,7 @@ void addGroup(const PicturePart& part, int index, const Group& group, std::vecto
   for (const auto& [component, place] : group.channels) {
     if (std::find(used.begin(), used.end(), place) != used.end()) continue;
     const std::string channel = withPart(part, part.channels[std::size_t(place)]);
-    const bool is_grey = component == "y" && group.channels.size() == 1;
+    const bool is_grey = component == "y" && group.find({"x"}).empty();
     layers.push_back({channel,
                       index,
                       {place},
@@ -106,7 +106,8 @@ std::vector<std::string> namesOfRole(const std::string& role) {
   static const std::map<std::string, const char * Layout::*> kRoles{
       {"position", &Layout::position}, {"normal", &Layout::normal},
       {"depth", &Layout::depth},       {"diffuse", &Layout::diffuse},
-      {"specular", &Layout::specular}, {"geometric_normal", &Layout::geometric_normal}};
+      {"specular", &Layout::specular}, {"geometric_normal", &Layout::geometric_normal},
+      {kColors, &Layout::color}};
   std::vector<std::string> names;
   const auto known = kRoles.find(role);
   if (known == kRoles.end()) return names;
@@ -145,16 +146,11 @@ ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::stri
                           const std::string& where) {
   const std::vector<ShownLayer> layers = shownLayers(parts);
   if (layers.empty()) throw InputError(where + ": no layer that can be shown");
-  const ShownLayer* found = nullptr;
-  if (!name.empty()) {
-    found = layerNamed(layers, name);
-    for (const std::string& one : namesOfRole(lowered(name)))
-      if (!found) found = layerNamed(layers, one);
-  } else if (layers.size() == 1) {
-    found = &layers.front();
-  } else {
-    found = layerNamed(layers, kColors);
-  }
+  const std::string wanted = name.empty() ? kColors : name;
+  const ShownLayer* found = name.empty() && layers.size() == 1 ? &layers.front() : layerNamed(layers, wanted);
+  for (const std::string& one : namesOfRole(lowered(wanted)))
+    if (!found && !one.empty()) found = layerNamed(layers, one);
+  if (!found && name.empty()) found = layerNamed(layers, "Y");
   if (found) return *found;
   std::vector<std::string> names;
   for (const ShownLayer& layer : layers) names.push_back(forMessage(layer.name));

@@ -63,6 +63,15 @@ std::vector<SweepPicture> sweepPictures(const std::vector<Sweep>& sweeps) {
   return pictures;
 }
 
+std::string briefLabel(const SweepPicture& picture) {
+  std::string label;
+  for (const std::string& change : picture) {
+    const std::size_t dot = change.rfind('.', placeLength(change, "--sweep"));
+    label += (label.empty() ? "" : ", ") + (dot == std::string::npos ? change : change.substr(dot + 1));
+  }
+  return label;
+}
+
 int sweepColumns(const std::vector<Sweep>& sweeps) {
   const std::size_t count = sweeps[0].values.size();
   return int(sweeps.size() > 1 || count <= 4 ? double(count) : std::ceil(std::sqrt(double(count))));

@@ -22,6 +22,9 @@ std::vector<Sweep> readSweeps(const std::vector<std::string>& texts);
 /// All pictures, row by row: the first sweep goes along a row, the second from row to row.
 std::vector<SweepPicture> sweepPictures(const std::vector<Sweep>& sweeps);
 
+/// What is set in few words: places without what is before their last dot.
+std::string briefLabel(const SweepPicture& picture);
+
 /// How many pictures a row of their sheet has: as many as the first of two sweeps; of one up to four, or else
 /// as many as there are rows, about.
 int sweepColumns(const std::vector<Sweep>& sweeps);

@@ -66,14 +66,18 @@ struct Panel {
   double textWidth(const std::string& text) const;
   /// UTF-8 text on one line and no wider than `width` text sizes: what is left out of the middle becomes
   /// "...".
-  std::string fitted(std::string text, double width) const;
+  std::string fitted(const std::string& text, double width) const;
   /// In y both edges are rounded, so that neighbours meet without a gap. In x the width is rounded, so that
   /// equal widths stay equal.
   void fill(double x, double y, double across, double down, const LinearColor& color) const;
-  /// Without a font labels are left out; the colours are of use without them.
+  /// Without a font labels are left out; the colours are of use without them. Characters beyond ASCII
+  /// become '?'.
   void write(double x, double baseline, const std::string& text,
              OIIO::ImageBufAlgo::TextAlignX align = OIIO::ImageBufAlgo::TextAlignX::Left) const;
 };
+
+/// Whether the line below a sheet's picture holds the text.
+bool hasRoom(OIIO::ImageBuf& canvas, const Sheet& sheet, const std::string& text, const std::string& font);
 
 /// Writes the line below a sheet's picture, in its middle.
 void writeLabel(OIIO::ImageBuf& canvas, const Sheet& sheet, int picture, const std::string& text,

@@ -116,16 +116,21 @@ void drawBar(const Panel& panel, const Content& content) {
   lay(panel.canvas, panel.pixels(kMargin), panel.top + panel.pixels(kTop), falseColors(columns, rows, ramp),
       1);
   const auto tick = [&](double x, double y) { panel.fill(x - kTickWidth / 2, y, kTickWidth, kTick, kInk); };
+  double written = -kMargin;  // up to where
   const auto label = [&](double value, const std::string& text) {
-    const double x = kMargin + length * placeOn(scale, value);
+    const double x = kMargin + length * placeOn(scale, value), half = panel.textWidth(text) / 2;
     tick(x, kTop + kHeight);
+    if (x - half < written + 0.5) return;
     panel.write(x, kTop + kHeight + 1.5, text, TextAlignX::Center);
+    written = x + half;
   };
   const double span = scale.high - scale.low;
   if (scale.is_linear) {
     const double step = tickStep(span);
+    const double largest = std::max(std::abs(scale.low), std::abs(scale.high));
+    const int digits = std::max(6, 1 + int(std::ceil(std::log10(largest / step))));
     for (double i = std::ceil(scale.low / step); i * step <= scale.high; ++i)
-      label(i * step, fmt::format("{:.6g}", i == 0 ? 0.0 : i * step));
+      label(i * step, fmt::format("{:.{}g}", i == 0 ? 0.0 : i * step, digits));
   } else {
     for (double power = std::floor(scale.low); power <= scale.high; ++power)
       for (const double digit : {1.0, 2.0, 3.0, 5.0, 7.0}) {
@@ -174,9 +179,10 @@ Scale valueScale(std::vector<double>& finite) {
     const double high = std::ceil(std::log10(most));
     return {std::max(std::floor(std::log10(*positive)), high - kMaxDecades), high};
   }
-  // Values that are all the same have a scale, too.
-  const double room = std::max({most - least, 1e-6 * std::abs(most), 1e-30});
-  return {least, least + room, true};
+  // Values that are all the same, but for rounding, have a scale, too.
+  const double size = std::max(std::abs(least), std::abs(most));
+  if (most - least > 1e-6 * size) return {least, most, true};
+  return {least, least + (size > 0 ? size : 1), true};
 }
 
 Image drawMap(const Content& content) {
@@ -249,7 +255,7 @@ Image boundMap(int width, int height, const std::vector<float>& bounds) {
                                          sum / double(std::max<std::size_t>(bounded, 1))),
                   .mark = 1.0 / 255,
                   .mark_name = "1/255",
-                  .swatches = {{kZeroColor, "no surface"}}});
+                  .swatches = {{kZeroColor, "none"}}});
 }
 
 Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, int columns,

@@ -32,14 +32,14 @@ constexpr double kModuleBytes = 32 << 20, kModuleAddresses = 500 << 20, kModuleD
 
 /// dlopen(). An exception of what starts in these libraries would leave the loader's lock taken, for which
 /// the next call of the loader waits for ever: it ends the program.
-void* open(const char* path) noexcept { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
+void* openModule(const char* path) noexcept { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
 
 const ImageFunctions& load() {
   const TraceSpan span("load OpenImageIO");
   constexpr const char* kWhat = "reading and writing pictures";
   requireMemory(kModuleBytes, kWhat);
   requireMappings(kModuleAddresses, kModuleData, threadCount(), kWhat);
-  void* module = open(modulePath().c_str());
+  void* module = openModule(modulePath().c_str());
   void* functions = module ? dlsym(module, "luciole_image_functions") : nullptr;
   if (!functions)
     throw MachineError(fmt::format("can't load the part that reads and writes pictures: {}", dlerror()));
@@ -70,7 +70,16 @@ std::unique_ptr<RowFile> openPictureFile(const std::string& path, int width, int
   return functions().open_picture_file(path, width, height, channels, format, metadata, options);
 }
 
-std::vector<PicturePart> readParts(const std::string& path) { return functions().read_parts(path); }
+std::vector<PicturePart> readParts(const std::string& path) {
+  const std::optional<Image> array = readNpy(path);
+  if (!array) return functions().read_parts(path);
+  const glm::ivec2 size(array->width, array->height);
+  return {{.name = "",
+           .size = size,
+           .picture_size = size,
+           .channels = array->channels,
+           .types = std::vector<std::string>(array->channels.size(), "float")}};
+}
 
 Texture readTexture(const std::string& path) {
   const TraceSpan span("read texture", {{"file", path}});
@@ -99,8 +108,9 @@ Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, i
   return functions().value_sheet(width, height, panels, columns, title);
 }
 
-Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels, int columns) {
-  return functions().labelled_sheet(pictures, labels, columns);
+Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
+                    const std::vector<std::string>& brief, int columns) {
+  return functions().labelled_sheet(pictures, labels, brief, columns);
 }
 
 Image sideBySide(const Image& a, const Image& b, const ImageDifference& difference, const std::string& name_a,

@@ -99,7 +99,8 @@ Image sideBySide(const Image& a, const Image& b, const ImageDifference& differen
   return row;
 }
 
-Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels, int columns) {
+Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
+                    const std::vector<std::string>& brief, int columns) {
   const Image& first = pictures.front();
   const Sheet sheet = sheetOf(int(pictures.size()), columns, first.width, first.height);
   if (std::max(sheet.width, sheet.height) > kLargestSide)
@@ -111,10 +112,13 @@ Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::s
   OIIO::ImageBuf canvas(OIIO::ImageSpec(paper.width, paper.height, 3, OIIO::TypeDesc::FLOAT),
                         paper.pixels.data());
   const std::string font = findLabelFont();
+  const bool all_fit = std::all_of(labels.begin(), labels.end(), [&](const std::string& label) {
+    return hasRoom(canvas, sheet, label, font);
+  });
   for (int i = 0; i < int(pictures.size()); ++i) {
     std::vector<float> colors;
     lay(canvas, sheet.left(i), sheet.top(i), drawable(pictures[std::size_t(i)], colors), sheet.factor);
-    writeLabel(canvas, sheet, i, labels[std::size_t(i)], font);
+    writeLabel(canvas, sheet, i, (all_fit ? labels : brief)[std::size_t(i)], font);
   }
   return paper;
 }

@@ -16,8 +16,10 @@ namespace luciole {
 Image sideBySide(const Image& a, const Image& b, const ImageDifference& difference, const std::string& name_a,
                  const std::string& name_b);
 
-/// Draws pictures of one size in rows of `columns`, each with a line of text below it, as linear R G B. Small
-/// ones are enlarged by a whole factor. Throws as sideBySide does.
-Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels, int columns);
+/// Draws pictures of one size in rows of `columns`, each with a line of text below it, as linear R G B: its
+/// label, or where not all labels have room, its brief one. Small pictures are enlarged by a whole factor.
+/// Throws as sideBySide does.
+Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::string>& labels,
+                    const std::vector<std::string>& brief, int columns);
 
 }  // namespace luciole

@@ -16,6 +16,7 @@ double measureExposure(Device& device, const Scene& scene, const RenderSettings&
   small.shading = settings.shading;
   small.shade = settings.shade;
   small.aovs = {Aov::kDepth};
+  small.on_long_compile = settings.on_long_compile;
   Stats of_small;
   Image picture;
   const TraceSpan span(stageName(Stage::kMeasureExposure));

@@ -307,6 +307,7 @@ TEST_F(BenchCommand, CullAndShadeTimesAGBufferFromAFileBesideItsRoofs) {
 
 TEST_F(BenchCommand, RefusesWrongInputBeforeItMeasures) {
   refuse("luciole bench --gbuffer g.exr", 2, "--scene");
+  refuse("luciole bench --gbuffer g.exr --scene scene.json --only shading", 2, "which --only leaves out");
   refuse("luciole bench --only 'cull and shade'", 2, "needs --gbuffer and --scene");
   refuse("luciole bench --model toon", 2, "--model requires --gbuffer");
   refuse("luciole bench none.json", 2, "none.json");

@@ -1,10 +1,12 @@
 #include "cl/launch.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,6 +47,17 @@ TEST_F(MakeKernel, ErrorInAnIncludedFileNamesThatFile) {
   EXPECT_THAT(messageOf<MachineError>(
                   [&] { makeKernelFromSource(device, expandKernelSource("broken.cl", text), "probe", ""); }),
               HasSubstr("kernels/falloff.clh:"));
+}
+
+TEST_F(MakeKernel, TheCompilersWarningsAreNotPrinted) {
+  // No driver has kept a program of this define.
+  const std::string defines =
+      fmt::format("-DMOMENT={}", std::chrono::steady_clock::now().time_since_epoch().count());
+  testing::internal::CaptureStderr();
+  makeKernelFromSource(device,
+                       "__kernel void probe(__global int *out) { *out = 1.5 + (int)MOMENT; int x = 1e20; }\n",
+                       "probe", defines);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(MakeKernel, ProgramsAreBuiltOnceADevice) {

@@ -156,7 +156,7 @@ TEST_F(Films, OfABareMeshAreExposedAsItsPicturesAre) {
     EXPECT_GT(psnr(frames[1], picture), 22.2) << film;  // as HoldTheFramesInTheirOrderAndSize derives
   }
   succeed("luciole render box.obj --size 64x36 --frames 1-2 -o film.webp");
-  refuse("luciole render box.obj --size 64x36 --frames 1-2 -o film.y4m", 2, "unknown extension 'y4m'");
+  refuse("luciole render box.obj --size 64x36 --frames 1-2 -o film.y4m", 2, "or a film's, .mp4, .webm or .webp");
 }
 
 TEST_F(Films, WebpIsAFilmWithoutANumberInItsName) {

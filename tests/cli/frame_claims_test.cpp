@@ -181,6 +181,14 @@ TEST_F(SharedFrames, AnotherRunLeavesThoseThatAreBeingMadeAndEndsWhenTheyAreMade
   EXPECT_FALSE(std::filesystem::exists(file(3)));
 }
 
+TEST_F(SharedFrames, AreTheSameHoweverTheirNameIsTyped) {
+  FrameClaims other(folder / "f.####.png");
+  other.claim(1);
+  other.finish(1);
+  const Outcome run = runLine(folder, "luciole render scene.json --size 32x18 --frames 1-2 -o f.%04d.png");
+  EXPECT_THAT(run.err, HasSubstr("made by other runs: 1 of 2 frames\n"));
+}
+
 TEST_F(SharedFrames, TheFrameThatAKilledRunWasAtIsTakenOver) {
   const Outcome second =
       runLine(folder, "(exec '" LUCIOLE_BINARY
@@ -193,6 +201,20 @@ TEST_F(SharedFrames, TheFrameThatAKilledRunWasAtIsTakenOver) {
   EXPECT_EQ(second.status, 0) << readText(folder / "err");
   for (int frame = 1; frame <= 4; ++frame) EXPECT_TRUE(std::filesystem::exists(file(frame))) << frame;
   EXPECT_FALSE(hasLock());
+}
+
+TEST_F(SharedFrames, ATakenOverFrameOfAnOrbitIsSeenFromItsOwnSide) {
+  std::optional<FrameClaims> other(folder / "f.####.png");
+  other->claim(2);
+  Outcome run;
+  std::thread waiting([&] { run = runLine(folder, command("--orbit 4 --hash")); });
+  EXPECT_TRUE(appears(file(4)));
+  other.reset();
+  waiting.join();
+  const Outcome alone = runLine(folder,
+                                "luciole render scene.json --size 32x18 --orbit 4 --frames 2 --hash "
+                                "-o f.0002.png");
+  EXPECT_THAT(run.out, HasSubstr(alone.out)) << run.err << alone.err;
 }
 
 TEST_F(SharedFrames, ALaterRunMakesAllAgainButWithResume) {

@@ -60,6 +60,17 @@ TEST_F(Info, FramesTogetherCostWhatEachDoesButForTheStart) {
   refuse("luciole info " + scene + " --frames x", 2, "--frames x");
 }
 
+// To look at a frame takes about half as long as to make it.
+TEST_F(Info, OfManyFramesLooksAtSome) {
+  writeText(folder / "moves.json",
+            R"({"objects": [{"primitive": "box"}], "lights": [{"type": "point", "position": [0, 3, 0]}],
+      "camera": {"orbit": [0, 10, 3], "target": [0, 0, 0],
+                 "keys": [{"frame": 1, "orbit": [0, 10, 3]}, {"frame": 2000, "orbit": [360, 10, 9]}]}})");
+  const json job = infoOf("moves.json --size 64x36 --frames 1-2000")["job"];
+  EXPECT_EQ(job["frames"], 2000);
+  EXPECT_EQ((job["slowest_frame"].get<int>() - 1) % 80, 0);
+}
+
 TEST_F(Info, CountsWhatAnObjFileHas) {
   LUCIOLE_NEEDS_SHARED();
   const std::string path = (sharedScenes() / "stanford/stanford-bunny.obj").string();

@@ -88,6 +88,13 @@ TEST_F(OrbitOption, AMovingCamerasOwnWayGoesOn) {
   EXPECT_LT(difference("turn2.exr", "still.exr"), 1e-5);
 }
 
+TEST_F(OrbitOption, GoesWithASweep) {
+  writeText(folder / "scene.json", fmt::format("{{{}}}", kObjects));
+  succeed("luciole render scene.json --orbit 8 --frames 3 --sweep ambient=0.3,1 -o s#.exr");
+  succeed("luciole render scene.json --orbit 8 --frames 3 -o third.exr");
+  EXPECT_EQ(difference("s1.exr", "third.exr"), 0);
+}
+
 TEST_F(OrbitOption, WhatCannotBeMeantIsRefused) {
   writeText(folder / "scene.json", fmt::format("{{{}}}", kObjects));
   refuse("luciole render scene.json --orbit 8 -o one.png", 2, "-o one.png: expected a name with ####");

@@ -114,6 +114,8 @@ TEST_F(Probe, RefusesWhatItCantTell) {
   refuse(line + "--probe 1", 2, "--probe");
   refuse(line + "--probe 1,1 --shading gouraud", 2, "gouraud");
   refuse(line + "--probe 1,1 --frames 1-2", 2, "one frame");
+  refuse(line + "--probe 1,1 --stats s.json", 2, "--stats: is of a picture");
+  refuse(line + "--probe 1,1 --hash", 2, "--hash: is of a picture");
   refuse(line + "--probe 1,1 -o -", 2, "standard output");
   refuse(line, 2, "-o is required");
 }

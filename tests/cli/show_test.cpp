@@ -104,7 +104,13 @@ TEST_F(ShowCommand, AovOfAPictureIsThatLayer) {
   EXPECT_EQ(codesAt("s.png"), (Codes{128, 128, 255}));
   for (const char* several : {"normal,depth", "material", "cryptomatte"})
     refuse(std::string("luciole render wall.json -o x.png --aov ") + several, 2,
-           "x.png cannot hold layers, an .exr can; it shows one");
+           "several layers, and x.png shows one, such as --aov normal");
+}
+
+TEST_F(ShowCommand, WithoutALayerShowsTheColorsByTheNamesOfOtherPrograms) {
+  const std::string show = "luciole show '" LUCIOLE_SOURCE_DIR "/tests/fuzz/corpus/blender.exr' --quiet ";
+  succeed(show + "-o colors.exr && " + show + "--layer Combined -o combined.exr");
+  EXPECT_EQ(readImage(folder / "colors.exr").pixels, readImage(folder / "combined.exr").pixels);
 }
 
 TEST_F(ShowCommand, GBufferShowsALayer) {
@@ -233,6 +239,7 @@ TEST_F(SweepOption, WhatMakesNoSenseIsTold) {
   const std::string render = "luciole render wall.json -o s.png --sweep materials.wall.shininess=1,8 ";
   refuse(render + "--stats -", 2, "--stats: is of one picture");
   refuse(render + "--frames 1-2", 2, "--sweep: makes pictures of one frame");
+  refuse(render + "--probe 3,3", 2, "--probe: is of one picture");
   refuse(render + "--sweep ambient=1 --sweep ambient=2", 2, "expected one, or two");
   refuse("luciole render wall.json -o s.png --sweep materials.wall.shininess", 2,
          "--sweep materials.wall.shininess: expected PATH=VALUE");

@@ -20,11 +20,13 @@ class Signals : public ProgramTest {
   /// Runs the program until its log, which is left in `log`, has the event; then sends it the signal.
   Outcome stop(const std::string& signal, const std::string& arguments, const std::string& event,
                const std::string& before = "") {
-    return runLine(folder,
-                   fmt::format("{}(exec '" LUCIOLE_BINARY
-                               "' {} --log json 2>log) & until grep -q '\"{}\"' log || ! kill -0 $!; do sleep 0.01; done; "
-                               "kill -{} $!; wait $!",
-                               before, arguments, event, signal));
+    return runLine(
+        folder,
+        fmt::format(
+            "{}(exec '" LUCIOLE_BINARY
+            "' {} --log json 2>log) & until grep -q '\"{}\"' log || ! kill -0 $!; do sleep 0.01; done; "
+            "kill -{} $!; wait $!",
+            before, arguments, event, signal));
   }
   nlohmann::json lastEvent() {
     const std::string log = readText(folder / "log");

@@ -75,13 +75,6 @@ TEST_F(Warnings, MissingTexturesAreErrorsUnlessAWarningWillDo) {
   EXPECT_EQ(runLine(folder, "luciole render holes.json --missing-textures ignore -o a.png").status, 2);
 }
 
-TEST_F(Warnings, AMalformedAddressInAGltfIsWrongInput) {
-  writeText(folder / "escape.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":"2.0"}})");
-  const Outcome outcome = runLine(folder, "luciole render escape.gltf -o a.png");
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("escape.gltf: images[0].uri: '%!Q'"));
-}
-
 TEST_F(Warnings, AreTenOfAKindAtMostAndThenACount) {
   std::string materials;
   for (int i = 0; i < 14; ++i)
@@ -96,7 +89,9 @@ TEST_F(Warnings, AreTenOfAKindAtMostAndThenACount) {
   EXPECT_THAT(words, HasSubstr("luciole: warning: missing texture: 4 more, which --stats lists\n"));
   EXPECT_EQ(nlohmann::json::parse(readText(folder / "s.json"))["warnings"].size(), 14u);
   EXPECT_EQ(countOf(told(line + " --log json"), "there is no file gone.png"), 14u);
-  EXPECT_EQ(countOf(run("luciole info many.json --missing-textures warn").out, "there is no file"), 10u);
+  const std::string info = run("luciole info many.json --missing-textures warn").out;
+  EXPECT_EQ(countOf(info, "there is no file"), 10u);
+  EXPECT_THAT(info, HasSubstr("missing texture: 4 more, which --json lists\n"));
 }
 
 TEST_F(Warnings, AreNoneWhereThereIsNothingToSay) {

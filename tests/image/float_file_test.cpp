@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "image/image.hpp"
+#include "image/layers.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {
@@ -51,6 +52,8 @@ TEST(FloatFile, AnNpyIsAnArrayOfRowsFromTheTopDown) {
   const Image read = readImage(folder / "a.npy");
   EXPECT_EQ(read.pixels, kPicture.pixels);
   EXPECT_EQ(read.channels, kPicture.channels);
+  ASSERT_EQ(readParts(folder / "a.npy").size(), 1u);
+  EXPECT_EQ(readParts(folder / "a.npy")[0].size, glm::ivec2(2, 2));
 }
 
 TEST(FloatFile, ValuesAreKeptAsTheyAreAndOnlyNpyHoldsCoverage) {

@@ -102,6 +102,8 @@ TEST(ValueSheet, ValuesThatAreAllTheSameOrNoneHaveAScaleToo) {
   EXPECT_EQ(codesOf(valueSheet(1, 1, {{"", {4}}}, 1, "Z"), 100, 100), kLowest);
   EXPECT_NO_THROW(valueSheet(1, 1, {{"", {HUGE_VALF}}}, 1, "Z"));
   EXPECT_NO_THROW(valueSheet(1, 1, {{"", {0}}}, 1, "Z"));
+  EXPECT_EQ(codesOf(valueSheet(2, 1, {{"", {4, 4.000001f}}}, 1, "Z"), 300, 100), kLowest) << "rounding";
+  EXPECT_EQ(codesOf(valueSheet(2, 1, {{"", {4, 4.00001f}}}, 1, "Z"), 300, 100), kHighest);
 }
 
 TEST(ValueSheet, PanelsShareOneScale) {
@@ -122,12 +124,35 @@ TEST(LabelledSheet, LaysPicturesInRowsWithRoomForALabel) {
   const auto plain = [](float grey) {
     return Image{300, 40, {"R", "G", "B"}, std::vector<float>(300 * 40 * 3, grey)};
   };
-  const Image sheet = labelledSheet({plain(0), plain(0.5f), plain(1)}, {"a=0", "a=1", "a=2"}, 2);
+  const Image sheet =
+      labelledSheet({plain(0), plain(0.5f), plain(1)}, {"a=0", "a=1", "a=2"}, {"0", "1", "2"}, 2);
   EXPECT_EQ(sheet.width, 614);
   EXPECT_EQ(codesOf(sheet, 150, 20), (Codes{0, 0, 0}));
   EXPECT_EQ(codesOf(sheet, 300, 20), (Codes{255, 255, 255}));
   EXPECT_EQ(codesOf(sheet, 314 + 150, 20), (Codes{188, 188, 188}));
   EXPECT_EQ(sheet.height, 2 * (40 + 24));
+}
+
+TEST(LabelledSheet, WhereALabelHasNoRoomAllHaveTheirBriefOnes) {
+  const Image grey{300, 40, {"R", "G", "B"}, std::vector<float>(300 * 40 * 3, 0.5f)};
+  const std::string place(100, 'x');
+  EXPECT_EQ(labelledSheet({grey, grey}, {"a=0", place + "=10"}, {"0", "10"}, 2).pixels,
+            labelledSheet({grey, grey}, {"0", "10"}, {"", ""}, 2).pixels);
+}
+
+TEST(LabelledSheet, SmallPicturesAreEnlargedUntilLabelsCanBeRead) {
+  const Image small{64, 36, {"R", "G", "B"}, std::vector<float>(64 * 36 * 3, 0.5f)};
+  EXPECT_EQ(labelledSheet(std::vector(9, small), std::vector<std::string>(9, "intensity=10"),
+                          std::vector<std::string>(9), 9)
+                .width,
+            9 * 192 + 8 * 14);
+}
+
+// OpenImageIO draws them as other characters.
+TEST(LabelledSheet, CharactersBeyondAsciiAreQuestionMarks) {
+  const Image grey{300, 40, {"R", "G", "B"}, std::vector<float>(300 * 40 * 3, 0.5f)};
+  EXPECT_EQ(labelledSheet({grey}, {"L\u00e4mpchen \u20ac"}, {""}, 1).pixels,
+            labelledSheet({grey}, {"L?mpchen ?"}, {""}, 1).pixels);
 }
 
 }  // namespace
