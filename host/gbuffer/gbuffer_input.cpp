@@ -71,11 +71,6 @@ class Conversion {
     const FoundLayer& main =
         found_[Role::kPosition].isThere() ? found_[Role::kPosition] : found_[Role::kDepth];
     part_ = reader_.parts()[std::size_t(main.part)];
-    if (glm::any(glm::greaterThan(glm::abs(part_.crop_origin), glm::ivec2(kLargestSide))))
-      throw InputError(
-          fmt::format("{}: the data window begins ({}, {}) pixels from the display window, expected {} "
-                      "at most",
-                      path, part_.crop_origin.x, part_.crop_origin.y, kLargestSide));
     // Some writers put what is common into the first part alone.
     for (const PicturePart& part : reader_.parts()) {
       ExrAttributes& all = part_.attributes;
@@ -84,6 +79,11 @@ class Conversion {
                           part.attributes.matrices.end());
     }
     readPlanes();
+    if (glm::any(glm::greaterThan(glm::abs(part_.crop_origin), glm::ivec2(kLargestSide))))
+      throw InputError(
+          fmt::format("{}: the data window begins ({}, {}) pixels from the display window, expected {} "
+                      "at most",
+                      path, part_.crop_origin.x, part_.crop_origin.y, kLargestSide));
     findCamera();
   }
 

@@ -85,7 +85,7 @@ TEST_F(ObjParts, AFileInPartsIsTheFileInOneWhereverItIsCut) {
       ASSERT_EQ(whole.colors[3], glm::dvec3(-1)) << "none";
       ASSERT_EQ(whole.normals.size(), 3u);
       ASSERT_EQ(whole.faces.size(), 11u);
-      ASSERT_EQ(whole.warnings.size(), 5u);
+      ASSERT_EQ(whole.warnings.size(), 6u);
       ASSERT_EQ(whole.faces[1].first_corner, 3u);
       ASSERT_EQ(whole.corners[3].position, 0);
       ASSERT_EQ(whole.faces[5].smoothing, smoothing ? 2u : 1u);
