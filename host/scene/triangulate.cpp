@@ -184,7 +184,8 @@ class Ring {
   /// Whether no corner that turns right lies in the triangle, or within the margin around it. Those at the
   /// same place as one of the three are ignored, since polygons with a hole repeat corners.
   bool isEmpty(const std::array<glm::dvec2, 3>& triangle) {
-    const auto& [a, b, c] = triangle;
+    // Not bindings, which lambdas of clang 14 don't capture.
+    const glm::dvec2 &a = triangle[0], &b = triangle[1], &c = triangle[2];
     const double ab = -margin_ * glm::distance(a, b), bc = -margin_ * glm::distance(b, c),
                  ca = -margin_ * glm::distance(c, a);
     return !grid_.anyNear(triangle, [&](int other) {

@@ -69,11 +69,11 @@ Compiled compile(const std::string& clang, const std::string& options) {
 
 /// Compiles each file alone, without writing anything. A header's functions are unused there.
 void expectClean(const std::string& clang, const std::string& options) {
-  const Compiled compiled = compile(
-      clang,
-      "-Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only -Wall -Wextra -Wshadow "
-      "-Werror -Wno-unused-parameter -Wno-unused-function " +
-          options);
+  const Compiled compiled = compile(clang,
+                                    "-Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins "
+                                    "-fsyntax-only -Wall -Wextra -Wshadow "
+                                    "-Werror -Wno-unused-parameter -Wno-unused-function " +
+                                        options);
   EXPECT_TRUE(compiled.succeeded) << options << "\n" << compiled.output;
 }
 

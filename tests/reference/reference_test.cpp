@@ -247,6 +247,7 @@ GBuffer onePixel(const Camera& camera, const glm::dvec3& world_position, const g
   GBuffer gbuffer;
   gbuffer.width = 7;
   gbuffer.height = 4;
+  gbuffer.picture_size = {7, 4};
   gbuffer.tiles_x = gbuffer.tiles_y = 1;
   gbuffer.camera = camera;
   const std::size_t n = gbuffer.pixels(), place = gbuffer.index(5, 3);
