@@ -216,7 +216,7 @@ TEST(Exact, CullingChangesNoBitUnderSpotsOfAnyWidth) {
     Light spot = lampAt({random.between(-4, 4), random.between(-0.5, 4), random.between(-4, 4)}, 100);
     spot.kind = LightKind::kSpot;
     spot.direction = random.direction();
-    spot.cutoff = std::array{0.0, 1e-4, 0.01, 0.2, 0.8, 1.5707, glm::radians(90.0)}[i % 7];
+    spot.cutoff = std::array{0.0, 1e-4, 0.01, 0.2, 0.8, 1.5707, glm::radians(90.0), 2.0, 3.14159}[i % 9];
     spot.exponent = i % 2 ? 3.0f : 0.0f;
     scene.lights.push_back(spot);
   }

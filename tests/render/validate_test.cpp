@@ -228,12 +228,10 @@ TEST(Validate, TellsThePlaceAndWhatIsWrong) {
       {"textures[1].levels[0].texels: has 3 elements, expected 16, 4 a texel",
        scene([](Scene& s) { s.textures[1].levels[0].texels.resize(3); })},
       {"lights[2].group: 4, but there are 1 light_groups", scene([](Scene& s) { s.lights[2].group = 4; })},
-      {"lights[1].direction: (0, 0, -2), expected a vector of length 1",
-       scene([](Scene& s) { s.lights[1].direction.z = -2; })},
-      {"lights[0].position: (nan, 0, 0), expected numbers up to 1e18",
-       scene([](Scene& s) { s.lights[0].position.x = kNan; })},
-      {"animation.attached_cameras[0].index: 1, but there are 1 cameras",
-       scene([](Scene& s) { s.animation.attached_cameras[0].index = 1; })},
+      {"lights[1].half_angle: nan, expected radians from 0 to half a right angle",
+       scene([](Scene& s) { s.lights[1].half_angle = kNan; })},
+      {"lights[0].attenuation: (1, -1, 0), expected numbers of at least 0",
+       scene([](Scene& s) { s.lights[0].attenuation.y = -1; })},
       {"a.json: fog.density: (-1, 1, 1), expected", scene([](Scene& s) {
          s.name = "a.json";
          s.fog.density.x = -1;
