@@ -156,7 +156,8 @@ void addMaterials(const Scene& scene, const SceneInfo& info, Report& report) {
   addLine(report, "textures",
           info.texels == 0 ? "0"
                            : fmt::format("{}, {:.3g} megatexels", scene.textures.size(), info.texels / 1e6));
-  const std::string folder = std::filesystem::path(scene.name).parent_path().string() + "/";
+  std::string folder = std::filesystem::path(scene.name).parent_path().string();
+  if (!folder.empty()) folder += "/";
   for (const Texture& texture : scene.textures) {
     const bool is_beside = texture.name.starts_with(folder);
     const glm::ivec2 size = texture.levels.empty()

@@ -122,6 +122,14 @@ TEST_F(Info, CountsInstancesLightsAndCastersOfOwnScenes) {
   }
 }
 
+TEST_F(Info, TexturesOutsideTheScenesFolderHaveTheirWholePath) {
+  const TemporaryFolder elsewhere;
+  writeText(elsewhere / "t.ppm", "P3 1 1 255 10 20 30\n");
+  writeText(folder / "a.mtl", "newmtl m\nmap_Kd " + (elsewhere / "t.ppm") + "\n");
+  writeText(folder / "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+  EXPECT_THAT(succeed("luciole info a.obj"), HasSubstr(" " + (elsewhere / "t.ppm") + "\n"));
+}
+
 TEST_F(Info, NamesExtensionsThatAreIgnoredAndTexturesWithTheirSizes) {
   LUCIOLE_NEEDS_SHARED();
   const std::string path =
