@@ -24,14 +24,6 @@ bool isPlaceRefused(int code) {
          code == EISDIR || code == EBUSY;
 }
 
-/// Makes a system call again where a signal interrupted it. Returns its result, < 0 for failure.
-template <class Call>
-auto again(Call call) {
-  auto result = call();
-  while (result < 0 && errno == EINTR) result = call();
-  return result;
-}
-
 /// Makes a file in a folder under a hidden name that no file has. `make` takes the name and returns < 0 for
 /// failure, with errno; so does this.
 template <class Make>

@@ -1,11 +1,20 @@
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 
 namespace luciole {
+
+/// Makes a system call again where a signal interrupted it. Returns its result, < 0 for failure.
+template <class Call>
+auto again(Call call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
 
 /// A file that appears at its path whole or not at all. Until putInPlace() it has no name, so nothing is left
 /// of it however the program ends. Where the file system has no files without a name, it is a hidden file

@@ -362,7 +362,8 @@ void ScaleLog::appendLine(const std::string& line) {
     if (count < 0) throw MachineError(fmt::format("{}{}: {}", folder_, kFile, systemReason()));
     written += std::size_t(count);
   }
-  if (fsync(descriptor_) != 0) throw MachineError(fmt::format("{}{}: {}", folder_, kFile, systemReason()));
+  if (again([&] { return fsync(descriptor_); }) != 0)
+    throw MachineError(fmt::format("{}{}: {}", folder_, kFile, systemReason()));
 }
 
 ScaleResults readScaleLog(const std::string& folder) {

@@ -24,7 +24,7 @@ class Signals : public ProgramTest {
     return runLine(
         folder,
         fmt::format(
-            "(exec {} '" LUCIOLE_BINARY
+            "rm -f log; (exec {} '" LUCIOLE_BINARY
             "' {} --log json 2>log) & until grep -q '\"{}\"' log || ! kill -0 $!; do sleep 0.01; done; "
             "kill -{} $!; wait $!",
             launcher, arguments, event, signal));
