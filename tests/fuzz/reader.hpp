@@ -94,8 +94,9 @@ inline void readStrangersLights(const std::string& path) {
 }
 
 /// Reads a stranger's file as its extension says: .exr is a G-buffer and a picture of groups of lights, .mtl
-/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, all else a scene. A file that is refused in one line, or
-/// doesn't fit the machine, has been dealt with; anything else that goes wrong gets out of here.
+/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, all else a scene. A file
+/// that is refused in one line, or doesn't fit the machine, has been dealt with; anything else that goes wrong
+/// gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {
