@@ -1,5 +1,7 @@
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <ucontext.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,11 +12,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <map>
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -25,7 +29,6 @@
 #include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/utf8.hpp"
-#include "cl/driver_call.hpp"
 #include "cli/commands.hpp"
 #include "cli/event_log.hpp"
 #include "cli/signals.hpp"
@@ -153,11 +156,32 @@ namespace {
 
 void endAborted(int) { endAtOnce("a library gave up, as some do where memory runs out"); }
 
-/// Drivers and compilers that don't look at what malloc() gave them write to the first page of addresses.
-void endCrashed(int, siginfo_t* fault, void*) {
+/// Whether an instruction is of the program or of its own libraries, as is taken of one that is in no file.
+bool isOwnCode(const void* instruction) {
+  Dl_info file;
+  if (instruction == nullptr || dladdr(instruction, &file) == 0) return true;
+  const char* const slash = std::strrchr(file.dli_fname, '/');
+  const std::string_view name = slash ? slash + 1 : file.dli_fname;
+  return name.starts_with("luciole") || name.starts_with("libluciole");
+}
+
+/// Where a thread was when a signal came; null where that isn't known.
+const void* instructionOf(const void* context) {
+  [[maybe_unused]] const mcontext_t& machine = static_cast<const ucontext_t*>(context)->uc_mcontext;
+#if defined(__x86_64__)
+  return reinterpret_cast<const void*>(machine.gregs[REG_RIP]);
+#elif defined(__aarch64__)
+  return reinterpret_cast<const void*>(machine.pc);
+#else
+  return nullptr;
+#endif
+}
+
+/// Libraries that don't look at what malloc() gave them use the first page of addresses.
+void endCrashed(int, siginfo_t* fault, void* context) {
   constexpr std::uintptr_t kFirstPage = 4096;
-  if (isInDriver() && reinterpret_cast<std::uintptr_t>(fault->si_addr) < kFirstPage)
-    endAtOnce("OpenCL's driver crashed where it used no memory, as some do where memory runs out");
+  if (reinterpret_cast<std::uintptr_t>(fault->si_addr) < kFirstPage && !isOwnCode(instructionOf(context)))
+    endAtOnce("a library crashed where it used no memory, as some do where memory runs out");
   std::signal(SIGSEGV, SIG_DFL);  // and the same again
 }
 
