@@ -3,8 +3,10 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <link.h>
+#include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cstring>
@@ -95,7 +97,26 @@ void letCompilersThrow() {
   static_cast<void>(is_done);
 }
 
+/// While one exists, what libraries do about signals that abort the process is undone at its end. LLVM's
+/// handler, which a driver brings, returns to abort(), which then ends the process by itself.
+class KeptAbortHandlers {
+ public:
+  KeptAbortHandlers() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], nullptr, &kept_[i]);
+  }
+  ~KeptAbortHandlers() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &kept_[i], nullptr);
+  }
+  KeptAbortHandlers(const KeptAbortHandlers&) = delete;
+  KeptAbortHandlers& operator=(const KeptAbortHandlers&) = delete;
+
+ private:
+  static constexpr std::array kSignals{SIGABRT, SIGTRAP};
+  std::array<struct sigaction, kSignals.size()> kept_{};
+};
+
 std::vector<FoundDevice> findDevices() {
+  const KeptAbortHandlers kept;
   requireMemory(kPlatformBytes, "OpenCL");
   requireMappings(kPlatformAddresses, kPlatformData, 2 * threadCount(), "OpenCL");
   std::vector<FoundDevice> found;

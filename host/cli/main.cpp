@@ -165,13 +165,18 @@ bool isOwnCode(const void* instruction) {
   return name.starts_with("luciole") || name.starts_with("libluciole");
 }
 
-/// Where a thread was when a signal came; null where that isn't known.
+constexpr std::uintptr_t kFirstPage = 4096;
+
+/// The instruction at which a signal came, or that called a function at an address of the first page; null
+/// where it isn't known.
 const void* instructionOf(const void* context) {
   [[maybe_unused]] const mcontext_t& machine = static_cast<const ucontext_t*>(context)->uc_mcontext;
 #if defined(__x86_64__)
-  return reinterpret_cast<const void*>(machine.gregs[REG_RIP]);
+  const auto at = std::uintptr_t(machine.gregs[REG_RIP]);
+  const auto* const stack = reinterpret_cast<const std::uintptr_t*>(machine.gregs[REG_RSP]);
+  return reinterpret_cast<const void*>(at < kFirstPage ? *stack : at);
 #elif defined(__aarch64__)
-  return reinterpret_cast<const void*>(machine.pc);
+  return reinterpret_cast<const void*>(machine.pc < kFirstPage ? machine.regs[30] : machine.pc);
 #else
   return nullptr;
 #endif
@@ -179,7 +184,6 @@ const void* instructionOf(const void* context) {
 
 /// Libraries that don't look at what malloc() gave them use the first page of addresses.
 void endCrashed(int, siginfo_t* fault, void* context) {
-  constexpr std::uintptr_t kFirstPage = 4096;
   if (reinterpret_cast<std::uintptr_t>(fault->si_addr) < kFirstPage && !isOwnCode(instructionOf(context)))
     endAtOnce("a library crashed where it used no memory, as some do where memory runs out");
   std::signal(SIGSEGV, SIG_DFL);  // and the same again
