@@ -114,9 +114,9 @@ class FailingCalls : public ProgramTest {
           ++came[judge(output, good, error, what)];
         }
         if (error == ENOMEM) {
-          // In libraries, PoCL's and libgcrypt among them, about one place in 200 of scale's still ends in
-          // SIGABRT, though it is caught, or hangs.
-          EXPECT_LE(came["CRASH"] + came["HANG"], 1 + (many ? std::stoi(many) / 50 : 0)) << line;
+          // PoCL 3.1 leaves a lock taken where some allocations fail, about one of 450 of scale's, and waits
+          // for it in the next call.
+          EXPECT_LE(came["HANG"], 1 + (many ? std::stoi(many) / 50 : 0)) << line;
         }
         if (kKinds[kind].name == std::string("memory")) {
           EXPECT_GT(came["status 3"], 0) << "none fails: " << line;
@@ -186,7 +186,7 @@ class FailingCalls : public ProgramTest {
       return "HANG";
     }
     if (last_.status != 0 && last_.status != 2 && last_.status != 3) {
-      EXPECT_EQ(error, ENOMEM) << "crashes: " << what;
+      ADD_FAILURE() << "crashes: " << what;
       return "CRASH";
     }
     const std::string own = ownLines(last_.err);
@@ -213,6 +213,35 @@ class FailingCalls : public ProgramTest {
   static constexpr int kSeconds = 40;  ///< after which a run, of half a second as a rule, counts as hanging
   Outcome last_;
 };
+
+// By what a library does: in the first page of addresses, through a pointer to no function, or by abort(),
+// for which LLVM has a handler of its own once a device was found.
+class CrashingLibrary : public ProgramTest {};
+
+TEST_F(CrashingLibrary, EndsTheProgramInALine) {
+  LUCIOLE_NEEDS_PROGRAM("cc", "gcc");
+  writeText(folder / "in.json", kSmallScene);
+  writeText(folder / "crash.c", R"(#include <stdlib.h>
+int clEnqueueNDRangeKernel(void) {
+  const char how = *getenv("HOW");
+  if (how == 'a') abort();
+  if (how == 'c') ((void (*)(void))getenv("NOTHING"))();
+  *(volatile int*)getenv("NOTHING") = 1;
+  return 0;
+})");
+  succeed("cc -shared -fPIC -O0 -o crash.so crash.c");
+  for (const auto& [how, line] :
+       {std::pair("write", "a library crashed where it used no memory, as some do where memory runs out"),
+        {"call", "a library crashed where it used no memory, as some do where memory runs out"},
+        {"abort", "a library gave up, as some do where memory runs out"}}) {
+    const Outcome outcome = runLine(folder, fmt::format("LD_PRELOAD=$PWD/crash.so HOW={} '" LUCIOLE_BINARY
+                                                        "' render in.json --quiet -o out.png",
+                                                        how));
+    EXPECT_EQ(outcome.status, 3) << how;
+    EXPECT_EQ(outcome.err, fmt::format("luciole: {}\n", line)) << how;
+    EXPECT_FALSE(fs::exists(folder / "out.png"));
+  }
+}
 
 TEST_F(FailingCalls, OfRenderLeaveThePictureOrALine) {
   tryAll("render in/scene.json --shadows exact --quiet -o out/a.png", "a.png");
