@@ -128,7 +128,12 @@ void compareTwo(const CompareOptions& options, CommandContext& context) {
   const auto outputs = {&options.difference, &options.error_map, &options.side_by_side, &options.json};
   if (std::none_of(outputs.begin(), outputs.end(), [](const std::string* path) { return *path == "-"; }))
     printFigures(d);
-  if (isOver(options, d)) context.status = kDifferent;
+  if (!isOver(options, d)) return;
+  tellError(d.nonfinite > 0 ? fmt::format("{} values of one picture or both are not finite", d.nonfinite)
+                            : fmt::format("max_abs {:.6g} at ({}, {}) is over --max-abs {}", d.max_abs,
+                                          d.worst_pixel[0], d.worst_pixel[1], *options.max_abs),
+            kDifferent);
+  context.status = kDifferent;
 }
 
 /// A frame of two sequences, and how they differ there.

@@ -65,8 +65,9 @@ int writeResults(const ScaleResults& results, const std::string& folder, const s
     tellError(fmt::format("{}: {} of {} points are not complete: {}", folder, summary.incomplete.size(),
                           summary.description.points.size(), listPoints(summary.incomplete)),
               kDifferent);
-  else if (!summary.incomplete.empty())
-    fmt::print(stderr, "{}: {} of {} points are not complete\n", folder, summary.incomplete.size(),
+  else if (!summary.incomplete.empty() && !quiet)
+    fmt::print(stderr, "{}: {} of {} points are done; luciole scale merge joins the shards'\n", folder,
+               summary.description.points.size() - summary.incomplete.size(),
                summary.description.points.size());
   for (const std::string& violation : summary.violations) tellError(violation, kDifferent);
   return summary.violations.empty() && !is_lacking ? kDone : kDifferent;

@@ -42,7 +42,7 @@ std::string wrong(const char* field, const glm::vec<N, T>& value, const char* ex
 
 /// Of an index into `count` things; -1 is none.
 std::string wrongIndex(const char* field, std::int64_t index, const char* things, std::size_t count) {
-  return fmt::format("{}: {}, but there are {} {}", field, index, count, things);
+  return fmt::format("{}: {}, but the number of {} is {}", field, index, things, count);
 }
 
 bool isIndex(int index, std::size_t count) { return index >= 0 && std::size_t(index) < count; }

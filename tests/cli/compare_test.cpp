@@ -74,6 +74,15 @@ TEST_F(Compare, OfFramesThatDifferByAsMuchTheWorstIsThatOfTheLargestMean) {
   EXPECT_THAT(succeed("luciole compare a.###.exr b.###.exr"), HasSubstr("\nworst frame 9: max_abs inf "));
 }
 
+TEST_F(Compare, APictureOverItsLimitIsToldWithTheWorstPixel) {
+  writeSequences();
+  const std::string frame = "luciole compare a.010.exr b.010.exr --max-abs ";
+  EXPECT_EQ(told(frame + "0.5"), "");
+  refuse(frame + "0.125", 1, "max_abs 0.5 at (3, 1) is over --max-abs 0.125");
+  write("b.010.exr", 0.5f, NAN);
+  refuse(frame + "inf", 1, "not finite");
+}
+
 TEST_F(Compare, LimitsHoldForEveryFrameAndTheWorstIsTold) {
   writeSequences();
   EXPECT_EQ(told("luciole compare a.###.exr b.###.exr --max-abs 0.5"), "");

@@ -189,7 +189,7 @@ TEST_F(ScaleCommand, MergedShardsEqualOneRun) {
                                      arguments + "-o two");
   ASSERT_EQ(second.status, 0) << second.err;
   EXPECT_THAT(second.err, HasSubstr("shard 2/2"));
-  EXPECT_THAT(second.err, HasSubstr("3 of 6 points are not complete"));
+  EXPECT_THAT(second.err, HasSubstr("two: 3 of 6 points are done; luciole scale merge"));
   const Outcome merged = runLine(folder, "luciole scale merge one two -o all");
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(withoutTimes(readCsv(folder / "all/results.csv")),
@@ -323,7 +323,7 @@ TEST_F(ScaleCommand, LightsOneByOneThatWouldTakeLongAreLeftOutBesideLightErrors)
       scale("--lights 1000,10000000 --vary light-error=0,1 --repeat 1 --shard 1/4 -o run");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("so many lights one by one take long: 1"));
-  EXPECT_THAT(outcome.err, HasSubstr("2 of 3 points are not complete"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 points are done"));
 }
 
 TEST_F(ScaleCommand, MoreSamplesComeNearerToATruthOfMore) {
