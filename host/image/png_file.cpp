@@ -1,28 +1,23 @@
-#include <fmt/format.h>
 #include <isa-l/crc.h>
 #include <isa-l/igzip_lib.h>
-#include <png.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_pipeline.h>
 #include <zlib.h>
 
 #include <algorithm>
-#include <csetjmp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <exception>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/threads.hpp"
 #include "base/utf8.hpp"
 #include "image/deflate.hpp"
-
 #include "image/png_filters.hpp"
 #include "image/row_file.hpp"
 
@@ -32,86 +27,6 @@ namespace {
 bool isAscii(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
 }
-
-/// What stands in a PNG before its pixels, by libpng.
-class PngHeader {
- public:
-  explicit PngHeader(const std::string& path)
-      : path_(path),
-        png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, this, onError, onWarning)),
-        info_(png_ ? png_create_info_struct(png_) : nullptr) {
-    if (!info_) throw MachineError("out of memory");
-  }
-  ~PngHeader() { png_destroy_write_struct(&png_, &info_); }
-  PngHeader(const PngHeader&) = delete;
-  PngHeader& operator=(const PngHeader&) = delete;
-
-  std::vector<std::uint8_t> make(int width, int height, int channels, const Metadata& metadata, int bits) {
-    call([&] {
-      png_set_write_fn(png_, this, keepBytes, nullptr);
-      png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), bits,
-                   channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                   PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-      png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
-    });
-    for (const auto& [name, value] : metadata) addText(name, value);
-    call([&] { png_write_info(png_, info_); });
-    return std::move(bytes_);
-  }
-
- private:
-  /// ASCII goes into a tEXt chunk, which every reader knows; its text is Latin-1, which agrees with UTF-8 on
-  /// ASCII. All else goes into iTXt, as UTF-8.
-  void addText(const std::string& name, const std::string& value) {
-    std::string key = name == "ImageDescription" ? "Description" : name;  // PNG's own word for it
-    std::string content = utf8Of(value);
-    png_text text{};
-    text.compression = isAscii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
-    text.key = key.data();
-    text.text = content.data();
-    call([&] { png_set_text(png_, info_, &text, 1); });
-  }
-
-  /// Runs `use`, which calls the library, and throws the error that it met. No exception passes through the
-  /// library, which is C. The library's own errors jump back to here, over no object that has a destructor.
-  template <class Use>
-  void call(const Use& use) {
-    if (setjmp(png_jmpbuf(png_)) == 0) use();
-    if (error_) std::rethrow_exception(error_);
-  }
-
-  /// libpng can't go on after its own errors.
-  [[noreturn]] static void onError(png_structp png, png_const_charp message) {
-    keepError(png, message);
-    png_longjmp(png, 1);
-  }
-
-  static void keepError(png_structp png, png_const_charp message) {
-    PngHeader* self = static_cast<PngHeader*>(png_get_error_ptr(png));
-    if (self->error_) return;
-    self->error_ =
-        std::make_exception_ptr(MachineError(fmt::format("{}: can't encode: {}", self->path_, message)));
-  }
-
-  /// libpng's own handler would print the warning.
-  static void onWarning(png_structp, png_const_charp) {}
-
-  static void keepBytes(png_structp png, png_bytep bytes, std::size_t count) {
-    PngHeader* self = static_cast<PngHeader*>(png_get_io_ptr(png));
-    if (self->error_) return;
-    try {
-      self->bytes_.insert(self->bytes_.end(), bytes, bytes + count);
-    } catch (...) {
-      self->error_ = std::current_exception();
-    }
-  }
-
-  std::string path_;
-  std::vector<std::uint8_t> bytes_;
-  std::exception_ptr error_;
-  png_structp png_;
-  png_infop info_;
-};
 
 /// A number as PNG and zlib have it.
 void putBigEndian(std::uint32_t value, std::uint8_t* out) {
@@ -133,6 +48,55 @@ void endChunk(std::vector<std::uint8_t>& chunk) {
   const std::uint32_t check = crc32_gzip_refl(0, chunk.data() + kNumberBytes, chunk.size() - kNumberBytes);
   chunk.resize(chunk.size() + kNumberBytes);
   putBigEndian(check, chunk.data() + chunk.size() - kNumberBytes);
+}
+
+void appendNumber(std::uint32_t value, std::vector<std::uint8_t>& bytes) {
+  bytes.resize(bytes.size() + kNumberBytes);
+  putBigEndian(value, bytes.data() + bytes.size() - kNumberBytes);
+}
+
+/// Appends a chunk of these bytes.
+void appendChunk(std::string_view name, std::span<const std::uint8_t> data, std::vector<std::uint8_t>& file) {
+  std::vector<std::uint8_t> chunk;
+  beginChunk(name, chunk);
+  chunk.insert(chunk.end(), data.begin(), data.end());
+  endChunk(chunk);
+  file.insert(file.end(), chunk.begin(), chunk.end());
+}
+
+/// ASCII goes into a tEXt chunk, which every reader knows; its text is Latin-1, which agrees with UTF-8 on
+/// ASCII. All else goes into iTXt, as UTF-8.
+void appendText(const std::string& name, const std::string& value, std::vector<std::uint8_t>& file) {
+  std::string data = name == "ImageDescription" ? "Description" : name;  // PNG's own word for it
+  data += '\0';
+  const bool is_ascii = isAscii(value);
+  if (!is_ascii) data += std::string(4, '\0');  // not compressed, in no language, the name not translated
+  data += utf8Of(value);
+  appendChunk(is_ascii ? "tEXt" : "iTXt", {reinterpret_cast<const std::uint8_t*>(data.data()), data.size()},
+              file);
+}
+
+/// What stands in a PNG before its pixels (PNG specification, third edition, sections 5.2 and 11).
+std::vector<std::uint8_t> pngHeader(int width, int height, int channels, const Metadata& metadata, int bits) {
+  constexpr std::uint8_t kRgb = 2, kRgba = 6, kAbsoluteColorimetric = 3;
+  // sRGB's white, red, green and blue in xy, and its gamma, in hundred thousandths, for readers without sRGB.
+  constexpr std::uint32_t kPrimaries[] = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
+  constexpr std::uint32_t kGamma = 45455;
+  std::vector<std::uint8_t> file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, data;
+  appendNumber(std::uint32_t(width), data);
+  appendNumber(std::uint32_t(height), data);
+  // No choice of compression or filter, and not interlaced.
+  data.insert(data.end(), {std::uint8_t(bits), channels == 4 ? kRgba : kRgb, 0, 0, 0});
+  appendChunk("IHDR", data, file);
+  data.clear();
+  appendNumber(kGamma, data);
+  appendChunk("gAMA", data, file);
+  appendChunk("sRGB", {&kAbsoluteColorimetric, 1}, file);
+  data.clear();
+  for (const std::uint32_t value : kPrimaries) appendNumber(value, data);
+  appendChunk("cHRM", data, file);
+  for (const auto& [name, value] : metadata) appendText(name, value, file);
+  return file;
 }
 
 /// Rows that are filtered and compressed together, as many as have this many bytes. Where they begin depends
@@ -300,7 +264,7 @@ std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int hei
                                      const Metadata& metadata, int bits, const std::string& compression) {
   checkWritable(path, {.format = "png"});
   checkSizeLimit(std::uint64_t(width) * height * channels * bits / 8, path);
-  const std::vector<std::uint8_t> header = PngHeader(path).make(width, height, channels, metadata, bits);
+  const std::vector<std::uint8_t> header = pngHeader(width, height, channels, metadata, bits);
   return std::make_unique<PngFile>(path, header, width, height, channels, bits, compression == "small");
 }
 
