@@ -22,7 +22,7 @@
 #include "image/file_format.hpp"
 #include "load/load_scene.hpp"
 #include "raster/blend.hpp"
-#include "render/coarse_triangles.hpp"
+#include "raster/coarse_triangles.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "shadow/light_samples.hpp"
@@ -435,8 +435,8 @@ Scene openLitScene(const std::string& path, double frame, const PictureOptions& 
   if (width == 0) return scene;
   scene.warnings.push_back(
       {fmt::format(
-           "{}: --shading gouraud lights the corners of triangles, and some, up to {:.3g} m wide, are "
-           "much larger than what lights shine on between them; divide them, or take --shading phong",
+           "{}: --shading gouraud lights the corners of triangles, and some are up to {:.3g} m wide: light "
+           "that falls between their corners is lost; divide them, or take --shading phong",
            scene.name, width),
        "gouraud"});
   if (!options.quiet) tellWarning(scene.warnings.back().text);
