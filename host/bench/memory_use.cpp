@@ -9,6 +9,7 @@
 #include "bench/child_process.hpp"
 #include "load/load_scene.hpp"
 #include "render/memory.hpp"
+#include "render/plan.hpp"
 
 namespace luciole {
 namespace {
@@ -54,14 +55,13 @@ std::vector<double> bytesOf(const SpeedInput& input, const ScratchFolder& folder
   return {memory["peak_bytes"], memory["device_bytes"]};
 }
 
-/// The bytes that a pixel of the scene takes by bytesPerPixel().
+/// The bytes that a pixel of the scene takes by its plan.
 double statedBytesPerPixel(const ScratchFolder& folder) {
   const Scene scene = loadScene(folder / "scene.json");
   RenderSettings settings;
   settings.count_lights = true;  // as --stats asks for
-  const FeatureSet features =
-      neededFeatures(scene, scene.cameras.front(), materialTraits(scene), settings.shade);
-  return double(bytesPerPixel(settings, neededPlanes(features), features, scene));
+  settings.camera = scene.cameras.front();
+  return double(planPicture(scene, settings).pixel_bytes);
 }
 
 }  // namespace

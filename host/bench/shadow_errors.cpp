@@ -11,9 +11,9 @@
 #include "bench/variants.hpp"
 #include "raster/rasterize.hpp"
 #include "rays/shadow_rays.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "render/pair_visibility.hpp"
-#include "render/render.hpp"
+#include "render/plan.hpp"
 #include "render/stats.hpp"
 
 namespace luciole {
@@ -99,16 +99,16 @@ TexelSide texelSides(const Scene& scene, const ShadowMaps& shadows) {
 /// the truth, because the light adds nothing there.
 void addExactVisibility(Device& device, const Judged& judged, const Lighting& lighting, const LitPlanes& lit,
                         std::vector<float>& visibility) {
+  const LightSet& lights = lighting.lights;
   std::vector<uint> starts(lighting.lists.tiles + 1);
   std::vector<ListEntry> list(lighting.lists.entries);
   download(device, lighting.lists.starts, starts);
   download(device, lighting.lists.list, list);
-  const std::vector<std::uint32_t>& order = lighting.beams.order;
-  std::vector<std::uint32_t> device_light(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) device_light[order[i]] = i;
+  std::vector<std::uint32_t> device_light(lights.order.size());
+  for (std::uint32_t i = 0; i < lights.order.size(); ++i) device_light[lights.order[i]] = i;
   for (std::size_t i = 0; i < judged.pairs.size(); ++i) {
     const LightPair& pair = judged.pairs[i];
-    if (!lighting.beams.lights[device_light[pair.light]].casts) continue;
+    if (!lights.beam_lights[device_light[pair.light]].casts) continue;
     const std::size_t tile = pair.pixel / kTilePixels, place = pair.pixel % kTilePixels;
     const auto end = list.begin() + starts[tile + 1];
     const auto entry =
@@ -123,19 +123,19 @@ void addExactVisibility(Device& device, const Judged& judged, const Lighting& li
 
 /// Sets the visibility of the pairs with lights that have maps.
 void addMapVisibility(Device& device, const Judged& judged, const Lighting& lighting,
-                      const ShadeSettings& settings, std::vector<float>& visibility) {
+                      std::vector<float>& visibility) {
   std::vector<MapPair> map_pairs;
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < judged.pairs.size(); ++i) {
     const LightPair& pair = judged.pairs[i];
-    const std::uint32_t map = lighting.host_shadows.map_of_light[pair.light];
+    const std::uint32_t map = lighting.maps.host.map_of_light[pair.light];
     if (map == kNoShadow) continue;
     map_pairs.push_back({pair.pixel, map});
     indices.push_back(i);
   }
   const std::vector<float> seen =
-      pairVisibility(device, featureDefines(lighting.features) + mathDefines(settings), judged.gbuffer,
-                     lighting.host_shadows, map_pairs);
+      pairVisibility(device, featureDefines(lighting.features) + lighting.math_defines, judged.gbuffer,
+                     lighting.maps.host, map_pairs);
   for (std::size_t i = 0; i < indices.size(); ++i) visibility[indices[i]] = seen[i];
 }
 
@@ -170,20 +170,20 @@ Verdict judgeShadows(Device& device, const Judged& judged, const std::vector<std
                      const ShadeSettings& given) {
   const Scene& scene = judged.scene;
   const Camera& camera = judged.gbuffer.camera;
-  const ShadeSettings settings = pictureShading(scene, pictureOf(judged, given, 1));
-  const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
+  const PicturePlan plan = planPicture(scene, pictureOf(judged, given, 1));
+  const FeatureSet& features = plan.features;
   Lighting lighting;
   Stats stats;
-  prepareLighting(device, scene, camera, cameraView(camera, judged.gbuffer.picture_size), features, settings,
-                  lighting, stats);
-  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, judged.gbuffer, {}, stats);
+  prepareLighting(device, scene, camera, plan.view, features, plan.shade, lighting, stats);
+  const LitPlanes lit =
+      lightGBuffer(device, scene, lighting, {lighting.lights, features, judged.gbuffer}, stats);
   std::vector<float> visibility(judged.pairs.size());
-  if (features.shadowMaps()) addMapVisibility(device, judged, lighting, settings, visibility);
+  if (features.shadowMaps()) addMapVisibility(device, judged, lighting, visibility);
   if (features.has(Feature::kExact)) addExactVisibility(device, judged, lighting, lit, visibility);
   Verdict verdict{.errors = judge(judged.truth.lit, edges, visibility), .traced = lit.traced.pairs};
-  verdict.texels = lighting.host_shadows.texels.size();
-  for (const PlannedFace& face : lighting.host_shadows.planned) verdict.faces += face.count.x > 0;
-  for (const BeamLight& light : lighting.beams.lights) verdict.exact_lights += light.casts;
+  verdict.texels = lighting.maps.host.texels.size();
+  for (const PlannedFace& face : lighting.maps.host.planned) verdict.faces += face.count.x > 0;
+  for (const BeamLight& light : lighting.lights.beam_lights) verdict.exact_lights += light.casts;
   return verdict;
 }
 

@@ -20,6 +20,7 @@
 #include "gbuffer/camera_header.hpp"
 #include "image/layers.hpp"
 #include "render/estimate.hpp"
+#include "render/plan.hpp"
 #include "render/scene_info.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/pose.hpp"
@@ -252,7 +253,8 @@ void addJob(Scene& scene, const std::vector<int>& frames, const InfoOptions& opt
     const int frame = frames[i];
     if (i % step == 0) {
       poseScene(scene, frame);
-      const PictureWork work = pictureWork(scene, renderSettings(options, scene));
+      const RenderSettings settings = renderSettings(options, scene);
+      const PictureWork work = pictureWork(scene, settings, planPicture(scene, settings));
       of_each = {estimatedMilliseconds(work), estimatedStart(work)};
       bytes = std::max(bytes, estimatedBytes(work));
     }
@@ -276,15 +278,26 @@ void addJob(Scene& scene, const std::vector<int>& frames, const InfoOptions& opt
 }
 
 /// What a render with these options would use and cost. Returns what keeps it from being made, or "".
-std::string addRender(const Scene& scene, const RenderSettings& settings, Report& report) {
-  const std::vector<std::string> features = featureNames(pictureFeatures(scene, settings).all);
+std::string addRender(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan,
+                      Report& report) {
+  const std::vector<std::string> features = featureNames(plan.features);
   report.json["features"] = features;
   addLine(report, "features", features.empty() ? "none" : fmt::format("{}", fmt::join(features, ", ")));
+  const int rows = std::min(plan.band_height, settings.size.y), bands = (settings.size.y + rows - 1) / rows;
+  report.json["plan"] = {{"programs", plan.programs.size()},
+                         {"bytes_per_pixel", plan.pixel_bytes},
+                         {"bands", bands},
+                         {"band_rows", rows},
+                         {"shares_samples", plan.shares_samples}};
+  addLine(report, "plan",
+          fmt::format("{} of {} rows at most, {} bytes a pixel, {} of kernels",
+                      counted(std::size_t(bands), "band"), rows, plan.pixel_bytes,
+                      counted(plan.programs.size(), "set")));
   Json& json = report.json["render"];
   json = {{"width", settings.size.x}, {"height", settings.size.y}, {"samples", settings.samples},
           {"milliseconds", nullptr},  {"memory_bytes", nullptr},   {"machine", kEstimateMachine}};
   try {
-    const PictureWork work = pictureWork(scene, settings);
+    const PictureWork work = pictureWork(scene, settings, plan);
     const double milliseconds = estimatedMilliseconds(work), bytes = estimatedBytes(work);
     json["milliseconds"] = milliseconds;
     json["memory_bytes"] = bytes;
@@ -303,6 +316,7 @@ Report sceneReport(InfoOptions options) {
   const FrameChoice choice = chosenFrames(options.frames);
   Scene scene = openLitScene(options.file, choice.frames.front(), options);
   const RenderSettings settings = renderSettings(options, scene);
+  const PicturePlan plan = planPicture(scene, settings);
   const SceneInfo info = sceneInfo(scene);
   Report report;
   report.json["file"] = options.file;
@@ -313,7 +327,7 @@ Report sceneReport(InfoOptions options) {
   addMaterials(scene, info, report);
   addCameras(scene, report);
   addLights(scene, info.lights, report);
-  addLightUses(scene, pictureShading(scene, settings), report);
+  addLightUses(scene, plan.shade, report);
   report.json["variants"] = scene.variants;
   if (!scene.variants.empty())
     addLine(report, "variants", printable(fmt::format("{}", fmt::join(scene.variants, ", "))));
@@ -323,7 +337,7 @@ Report sceneReport(InfoOptions options) {
   report.json["ignored_extensions"] = scene.ignored_extensions;
   if (!scene.ignored_extensions.empty())
     addLine(report, "ignored", printable(fmt::format("{}", fmt::join(scene.ignored_extensions, ", "))));
-  const std::string obstacle = addRender(scene, settings, report);
+  const std::string obstacle = addRender(scene, settings, plan, report);
   report.json["job"] = nullptr;
   if (choice.is_list && obstacle.empty()) addJob(scene, choice.frames, options, report);
   std::vector<Warning> warnings = scene.warnings;

@@ -12,26 +12,6 @@
 namespace luciole {
 namespace {
 
-/// A light in the tree's space. One so far away that a beam's numbers would overflow shines from a direction.
-/// One larger than any distance between places that beams know is as large as that: they are inside it.
-BeamLight beamLight(const Light& light, const TriangleTree& tree, bool soft) {
-  constexpr double kFarthest = 0x1p40;
-  BeamLight result{};
-  const bool directional = light.kind == LightKind::kDirectional;
-  const glm::dvec3 place = (light.position - tree.origin) * double(tree.scale);
-  const double largest = std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
-  const bool has_place = !directional && largest <= kFarthest;
-  const glm::dvec3 towards = directional ? -light.direction : place / largest;
-  const glm::dvec3 at = has_place ? place : glm::normalize(towards);
-  result.place = {float(at.x), float(at.y), float(at.z), has_place ? 1.0f : 0.0f};
-  result.reach = has_place ? light.range * tree.scale : std::numeric_limits<float>::infinity();
-  if (!soft) return result;
-  const double radius = light.radius * double(tree.scale),
-               half_angle = directional ? light.half_angle : std::asin(std::min(radius / largest, 0.7));
-  result.size = float(has_place ? std::min(radius, 4 * kFarthest) : 2 * std::sin(half_angle / 2));
-  return result;
-}
-
 /// The largest |x|, |y|, |z| in the tree: its root's boxes hold all of it.
 float4 mostOf(const TriangleTree& tree) {
   float most[3] = {0, 0, 0};
@@ -53,22 +33,14 @@ float4 rowOf(const glm::mat3& matrix, int row, float w) {
 
 }  // namespace
 
-void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
-                  std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
-                  std::span<const std::uint32_t> order, std::span<const std::uint8_t> casts,
-                  std::span<ShadeLight> lights, int soft_samples, BeamScene& beams) {
+void prepareBeams(Device& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
+                  std::shared_ptr<const HoleMasks> masks, int soft_samples, BeamScene& beams) {
   beams.tree = std::move(tree);
   beams.masks = std::move(masks);
   beams.view_to_tree = glm::mat3(glm::dmat3(camera.camera_to_world));
   beams.tree_most = mostOf(*beams.tree);
-  beams.order.assign(order.begin(), order.end());
   beams.soft_samples = soft_samples;
   if (soft_samples > 0) beams.samples = makeLightSamples();
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    beams.lights.push_back(beamLight(scene.lights[order[i]], *beams.tree, soft_samples > 0));
-    beams.lights.back().casts = casts[i];
-    if (casts[i]) lights[i].shadow = kExactShadow;
-  }
   beams.nodes = borrowed(device, beams.tree->nodes);
   beams.children = borrowed(device, beams.tree->children);
   beams.blocks = borrowed(device, beams.tree->blocks);
@@ -78,14 +50,35 @@ void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
     beams.hole_triangles = borrowed(device, beams.masks->triangles);
     beams.first_hole_triangle = borrowed(device, beams.masks->first_triangle);
   }
-  beams.light_buffer = borrowed(device, beams.lights);
+}
+
+BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams) {
+  // A light farther away shines from a direction, because a beam's numbers would overflow. One larger than
+  // any distance between places that beams know is as large as that: they are inside it.
+  constexpr double kFarthest = 0x1p40;
+  const TriangleTree& tree = *beams.tree;
+  BeamLight result{};
+  result.casts = casts;
+  const bool directional = light.kind == LightKind::kDirectional;
+  const glm::dvec3 place = (light.position - tree.origin) * double(tree.scale);
+  const double largest = std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
+  const bool has_place = !directional && largest <= kFarthest;
+  const glm::dvec3 towards = directional ? -light.direction : place / largest;
+  const glm::dvec3 at = has_place ? place : glm::normalize(towards);
+  result.place = {float(at.x), float(at.y), float(at.z), has_place ? 1.0f : 0.0f};
+  result.reach = has_place ? light.range * tree.scale : std::numeric_limits<float>::infinity();
+  if (beams.soft_samples == 0) return result;
+  const double radius = light.radius * double(tree.scale),
+               half_angle = directional ? light.half_angle : std::asin(std::min(radius / largest, 0.7));
+  result.size = float(has_place ? std::min(radius, 4 * kFarthest) : 2 * std::sin(half_angle / 2));
+  return result;
 }
 
 PairShadows beamShadows(Device& device, const std::string& defines, const BeamArguments& arguments) {
   const BeamScene& beams = arguments.beams;
   const std::size_t tiles = arguments.plane_stride / kTilePixels;
   const std::size_t entries =
-      arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * beams.lights.size();
+      arguments.lists.tiles > 0 ? arguments.lists.entries : tiles * arguments.lights.count;
   const bool soft = arguments.soft, unsure_pairs = arguments.holes || soft;
   const double words = kPairWords * (soft ? 3 : unsure_pairs ? 2 : 1) + (soft ? 1 : 0);
   requireMemory(double(entries) * words * sizeof(uint), "the exact shadows of all pixels");
@@ -108,8 +101,8 @@ PairShadows beamShadows(Device& device, const std::string& defines, const BeamAr
           {"to_tree_x", rowOf(beams.view_to_tree, 0, beams.tree->scale)},
           {"to_tree_y", rowOf(beams.view_to_tree, 1, 0)},
           {"to_tree_z", rowOf(beams.view_to_tree, 2, 0)},
-          {"lights", beams.light_buffer},
-          {"light_count", uint(beams.lights.size())},
+          {"lights", arguments.lights},
+          {"light_count", uint(arguments.lights.count)},
           {"list_starts", arguments.lists.starts},
           {"list", arguments.lists.list},
           {"nodes", beams.nodes},

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -20,15 +19,13 @@ namespace luciole {
 /// its tile.
 using PairBits = std::vector<uint, ArrayAllocator<uint>>;
 
-/// What exact shadows need of a picture's scene and lights, on the host and on the device. Buffers are
-/// borrowed from the members before them, so it can't be copied.
+/// What exact shadows need of a picture's scene, on the host and on the device. Buffers are borrowed from the
+/// members before them, so it can't be copied.
 struct BeamScene {
   std::shared_ptr<const TriangleTree> tree;
   std::shared_ptr<const HoleMasks> masks;  ///< null where no triangle has holes
   glm::mat3 view_to_tree{1.0f};            ///< a rotation
   float4 tree_most{};                      ///< the largest |x|, |y|, |z| in the tree
-  std::vector<BeamLight> lights;           ///< one a light on the device
-  std::vector<std::uint32_t> order;        ///< the scene's index of each
   int soft_samples = 0;                    ///< of each light of a size; 0: none has one
   std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
   Buffer<const float> nodes, blocks;
@@ -37,21 +34,20 @@ struct BeamScene {
   Buffer<const unsigned char> hole_texels;
   Buffer<const HoleTriangle> hole_triangles;
   Buffer<const uint> first_hole_triangle;
-  Buffer<const BeamLight> light_buffer;
 
   BeamScene() = default;
   BeamScene(const BeamScene&) = delete;
   BeamScene& operator=(const BeamScene&) = delete;
 };
 
-/// Fills `beams` for the lights `order` (indices into Scene::lights), and sets ShadeLight::shadow of those
-/// that `casts` says, in the same order. tree: of the scene, its origin the camera's eye. masks: of the tree,
+/// Fills `beams` for what a camera sees. tree: of the scene, its origin the camera's eye. masks: of the tree,
 /// or null where no triangle has holes. soft_samples: of lights of a size; 0: they count as points, or for
 /// directional lights as single directions. Throws MachineError.
-void prepareBeams(Device& device, const Scene& scene, const Camera& camera,
-                  std::shared_ptr<const TriangleTree> tree, std::shared_ptr<const HoleMasks> masks,
-                  std::span<const std::uint32_t> order, std::span<const std::uint8_t> casts,
-                  std::span<ShadeLight> lights, int soft_samples, BeamScene& beams);
+void prepareBeams(Device& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
+                  std::shared_ptr<const HoleMasks> masks, int soft_samples, BeamScene& beams);
+
+/// A light in the tree's space. casts: whether beams tell of its shadow.
+BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams);
 
 struct BeamArguments {
   std::size_t plane_stride;      ///< floats in a plane
@@ -59,6 +55,7 @@ struct BeamArguments {
   Buffer<const float> normal;    ///< G-buffer planes x, y, z; view space, unit
   Buffer<const float> lift;      ///< a plane, metres, with Feature::kLift only
   const LightLists& lists;       ///< with Feature::kLightLists only
+  Buffer<const BeamLight> lights;
   const BeamScene& beams;
   bool holes;  ///< with Feature::kHoles
   bool soft;   ///< with Feature::kSoftExact

@@ -60,13 +60,13 @@ void countClusters(const ClusteredLightCounts& counts, Stats& stats) {
 void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lighting& lighting,
                     Stats& stats) {
   if (!(settings.light_error > 0) || !scene.lighting) return;
-  addCount(stats, "lights_stood_for", lighting.clustered_lights);
-  addCount(stats, "lights_exact", scene.lights.size() - lighting.clustered_lights);
+  addCount(stats, "lights_stood_for", lighting.lights.clusters.lights);
+  addCount(stats, "lights_exact", scene.lights.size() - lighting.lights.clusters.lights);
   const auto counts = countReasons(scene.lights, lightUse(settings));
   for (std::size_t reason = 1; reason < counts.size(); ++reason)
     if (counts[reason] > 0)
       addCount(stats, std::string("lights_exact_by_") + exactReasonName(ExactReason(reason)), counts[reason]);
-  const std::size_t few = counts[0] - lighting.clustered_lights;
+  const std::size_t few = counts[0] - lighting.lights.clusters.lights;
   if (few > 0) addCount(stats, "lights_exact_as_few", few);
 }
 
@@ -110,8 +110,8 @@ void countTriangles(const RasterCounts& counts, Stats& stats) {
 }
 
 void countShadows(const Lighting& lighting, Stats& stats) {
-  const ShadowMaps& shadows = lighting.host_shadows;
-  const std::vector<BeamLight>& lights = lighting.beams.lights;
+  const ShadowMaps& shadows = lighting.maps.host;
+  const std::vector<BeamLight>& lights = lighting.lights.beam_lights;
   const std::size_t exact =
       std::count_if(lights.begin(), lights.end(), [](const BeamLight& light) { return light.casts != 0; });
   if (shadows.maps.size() + exact == 0) return;

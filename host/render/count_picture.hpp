@@ -4,7 +4,7 @@
 #include <string>
 
 #include "raster/rasterize.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "render/stats.hpp"
 
 // What a picture's statistics count.

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "culling/light_tree.hpp"
 #include "image/light_names.hpp"
 #include "render/assemble.hpp"
 #include "scene/light_groups.hpp"
@@ -33,62 +32,27 @@ std::vector<LightPart> lightParts() {
   };
 }
 
-/// Swaps what the two have in common.
-void exchange(LayerLighting& layer, Lighting& lighting) {
-  std::swap(layer.frame, lighting.frame);
-  std::swap(layer.host_lights, lighting.host_lights);
-  std::swap(layer.host_tree, lighting.host_tree);
-  std::swap(layer.beam_lights, lighting.beams.lights);
-  std::swap(layer.beam_order, lighting.beams.order);
-  std::swap(layer.lights, lighting.lights);
-  std::swap(layer.tree, lighting.tree);
-  std::swap(layer.beam_light_buffer, lighting.beams.light_buffer);
-}
-
-/// While it exists, `lighting` has the layer's lights. They are given back also if something is thrown: where
-/// the device runs out of memory, the picture goes on in smaller bands.
-class LitByLayer {
- public:
-  LitByLayer(LayerLighting& layer, Lighting& lighting) : of_layer(layer), of_picture(lighting) {
-    exchange(of_layer, of_picture);
-  }
-  ~LitByLayer() { exchange(of_layer, of_picture); }
-  LitByLayer(const LitByLayer&) = delete;
-  LitByLayer& operator=(const LitByLayer&) = delete;
-
- private:
-  LayerLighting& of_layer;
-  Lighting& of_picture;
-};
-
 void darken(float4& color) { color.x = color.y = color.z = 0; }
 
-/// lights: those of the layer, by their places in `lighting`, in its order.
-LayerLighting prepareLayer(Device& device, const Lighting& lighting, std::span<const std::uint32_t> lights,
-                           LightLayer layer) {
-  LayerLighting result;
-  result.frame = lighting.frame;
-  if (!layer.ambient) darken(result.frame.ambient);
-  if (!layer.fog) darken(result.frame.fog_color);
-  if (!layer.background) darken(result.frame.background);
-  const bool has_beams = !lighting.beams.lights.empty();
-  for (const std::uint32_t i : lights) {
-    ShadeLight light = lighting.host_lights[i];
+/// What lights a layer. chosen: its lights, by their places in the picture's, in its order.
+LightSet layerLights(Device& device, const LightSet& lights, std::span<const std::uint32_t> chosen,
+                     const LightLayer& layer) {
+  LightSet set;
+  set.frame = lights.frame;
+  if (!layer.ambient) darken(set.frame.ambient);
+  if (!layer.fog) darken(set.frame.fog_color);
+  if (!layer.background) darken(set.frame.background);
+  for (const std::uint32_t i : chosen) {
+    ShadeLight light = lights.lights[i];
     if (!layer.light_ambient) darken(light.ambient);
     if (!layer.diffuse) darken(light.diffuse);
     if (!layer.specular) darken(light.specular);
-    result.host_lights.push_back(light);
-    if (!has_beams) continue;
-    result.beam_lights.push_back(lighting.beams.lights[i]);
-    result.beam_order.push_back(lighting.light_order[i]);
+    set.lights.push_back(light);
+    set.order.push_back(lights.order[i]);
+    if (!lights.beam_lights.empty()) set.beam_lights.push_back(lights.beam_lights[i]);
   }
-  result.frame.light_count = static_cast<uint>(result.host_lights.size());
-  result.host_tree = buildLightTree(result.host_lights);
-  result.lights = borrowed(device, result.host_lights);
-  result.tree = borrowed(device, result.host_tree.planes);
-  result.beam_light_buffer = borrowed(device, result.beam_lights);
-  result.layer = std::move(layer);
-  return result;
+  finishLightSet(device, set);
+  return set;
 }
 
 }  // namespace
@@ -124,19 +88,20 @@ std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& se
   return layers;
 }
 
-std::vector<LayerLighting> prepareLayers(Device& device, const Scene& scene, const Lighting& lighting,
-                                         std::vector<LightLayer> layers) {
-  std::vector<std::uint32_t> all(lighting.host_lights.size());
+std::vector<LitLayer> prepareLayers(Device& device, const Scene& scene, const LightSet& lights,
+                                    const FeatureSet& features, std::vector<LightLayer> layers) {
+  std::vector<std::uint32_t> all(lights.lights.size());
   std::iota(all.begin(), all.end(), 0u);
   std::vector<std::vector<std::uint32_t>> in_groups(scene.light_groups.size());
-  for (const std::uint32_t i : all) in_groups[scene.lights[lighting.light_order[i]].group].push_back(i);
-  std::vector<LayerLighting> prepared;
-  prepared.reserve(layers.size());
+  for (const std::uint32_t i : all) in_groups[scene.lights[lights.order[i]].group].push_back(i);
+  std::vector<LitLayer> prepared;
   for (LightLayer& layer : layers) {
-    std::span<const std::uint32_t> lights;
-    if (layer.all_lights) lights = all;
-    if (layer.group) lights = in_groups[*layer.group];
-    prepared.push_back(prepareLayer(device, lighting, lights, std::move(layer)));
+    std::span<const std::uint32_t> chosen;
+    if (layer.all_lights) chosen = all;
+    if (layer.group) chosen = in_groups[*layer.group];
+    LightSet set = layerLights(device, lights, chosen, layer);
+    const FeatureSet needed = layerFeatures(features, layer);
+    prepared.push_back({std::move(layer), needed, std::move(set)});
   }
   return prepared;
 }
@@ -144,14 +109,6 @@ std::vector<LayerLighting> prepareLayers(Device& device, const Scene& scene, con
 FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer) {
   if (!layer.emission) features.set(Feature::kEmission, false);
   return features;
-}
-
-Plane lightLayer(Device& device, const Scene& scene, Lighting& lighting, LayerLighting& layer,
-                 const FeatureSet& features, const GBuffer& gbuffer, Stats& stats, Plane used) {
-  const LitByLayer lit_by_layer(layer, lighting);
-  return lightGBuffer(device, scene, lighting, layerFeatures(features, layer.layer), gbuffer, {}, stats,
-                      std::move(used))
-      .color;
 }
 
 }  // namespace luciole

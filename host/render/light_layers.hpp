@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/lighting.hpp"
+#include "render/light_set.hpp"
 #include "render/render.hpp"
 
 // Layers that hold a part of a picture's light each, so that their sum is the picture: one for each group of
@@ -35,29 +35,19 @@ bool wantsLightLayers(const RenderSettings& settings);
 /// Throws InputError for more than kMostLightGroups groups.
 std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& settings);
 
-/// A layer's lights, and its frame, which take the place of a Lighting's while the layer is lit.
-struct LayerLighting {
+/// A layer, and what it is lit by.
+struct LitLayer {
   LightLayer layer;
-  ShadeFrame frame{};
-  LightArray host_lights;
-  LightTree host_tree;
-  std::vector<BeamLight> beam_lights;
-  std::vector<std::uint32_t> beam_order;
-  Buffer<const ShadeLight> lights;
-  Buffer<const float> tree;
-  Buffer<const BeamLight> beam_light_buffer;
+  FeatureSet features;
+  LightSet lights;
 };
 
-/// The lighting of each of these layers of a picture, whose own is prepared. Lights keep their shadow maps
-/// and the place of their samples.
-std::vector<LayerLighting> prepareLayers(Device& device, const Scene& scene, const Lighting& lighting,
-                                         std::vector<LightLayer> layers);
+/// These layers of a picture whose lighting is prepared. features: of the picture. Lights keep their shadow
+/// maps and the place of their samples.
+std::vector<LitLayer> prepareLayers(Device& device, const Scene& scene, const LightSet& lights,
+                                    const FeatureSet& features, std::vector<LightLayer> layers);
 
 /// The features to light a layer with, of those that its picture has.
 FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer);
-
-/// As lightGBuffer(), but the colours of a layer: planes r g b, and what lightGBuffer() has behind them.
-Plane lightLayer(Device& device, const Scene& scene, Lighting& lighting, LayerLighting& layer,
-                 const FeatureSet& features, const GBuffer& gbuffer, Stats& stats, Plane used = {});
 
 }  // namespace luciole

@@ -7,7 +7,6 @@
 #include "culling/exact_reason.hpp"
 #include "raster/bins.hpp"
 #include "render/assemble.hpp"
-#include "render/light_layers.hpp"
 
 namespace luciole {
 namespace {
@@ -16,8 +15,9 @@ std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step 
 
 }  // namespace
 
-std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
-                          const Scene& scene) {
+std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan) {
+  const PlaneSet& planes = plan.planes;
+  const FeatureSet& features = plan.pixels;
   // Beside the groups the light of clusters, with its bounds and their sum.
   const bool clustered = features.has(Feature::kClusteredLights);
   const std::size_t gbuffer = 9 + (clustered ? 9 : 0) + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
@@ -25,20 +25,19 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
                               (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
   const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
-  const std::size_t light_layers = 3 * lightLayers(scene, settings).size();
+  const std::size_t light_layers = 3 * plan.layers.size();
   const std::size_t channels = channelCount(settings, planes) + light_layers;
   const bool world =
       wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
   // Colours and counts are counted twice: on the device and on the host. The picture of the band before is
   // there, too, and from the second sample on the sum.
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
-  const bool shared = sharesSamples(settings);
   const std::size_t sums = settings.samples > 1 ? lit + covered + light_layers : 0;
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
   const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
                                  (wants(settings, Aov::kListLength) ? 1 : 0) +
                                  (wants(settings, Aov::kShadow) ? 1 : 0);
-  const LightUse use = lightUse(settings.shade);
+  const LightUse use = lightUse(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
         return !std::isfinite(light.range) && !(clustered && exactReason(light, use) == ExactReason::kNone);
@@ -53,7 +52,7 @@ std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes
                                                                                                          : 0);
   const std::size_t all_lists =
       lists * (1 + counted) + lists * words * (kPairWords * sizeof(uint) / sizeof(ListEntry));
-  if (!shared) return sizeof(float) * std::max(lighting, assembling) + all_lists;
+  if (!plan.shares_samples) return sizeof(float) * std::max(lighting, assembling) + all_lists;
   // Two sums beside colours, and a pass of points with as many planes as pixels have.
   const std::size_t first =
       std::max(gbuffer + 2 * lit + 2 * counted + channels + light_layers, assembling + 2);

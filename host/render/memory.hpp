@@ -4,7 +4,7 @@
 
 #include "kernels/shared.h"
 #include "raster/shading_points.hpp"
-#include "render/render.hpp"
+#include "render/plan.hpp"
 #include "scene/scene.hpp"
 
 // How much memory pictures and lights take, computed from the sizes of their parts.
@@ -40,8 +40,8 @@ inline constexpr std::size_t kPointBytesPerPixel = 2 * sizeof(ShadingPoint) + 4 
 /// the G-buffer's groups, colours, what --stats and the layers need, and its share of the list entries of
 /// lights that reach everywhere. Not in it: each tile's entries, of 8 bytes, for other lights that reach it,
 /// and of points that are shaded for a pixel's samples those beyond the second.
-std::size_t bytesPerPixel(const RenderSettings& settings, const PlaneSet& planes, const FeatureSet& features,
-                          const Scene& scene);
+/// plan: what comes before this figure.
+std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan);
 
 /// Whether samples that see the same surface are shaded once.
 bool sharesSamples(const RenderSettings& settings);

@@ -96,19 +96,20 @@ std::size_t placeShares(const HostLists& lists, std::size_t tiles, PairShadows& 
 /// What pairs share on a thread.
 struct Tracer {
   const BeamScene& beams;
+  const LightSet& lights;
   const HoleTest& is_hole;
   std::optional<std::size_t> likely{};
   std::array<float4, kMostSoftSamples> places{};
 
   /// The share of a light, by its index on the device, that reaches a start point.
   float visible(const glm::vec3& start, std::uint32_t index, TracedPairs& traced) {
-    const BeamLight& light = beams.lights[index];
+    const BeamLight& light = lights.beam_lights[index];
     ++traced.pairs;
     std::span<float4> to(places.data(), 1);
     if (light.size > 0) {
       ++traced.soft;
       const std::span<const LightSample> pattern =
-          patternOf(beams.samples, beams.soft_samples, start, beams.order[index]);
+          patternOf(beams.samples, beams.soft_samples, start, lights.order[index]);
       to = std::span(places.data(), pattern.size());
       if (!placeSamples(light, start, pattern, to)) return 1;
     } else {
@@ -121,10 +122,10 @@ struct Tracer {
 
 }  // namespace
 
-TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const GBuffer& gbuffer,
-                       const LightLists& lists, bool soft, PairShadows& shadows) {
+TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const LightSet& lights,
+                       const GBuffer& gbuffer, const LightLists& lists, bool soft, PairShadows& shadows) {
   const std::size_t tiles = gbuffer.pixels() / kTilePixels;
-  const HostLists host_lists = downloadLists(device, lists, beams.lights.size());
+  const HostLists host_lists = downloadLists(device, lists, lights.beam_lights.size());
   if (soft) shadows.shares.resize(placeShares(host_lists, tiles, shadows));
   const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
   const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {
@@ -133,7 +134,7 @@ TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beam
   };
   std::vector<TracedPairs> traced(tiles);
   tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    Tracer tracer{beams, is_hole};
+    Tracer tracer{beams, lights, is_hole};
     for (std::size_t entry = host_lists.first(tile); entry < host_lists.first(tile + 1); ++entry) {
       const std::uint32_t light = host_lists.at(tile, entry).light;
       for (std::size_t word = 0; word < kPairWords; ++word) {

@@ -4,6 +4,7 @@
 
 #include "gbuffer/gbuffer.hpp"
 #include "render/beam_shadows.hpp"
+#include "render/light_set.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
@@ -16,9 +17,9 @@ struct TracedPairs {
 
 /// Decides the pairs that beamShadows() left unsure, by rays that look textures up: one to a light's place,
 /// and BeamScene::soft_samples to a light of a size. It sets the bits of those that are lit, or with `soft`
-/// PairShadows::first_share and shares. lists, soft: those that beamShadows() had. Works on all cores. Throws
-/// MachineError if the device fails or memory doesn't suffice.
-TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const GBuffer& gbuffer,
-                       const LightLists& lists, bool soft, PairShadows& shadows);
+/// PairShadows::first_share and shares. lights, lists, soft: those that beamShadows() had. Works on all
+/// cores. Throws MachineError if the device fails or memory doesn't suffice.
+TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const LightSet& lights,
+                       const GBuffer& gbuffer, const LightLists& lists, bool soft, PairShadows& shadows);
 
 }  // namespace luciole

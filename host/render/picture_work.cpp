@@ -159,19 +159,17 @@ double litVertices(const Scene& scene) {
 
 }  // namespace
 
-PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
-  const PictureFeatures needs = pictureFeatures(scene, settings);
+PictureWork pictureWork(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan) {
   const View view = cameraView(settings.camera, settings.size);
   const SceneInfo info = sceneInfo(scene);
   double grid = 0;
   const std::vector<SeenPoint> points = seenPoints(scene, settings, grid);
-  const ShadeSettings shade = pictureShading(scene, settings);
-  const MeanLights mean = meanLights(scene, view, points, needs.all, shade);
+  const ShadeSettings& shade = plan.shade;
+  const MeanLights mean = meanLights(scene, view, points, plan.features, shade);
   const double pixels = double(settings.size.x) * settings.size.y, covered = double(points.size()) / grid;
   const bool gouraud = settings.shading == Shading::kGouraud;
-  const bool shared = sharesSamples(settings);
-  const int passes = shared ? 1 : settings.samples;
-  const double shadings = shadedPoints(scene, settings.size, settings.samples, shared);
+  const int passes = plan.shares_samples ? 1 : settings.samples;
+  const double shadings = shadedPoints(scene, settings.size, settings.samples, plan.shares_samples);
   const double shaded = gouraud ? litVertices(scene) : pixels * covered * shadings;
   PictureWork work{.pixels = pixels,
                    .samples = settings.samples,
@@ -186,21 +184,21 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings) {
                    .lights = double(scene.lights.size()),
                    .pairs = shaded * mean.square,
                    .scene_bytes = sceneBytes(scene)};
-  if (needs.all.has(Feature::kLightLists)) {
+  if (plan.features.has(Feature::kLightLists)) {
     work.list_entries = shaded / double(kTilePixels) * mean.tile;
     work.tree_levels = std::log(double(scene.lights.size())) / std::log(double(kTreeArity));
   }
-  const double pixel_bytes = double(bytesPerPixel(settings, needs.planes, needs.pixels, scene));
+  const double pixel_bytes = double(plan.pixel_bytes);
   const int rows = std::min(bandHeight(settings.size, std::size_t(pixel_bytes)), settings.size.y);
   work.bands = (settings.size.y + rows - 1) / rows;
   work.pixel_bytes =
       pixel_bytes * settings.size.x * rows + (gouraud ? shaded * double(kGBufferBytesPerPixel) : 0);
-  if (!needs.all.shadows()) return work;
+  if (!plan.features.shadows()) return work;
   work.shadows = settings.shade.shadows;
   work.shadow_pairs = shaded * mean.by_maps;
   work.beam_pairs = shaded * mean.by_beams;
-  if (needs.all.has(Feature::kSoftExact)) work.soft_samples = shade.soft_samples;
-  if (!needs.all.shadowMaps()) return work;
+  if (plan.features.has(Feature::kSoftExact)) work.soft_samples = shade.soft_samples;
+  if (!plan.features.shadowMaps()) return work;
   const ShadowMaps maps = planShadowMaps(scene, view, shade.shadows, shade.shadow_limits, shade.shadow_ways);
   work.shadow_texels = 0.5 * double(maps.planned_texels);  // a camera sees about half of what lights do
   work.shadow_faces = double(maps.planned.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/render.hpp"
+#include "render/plan.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {
@@ -33,8 +33,8 @@ struct PictureWork {
   double shadow_map_bytes = 0;  ///< of the texels drawn
 };
 
-/// What the picture that the settings mean would be. Deterministic. O(vertices), and up to 10⁸ tests of
-/// lights, in parallel. Throws as renderBands does.
-PictureWork pictureWork(const Scene& scene, const RenderSettings& settings);
+/// What the planned picture would be. Deterministic. O(vertices), and up to 10⁸ tests of lights, in parallel.
+/// Throws as renderBands does.
+PictureWork pictureWork(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan);
 
 }  // namespace luciole

@@ -82,49 +82,11 @@ struct RenderSettings {
   std::function<void()> on_long_compile;
 };
 
-/// How to light the scene's whole picture: the settings' `shade`, and what follows for it from the layers,
-/// the scene, the picture's size and its samples. O(vertices + lights).
-ShadeSettings pictureShading(const Scene& scene, const RenderSettings& settings);
-
-/// What a picture of a scene needs.
-struct PictureFeatures {
-  FeatureSet all;     ///< of the passes together
-  FeatureSet pixels;  ///< of the pass that shades pixels: with Gouraud shading, others light vertices
-  PlaneSet planes;    ///< the G-buffer groups of that pass
-};
-PictureFeatures pictureFeatures(const Scene& scene, const RenderSettings& settings);
-
 /// Sets what the statistics say of the scene: triangles, lights, warnings, and the names of the features.
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
 /// Takes the next rows of a picture, from the top down. `rows` lasts until it returns.
 using RowSink = std::function<void(const Image& rows)>;
-
-/// Rows of a picture, counted from the whole picture's top.
-struct Band {
-  int first, height;
-};
-
-/// What holds for the bands of a picture.
-struct BandLimits {
-  int tallest;  ///< the most rows that fit into memory
-  int origin;   ///< bands end at this row plus a multiple of kBinSize, but for the last, and for lower ones
-  int bottom;   ///< where the picture, or its crop, ends
-};
-
-/// Where a band ends that begins at row `first`: as far down as may be.
-int bandEnd(int first, const BandLimits& limits);
-
-/// Says which band to make next; none: the picture is done.
-using NextBand = std::function<std::optional<Band>(const BandLimits& limits)>;
-
-/// Takes the pixels of a band, or of the next of its rows where the device had no memory for all of them at
-/// once. They last until it returns.
-using BandSink = std::function<void(const Band& band, const Image& rows)>;
-
-/// Makes the bands of a scene's picture that `next` asks for. All else: see renderBands().
-void renderChosenBands(Device& device, const Scene& scene, const RenderSettings& settings,
-                       const NextBand& next, const BandSink& take, Stats& stats, KeptShadows* kept = nullptr);
 
 /// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
 /// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. kept: for pictures

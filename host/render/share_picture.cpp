@@ -14,7 +14,8 @@
 #include "base/error.hpp"
 #include "base/trace.hpp"
 #include "raster/bins.hpp"
-#include "raster/view.hpp"
+#include "render/bands.hpp"
+#include "render/validate.hpp"
 
 namespace luciole {
 namespace {
@@ -108,13 +109,13 @@ struct Worker {
     rows.changed.notify_all();
   }
 
-  void run(const Scene& scene, const RenderSettings& settings, bool keeps) {
+  void run(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan, bool keeps) {
     const TraceThread thread(mine.device->description.name.c_str());
     std::exception_ptr failure;
     std::string error;
     try {
-      renderChosenBands(
-          *mine.device, scene, settings, [&](const BandLimits& limits) { return nextBand(limits); },
+      makeBands(
+          *mine.device, scene, settings, plan, [&](const BandLimits& limits) { return nextBand(limits); },
           [&](const Band& made, const Image& image) { takeRows(made, image); }, stats,
           keeps ? &mine.kept : nullptr);
     } catch (const MachineError& problem) {
@@ -184,20 +185,21 @@ void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSe
     renderBands(*only.device, scene, settings, take, stats, keeps ? &only.kept : nullptr);
     return;
   }
-  const View view = cameraView(settings.camera, settings.size, settings.crop);
-  const int top = view.crop_origin.y, bottom = top + view.crop_size.y;
+  validate(scene, settings, keeps ? &sharers.front().kept : nullptr);
+  const PicturePlan plan = planPicture(scene, settings);
+  const int top = plan.view.crop_origin.y, bottom = top + plan.view.crop_size.y;
   SharedRows rows{bottom, top, top, 0};
   RenderSettings without_report = settings;
   without_report.on_pass = nullptr;
   without_report.on_long_compile = nullptr;
   std::list<Worker> workers;
   for (Sharer& sharer : sharers)
-    if (sharer.error.empty()) workers.push_back({sharers, sharer, rows, view.crop_size.y});
+    if (sharer.error.empty()) workers.push_back({sharers, sharer, rows, plan.view.crop_size.y});
   if (workers.empty()) throw MachineError(sharers.front().error);
   rows.working = int(workers.size());
   Joiner joiner{rows};
   for (Worker& worker : workers)
-    joiner.threads.emplace_back([&] { worker.run(scene, without_report, keeps); });
+    joiner.threads.emplace_back([&] { worker.run(scene, without_report, plan, keeps); });
   handOn(rows, top, settings, take);
   joiner.join();
   for (const Worker& worker : workers) {

@@ -57,14 +57,16 @@ void validateShading(const ShadeSettings& shade, std::size_t lights) {
 
 }  // namespace
 
-void validateSettings(const RenderSettings& settings, std::size_t lights) {
+void validate(const Scene& scene, const RenderSettings& settings, const KeptShadows* kept) {
+  // What an earlier picture kept is of this scene, so that was valid, and stays so at every pose.
+  if (!kept || kept->maps_objects.empty()) validateScene(scene);
   checkSize("settings.size", settings.size);
   if (const std::string fault = cameraFault(settings.camera); !fault.empty())
     throw InputError("settings.camera." + fault);
   checkRange("settings.samples", settings.samples, 1, kMostSamples);
   checkEnum("settings.sample_shading", settings.sample_shading, SampleShading::kAll);
   checkEnum("settings.shading", settings.shading, Shading::kPhong);
-  validateShading(settings.shade, lights);
+  validateShading(settings.shade, scene.lights.size());
   for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov::kCryptoMaterial);
   if (settings.shading == Shading::kGouraud && wantsLightLayers(settings))
     throw InputError(
@@ -72,11 +74,6 @@ void validateSettings(const RenderSettings& settings, std::size_t lights) {
   checkRange("settings.exposure", double(settings.exposure), -kMostStops, kMostStops);
   if (settings.band_height < 0)
     throw InputError(fmt::format("settings.band_height: {}, expected at least 0", settings.band_height));
-}
-
-void validate(const Scene& scene, const RenderSettings& settings) {
-  validateScene(scene);
-  validateSettings(settings, scene.lights.size());
 }
 
 }  // namespace luciole

@@ -11,9 +11,6 @@ namespace luciole {
 /// Takes less than a hundredth of the picture's time. Of pictures of one scene at several poses
 /// (renderBands() with `kept`) the first one checks the scene. G-buffers are checked by validateGBuffer().
 /// Functions below these, such as rasterize(), trust their caller.
-void validate(const Scene& scene, const RenderSettings& settings);
-
-/// The settings alone, for a scene with so many lights.
-void validateSettings(const RenderSettings& settings, std::size_t lights);
+void validate(const Scene& scene, const RenderSettings& settings, const KeptShadows* kept = nullptr);
 
 }  // namespace luciole

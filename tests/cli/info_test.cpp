@@ -173,6 +173,21 @@ TEST_F(Info, FeaturesAreThoseOfARender) {
   }
 }
 
+TEST_F(Info, PlanTellsBandsSharedSamplesAndSetsOfKernels) {
+  writeText(folder / "scene.json", kSmallScene);
+  const json large = infoOf("scene.json --size 8000x6000")["plan"];
+  const int rows = large["band_rows"];
+  EXPECT_GT(large["bands"], 1);
+  EXPECT_EQ(large["bands"], (6000 + rows - 1) / rows);
+  EXPECT_LE(large["bytes_per_pixel"].get<double>() * 8000 * rows, double(512 << 20));
+  const json small = infoOf("scene.json --shading gouraud --samples 4")["plan"];
+  EXPECT_EQ(small["bands"], 1);
+  EXPECT_EQ(small["programs"], 2) << "vertices, and pixels' fog";
+  EXPECT_EQ(small["shares_samples"], true);
+  EXPECT_EQ(large["shares_samples"], false);
+  EXPECT_EQ(large["programs"], 1);
+}
+
 TEST_F(Info, MemoryIsAboutWhatARenderTakes) {
   // Within 1.5 times. Counting for --stats takes more memory where lists of lights are long: none are here.
   for (const char* scene : {"cornell", "colonnade", "underwater", "spheres"})

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "hard_cases/shot.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "shadow/draw_shadow_maps.hpp"
 #include "shadow/texel_place.hpp"
 

@@ -13,7 +13,7 @@
 #include "kernels/random_scene.hpp"
 #include "raster/view.hpp"
 #include "render/clustered_light.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "render/pair_visibility.hpp"
 #include "scene/primitives.hpp"
 
@@ -78,9 +78,9 @@ void lightPicture(unsigned number) {
   // Without shadows, and if nobody asks for lists, many lights are culled and shaded by one kernel but for
   // single lanes. Its buffer of counts is freed, so nothing may be culled after it.
   const bool by_lists = features.shadows() || device.description.lanes == 1;
-  lightGBuffer(device, scene, lighting, features, gbuffer, {.in_range = by_lists, .list_length = by_lists},
-               stats);
-  const ShadowMaps& shadows = lighting.host_shadows;
+  lightGBuffer(device, scene, lighting,
+               {lighting.lights, features, gbuffer, {.in_range = by_lists, .list_length = by_lists}}, stats);
+  const ShadowMaps& shadows = lighting.maps.host;
   if (shadows.texels.empty()) return;
   std::vector<MapPair> pairs;
   for (std::uint32_t pixel = 0; pixel < 37; ++pixel)

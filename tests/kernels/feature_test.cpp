@@ -10,7 +10,7 @@
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "load/load_scene.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {
@@ -235,8 +235,8 @@ void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const Feature
   Stats stats;
   prepareLighting(device, scene, gbuffer.camera, cameraView(gbuffer.camera, gbuffer.picture_size), needed,
                   {.model = model, .shadows = method}, lighting, stats);
-  const Plane least = lightGBuffer(device, scene, lighting, needed, gbuffer, {}, stats).color;
-  Plane most = lightGBuffer(device, scene, lighting, all, gbuffer, {}, stats).color;
+  const Plane least = lightGBuffer(device, scene, lighting, {lighting.lights, needed, gbuffer}, stats).color;
+  Plane most = lightGBuffer(device, scene, lighting, {lighting.lights, all, gbuffer}, stats).color;
   ASSERT_EQ(most.size(), 4 * gbuffer.pixels());
   most.resize(least.size());
   std::size_t different = 0;

@@ -6,7 +6,7 @@
 #include "kernels/random_scene.hpp"
 #include "kernels/shade_bounds.hpp"
 #include "reference/reference.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "scene/bounds.hpp"
 
 namespace luciole::test {
@@ -28,7 +28,7 @@ Plane shadeOn(Device& device, const Scene& scene, const GBuffer& gbuffer, Model 
   Stats stats;
   const FeatureSet features = unshadowed(culling);
   prepareLighting(device, scene, gbuffer.camera, View{}, features, {.model = model}, lighting, stats);
-  return lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats).color;
+  return lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats).color;
 }
 
 /// How the bounds did over some pictures.
@@ -148,7 +148,7 @@ TEST_P(ShadeKernel, CullingChangesNoBitOfScatteredPixelsAtTheEdgesOfLights) {
     Lighting lighting;
     Stats stats;
     prepareLighting(device, scene, camera, View{}, features, settings, lighting, stats);
-    return lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats).color;
+    return lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats).color;
   };
   const Plane all = shaded();
   settings.culling = Culling::kTiles;

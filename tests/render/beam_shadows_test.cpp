@@ -11,7 +11,7 @@
 #include "kernels/random_scene.hpp"
 #include "kernels/shared.h"
 #include "render/brute_shadows.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "scene/pose.hpp"
 
 namespace luciole::test {
@@ -112,10 +112,10 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
-  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats);
 
   const std::size_t stride = gbuffer.pixels(), tiles = stride / kTilePixels,
-                    light_count = lighting.beams.lights.size();
+                    light_count = lighting.lights.beam_lights.size();
   std::vector<uint> starts(tiles + 1);
   std::vector<ListEntry> list(lighting.lists.entries);
   if (culling == Culling::kTiles) {
@@ -129,7 +129,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
                       end = listed ? starts[tile + 1] : first + light_count;
     for (std::size_t entry = first; entry < end; ++entry) {
       const std::uint32_t light = listed ? list[entry].light : std::uint32_t(entry - first);
-      const BeamLight& beam = lighting.beams.lights[light];
+      const BeamLight& beam = lighting.lights.beam_lights[light];
       if (!beam.casts) continue;
       for (std::size_t pixel = 0; pixel < kTilePixels; ++pixel) {
         const std::size_t place = tile * kTilePixels + pixel;
@@ -147,7 +147,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
         verdicts.lit += share == 1;
         verdicts.part += share > 0 && share < 1;
         if (move && share == 1) verdicts.before += isBeforeOne(*lighting.beams.tree, start, beam);
-        verdicts.wrong += share != shareSeen(lighting.beams, start, light);
+        verdicts.wrong += share != shareSeen(lighting, start, light);
       }
     }
   }

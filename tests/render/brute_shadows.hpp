@@ -9,7 +9,7 @@
 #include "gbuffer/gbuffer.hpp"
 #include "kernels/exact_sign.h"
 #include "kernels/shared.h"
-#include "render/beam_shadows.hpp"
+#include "render/lighting.hpp"
 #include "shadow/exact_ray.hpp"
 #include "shadow/light_samples.hpp"
 #include "shadow/triangle_tree.hpp"
@@ -88,12 +88,14 @@ inline bool isHidden(const TriangleTree& tree, const glm::vec3& start, const Bea
 
 /// The share of a light that reaches the start point: of its samples, if it has a size. light: its index on
 /// the device.
-inline float shareSeen(const BeamScene& beams, const glm::vec3& start, std::uint32_t light,
+inline float shareSeen(const Lighting& lighting, const glm::vec3& start, std::uint32_t light,
                        const HoleTest& is_hole = {}) {
-  const BeamLight& beam = beams.lights[light];
+  const BeamScene& beams = lighting.beams;
+  const BeamLight& beam = lighting.lights.beam_lights[light];
   if (beam.size == 0) return isHidden(*beams.tree, start, beam, is_hole) ? 0 : 1;
   std::vector<float4> places(std::size_t(beams.soft_samples));
-  if (!placeSamples(beam, start, patternOf(beams.samples, beams.soft_samples, start, beams.order[light]),
+  if (!placeSamples(beam, start,
+                    patternOf(beams.samples, beams.soft_samples, start, lighting.lights.order[light]),
                     places))
     return 1;
   int seen = 0;

@@ -7,7 +7,7 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "shadow/draw_shadow_maps.hpp"
 #include "shadow/texel_place.hpp"
 
@@ -65,16 +65,16 @@ struct Prepared {
     prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
   }
   Plane light(Device& device) {
-    return lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats).color;
+    return lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats).color;
   }
 
   void drawEverything(Device& device) {
-    ShadowMaps& maps = lighting.host_shadows;
-    giveBack(lighting.shadow_faces);
+    ShadowMaps& maps = lighting.maps.host;
+    giveBack(lighting.maps.faces);
     const std::vector<IndexRange> drawn = drawNeeded(scene, everything(maps), maps);
     const std::vector<IndexRange> faces{{0, maps.faces.size()}};
-    refresh(device, maps.faces, faces, lighting.shadow_faces);
-    refresh(device, maps.texels, drawn, lighting.shadow_texels);
+    refresh(device, maps.faces, faces, lighting.maps.faces);
+    refresh(device, maps.texels, drawn, lighting.maps.texels);
   }
 
   const Scene& scene;
@@ -107,7 +107,7 @@ TEST(FindNeeded, EveryTexelThatALookupReadsIsDrawn) {
         const Scene scene = crowdedScene(orthographic, random);
         Prepared prepared(device, scene, shadeSettings(culling, ShadowMethod::kPcf));
         prepared.light(device);
-        const ShadowMaps& maps = prepared.lighting.host_shadows;
+        const ShadowMaps& maps = prepared.lighting.maps.host;
         const GBuffer& gbuffer = prepared.gbuffer;
         const glm::dmat4& to_world = scene.cameras.front().camera_to_world;
         std::size_t checked = 0;
@@ -153,7 +153,7 @@ TEST(FindNeeded, PictureIsTheSameAsWithEveryTexelDrawn) {
           all.drawEverything(device);
           const Plane a = some.light(device), b = all.light(device);
           EXPECT_EQ(a, b) << lanes << " lanes";
-          EXPECT_LT(some.lighting.host_shadows.texels.size(), all.lighting.host_shadows.texels.size());
+          EXPECT_LT(some.lighting.maps.host.texels.size(), all.lighting.maps.host.texels.size());
         }
 }
 
@@ -166,8 +166,8 @@ TEST(FindNeeded, NothingThatIsSeenNeedsNothing) {
       scene.cameras.front().camera_to_world * glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -100));
   Prepared prepared(device, scene, shadeSettings(Culling::kTiles, ShadowMethod::kPcf));
   prepared.light(device);
-  EXPECT_FALSE(prepared.lighting.host_shadows.maps.empty());
-  EXPECT_TRUE(prepared.lighting.host_shadows.texels.empty());
+  EXPECT_FALSE(prepared.lighting.maps.host.maps.empty());
+  EXPECT_TRUE(prepared.lighting.maps.host.texels.empty());
 }
 
 // So that a picture with other fog or another model, or filtered otherwise, waits for no compiler a second

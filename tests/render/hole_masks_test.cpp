@@ -8,7 +8,7 @@
 #include "kernels/random_scene.hpp"
 #include "raster/opacity.hpp"
 #include "render/brute_shadows.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 
 // Masks say what the host would: the shadows are those that it finds when it decides every pair that a
 // triangle with holes may hide.
@@ -134,7 +134,7 @@ Shadows shadowsOn(const GBuffer& seen, const Scene& scene, const View& view, con
     beams.hole_triangles = borrowed(device, beams.masks->triangles);
     beams.first_hole_triangle = borrowed(device, beams.masks->first_triangle);
   }
-  LitPlanes lit = lightGBuffer(device, scene, lighting, features, seen, {}, stats);
+  LitPlanes lit = lightGBuffer(device, scene, lighting, {lighting.lights, features, seen}, stats);
   return {std::move(lit.pairs.lit), lit.traced.pairs};
 }
 
@@ -187,14 +187,14 @@ TEST(SoftExact, AgreesWithBruteForceBehindHoles) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, scene.cameras[0], view, features, settings, lighting, stats);
-  const LitPlanes lit = lightGBuffer(device, scene, lighting, features, gbuffer, {}, stats);
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats);
   const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
   std::size_t asked = 0;
   const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {
     ++asked;
     return isHoleAt(scene, objects[0], triangle, weights);
   };
-  const std::size_t count = lighting.beams.lights.size();
+  const std::size_t count = lighting.lights.beam_lights.size();
   std::size_t pairs = 0, part = 0, wrong = 0;
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x)
@@ -202,12 +202,12 @@ TEST(SoftExact, AgreesWithBruteForceBehindHoles) {
         const std::size_t place = gbuffer.index(x, y), tile = place / kTilePixels;
         const float share = shareOf(lit.pairs, tile * count + light, place % kTilePixels);
         const glm::vec3 start = startInTree(lighting.beams, gbuffer, place);
-        const BeamLight& beam = lighting.beams.lights[light];
+        const BeamLight& beam = lighting.lights.beam_lights[light];
         // Behind the wall no light shines on it.
         if (beam.place.w != 0 && beam.place.z * 1.0f < -5) continue;
         ++pairs;
         part += share > 0 && share < 1;
-        wrong += share != shareSeen(lighting.beams, start, light, is_hole);
+        wrong += share != shareSeen(lighting, start, light, is_hole);
       }
   EXPECT_EQ(wrong, 0u) << "of " << pairs << " pairs";
   EXPECT_GT(part, pairs / 10);

@@ -7,6 +7,7 @@
 #include "gbuffer/gbuffer_file.hpp"
 #include "kernels/probe.hpp"
 #include "reference/reference.hpp"
+#include "render/plan.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {
@@ -109,7 +110,7 @@ TEST(MaterialModel, ThatAllSurfacesHaveIsThePicturesAndNeedsNoPlane) {
   settings.shade.model = Model::kCookTorrance;  // of surfaces that choose none
   Stats stats;
   const Image shown = renderScene(testDevice(), toons, settings, stats);
-  EXPECT_FALSE(pictureFeatures(toons, settings).all.has(Feature::kMaterialModels));
+  EXPECT_FALSE(planPicture(toons, settings).features.has(Feature::kMaterialModels));
   EXPECT_TRUE(rasterizeScene(&testDevice(), sceneFromJson(R"({"objects": [{"primitive": "box"}],
       "lights": [{"type": "point", "position": [3, 3, 3]}]})"),
                              settings, stats)
@@ -134,8 +135,8 @@ TEST(MaterialModel, PicturesOfSeveralHaveNoClusters) {
   RenderSettings settings = settingsFor(mixed, kBallsSize);
   settings.shade.light_error = 0.1f;
   settings.shade.always_clusters = true;
-  EXPECT_FALSE(pictureFeatures(mixed, settings).all.has(Feature::kClusteredLights));
-  EXPECT_TRUE(pictureFeatures(phong, settings).all.has(Feature::kClusteredLights));
+  EXPECT_FALSE(planPicture(mixed, settings).features.has(Feature::kClusteredLights));
+  EXPECT_TRUE(planPicture(phong, settings).features.has(Feature::kClusteredLights));
 }
 
 }  // namespace

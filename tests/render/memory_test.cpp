@@ -48,11 +48,8 @@ constexpr const char* kSun =
 void expectBytesPerPixel(const Scene& scene, RenderSettings settings, double least_share = 0.8) {
   settings.camera = scene.cameras.front();
   settings.shade.shadow_limits.size = 64;
-  settings.shade.shadow_layer = wants(settings, Aov::kShadow);
-  const FeatureSet features = neededFeatures(scene, settings.camera, materialTraits(scene), settings.shade);
-  PlaneSet planes = neededPlanes(features);
-  if (wants(settings, Aov::kMaterial)) planes = {true, true, true, planes.geometric_normal};
-  const double stated = double(bytesPerPixel(settings, planes, features, scene));
+  const PicturePlan plan = planPicture(scene, settings);
+  const double stated = double(plan.pixel_bytes);
   const glm::ivec2 small(256), large(1024, 2048);
   const auto bytes = [&](glm::ivec2 size) {
     settings.size = size;
@@ -61,7 +58,8 @@ void expectBytesPerPixel(const Scene& scene, RenderSettings settings, double lea
       Stats stats;
       renderBands(
           testDevice(), scene, settings,
-          [&](const Image& rows) { EXPECT_EQ(rows.channels.size(), channelCount(settings, planes)); }, stats);
+          [&](const Image& rows) { EXPECT_EQ(rows.channels.size(), channelCount(settings, plan.planes)); },
+          stats);
     });
   };
   bytes(small);  // compiles the kernels

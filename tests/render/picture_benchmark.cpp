@@ -8,7 +8,7 @@
 
 #include "load/load_scene.hpp"
 #include "reference/reference.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 #include "render/render.hpp"
 
 namespace luciole {
@@ -96,10 +96,10 @@ void shadeEveryPair(benchmark::State& state) {
   Lighting lighting;
   Stats stats;
   prepareLighting(device(), scene, gbuffer.camera, View(), features, ShadeSettings(), lighting, stats);
-  lightGBuffer(device(), scene, lighting, features, gbuffer, {}, stats);
+  lightGBuffer(device(), scene, lighting, {lighting.lights, features, gbuffer}, stats);
   for (auto _ : state) {
     stats.stages.clear();
-    lightGBuffer(device(), scene, lighting, features, gbuffer, {}, stats);
+    lightGBuffer(device(), scene, lighting, {lighting.lights, features, gbuffer}, stats);
     for (const auto& [stage, milliseconds] : stats.stages)
       if (stage == Stage::kShade) state.SetIterationTime(milliseconds / 1000);
   }

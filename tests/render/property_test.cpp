@@ -12,7 +12,8 @@
 #include "kernels/probe.hpp"
 #include "kernels/shade_bounds.hpp"
 #include "reference/reference.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
+#include "render/plan.hpp"
 #include "render/scene_hunt.hpp"
 #include "render_json.hpp"
 
@@ -146,31 +147,33 @@ TEST(Property, TilesAndCropsChangeNothing) {
 // A feature that isn't used adds 0, multiplies by 1 or isn't chosen, and what is left are the same
 // operations.
 TEST(Property, UnusedFeaturesChangeNothing) {
-  const auto failure = hunt(
-      {"Features", "(only a test can compile more than a scene needs)",
-       [](const SceneJson& json) -> Failure {
-         const Case made = caseOf(json, ShadowMethod::kPcf);
-         const RenderSettings& settings = made.settings;
-         const GBuffer gbuffer = gbufferOf(made);
-         SurfaceTraits surfaces = materialTraits(made.scene);
-         surfaces.smooth = !gbuffer.lift.empty();
-         const ShadeSettings shade = pictureShading(made.scene, settings);
-         const FeatureSet needed = neededFeatures(made.scene, settings.camera, surfaces, shade);
-         Lighting lighting;
-         Stats stats;
-         prepareLighting(testDevice(), made.scene, settings.camera,
-                         cameraView(settings.camera, settings.size), needed, shade, lighting, stats);
-         const Plane least =
-             lightGBuffer(testDevice(), made.scene, lighting, needed, gbuffer, {}, stats).color;
-         const Plane most =
-             lightGBuffer(testDevice(), made.scene, lighting, everyFeature(needed), gbuffer, {}, stats).color;
-         for (std::size_t i = 0; i < least.size(); ++i)
-           if (least[i] != most[i])
-             return fmt::format("value {}: {:.9g} by the least program, {:.9g} by the full", i, least[i],
-                                most[i]);
-         return std::nullopt;
-       }},
-      firstSeed(), 24);
+  const auto failure =
+      hunt({"Features", "(only a test can compile more than a scene needs)",
+            [](const SceneJson& json) -> Failure {
+              const Case made = caseOf(json, ShadowMethod::kPcf);
+              const RenderSettings& settings = made.settings;
+              const GBuffer gbuffer = gbufferOf(made);
+              SurfaceTraits surfaces = materialTraits(made.scene);
+              surfaces.smooth = !gbuffer.lift.empty();
+              const ShadeSettings shade = planPicture(made.scene, settings).shade;
+              const FeatureSet needed = neededFeatures(made.scene, settings.camera, surfaces, shade);
+              Lighting lighting;
+              Stats stats;
+              prepareLighting(testDevice(), made.scene, settings.camera,
+                              cameraView(settings.camera, settings.size), needed, shade, lighting, stats);
+              const Plane least =
+                  lightGBuffer(testDevice(), made.scene, lighting, {lighting.lights, needed, gbuffer}, stats)
+                      .color;
+              const Plane most = lightGBuffer(testDevice(), made.scene, lighting,
+                                              {lighting.lights, everyFeature(needed), gbuffer}, stats)
+                                     .color;
+              for (std::size_t i = 0; i < least.size(); ++i)
+                if (least[i] != most[i])
+                  return fmt::format("value {}: {:.9g} by the least program, {:.9g} by the full", i, least[i],
+                                     most[i]);
+              return std::nullopt;
+            }},
+           firstSeed(), 24);
   EXPECT_FALSE(failure) << *failure;
 }
 

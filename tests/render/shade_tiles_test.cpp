@@ -7,7 +7,7 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
-#include "render/lighting.hpp"
+#include "render/light_gbuffer.hpp"
 
 namespace luciole::test {
 namespace {
@@ -18,7 +18,7 @@ struct LitTiles {
 };
 
 LitTiles litByTiles(Device& device, const Lighting& lighting, const GBuffer& gbuffer, TileBlock block) {
-  ShadeFrame frame = lighting.frame;
+  ShadeFrame frame = lighting.lights.frame;
   frame.plane_stride = uint(gbuffer.pixels());
   frame.texel_count = 1;
   const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, {}, {}, {}, lighting.unlit);
@@ -31,9 +31,9 @@ LitTiles litByTiles(Device& device, const Lighting& lighting, const GBuffer& gbu
                            .tiles_x = gbuffer.tiles_x,
                            .tiles_y = gbuffer.tiles_y,
                            .block = block,
-                           .lights = lighting.lights,
-                           .tree = lighting.tree,
-                           .tree_stride = lighting.host_tree.stride,
+                           .lights = lighting.lights.light_buffer,
+                           .tree = lighting.lights.tree_buffer,
+                           .tree_stride = lighting.lights.tree.stride,
                            .image = image});
   download(device, image, lit.color);
   return lit;
@@ -48,8 +48,8 @@ void expectBitsOfLists(Device& device, const Scene& scene, const GBuffer& gbuffe
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, gbuffer.camera, View{}, features, settings, lighting, stats);
-  const LitPlanes by_lists =
-      lightGBuffer(device, scene, lighting, features, gbuffer, {.list_length = true}, stats);
+  const LitPlanes by_lists = lightGBuffer(device, scene, lighting,
+                                          {lighting.lights, features, gbuffer, {.list_length = true}}, stats);
   ASSERT_TRUE(lighting.lists.tiles > 0) << "whoever asks for the length of lists gets lists";
   const TileCounts counts = litByTiles(device, lighting, gbuffer, {4, 4}).counts;
   // A light in reach of a tile lights no more than its pixels.
@@ -159,7 +159,8 @@ TEST_P(ShadeTiles, FindNoLightInAGapBetweenNeighbouringPixels) {
     EXPECT_EQ(in_gap.entries, 0u);
     EXPECT_EQ(in_gap.pairs, 0u);
   }
-  lightGBuffer(device, scene, lighting, lighting.features, gbuffer, {.list_length = true}, stats);
+  lightGBuffer(device, scene, lighting, {lighting.lights, lighting.features, gbuffer, {.list_length = true}},
+               stats);
   EXPECT_GT(lighting.lists.tiles, 0u);
   EXPECT_EQ(lighting.lists.entries, 0u);
 }

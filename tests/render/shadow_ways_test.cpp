@@ -1,4 +1,5 @@
 #include "render/shadow_ways.hpp"
+#include "render/plan.hpp"
 
 #include <gmock/gmock.h>
 
@@ -32,7 +33,7 @@ RenderSettings autoSettings(const Scene& scene, glm::ivec2 size) {
 }
 
 std::vector<ShadowWay> waysOf(const Scene& scene, const RenderSettings& settings) {
-  return pictureShading(scene, settings).shadow_ways;
+  return planPicture(scene, settings).shade.shadow_ways;
 }
 
 TEST(ShadowWays, LightsThatCastNoneHaveNone) {

@@ -1,0 +1,102 @@
+#include <tbb/parallel_for.h>
+
+#include <optional>
+#include <utility>
+
+#include "base/trace.hpp"
+#include "render/assemble.hpp"
+#include "render/count_picture.hpp"
+#include "render/light_points.hpp"
+
+namespace luciole {
+namespace {
+
+/// Makes `sum` the sum with `more`, of as many floats, or `more` itself where it is empty. Returns memory
+/// that is done with.
+Plane addPlane(Plane more, std::size_t count, Plane& sum) {
+  if (sum.empty()) {
+    sum = std::move(more);
+    return {};
+  }
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) { sum[i] += more[i]; });
+  return more;
+}
+
+/// The pixels of a band, at the place of one sample after the other.
+struct SampleLister final : PointLister {
+  ReadyPicture& picture;
+  View view;
+  RasterCounts& triangles;
+  const std::function<void()>& on_sample;
+  int sample = -1;
+  GBuffer drawn;
+  PixelSums sums;
+  std::vector<Plane> layer_sums;
+  Image image;
+  std::optional<TraceSpan> span;
+
+  SampleLister(ReadyPicture& picture_, const View& band, RasterCounts& triangles_,
+               const std::function<void()>& on_sample_)
+      : picture(picture_), view(band), triangles(triangles_), on_sample(on_sample_) {
+    layer_sums.resize(picture.layers.size());
+    used = std::move(picture.used.color);
+  }
+
+  int samples() const { return picture.settings.samples; }
+  bool isLast() const { return sample + 1 == samples(); }
+
+  bool next() override {
+    span.reset();
+    if (sample >= 0) {
+      picture.used.gbuffer = std::move(drawn);
+      on_sample();
+    }
+    if (++sample == samples()) return false;
+    span.emplace("sample", std::initializer_list<TraceArgument>{{"sample", sample}, {"samples", samples()}});
+    takeSample(view, {sample, samples()});
+    drawn = timed(picture.stats, Stage::kRasterize, [&] {
+      return rasterize(picture.scene, picture.objects, view, picture.settings.shading, picture.plan.planes,
+                       picture.vertex_colors, &triangles, std::move(picture.used.gbuffer));
+    });
+    drawn.camera = picture.settings.camera;
+    gbuffer = &drawn;
+    counts = wantedCounts(picture.settings, sample);
+    return true;
+  }
+
+  void take(LitPlanes lit) override {
+    countPass(drawn, lit, counts.evaluated, picture.stats);
+    timed(picture.stats, Stage::kResolve, [&] {
+      if (sample == 0)
+        image =
+            startPicture(drawn, lit, picture.settings, layerNames(picture), std::move(picture.used.picture));
+      const std::size_t bounds = lit.light_error.size();
+      addPlane(std::move(lit.light_error), bounds, sums.light_error);
+      used = addPlane(std::move(lit.color), 3 * drawn.pixels(), sums.color);
+      if (countsCovered(picture.settings)) countCovered(drawn, sums.covered);
+      if (isLast()) setColors(drawn, sums, picture.settings, image);
+    });
+  }
+
+  void takeLayer(std::size_t layer, Plane color) override {
+    timed(picture.stats, Stage::kResolve, [&] {
+      Plane& sum = layer_sums[layer];
+      used = addPlane(std::move(color), 3 * drawn.pixels(), sum);
+      if (!isLast()) return;
+      setLightLayer(drawn, sum, picture.settings, channelOfLayer(image, layer, layer_sums.size()), image);
+      used = std::move(sum);
+    });
+  }
+};
+
+}  // namespace
+
+Image lightAllSamples(ReadyPicture& picture, const View& band, RasterCounts& triangles,
+                      const std::function<void()>& on_sample) {
+  SampleLister lister(picture, band, triangles, on_sample);
+  lightPoints(picture, picture.plan.pixels, lister);
+  picture.used.color = std::move(lister.sums.color);
+  return std::move(lister.image);
+}
+
+}  // namespace luciole

@@ -1,0 +1,51 @@
+#include <utility>
+
+#include "render/assemble.hpp"
+#include "render/count_picture.hpp"
+#include "render/light_points.hpp"
+
+namespace luciole {
+namespace {
+
+/// The points of a G-buffer.
+struct GivenLister final : PointLister {
+  ReadyPicture& picture;
+  const GBuffer& given;
+  Image image;
+
+  GivenLister(ReadyPicture& picture_, const GBuffer& given_) : picture(picture_), given(given_) {}
+
+  bool next() override {
+    if (gbuffer) return false;
+    gbuffer = &given;
+    counts = wantedCounts(picture.settings, 0);
+    return true;
+  }
+
+  void take(LitPlanes lit) override {
+    countPass(given, lit, counts.evaluated, picture.stats);
+    timed(picture.stats, Stage::kResolve, [&] {
+      image = startPicture(given, lit, picture.settings, layerNames(picture));
+      PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error)};
+      if (countsCovered(picture.settings)) countCovered(given, sums.covered);
+      setColors(given, sums, picture.settings, image);
+    });
+  }
+
+  void takeLayer(std::size_t layer, Plane color) override {
+    timed(picture.stats, Stage::kResolve, [&] {
+      setLightLayer(given, color, picture.settings, channelOfLayer(image, layer, picture.layers.size()),
+                    image);
+    });
+  }
+};
+
+}  // namespace
+
+Image lightGivenPoints(ReadyPicture& picture, const GBuffer& gbuffer) {
+  GivenLister lister(picture, gbuffer);
+  lightPoints(picture, picture.plan.pixels, lister);
+  return std::move(lister.image);
+}
+
+}  // namespace luciole

@@ -1,0 +1,38 @@
+#include "render/light_points.hpp"
+
+#include <utility>
+
+#include "render/assemble.hpp"
+
+namespace luciole {
+
+void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister) {
+  const auto light = [&](const LightSet& lights, const FeatureSet& of_lights, const PixelCounts& counts) {
+    return lightGBuffer(picture.device, picture.scene, picture.lighting,
+                        {lights, of_lights, *lister.gbuffer, counts, std::exchange(lister.used, {})},
+                        picture.stats);
+  };
+  while (lister.next()) {
+    lister.take(light(picture.lighting.lights, features, lister.counts));
+    for (std::size_t i = 0; i < picture.layers.size(); ++i)
+      lister.takeLayer(i, light(picture.layers[i].lights, picture.layers[i].features, {}).color);
+  }
+}
+
+PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
+  return {.evaluated = settings.count_lights,
+          .in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
+          .list_length = sample == 0 && wants(settings, Aov::kListLength)};
+}
+
+std::vector<std::string> layerNames(const ReadyPicture& picture) {
+  std::vector<std::string> names;
+  for (const LitLayer& layer : picture.layers) names.push_back(layer.layer.name);
+  return names;
+}
+
+std::size_t channelOfLayer(const Image& image, std::size_t layer, std::size_t layers) {
+  return image.channels.size() - 3 * (layers - layer);
+}
+
+}  // namespace luciole

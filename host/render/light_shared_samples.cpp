@@ -1,0 +1,202 @@
+#include <tbb/parallel_for.h>
+
+#include <utility>
+
+#include "gbuffer/planes.hpp"
+#include "raster/shading_points.hpp"
+#include "render/assemble.hpp"
+#include "render/count_picture.hpp"
+#include "render/light_points.hpp"
+#include "render/memory.hpp"
+#include "render/pixel_sums.hpp"
+#include "render/uneven_pixels.hpp"
+
+namespace luciole {
+namespace {
+
+/// The lists from `first` on that are lit together: as many as fill at most so many points' tiles, or one.
+std::size_t endOfPass(const PointLists& points, std::size_t first, std::size_t most_points) {
+  std::size_t end = first + 1, tiles = points.tiles(first);
+  while (end < points.size() && (tiles += points.tiles(end)) * kTilePixels <= most_points) ++end;
+  return end;
+}
+
+/// Takes from these pixels all their points.
+void leaveOut(const std::vector<std::uint8_t>& pixels, SharedSamples& shared) {
+  tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t i) {
+    if (pixels[i]) shared.samples[i] = 0;
+  });
+  PointLists& further = shared.further;
+  std::size_t kept = 0;
+  for (std::size_t list = 0; list < further.size(); ++list) {
+    const std::size_t first = std::exchange(further.starts[list], kept), end = further.starts[list + 1];
+    for (std::size_t k = first; k < end; ++k)
+      if (!pixels[further.items[k].pixel]) further.items[kept++] = further.items[k];
+  }
+  further.starts.back() = kept;
+  further.items.resize(kept);
+}
+
+/// The part of a picture from `first` on.
+Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
+  if (size == glm::ivec2(picture.width, picture.height)) return picture;
+  Image part{size.x, size.y, picture.channels, {}};
+  const std::size_t step = picture.channels.size();
+  part.pixels.reserve(std::size_t(size.x) * size.y * step);
+  for (int y = first.y; y < first.y + size.y; ++y) {
+    const auto row =
+        picture.pixels.begin() + std::ptrdiff_t((std::size_t(y) * picture.width + first.x) * step);
+    part.pixels.insert(part.pixels.end(), row, row + std::ptrdiff_t(std::size_t(size.x) * step));
+  }
+  return part;
+}
+
+/// Of a band first the points of all pixels' first samples, then the other points of pixels that see several
+/// surfaces, and last, where light is uneven, every sample by itself.
+struct SharedLister final : PointLister {
+  ReadyPicture& picture;
+  SampledView sampled;
+  SharedSamples shared;  ///< its G-buffer is the layout of all sums
+  std::size_t most_points;
+  PixelSums sums;
+  std::vector<PixelSums> layer_sums;  ///< colours alone
+  Image image;
+  bool is_begun = false;
+
+  // After the first points: lists, and those of them that are lit now.
+  const PointLists* points = nullptr;
+  std::size_t first_list = 0, end_list = 0;
+  GBuffer gathered;
+
+  // Every sample of the uneven pixels, some bins after the other.
+  std::vector<std::uint8_t> uneven;
+  std::vector<std::size_t> in_bins;
+  std::size_t next_bin = 0;
+  PointLists of_bins;
+  std::uint64_t refined_pixels = 0, refined_points = 0;
+
+  SharedLister(ReadyPicture& picture_, SampledView sampled_, SharedSamples shared_)
+      : picture(picture_), sampled(std::move(sampled_)), shared(std::move(shared_)) {
+    shared.gbuffer.camera = picture.settings.camera;
+    most_points = pointsAPass(shared.gbuffer.pixels());
+    layer_sums.resize(picture.layers.size());
+  }
+
+  bool next() override {
+    if (!is_begun) {
+      is_begun = true;
+      gbuffer = &shared.gbuffer;
+      counts = wantedCounts(picture.settings, 0);
+      return true;
+    }
+    if (!points) {
+      freePlanes(shared.gbuffer);
+      points = &shared.further;
+      in_bins = chosenInBins(sampled, uneven);
+    }
+    while (!gatherLists())
+      if (!listBins()) return false;
+    gbuffer = &gathered;
+    counts = wantedCounts(picture.settings, 1);
+    return true;
+  }
+
+  /// Gathers the next points of the lists. Returns false where none are left.
+  bool gatherLists() {
+    do {
+      first_list = end_list;
+      if (first_list == points->size()) return false;
+      end_list = endOfPass(*points, first_list, most_points);
+    } while (points->starts[first_list] == points->starts[end_list]);
+    gathered = timed(picture.stats, Stage::kRasterize,
+                     [&] { return gatherPoints(sampled, *points, first_list, end_list); });
+    gathered.camera = picture.settings.camera;
+    return true;
+  }
+
+  /// Lists every sample of the uneven pixels in the next bins. Returns false where no bins are left.
+  bool listBins() {
+    if (next_bin == in_bins.size()) return false;
+    const std::size_t first = next_bin;
+    std::size_t pixels = in_bins[next_bin++];
+    while (next_bin < in_bins.size() &&
+           (pixels + in_bins[next_bin]) * std::size_t(picture.settings.samples) <= most_points)
+      pixels += in_bins[next_bin++];
+    refined_pixels += pixels;
+    of_bins = {{0}, {}};
+    if (pixels > 0)
+      of_bins = timed(picture.stats, Stage::kRasterize,
+                      [&] { return everySample(sampled, shared.labels, uneven, int(first), int(next_bin)); });
+    refined_points += of_bins.items.size();
+    points = &of_bins;
+    end_list = 0;
+    return true;
+  }
+
+  void take(LitPlanes lit) override {
+    countPass(*gbuffer, lit, counts.evaluated, picture.stats);
+    timed(picture.stats, Stage::kResolve, [&] {
+      if (points) {
+        addPoints(shared.gbuffer, *points, first_list, end_list, lit.color, lit.light_error,
+                  gathered.pixels(), sums);
+        return;
+      }
+      image = startPicture(shared.gbuffer, lit, picture.settings, layerNames(picture),
+                           std::move(picture.used.picture));
+      uneven = unevenPixels(sampled, shared, lit.color);
+      leaveOut(uneven, shared);
+      sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));
+    });
+  }
+
+  void takeLayer(std::size_t layer, Plane color) override {
+    timed(picture.stats, Stage::kResolve, [&] {
+      PixelSums& sum = layer_sums[layer];
+      if (points)
+        addPoints(shared.gbuffer, *points, first_list, end_list, color, {}, gathered.pixels(), sum);
+      else
+        sum.color = firstPoints(shared.gbuffer, shared.samples, std::move(color), {}).color;
+    });
+  }
+
+  /// The image, when all points are lit.
+  Image finish() {
+    addCount(picture.stats, "refined_pixels", refined_pixels);
+    addCount(picture.stats, "refined_points", refined_points);
+    return timed(picture.stats, Stage::kResolve, [&] {
+      const auto addBare = [&](const LightSet& lights, Plane& color) {
+        const float4& background = lights.frame.background;
+        addBackground({background.x, background.y, background.z}, picture.settings.samples, sums.covered,
+                      color);
+      };
+      addBare(picture.lighting.lights, sums.color);
+      setColors(shared.gbuffer, sums, picture.settings, image);
+      for (std::size_t layer = 0; layer < layer_sums.size(); ++layer) {
+        addBare(picture.layers[layer].lights, layer_sums[layer].color);
+        setLightLayer(shared.gbuffer, layer_sums[layer].color, picture.settings,
+                      channelOfLayer(image, layer, layer_sums.size()), image);
+      }
+      return cutOut(std::move(image), sampled.inner.first - sampled.view.crop_origin,
+                    sampled.inner.end - sampled.inner.first);
+    });
+  }
+};
+
+}  // namespace
+
+Image lightSharedSamples(ReadyPicture& picture, const View& band, RasterCounts& triangles) {
+  const PicturePlan& plan = picture.plan;
+  SampledView sampled = timed(picture.stats, Stage::kRasterize, [&] {
+    const Margin margin = plan.pixels.has(Feature::kClusteredLights) ? Margin::kTiles : Margin::kPixel;
+    return setupSamples(picture.scene, picture.objects, band, margin, picture.settings.samples,
+                        picture.settings.shading, plan.planes, picture.vertex_colors);
+  });
+  SharedSamples shared =
+      timed(picture.stats, Stage::kRasterize, [&] { return shareSamples(sampled, triangles); });
+  sampled.setup = {};
+  SharedLister lister(picture, std::move(sampled), std::move(shared));
+  lightPoints(picture, plan.pixels, lister);
+  return lister.finish();
+}
+
+}  // namespace luciole

@@ -1,0 +1,126 @@
+#include "render/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/assemble.hpp"
+#include "render/memory.hpp"
+#include "render/shadow_ways.hpp"
+
+namespace luciole {
+namespace {
+
+constexpr Feature kFogFeatures[] = {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
+                                    Feature::kFogPerChannel, Feature::kFogRadial};
+
+/// Features of the pass that lights vertices for Gouraud shading: without fog, which is applied to pixels.
+FeatureSet vertexFeatures(FeatureSet features) {
+  for (const Feature fog : kFogFeatures) features.set(fog, false);
+  features.set(Feature::kOutputShadow, false);
+  // A vertex lies on the smooth surface already.
+  features.set(Feature::kLift, false);
+  return features;
+}
+
+/// Features of the pass that only applies fog, to lit colours in the emission planes.
+FeatureSet fogOnly(const FeatureSet& features) {
+  FeatureSet kept;
+  kept.set(Feature::kEmission);
+  for (const Feature fog : kFogFeatures) kept.set(fog, features.has(fog));
+  return kept;
+}
+
+/// The traits of the surfaces as this shading shows them.
+SurfaceTraits shownTraits(const Scene& scene, Shading shading) {
+  SurfaceTraits surfaces = materialTraits(scene);
+  surfaces.smooth &= shading != Shading::kFlat;
+  surfaces.normal_maps &= shading == Shading::kPhong;
+  return surfaces;
+}
+
+/// The models that a G-buffer's surfaces choose.
+ModelChoices modelsOf(const GBuffer& gbuffer) {
+  ModelChoices choices;
+  if (gbuffer.model.empty()) choices.set(0);
+  for (std::size_t i = 0; i < gbuffer.model.size(); ++i)
+    if (std::isfinite(gbuffer.position[i + 2 * gbuffer.pixels()])) choices.set(gbuffer.model[i]);
+  return choices;
+}
+
+bool anyShines(const GBuffer& gbuffer) {
+  const auto colors = std::ptrdiff_t(gbuffer.specular.empty() ? 0 : 3 * gbuffer.pixels());
+  return std::any_of(gbuffer.specular.begin(), gbuffer.specular.begin() + colors,
+                     [](float color) { return color > 0; });
+}
+
+SurfaceTraits shownTraits(const GBuffer& gbuffer) {
+  return {anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(), gbuffer.knows_unbent,
+          modelsOf(gbuffer)};
+}
+
+/// What doesn't depend on where the G-buffer comes from. view: of the whole picture. points_a_pixel: see
+/// shadowWays.
+PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const SurfaceTraits& surfaces,
+                      const Camera& camera, const View& view, double points_a_pixel) {
+  PicturePlan plan;
+  plan.shade = settings.shade;
+  plan.shade.shadow_layer = wants(settings, Aov::kShadow);
+  chooseModel(surfaces.models, plan.shade);
+  plan.layers = lightLayers(scene, settings);
+  if (!plan.layers.empty()) plan.shade.light_error = 0;
+  if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
+    plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits);
+  plan.features =
+      neededFeatures(scene, camera, surfaces, plan.shade, standsForLights(scene, view, surfaces, plan.shade));
+  plan.pixels = plan.features;
+  return plan;
+}
+
+void addProgram(const FeatureSet& features, std::vector<FeatureSet>& programs) {
+  if (std::find(programs.begin(), programs.end(), features) == programs.end()) programs.push_back(features);
+}
+
+void addLayersPrograms(PicturePlan& plan) {
+  for (const LightLayer& layer : plan.layers) addProgram(layerFeatures(plan.pixels, layer), plan.programs);
+}
+
+}  // namespace
+
+PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
+  const SurfaceTraits surfaces = shownTraits(scene, settings.shading);
+  const bool shares_samples = sharesSamples(settings);
+  PicturePlan plan =
+      planLight(scene, settings, surfaces, settings.camera, cameraView(settings.camera, settings.size),
+                shadedPoints(scene, settings.size, settings.samples, shares_samples));
+  plan.view = cameraView(settings.camera, settings.size, settings.crop);
+  plan.shares_samples = shares_samples;
+  if (settings.shading == Shading::kGouraud) {
+    plan.pixels = fogOnly(plan.features);
+    plan.vertices = vertexFeatures(plan.features);
+  }
+  plan.planes = neededPlanes(plan.pixels);
+  // The light of clusters has planes of its own.
+  if (plan.pixels.has(Feature::kClusteredLights)) plan.planes.emission = surfaces.emission;
+  if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
+  if (wants(settings, Aov::kMaterial))
+    plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;
+  addProgram(plan.pixels, plan.programs);
+  if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);
+  addLayersPrograms(plan);
+  plan.pixel_bytes = bytesPerPixel(scene, settings, plan);
+  plan.band_height =
+      settings.band_height > 0 ? settings.band_height : bandHeight(plan.view.crop_size, plan.pixel_bytes);
+  return plan;
+}
+
+PicturePlan planShading(const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings) {
+  const View view = cameraView(gbuffer.camera, gbuffer.picture_size, {}, gbuffer.display.pixel_aspect);
+  PicturePlan plan = planLight(scene, settings, shownTraits(gbuffer), gbuffer.camera, view,
+                               shadedPoints(scene, gbuffer.picture_size, 1, false));
+  plan.view = view;
+  addProgram(plan.pixels, plan.programs);
+  addLayersPrograms(plan);
+  return plan;
+}
+
+}  // namespace luciole
