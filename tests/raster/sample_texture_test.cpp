@@ -1,5 +1,4 @@
 #include "raster/sample_texture.hpp"
-#include "gbuffer/gbuffer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "gbuffer/gbuffer.hpp"
+#include "raster/raster_scenes.hpp"
 
 namespace luciole::test {
 namespace {
