@@ -59,6 +59,9 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, L
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
   if (features.shadowMaps()) castByMaps(input, lighting.maps, stats);
   if (features.has(Feature::kExact)) castByBeams(input, lit, stats);
+  // Kept to the end: where a buffer is made in the place of one that is gone, Oclgrind takes it for
+  // unwritten.
+  const PairBuffers pairs = borrowPairs(device, lit.pairs);
   ShadeFrame frame = pass.lights.frame;
   frame.plane_stride = static_cast<uint>(points.stride);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(lighting.maps.host.texels.size(), 1));
@@ -74,7 +77,7 @@ LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, L
     if (by_tiles)
       of_tiles = shadeByTiles(input, frame, image);
     else
-      shadeByLists(input, frame, lit.pairs, image);
+      shadeByLists(input, frame, pairs, image);
   });
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
   lit.list_entries = of_tiles.entries;

@@ -10,14 +10,10 @@ std::string shadeDefines(const StageInput& input) {
 
 }  // namespace
 
-void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairShadows& pairs,
+void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,
                   const Buffer<float>& image) {
-  Device& device = input.device;
   const MapScene& maps = input.lighting.maps;
-  const Buffer<const uint> pair_bits = borrowed(device, pairs.lit), ray_bits = borrowed(device, pairs.unsure),
-                           first_share = borrowed(device, pairs.first_share);
-  const Buffer<const float> shares = borrowed(device, pairs.shares);
-  shade(device, shadeDefines(input),
+  shade(input.device, shadeDefines(input),
         {.frame = frame,
          .gbuffer = input.points.buffers,
          .lights = input.pass.lights.light_buffer,
@@ -25,10 +21,10 @@ void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairSh
          .shadow_maps = maps.maps,
          .shadow_faces = maps.faces,
          .shadow_texels = maps.texels,
-         .pair_bits = pair_bits,
-         .ray_bits = ray_bits,
-         .first_share = first_share,
-         .shares = shares,
+         .pair_bits = pairs.pair_bits,
+         .ray_bits = pairs.ray_bits,
+         .first_share = pairs.first_share,
+         .shares = pairs.shares,
          .image = image});
 }
 

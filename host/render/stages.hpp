@@ -34,6 +34,13 @@ PairShadows decideBeams(const StageInput& input);
 /// Decides these by rays.
 TracedPairs traceUnsure(const StageInput& input, PairShadows& pairs);
 
+/// These shadows on the device, borrowed. See ShadeArguments.
+struct PairBuffers {
+  Buffer<const uint> pair_bits, ray_bits, first_share;
+  Buffer<const float> shares;
+};
+PairBuffers borrowPairs(Device& device, const PairShadows& pairs);
+
 /// The light of clusters: planes r g b.
 struct ClusterLight {
   Plane light;  ///< as it leaves the surface, and the G-buffer's emission with it
@@ -43,7 +50,7 @@ struct ClusterLight {
 ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame);
 
 /// Shades by lists, or by all lights where there are none. image: out, see LitPlanes::color.
-void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairShadows& pairs,
+void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,
                   const Buffer<float>& image);
 
 /// Culls and shades tile by tile, without lists in memory, and counts what it does.
