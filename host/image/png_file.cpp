@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <isa-l/crc.h>
 #include <isa-l/igzip_lib.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -14,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/threads.hpp"
 #include "base/utf8.hpp"
@@ -263,6 +265,9 @@ class PngFile : public RowFile {
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
                                      const Metadata& metadata, int bits, const std::string& compression) {
   checkWritable(path, {.format = "png"});
+  if (width < 1 || height < 1)
+    throw MachineError(
+        fmt::format("{}: can't encode: {}x{} pixels, a PNG has 1x1 at least", path, width, height));
   checkSizeLimit(std::uint64_t(width) * height * channels * bits / 8, path);
   const std::vector<std::uint8_t> header = pngHeader(width, height, channels, metadata, bits);
   return std::make_unique<PngFile>(path, header, width, height, channels, bits, compression == "small");

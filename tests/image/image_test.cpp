@@ -190,7 +190,7 @@ TEST(Image, PngTextIsAsciiOrSaysThatItIsUtf8) {
   }
 }
 
-TEST(Image, WhatTheLibraryOfPngsRefusesIsAMachineError) {
+TEST(Image, APngOfNoPixelsIsAMachineError) {
   const TemporaryFolder folder;
   testing::internal::CaptureStderr();
   EXPECT_THAT(messageOf<MachineError>([&] { openPngFile(folder / "a.png", 0, 1, 3, {}); }),

@@ -15,7 +15,10 @@ namespace {
 constexpr const char* kLamp = R"({"type": "point", "position": [1, 1, 2], "range": 3})";
 constexpr const char* kBareBulb = R"({"type": "point", "position": [1, 1, 2]})";
 
-/// Of a floor 20 m wide under these lights.
+/// An edge's ends are floats of up to 1, rounded by 2⁻²⁵ on two axes, of a floor 20 m wide.
+constexpr double kRounding = 20 * 4 * 0x1p-25;
+
+/// Of such a floor under these lights.
 double width(const std::string& lights, const std::string& segments, const std::string& more = "") {
   return coarseTriangleWidth(sceneFromJson(fmt::format(
       R"({{"camera": {{"eye": [0, 9, 9], "target": [0, 0, 0]}}, "lights": [{}],
@@ -25,15 +28,15 @@ double width(const std::string& lights, const std::string& segments, const std::
 
 TEST(CoarseTriangles, AreWiderThanALightReachesOrThanAQuarterOfTheScene) {
   const double diagonal = 20 * std::sqrt(2.0);
-  EXPECT_NEAR(width(kLamp, R"("segments": 1,)"), diagonal, 1e-9);
-  EXPECT_NEAR(width(kBareBulb, R"("segments": 1,)"), diagonal, 1e-9);
-  EXPECT_NEAR(width(kLamp, R"("segments": 5,)"), diagonal / 5, 1e-9);
+  EXPECT_NEAR(width(kLamp, R"("segments": 1,)"), diagonal, kRounding);
+  EXPECT_NEAR(width(kBareBulb, R"("segments": 1,)"), diagonal, kRounding);
+  EXPECT_NEAR(width(kLamp, R"("segments": 5,)"), diagonal / 5, kRounding);
   EXPECT_EQ(width(kBareBulb, R"("segments": 5,)"), 0) << "a fifth of the scene";
 }
 
 TEST(CoarseTriangles, AreTheWidestOfAll) {
   const std::string small = R"(, {"primitive": "box", "translate": [9, 0, 9]})";
-  EXPECT_NEAR(width(kLamp, R"("segments": 1,)", small), 20 * std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(width(kLamp, R"("segments": 1,)", small), 20 * std::sqrt(2.0), kRounding);
 }
 
 TEST(CoarseTriangles, AreNoneWhereTheyAreSmallOrNoLightHasAPlace) {
