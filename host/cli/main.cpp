@@ -294,6 +294,15 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
 
 }  // namespace
 
+/// Takes the place of the C library's, which libraries call that give up: LLVM puts a handler of its own in
+/// the place of endAborted(), in the middle of a call that looks for devices.
+extern "C" void abort() noexcept {
+  if (!kIsSanitized) endAborted(SIGABRT);
+  std::signal(SIGABRT, SIG_DFL);
+  std::raise(SIGABRT);
+  std::_Exit(kMachineFailed);
+}
+
 int main(int argument_count, char** arguments) {
   openStandardStreams();
   saveAddresses();
