@@ -35,9 +35,9 @@ struct SampleLister final : PointLister {
   Image image;
   std::optional<TraceSpan> span;
 
-  SampleLister(ReadyPicture& picture_, const View& band, RasterCounts& triangles_,
-               const std::function<void()>& on_sample_)
-      : picture(picture_), view(band), triangles(triangles_), on_sample(on_sample_) {
+  SampleLister(ReadyPicture& ready, const View& band, RasterCounts& counted,
+               const std::function<void()>& report)
+      : picture(ready), view(band), triangles(counted), on_sample(report) {
     layer_sums.resize(picture.layers.size());
     used = std::move(picture.used.color);
   }

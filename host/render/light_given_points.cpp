@@ -13,7 +13,7 @@ struct GivenLister final : PointLister {
   const GBuffer& given;
   Image image;
 
-  GivenLister(ReadyPicture& picture_, const GBuffer& given_) : picture(picture_), given(given_) {}
+  GivenLister(ReadyPicture& ready, const GBuffer& points) : picture(ready), given(points) {}
 
   bool next() override {
     if (gbuffer) return false;

@@ -75,8 +75,8 @@ struct SharedLister final : PointLister {
   PointLists of_bins;
   std::uint64_t refined_pixels = 0, refined_points = 0;
 
-  SharedLister(ReadyPicture& picture_, SampledView sampled_, SharedSamples shared_)
-      : picture(picture_), sampled(std::move(sampled_)), shared(std::move(shared_)) {
+  SharedLister(ReadyPicture& ready, SampledView view, SharedSamples points_shared)
+      : picture(ready), sampled(std::move(view)), shared(std::move(points_shared)) {
     shared.gbuffer.camera = picture.settings.camera;
     most_points = pointsAPass(shared.gbuffer.pixels());
     layer_sums.resize(picture.layers.size());

@@ -12,7 +12,7 @@ struct VertexLister final : PointLister {
   ReadyPicture& picture;
   GBuffer vertices;
 
-  explicit VertexLister(ReadyPicture& picture_) : picture(picture_) {}
+  explicit VertexLister(ReadyPicture& ready) : picture(ready) {}
 
   bool next() override {
     if (gbuffer) return false;
