@@ -12,7 +12,7 @@
 
 namespace luciole {
 
-/// All that is decided of a picture before any of it is made.
+/// What is decided of a picture before any of it is made, whatever the device.
 struct PicturePlan {
   View view;  ///< of the picture, or of its crop
   ShadeSettings
