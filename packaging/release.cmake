@@ -35,7 +35,7 @@ install(TARGETS luciole_image_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
 # Headers of the library's rooms, but those that only rooms themselves include: of libraries that no user of it needs, and what
 # includes them.
 set(headers "")
-foreach(room base image scene gbuffer raster rays load cl shadow culling render reference)
+foreach(room base image scene gbuffer raster rays load cl lights shadow shade lighting render reference)
   file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/host host/${room}/*.hpp)
   list(APPEND headers ${found})
 endforeach()

@@ -4,7 +4,7 @@
 #   scenes/make_pictures.sh          all of them; the plots are measurements, which take minutes and want a quiet machine
 #   scenes/make_pictures.sh PART     those with PART in their path
 #
-# tests/cli/readme_test.cpp holds the lines below against the READMEs.
+# tests/tools/cli/readme_test.cpp holds the lines below against the READMEs.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 part=${1-}

@@ -36,34 +36,35 @@ FOG = ("kernels", "FogKernels.*")
 PHONG = ("kernels", "PhongKernels.*")
 COOK_TORRANCE = ("kernels", "CookTorranceKernel.*")
 OREN_NAYAR = ("kernels", "OrenNayarKernel.*")
-MODELS = ("render", "*MaterialModels.*/*16")
+MODELS = ("pictures", "*MaterialModels.*/*16")
 TOON = ("kernels", "ToonKernels.*")
 DISC = ("kernels", "DiscKernels.*")
 EXACT_SIGN = ("kernels", "ExactSignKernels.*")
 SHADOW = ("kernels", "ShadowKernels.*")
 CULL = ("kernels", "*CullKernels.*")
 SHADE = ("kernels", "*ShadeKernel.*/16")
-SHADE_TILES = ("render", "*ShadeTiles.*/16:ShadeTiles.*")
-CLOSED_FORM = ("render", "ClosedForm.*")
+SHADE_TILES = ("shade", "*ShadeTiles.*/16:ShadeTiles.*")
+CLOSED_FORM = ("pictures", "ClosedForm.*")
 PICTURES = ("render", "Render.AgreesWith*:Render.ListLength*:Render.*LayerC*:Render.ShadowLayer*:Render.UnlitScene*")
-EXACT = ("render", "Exact.CullingChangesNoBitOfAFloor*:Exact.CullingChangesNoBitUnder*:Exact.LightsThatAddNothing*")
-HARD_SPOTS = ("hard_cases", "HardLights.SpotOf*")
-SUMS = ("hard_cases", "HardLights.Million*")
-NUMBERS = ("hard_cases", "HardNumbers.*:HardLobe*")
-NEEDED = ("render", "FindNeeded.*")
-MAPS = ("shadow", "ShadowMaps.*:*HoveringSquare*")
-SOFT = ("shadow", "*SoftEdge*")
-EXACT_SHADOWS = ("render", "*ShadowMethods.PictureIsTheSame*/Exact")
-BEAMS = ("render", "BeamShadows.*")
-SOFT_BEAMS = ("render", "SoftExact.AgreeWith*")
-SOFT_PICTURES = ("render", "*ShadowMethods.PictureIsTheSame*/SoftExact:SoftExact.Of*")
+EXACT = ("pictures", "Exact.CullingChangesNoBitOfAFloor*:Exact.CullingChangesNoBitUnder*:Exact.LightsThatAddNothing*")
+HARD_SPOTS = ("pictures", "HardLights.SpotOf*")
+SUMS = ("pictures", "HardLights.Million*")
+NUMBERS = ("pictures", "HardNumbers.*:HardLobe*")
+NEEDED = ("maps", "FindNeeded.*")
+MAPS = ("maps", "ShadowMaps.*:*HoveringSquare*")
+SOFT = ("exact", "*SoftEdge*")
+EXACT_SHADOWS = ("pictures", "*ShadowMethods.PictureIsTheSame*/Exact")
+BEAMS = ("exact", "BeamShadows.*")
+SOFT_BEAMS = ("exact", "SoftExact.AgreeWith*")
+SOFT_PICTURES = ("pictures", "*ShadowMethods.PictureIsTheSame*/SoftExact:SoftExact.Of*")
 FAR_FIELD = ("kernels", "FarFieldKernels.*")
 HORIZON = ("kernels", "HorizonKernels.*")
 CUT_CLUSTERS = ("kernels", "CutClusterKernels.*")
 HIGHLIGHTS = ("kernels", "*HighlightKernels.*/16")
-SHINY = ("render", "*ClusteredLight.OfHighlights*/16")
-CLUSTERED = ("render", "ClusteredLights.*:LightError.PixelsAfter*:HardClusteredLight.*-*AllNearTheHorizon")
-TERMINATOR = ("render", "*Terminator*")
+SHINY = ("shade", "*ClusteredLight.OfHighlights*/16")
+CLUSTERED = ("shade", "ClusteredLights.*:HardClusteredLight.*-*AllNearTheHorizon")
+AFTER_DARK = ("render", "LightError.PixelsAfter*")
+TERMINATOR = ("pictures", "*Terminator*")
 
 TESTS = {
     "beam.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
@@ -71,7 +72,7 @@ TESTS = {
     "beam_shadows.cl": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
     "candidates.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
     "blockers.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
-    "clustered_light.cl": [SHINY, CLUSTERED],
+    "clustered_light.cl": [SHINY, CLUSTERED, AFTER_DARK],
     "cook_torrance.clh": [COOK_TORRANCE, PICTURES],
     "count_in_range.cl": [PICTURES, EXACT],
     "cull.cl": [CULL, EXACT, PICTURES],
@@ -83,7 +84,7 @@ TESTS = {
     "find_needed.cl": [NEEDED, MAPS],
     "fog.clh": [FOG, CLOSED_FORM, PICTURES],
     "highlights.clh": [HIGHLIGHTS, SHINY],
-    "hole_masks.clh": [("render", "HoleMasks.*")],
+    "hole_masks.clh": [("pictures", "HoleMasks.*")],
     "lanes.clh": [MATH, FALLOFF, PHONG, SHADE, NEEDED],
     "light_clusters.clh": [HORIZON, FAR_FIELD, CLUSTERED],
     "light_tree.clh": [CULL, EXACT, PICTURES, SHADE_TILES],

@@ -32,7 +32,7 @@ AddSubdirectoryGivesTheSameTarget() {
   commands=$(ninja -C "$folder/build" -t commands light)
   [[ $commands == *" $checkout/host/render/"* || $commands == *luciole_render.dir/Unity* ]] || { echo "no room is compiled" && return 1; }
   [[ $commands == *"-o light "*"libluciole.so"* ]] || { echo "the library isn't linked" && return 1; }
-  [[ $commands != *gtest* && $commands != */host/cli/* ]] || { echo "more than the library is built" && return 1; }
+  [[ $commands != *gtest* && $commands != */host/tools/cli/* ]] || { echo "more than the library is built" && return 1; }
 }
 
 EveryInstalledHeaderCompiles() {

@@ -48,7 +48,7 @@ drawRooms() {
     rows[${height[$room]}]+="   $room"
     ((highest >= height[$room])) || highest=${height[$room]}
   done
-  echo "    cli"
+  echo "    tools/cli"
   for ((row = highest; row >= 0; --row)); do echo "    ${rows[$row]#   }"; done
 }
 
@@ -60,7 +60,7 @@ RoomsIncludeOnlyFromWhatTheyStandOn() {
     other=${other#*\"}
     other=${other%/*}
     case $other in kernels | "$room") continue ;; esac
-    [[ $room == cli ]] && continue
+    [[ $room == tools/cli ]] && continue
     [[ ${stands_on[$room]-} == *" $other "* ]] || {
       echo "$file includes from $other, on which $room doesn't stand"
       status=1
@@ -72,7 +72,7 @@ RoomsIncludeOnlyFromWhatTheyStandOn() {
 EveryFolderIsARoom() {
   local folder status=0
   while read -r folder; do
-    [[ $folder == cli || -v stands_on[$folder] ]] || {
+    [[ $folder == tools/cli || -v stands_on[$folder] ]] || {
       echo "host/$folder has sources and is no room of host/CMakeLists.txt"
       status=1
     }
@@ -98,7 +98,13 @@ OnlyTheirRoomsKnowLibraries() {
   allow embree rays
   allow CL/ cl
   allow nettle base
+  allow half.h image tools/viewing
   return $status
+}
+
+LibraryKnowsNoOptions() {
+  # Its messages name fields; tools/cli/option_names.cpp has the options for them.
+  ! grep -rnE '"[^"]*(--[a-z]|luciole (render|relight|devices|shade|info) )' host --include='*.[ch]pp' --exclude-dir=tools
 }
 
 DrawingIsWhatCMakeLinks() {

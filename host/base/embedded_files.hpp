@@ -17,10 +17,10 @@ const std::vector<EmbeddedFile>& embeddedKernels();
 /// The kernels of tests/kernels that `luciole bench` compares ours with.
 const std::vector<EmbeddedFile>& yardstickKernels();
 
-/// The files of host/scale/page/, of which experimentPage makes its page.
+/// The files of host/tools/scale/page/, of which experimentPage makes its page.
 const std::vector<EmbeddedFile>& pageFiles();
 
-/// The files of host/cli/mix_page/, of which mixPage makes its page.
+/// The files of host/tools/cli/mix_page/, of which mixPage makes its page.
 const std::vector<EmbeddedFile>& mixPageFiles();
 
 /// The text of the file of that name. Throws std::logic_error if there is none.

@@ -171,16 +171,15 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
     return 0;
   }
   if (wanted == kAllDevices)
-    throw InputError(fmt::format("--device {}: only render takes several devices", selector));
+    throw InputError(fmt::format("device: {}: only render takes several devices", selector));
   if (const auto number = parseNumber(wanted)) {
     if (*number < devices.size()) return *number;
-    throw InputError(fmt::format("--device {}: there are {} devices, counted from 0 (see luciole devices)",
-                                 selector, devices.size()));
+    throw InputError(
+        fmt::format("device: {}: there are {} devices, counted from 0", selector, devices.size()));
   }
   for (std::size_t i = 0; i < devices.size(); ++i)
     if (lowered(devices[i].platform + " " + devices[i].name).find(wanted) != std::string::npos) return i;
-  throw InputError(
-      fmt::format("--device {}: no device has this in its name (see luciole devices)", selector));
+  throw InputError(fmt::format("device: {}: no device has this in its name", selector));
 }
 
 void openDevice(const std::string& selector, Device& device) {
@@ -194,7 +193,7 @@ void openDevice(const std::string& selector, Device& device) {
   if (const std::size_t suffix = selector.find(kLanesSuffix); suffix != std::string::npos) {
     const auto lanes = parseNumber(std::string_view(selector).substr(suffix + kLanesSuffix.size()));
     if (lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)
-      throw InputError(fmt::format("--device {}: lanes must be 1, 4, 8 or 16", selector));
+      throw InputError(fmt::format("device: {}: lanes must be 1, 4, 8 or 16", selector));
     device.description.lanes = static_cast<int>(*lanes);
   }
   try {

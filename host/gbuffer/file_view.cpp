@@ -75,7 +75,7 @@ FileView findView(const ViewQuestion& asked) {
     throw InputError(
         asked.path +
         ": positions are in camera space, and no camera tells where that is: expected one in the "
-        "header, or luciole relight --camera-to-world or a camera in the scene of --lights");
+        "header, or request.camera_to_world or request.camera");
 
   if (header) view.camera = header->camera;
   if (header && header->half_extent) setOpening(*header->half_extent, header->camera.orthographic, view);
@@ -114,7 +114,7 @@ FileView findView(const ViewQuestion& asked) {
     throw InputError(
         asked.path +
         ": attribute worldToNDC: depth without positions needs worldToCamera and worldToNDC of a "
-        "centred projection, or a camera in the scene of luciole relight --lights");
+        "centred projection, or request.camera");
   if (view.knows_camera && !seen.empty() &&
       !lieOnRays(seen, size, view.half_extent, view.camera.orthographic))
     view.camera_source += ", by which positions lie elsewhere than their pixels";

@@ -136,7 +136,7 @@ class Conversion {
     if (request_.color) {
       if (!found_[Role::kColor].isThere())
         throw InputError(path_ +
-                         ": no layer that is known to hold the picture; luciole relight --channels "
+                         ": no layer that is known to hold the picture; request.layers "
                          "color=NAME says which does");
       alpha_layer_ = alphaOf(found_[Role::kColor]);
       wanted.push_back(alpha_layer_);
@@ -364,7 +364,8 @@ class Conversion {
       const bool is_left_out = role == Role::kSpecular && !shines();
       const bool is_albedo = role == Role::kDiffuse && found_.layout->is_albedo && !request_.albedo;
       const std::string_view remark = is_left_out ? " (left out: no shininess)"
-                                      : is_albedo ? " (an albedo, taken as Kd; by --albedo Kd = albedo / pi)"
+                                      : is_albedo
+                                          ? " (an albedo, taken as Kd; by request.albedo Kd = albedo / pi)"
                                       : role == Role::kDiffuse && request_.albedo ? " (Kd = albedo / pi)"
                                                                                   : "";
       taken.push_back(fmt::format("{} = {}{}", kRoleNames[i],

@@ -210,7 +210,7 @@ std::string channelList(const std::vector<PicturePart>& parts) {
 }
 
 /// Words that end a message: how to say which layer is which.
-constexpr const char* kHint = "luciole relight --channels ROLE=NAME,... says which layer is which";
+constexpr const char* kHint = "request.layers ROLE=NAME,... says which layer is which";
 
 /// What of the name comes before the part of it that the layout knows.
 std::string prefixOf(const FoundLayer& layer, std::string_view names) {

@@ -54,7 +54,7 @@ FileFormat outputFormat(const std::string& path, const std::string& named) {
   for (const FileFormat& format : kFormats) known += fmt::format(" {}", format.extension);
   throw InputError(fmt::format("{}: unknown {} '{}', expected one of{} or another that OpenImageIO writes{}",
                                path, named.empty() ? "extension" : "format", extension, known,
-                               extension.empty() ? " (or --format)" : ""));
+                               extension.empty() ? " (or options.format)" : ""));
 }
 
 FileFormat pictureFormat(const std::string& path, const WriteOptions& options) {
@@ -64,21 +64,21 @@ FileFormat pictureFormat(const std::string& path, const WriteOptions& options) {
   };
   const bool is_exr = format.extension == "exr";
   const bool is_tiff = format.extension == "tif" || format.extension == "tiff";
-  if (options.half && !is_exr) refuse("16-bit floats (--half)", ".exr");
+  if (options.half && !is_exr) refuse("16-bit floats (options.half)", ".exr");
   if (!options.compression.empty()) {
     const bool is_of_png = std::any_of(kPngCompressions.begin(), kPngCompressions.end(),
                                        [&](const char* name) { return options.compression == name; });
     if (format.extension != (is_of_png ? "png" : "exr"))
-      refuse(fmt::format("such compression (--compression {})", options.compression),
+      refuse(fmt::format("such compression (options.compression {})", options.compression),
              is_of_png ? ".png" : ".exr");
   }
   if (options.alpha && format.max_channels < 4)
-    refuse("coverage (--alpha)", ".exr, .png, .tif, .tga or .npy");
+    refuse("coverage (options.alpha)", ".exr, .png, .tif, .tga or .npy");
   if (options.bits == 0) return format;
   const bool has_codes = options.bits == 8    ? !format.is_float || is_tiff
                          : options.bits == 16 ? format.extension == "png" || is_tiff
                                               : false;
-  if (!has_codes) refuse(fmt::format("{}-bit codes (--bits)", options.bits), ".png or .tif");
+  if (!has_codes) refuse(fmt::format("{}-bit codes (options.bits)", options.bits), ".png or .tif");
   format.is_float = false;
   format.bits = options.bits;
   format.max_channels = std::min(format.max_channels, 4);

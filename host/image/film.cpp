@@ -254,9 +254,9 @@ Film::Film(const std::string& path, const std::string& format, int width, int he
   checkFilm(path, format);
   const FilmFormat& how = *findFormat(path, format);
   if (how.is_even && (width % 2 == 1 || height % 2 == 1))
-    throw InputError(
-        fmt::format("{}: {} x {} pixels, expected even numbers of them for .{} (see --size, or take .webm)",
-                    path, width, height, how.extension));
+    throw InputError(fmt::format(
+        "{}: {} x {} pixels, expected even numbers of them for .{} (see settings.size, or take .webm)", path,
+        width, height, how.extension));
   state_ = std::make_unique<State>(path, how, width, height, frames_per_second);
 }
 

@@ -56,8 +56,8 @@ View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>
   if (crop) {
     if (crop->x < 0 || crop->y < 0 || crop->width < 1 || crop->height < 1 || crop->width > size.x - crop->x ||
         crop->height > size.y - crop->y)
-      throw InputError(fmt::format("--crop {},{},{},{}: not inside the picture of {}x{} pixels", crop->x,
-                                   crop->y, crop->width, crop->height, size.x, size.y));
+      throw InputError(fmt::format("settings.crop: {},{},{},{}: not inside the picture of {}x{} pixels",
+                                   crop->x, crop->y, crop->width, crop->height, size.x, size.y));
     view.crop_origin = {crop->x, crop->y};
     view.crop_size = {crop->width, crop->height};
   }

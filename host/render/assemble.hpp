@@ -2,7 +2,7 @@
 
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
-#include "render/light_gbuffer.hpp"
+#include "lighting/light_gbuffer.hpp"
 #include "render/pixel_sums.hpp"
 #include "render/render.hpp"
 

@@ -8,7 +8,7 @@
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
 #include "cl/device_error.hpp"
-#include "culling/fog_cull.hpp"
+#include "lights/fog_cull.hpp"
 #include "raster/bins.hpp"
 #include "render/compile_kernels.hpp"
 #include "render/count_picture.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/trace.hpp"
-#include "render/light_gbuffer.hpp"
+#include "lighting/light_gbuffer.hpp"
 
 namespace luciole {
 

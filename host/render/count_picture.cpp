@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "culling/exact_reason.hpp"
+#include "lights/exact_reason.hpp"
 
 namespace luciole {
 namespace {

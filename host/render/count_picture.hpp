@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
+#include "lighting/light_gbuffer.hpp"
+#include "lighting/stats.hpp"
 #include "raster/rasterize.hpp"
-#include "render/light_gbuffer.hpp"
-#include "render/stats.hpp"
 
 // What a picture's statistics count.
 namespace luciole {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/light_set.hpp"
+#include "lights/light_set.hpp"
 #include "render/render.hpp"
 
 // Layers that hold a part of a picture's light each, so that their sum is the picture: one for each group of

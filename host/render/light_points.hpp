@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/light_gbuffer.hpp"
+#include "lighting/light_gbuffer.hpp"
 #include "render/ready_picture.hpp"
 
 // The one loop by which all light is made: points are listed, lit, and added to what they are part of.

@@ -3,8 +3,8 @@
 #include "cl/device.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
+#include "lighting/stats.hpp"
 #include "render/render.hpp"
-#include "render/stats.hpp"
 #include "scene/scene.hpp"
 
 namespace luciole {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/machine_memory.hpp"
-#include "culling/exact_reason.hpp"
+#include "lights/exact_reason.hpp"
 #include "raster/bins.hpp"
 #include "render/assemble.hpp"
 

@@ -5,10 +5,10 @@
 
 #include "gbuffer/gbuffer.hpp"
 #include "raster/view.hpp"
-#include "render/features.hpp"
 #include "render/light_layers.hpp"
 #include "render/render.hpp"
 #include "scene/scene.hpp"
+#include "shade/features.hpp"
 
 namespace luciole {
 

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "render/lighting.hpp"
+#include "lighting/lighting.hpp"
 #include "render/plan.hpp"
 
 namespace luciole {

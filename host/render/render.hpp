@@ -8,11 +8,11 @@
 #include "cl/device.hpp"
 #include "gbuffer/gbuffer.hpp"
 #include "image/image.hpp"
+#include "lighting/kept_shadows.hpp"
+#include "lighting/stats.hpp"
 #include "raster/rasterize.hpp"
-#include "render/features.hpp"
-#include "render/stats.hpp"
 #include "scene/scene.hpp"
-#include "shadow/kept_shadows.hpp"
+#include "shade/features.hpp"
 
 namespace luciole {
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "scene/bounds.hpp"
-#include "shadow/shadow_sizes.hpp"
-#include "shadow/shadow_views.hpp"
+#include "shadow/maps/shadow_sizes.hpp"
+#include "shadow/maps/shadow_views.hpp"
 
 namespace luciole {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "raster/view.hpp"
-#include "render/features.hpp"
 #include "scene/scene.hpp"
-#include "shadow/shadow_method.hpp"
+#include "shade/features.hpp"
+#include "shadow/maps/shadow_method.hpp"
 
 namespace luciole {
 

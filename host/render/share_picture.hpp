@@ -4,10 +4,10 @@
 #include <string>
 
 #include "cl/device.hpp"
+#include "lighting/kept_shadows.hpp"
+#include "lighting/stats.hpp"
 #include "render/render.hpp"
-#include "render/stats.hpp"
 #include "scene/scene.hpp"
-#include "shadow/kept_shadows.hpp"
 
 namespace luciole {
 

@@ -11,8 +11,8 @@
 #include "image/exposure.hpp"
 #include "render/light_layers.hpp"
 #include "scene/validate_scene.hpp"
-#include "shadow/light_samples.hpp"
-#include "shadow/shadow_sizes.hpp"
+#include "shadow/exact/light_samples.hpp"
+#include "shadow/maps/shadow_sizes.hpp"
 
 namespace luciole {
 namespace {

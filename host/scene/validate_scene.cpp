@@ -269,7 +269,7 @@ bool areNegative(const glm::vec<N, float>& value) {
 }
 
 // Of lights and fog many numbers may be any: shading says what each gives, and it is finite
-// (tests/hard_cases).
+// (tests/pictures).
 
 std::string lightFault(const Light& light, std::size_t groups) {
   if (!isOneOf(light.kind, LightKind::kSpot)) return wrong("kind", int(light.kind), "a LightKind");

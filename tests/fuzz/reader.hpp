@@ -10,19 +10,19 @@
 #include "base/error.hpp"
 #include "gbuffer/gbuffer_input.hpp"
 #include "image/image.hpp"
-#include "image/light_mixer.hpp"
 #include "load/load_scene.hpp"
-#include "scale/scale_files.hpp"
-#include "scale/scale_log.hpp"
-#include "scale/scale_plot.hpp"
-#include "scale/scale_summary.hpp"
-#include "scale/scale_table.hpp"
 #include "scene/json/light_list.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/obj/mtl.hpp"
 #include "scene/pose.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"
+#include "tools/scale/scale_files.hpp"
+#include "tools/scale/scale_log.hpp"
+#include "tools/scale/scale_plot.hpp"
+#include "tools/scale/scale_summary.hpp"
+#include "tools/scale/scale_table.hpp"
+#include "tools/viewing/light_mixer.hpp"
 
 namespace luciole::test {
 
@@ -94,9 +94,9 @@ inline void readStrangersLights(const std::string& path) {
 }
 
 /// Reads a stranger's file as its extension says: .exr is a G-buffer and a picture of groups of lights, .mtl
-/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, all else a scene. A file
-/// that is refused in one line, or doesn't fit the machine, has been dealt with; anything else that goes wrong
-/// gets out of here.
+/// materials, .jsonl the log of an experiment, .csv a list of lights, .npy a picture, all else a scene. A
+/// file that is refused in one line, or doesn't fit the machine, has been dealt with; anything else that goes
+/// wrong gets out of here.
 inline void readStrangersFile(const std::string& path) {
   try {
     if (path.ends_with(".exr")) {

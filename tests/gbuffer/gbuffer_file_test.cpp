@@ -14,13 +14,13 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "cli/run_program.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "image/oiio.hpp"
 #include "image/read_texture.hpp"
 #include "scene/pose.hpp"
 #include "shared_files.hpp"
+#include "tools/cli/run_program.hpp"
 
 namespace luciole {
 namespace {

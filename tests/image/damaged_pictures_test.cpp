@@ -6,10 +6,10 @@
 #include <span>
 
 #include "base/error.hpp"
-#include "cli/run_program.hpp"
 #include "image/image.hpp"
 #include "image/read_texture.hpp"
 #include "shared_files.hpp"
+#include "tools/cli/run_program.hpp"
 
 namespace luciole::test {
 namespace {

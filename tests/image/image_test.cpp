@@ -209,7 +209,7 @@ TEST(Image, TheFormatMayBeNamedApartFromTheFile) {
   EXPECT_EQ(readText(folder / "b.exr").substr(0, 4), "\x89PNG");
   EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}, {.format = "pgn"}); }),
               HasSubstr("unknown format 'pgn'"));
-  EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}); }), HasSubstr("--format"));
+  EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}); }), HasSubstr("options.format"));
   EXPECT_EQ(filesIn(folder).size(), 2u);
 }
 

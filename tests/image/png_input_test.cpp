@@ -5,12 +5,12 @@
 #include <cstdint>
 
 #include "base/error.hpp"
-#include "cli/run_program.hpp"
 #include "image/image.hpp"
 #include "image/read_texture.hpp"
 #include "image/srgb.hpp"
 #include "png_chunk.hpp"
 #include "shared_files.hpp"
+#include "tools/cli/run_program.hpp"
 
 namespace luciole::test {
 namespace {

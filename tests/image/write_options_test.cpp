@@ -247,15 +247,15 @@ TEST(WriteOptions, WhatAFormatHasNoPlaceForIsRefusedBeforeAnyWork) {
                 HasSubstr(what));
   };
   for (const char* name : {"a.png", "a.tif", "a.hdr", "a.jpg", "a.webp"}) {
-    refuses(name, {.half = true}, "16-bit floats (--half), expected .exr");
-    refuses(name, {.compression = "zip"}, "(--compression zip), expected .exr");
+    refuses(name, {.half = true}, "16-bit floats (options.half), expected .exr");
+    refuses(name, {.compression = "zip"}, "(options.compression zip), expected .exr");
   }
   for (const char* name : {"a.exr", "a.tif", "a.jpg"})
-    refuses(name, {.compression = "small"}, "(--compression small), expected .png");
+    refuses(name, {.compression = "small"}, "(options.compression small), expected .png");
   for (const char* name : {"a.jpg", "a.bmp", "a.ppm", "a.hdr", "a.webp"})
-    refuses(name, {.alpha = true}, "coverage (--alpha)");
+    refuses(name, {.alpha = true}, "coverage (options.alpha)");
   for (const char* name : {"a.exr", "a.hdr", "a.jpg", "a.tga", "a.bmp", "a.webp"})
-    refuses(name, {.bits = 16}, "16-bit codes (--bits), expected .png or .tif");
+    refuses(name, {.bits = 16}, "16-bit codes (options.bits), expected .png or .tif");
   for (const char* name : {"a.exr", "a.hdr"}) refuses(name, {.bits = 8}, "8-bit codes");
   refuses("a.png", {.bits = 10}, "10-bit codes");
   EXPECT_TRUE(filesIn(folder).empty());

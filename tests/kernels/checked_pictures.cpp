@@ -11,11 +11,11 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "lighting/light_gbuffer.hpp"
 #include "raster/view.hpp"
-#include "render/clustered_light.hpp"
-#include "render/light_gbuffer.hpp"
-#include "render/pair_visibility.hpp"
 #include "scene/primitives.hpp"
+#include "shade/clustered_light.hpp"
+#include "tools/bench/pair_visibility.hpp"
 
 namespace luciole::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/embedded_files.hpp"
-#include "cli/run_program.hpp"
+#include "tools/cli/run_program.hpp"
 
 // The kernels under Oclgrind, which interprets them and reports data races between work-items, decisions on
 // values that were never written, and accesses outside a buffer.

@@ -1,4 +1,4 @@
-#include "culling/cull.hpp"
+#include "lights/cull.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "culling/light_tree.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "lights/light_tree.hpp"
 #include "scene/bounds.hpp"
 #include "single_precision.hpp"
 

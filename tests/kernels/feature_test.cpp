@@ -1,4 +1,4 @@
-#include "render/features.hpp"
+#include "shade/features.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "base/embedded_files.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "lighting/light_gbuffer.hpp"
 #include "load/load_scene.hpp"
-#include "render/light_gbuffer.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

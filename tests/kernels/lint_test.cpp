@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "kernels/probe.hpp"
-#include "render/features.hpp"
+#include "shade/features.hpp"
 #include "shared_files.hpp"
 
 // The kernels through a compiler that, unlike an OpenCL runtime's, warns.

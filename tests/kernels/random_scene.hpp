@@ -9,8 +9,8 @@
 #include <random>
 
 #include "gbuffer/gbuffer.hpp"
-#include "render/features.hpp"
 #include "scene/scene.hpp"
+#include "shade/features.hpp"
 
 // Random surfaces and lights that try everything shading does.
 namespace luciole::test {

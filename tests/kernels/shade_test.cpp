@@ -1,12 +1,12 @@
-#include "render/shade.hpp"
+#include "shade/shade.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "kernels/shade_bounds.hpp"
+#include "lighting/light_gbuffer.hpp"
 #include "reference/reference.hpp"
-#include "render/light_gbuffer.hpp"
 #include "scene/bounds.hpp"
 
 namespace luciole::test {

@@ -7,8 +7,8 @@
 
 #include "load/load_scene.hpp"
 #include "raster/rasterize.hpp"
-#include "shadow/draw_shadow_maps.hpp"
-#include "shadow/shadow_maps.hpp"
+#include "shadow/maps/draw_shadow_maps.hpp"
+#include "shadow/maps/shadow_maps.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

@@ -8,8 +8,8 @@
 
 #include "rays/ray_cast.hpp"
 #include "render_json.hpp"
-#include "shadow/shadow_maps.hpp"
-#include "shadow/texel_place.hpp"
+#include "shadow/maps/shadow_maps.hpp"
+#include "shadow/maps/texel_place.hpp"
 
 namespace luciole::test {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "raster/bins.hpp"
-#include "render/clustered_light.hpp"
 #include "render_json.hpp"
+#include "shade/clustered_light.hpp"
 
 namespace luciole::test {
 namespace {

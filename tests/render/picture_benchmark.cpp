@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lighting/light_gbuffer.hpp"
 #include "load/load_scene.hpp"
 #include "reference/reference.hpp"
-#include "render/light_gbuffer.hpp"
 #include "render/render.hpp"
 
 namespace luciole {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/shadow_scenes.hpp"
 #include "kernels/probe.hpp"
 #include "render_json.hpp"
+#include "tools/bench/shadow_scenes.hpp"
 
 // --shadows auto: which lights' shadows are exact, and which are told by maps.
 namespace luciole::test {

@@ -1,5 +1,5 @@
 // Layers that say which objects and materials a pixel's samples see. Whether Cryptomattes are as their
-// specification says tests/cli/cryptomatte_test.py tells.
+// specification says tests/tools/cli/cryptomatte_test.py tells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -96,7 +96,7 @@ std::string placeText(const std::vector<ChangeStep>& place, std::size_t steps) {
           ? ""
           : fmt::format("; it has {}", fmt::join(known.begin(), known.begin() + std::ptrdiff_t(told), ", "));
   if (known.size() > told) list += fmt::format(" and {} more", known.size() - told);
-  throw InputError(fmt::format("--set {}: {} has no {}{}", forMessage(change.text), file,
+  throw InputError(fmt::format("changes: {}: {} has no {}{}", forMessage(change.text), file,
                                placeText(change.place, steps), guess.empty() ? list : guess));
 }
 
@@ -168,7 +168,7 @@ std::vector<std::size_t> placesOf(const SceneChange& change, const std::vector<T
 template <class Read>
 void readAlone(const SceneChange& change, Json object, const Scene& scene, const Read& read) {
   if (change.place.size() > 3)
-    throw InputError(fmt::format("--set {}: of a mesh file whole values can be set, expected {}=...",
+    throw InputError(fmt::format("changes: {}: of a mesh file whole values can be set, expected {}=...",
                                  forMessage(change.text), placeText(change.place, 3)));
   if (change.place.size() == 3)
     object[change.place[2].key] = change.value;
@@ -247,7 +247,7 @@ std::vector<SceneChange> readChanges(const std::vector<std::string>& texts) {
   std::vector<SceneChange> changes;
   for (const std::string& text : texts) {
     std::size_t at = 0;
-    std::vector<ChangeStep> place = readSteps(text, at, "--set");
+    std::vector<ChangeStep> place = readSteps(text, at, "changes:");
     const std::string typed = text.substr(at + 1);
     Json value = Json::parse(typed, nullptr, false);
     changes.push_back({text, std::move(place), value.is_discarded() ? Json(typed) : std::move(value)});
@@ -312,7 +312,7 @@ void changeLoaded(std::vector<SceneChange>& changes, Scene& scene) {
       readSurroundings({&json, nullptr, scene.name, JsonNode::kNoIndex}, scene);
     } else {
       throw InputError(fmt::format(
-          "--set {}: of {} materials, lights, ambient, background, fog and lighting can be set, such as "
+          "changes: {}: of {} materials, lights, ambient, background, fog and lighting can be set, such as "
           "lights[0].intensity=2",
           forMessage(change.text), scene.name));
     }

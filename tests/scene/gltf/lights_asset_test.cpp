@@ -1,6 +1,6 @@
 // What luciole generate gltf-lights writes: valid by the rules of the glTF 2.0 specification, and the lights
 // that were asked for.
-#include "scene/gltf/lights_asset.hpp"
+#include "tools/assets/lights_asset.hpp"
 
 #include <cmath>
 #include <cstring>

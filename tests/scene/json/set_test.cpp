@@ -75,7 +75,7 @@ TEST(Set, TheLastOfSeveralForOnePlaceCounts) {
 
 TEST(Set, APlaceThatIsNotThereIsToldWithASuggestion) {
   EXPECT_EQ(faultOf("materials.bix.shininess=4"),
-            "--set materials.bix.shininess=4: scene.json has no materials.bix; did you mean box?");
+            "changes: materials.bix.shininess=4: scene.json has no materials.bix; did you mean box?");
   EXPECT_THAT(faultOf("lights[2].intensity=1"), HasSubstr("has no lights[2]; it has lights[0] to lights[1]"));
   EXPECT_THAT(faultOf("cameras.abov.fov_y=30"), HasSubstr("did you mean above?"));
   EXPECT_THAT(faultOf("camera.fov_y=30"), HasSubstr("has no camera; did you mean cameras?"));

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "cl/buffer.hpp"
+#include "kernels/shared.h"
+#include "scene/scene.hpp"
+#include "shadow/maps/shadow_maps.hpp"
+
+namespace luciole {
+
+/// A picture's shadow maps, on the host and on the device. Buffers are borrowed from the maps, so it can't be
+/// copied.
+struct MapScene {
+  ShadowMaps host;
+  Buffer<const ShadowMap> maps;
+  Buffer<const ShadowFace> faces;
+  Buffer<const ShadowTexel> texels;  ///< those drawn so far
+
+  MapScene() = default;
+  MapScene(const MapScene&) = delete;
+  MapScene& operator=(const MapScene&) = delete;
+};
+
+/// Makes the device's buffers of what is planned and drawn. Throws MachineError.
+void borrowMaps(Device& device, MapScene& maps);
+
+/// Draws those parts of the maps that lookups need and that aren't drawn yet, and brings the device's buffers
+/// up to date. needed: as findTexels() returns it. Throws as drawNeeded does.
+void drawMaps(Device& device, const Scene& scene, std::span<const std::uint32_t> needed, MapScene& maps);
+
+/// Takes the maps back from the device.
+ShadowMaps takeMaps(MapScene& maps);
+
+}  // namespace luciole

@@ -1,0 +1,119 @@
+#include "lighting/lighting.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "lights/exact_reason.hpp"
+
+namespace luciole {
+namespace {
+
+float4 color4(const glm::vec3& color) { return {color.x, color.y, color.z, 0}; }
+
+ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettings& settings) {
+  ShadeFrame frame{};
+  frame.ambient = color4(scene.lighting ? scene.ambient : glm::vec3(1.0f));
+  frame.background = color4(scene.background);
+  frame.fog_color = color4(scene.fog.color);
+  frame.fog_density = color4(scene.fog.density);
+  frame.eye = camera.orthographic ? float4{0, 0, 1, 0} : float4{0, 0, 0, 1};
+  frame.fog_end = scene.fog.end;
+  frame.fog_scale = 1.0f / (scene.fog.end - scene.fog.start);
+  frame.fog_mode = static_cast<uint>(scene.fog.mode);
+  frame.fog_radial = scene.fog.radial;
+  frame.model = static_cast<uint>(settings.model);
+  return frame;
+}
+static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
+              int(FogMode::kExp2) == kFogExp2);
+
+/// The clusters of these lights in the camera's view space. color: Light::diffuse or Light::specular.
+LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::vector<std::uint32_t>& chosen,
+                         glm::vec3 Light::*color) {
+  const glm::dmat4 world_to_view = worldToView(camera);
+  std::vector<UnboundedLight> lights(chosen.size());
+  tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
+    const Light& light = scene.lights[chosen[i]];
+    lights[i] = {glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), glm::dvec3(light.*color),
+                 light.attenuation.z};
+  });
+  return buildLightClusters(lights);
+}
+
+/// The clusters of the lights that some may stand for. highlights: surfaces have them.
+ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
+                      const ShadeSettings& settings) {
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
+    if (exactReason(scene.lights[i], lightUse(settings)) == ExactReason::kNone) chosen.push_back(i);
+  const bool one_color = std::all_of(chosen.begin(), chosen.end(), [&](std::uint32_t light) {
+    return scene.lights[light].diffuse == scene.lights[light].specular;
+  });
+  ClusterSet set;
+  set.diffuse = clustersOf(scene, camera, chosen, &Light::diffuse);
+  if (highlights && !one_color) set.specular = clustersOf(scene, camera, chosen, &Light::specular);
+  set.lights = chosen.size();
+  set.light_error = settings.light_error;
+  return set;
+}
+
+/// Fills in the picture's lights. Shadow maps are planned.
+void prepareLightSet(Device& device, const Scene& scene, const Camera& camera, const ShadeSettings& settings,
+                     const Lighting& lighting, LightSet& set) {
+  if (scene.lighting) {
+    const bool clustered = lighting.features.has(Feature::kClusteredLights);
+    if (clustered)
+      set.clusters =
+          clusterSet(scene, camera, lighting.features.has(Feature::kClusteredHighlights), settings);
+    if (set.clusters.lights < scene.lights.size()) set.order = spatialOrder(scene.lights);
+    if (clustered)
+      std::erase_if(set.order, [&](std::uint32_t light) {
+        return exactReason(scene.lights[light], lightUse(settings)) == ExactReason::kNone;
+      });
+    set.lights = prepareLights(scene, set.order, camera, lighting.maps.host.map_of_light);
+    if (lighting.features.has(Feature::kExact))
+      for (std::size_t i = 0; i < set.order.size(); ++i) {
+        const bool casts = shadowWay(scene, set.order[i], settings) == ShadowWay::kBeams;
+        set.beam_lights.push_back(beamLight(scene.lights[set.order[i]], casts, lighting.beams));
+        if (casts) set.lights[i].shadow = kExactShadow;
+      }
+  }
+  finishLightSet(device, set);
+}
+
+}  // namespace
+
+void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
+                     const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
+                     Stats& stats, KeptShadows* kept) {
+  KeptShadows none;
+  if (!kept) kept = &none;
+  lighting.features = features;
+  lighting.math_defines = mathDefines(settings);
+  lighting.unlit = !scene.lighting;
+  lighting.lights.frame = makeFrame(scene, camera, settings);
+  lighting.group_log2 = groupLog2(settings.tile_size);
+  if (features.shadowMaps())
+    timed(stats, Stage::kShadowMaps, [&] {
+      lighting.maps.host =
+          planShadowMaps(scene, view, settings.shadows, settings.shadow_limits, settings.shadow_ways);
+      takeMaps(scene, *kept, lighting.maps.host);
+    });
+  if (features.has(Feature::kExact))
+    timed(stats, Stage::kTriangleTree, [&] {
+      updateTree(scene, glm::dvec3(camera.camera_to_world[3]), features.has(Feature::kHoles), *kept);
+    });
+  timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
+  timed(stats, Stage::kPrepareLights, [&] {
+    if (features.has(Feature::kExact))
+      prepareBeams(device, camera, kept->tree, features.has(Feature::kHoles) ? kept->masks : nullptr,
+                   features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
+    prepareLightSet(device, scene, camera, settings, lighting, lighting.lights);
+    borrowMaps(device, lighting.maps);
+  });
+}
+
+}  // namespace luciole

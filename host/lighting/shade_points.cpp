@@ -1,0 +1,46 @@
+#include "lighting/stages.hpp"
+#include "shade/shade.hpp"
+
+namespace luciole {
+namespace {
+
+std::string shadeDefines(const StageInput& input) {
+  return featureDefines(input.pass.features) + input.lighting.math_defines;
+}
+
+}  // namespace
+
+void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,
+                  const Buffer<float>& image) {
+  const MapScene& maps = input.lighting.maps;
+  shade(input.device, shadeDefines(input),
+        {.frame = frame,
+         .gbuffer = input.points.buffers,
+         .lights = input.pass.lights.light_buffer,
+         .lists = input.lists,
+         .shadow_maps = maps.maps,
+         .shadow_faces = maps.faces,
+         .shadow_texels = maps.texels,
+         .pair_bits = pairs.pair_bits,
+         .ray_bits = pairs.ray_bits,
+         .first_share = pairs.first_share,
+         .shares = pairs.shares,
+         .image = image});
+}
+
+TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const Buffer<float>& image) {
+  const int tiles_x = input.pass.gbuffer.tiles_x, tiles_y = input.pass.gbuffer.tiles_y;
+  const LightSet& lights = input.pass.lights;
+  return shadeTiles(input.device, shadeDefines(input),
+                    {.frame = frame,
+                     .gbuffer = input.points.buffers,
+                     .tiles_x = tiles_x,
+                     .tiles_y = tiles_y,
+                     .block = chooseBlock(tiles_x, tiles_y, input.device.description.compute_units),
+                     .lights = lights.light_buffer,
+                     .tree = lights.tree_buffer,
+                     .tree_stride = lights.tree.stride,
+                     .image = image});
+}
+
+}  // namespace luciole

@@ -1,0 +1,266 @@
+#include "lights/light_clusters.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numeric>
+
+namespace luciole {
+namespace {
+
+constexpr std::size_t kRowFloats = std::size_t(kClusterFields) * kClusterSlots;
+constexpr std::size_t kLightRowFloats = std::size_t(kLightFields) * kClusterSlots;
+/// Lights that are split in a thread of their own.
+constexpr std::size_t kParallelLights = 1 << 14;
+/// Moments that bound something are at least this, so that none is lost below the least float.
+constexpr double kLeastMoment = 1e-30;
+
+/// A number's upper 24 bits, which a float holds: G. Veltkamp's splitting. Not by way of a float, because GCC
+/// 12 takes x − double(float(x)) for 0 where it makes vectors of it.
+glm::dvec3 upperHalf(const glm::dvec3& x) {
+  const glm::dvec3 scaled = (0x1p29 + 1) * x;
+  return scaled - (scaled - x);
+}
+
+/// Sets a light's fields, which lie kClusterSlots floats apart from `out` on.
+void setLight(const UnboundedLight& light, float* out) {
+  const auto field = [out](std::size_t number) -> float& { return out[number * kClusterSlots]; };
+  const glm::dvec3 upper = upperHalf(light.position);
+  const glm::vec3 place(upper), rest(light.position - upper), color(light.color / light.quadratic);
+  for (int axis = 0; axis < 3; ++axis) {
+    field(kLightPlace + std::size_t(axis)) = place[axis];
+    field(kLightRest + std::size_t(axis)) = rest[axis];
+    field(kLightColor + std::size_t(axis)) = color[axis];
+  }
+  field(kLightFalloff) = float(0x1p100 * light.quadratic);
+  field(kLightMost) = std::max({color.x, color.y, color.z});
+}
+
+/// Calls `visit(level, levels, first)` for each level of the tree whose nodes have rows: with the levels that
+/// these have, and the number of the first of the 2^level rows. Returns how many rows there are.
+template <class Visit>
+std::size_t forEachRowLevel(unsigned tree_levels, Visit&& visit) {
+  std::size_t first = 0;
+  for (unsigned level = 0, levels = CLUSTER_TOP_LEVELS(tree_levels); level < tree_levels;
+       level += levels, levels = 3) {
+    visit(level, levels, first);
+    first += std::size_t(1) << level;
+  }
+  return first;
+}
+
+/// Orders order[begin, end) so that each node of the tree below (level, index) holds its part.
+void split(std::span<const UnboundedLight> lights, std::vector<std::uint32_t>& order, unsigned levels,
+           unsigned level, std::size_t index) {
+  const auto at = [&](unsigned l, std::size_t i) {
+    return order.begin() + std::ptrdiff_t(clusterBegin(order.size(), l, i));
+  };
+  const auto begin = at(level, index), end = at(level, index + 1);
+  if (level == levels) {
+    // The order within a leaf would be the library's.
+    std::sort(begin, end);
+    return;
+  }
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (auto i = begin; i != end; ++i) {
+    low = glm::min(low, lights[*i].position);
+    high = glm::max(high, lights[*i].position);
+  }
+  const glm::dvec3 side = high - low;
+  const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+  std::nth_element(begin, at(level + 1, 2 * index + 1), end, [&](std::uint32_t a, std::uint32_t b) {
+    const double x = lights[a].position[axis], y = lights[b].position[axis];
+    return x != y ? x < y : a < b;
+  });
+  const auto half = [&](std::size_t child) { split(lights, order, levels, level + 1, 2 * index + child); };
+  if (std::size_t(end - begin) < kParallelLights) {
+    half(0);
+    half(1);
+  } else {
+    tbb::parallel_invoke([&] { half(0); }, [&] { half(1); });
+  }
+}
+
+/// Lights that sums take side by side: as many as a vector has doubles. Compilers may not reorder sums.
+constexpr std::size_t kAbreast = 8;
+using Doubles = std::array<double, kAbreast>;
+
+double total(const Doubles& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
+
+/// Planes of the lights' places, and of their colours as the device has them.
+struct LightPlanes {
+  std::array<std::vector<double>, 3> position;
+  std::array<std::vector<float>, 3> color;
+};
+
+/// A bound as a float, rounded up.
+float atLeast(double bound) { return std::nextafter(float(std::max(bound, kLeastMoment)), INFINITY); }
+
+/// Sums over lights at δ: of q, qδ, qδδ, q|δ| and q|δ|³, and of q times the solid harmonics of the degrees 2
+/// to 4, so normalized that the squares of those of degree j add to |δ|²ʲ (G. Racah's).
+enum {
+  kAbsolute1 = kMoments,
+  kAbsolute3,
+  kDegree2,
+  kDegree3 = kDegree2 + 5,
+  kDegree4 = kDegree3 + 7,
+  kSums = kDegree4 + 9
+};
+
+/// What the sums add for a light of q = 1.
+std::array<double, kSums> summands(double x, double y, double z) {
+  const double xx = x * x, yy = y * y, zz = z * z, across = xx + yy, d2 = across + zz, d = std::sqrt(d2);
+  const double s3 = 1.7320508075688772, s5 = 2.23606797749979, s6 = 2.449489742783178,
+               s10 = 3.1622776601683795, s15 = 3.872983346207417, s35 = 5.916079783099616,
+               s70 = 8.366600265340756;
+  return {1, x, y, z, xx, x * y, x * z, yy, y * z, zz, d, d2 * d,
+          // degree 2
+          0.5 * (2 * zz - across), s3 * x * z, s3 * y * z, s3 * x * y, 0.5 * s3 * (xx - yy),
+          // degree 3
+          0.5 * z * (2 * zz - 3 * across), 0.25 * s6 * x * (4 * zz - across),
+          0.25 * s6 * y * (4 * zz - across), 0.5 * s15 * z * (xx - yy), s15 * x * y * z,
+          0.25 * s10 * x * (xx - 3 * yy), 0.25 * s10 * y * (3 * xx - yy),
+          // degree 4
+          0.125 * (8 * zz * zz - 24 * zz * across + 3 * across * across),
+          0.25 * s10 * x * z * (4 * zz - 3 * across), 0.25 * s10 * y * z * (4 * zz - 3 * across),
+          0.25 * s5 * (xx - yy) * (6 * zz - across), 0.5 * s5 * x * y * (6 * zz - across),
+          0.25 * s70 * x * z * (xx - 3 * yy), 0.25 * s70 * y * z * (3 * xx - yy),
+          0.125 * s35 * (xx * xx - 6 * xx * yy + yy * yy), 0.5 * s35 * x * y * (xx - yy)};
+}
+
+/// A point amid the lights from `begin` to `end`: their mean place weighted by their light, as floats have
+/// it.
+glm::dvec3 centreOf(const LightPlanes& lights, std::size_t begin, std::size_t end) {
+  std::array<Doubles, 4> sums{};
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t part = (i - begin) % kAbreast;
+    const double weight = double(lights.color[0][i]) + lights.color[1][i] + lights.color[2][i];
+    for (std::size_t axis = 0; axis < 3; ++axis) sums[axis][part] += weight * lights.position[axis][i];
+    sums[3][part] += weight;
+  }
+  glm::dvec3 centre;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double mean = total(sums[std::size_t(axis)]) / total(sums[3]);
+    centre[axis] = float(std::isfinite(mean) ? mean : double(lights.position[std::size_t(axis)][begin]));
+  }
+  return centre;
+}
+
+/// Sets a cluster's fields, which lie kClusterSlots floats apart from `out` on, to the lights from `begin` to
+/// `end`. Where a float doesn't hold one of them, a bound is infinite, so that nothing stands for its lights.
+void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, float* out) {
+  const auto field = [out](std::size_t number) -> float& { return out[number * kClusterSlots]; };
+  const glm::dvec3 centre = centreOf(lights, begin, end);
+  std::array<std::array<Doubles, kSums>, 3> sums{};
+  std::array<Doubles, 4> farthest{};  // |xyz| and the square of the distance
+  for (std::size_t first = begin; first < end; first += kAbreast) {
+    // Those beyond the end are taken for black ones at the centre.
+    std::array<Doubles, 3> way{}, color{};
+    for (std::size_t i = 0; i < std::min(kAbreast, end - first); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        way[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
+        color[axis][i] = lights.color[axis][first + i];
+      }
+    std::array<Doubles, kSums> each;
+    for (std::size_t i = 0; i < kAbreast; ++i) {
+      const double x = way[0][i], y = way[1][i], z = way[2][i];
+      const std::array<double, kSums> terms = summands(x, y, z);
+      for (std::size_t m = 0; m < kSums; ++m) each[m][i] = terms[m];
+      farthest[0][i] = std::max(farthest[0][i], std::abs(x));
+      farthest[1][i] = std::max(farthest[1][i], std::abs(y));
+      farthest[2][i] = std::max(farthest[2][i], std::abs(z));
+      farthest[3][i] = std::max(farthest[3][i], x * x + y * y + z * z);
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t m = 0; m < kSums; ++m)
+        for (std::size_t i = 0; i < kAbreast; ++i) sums[c][m][i] += color[c][i] * each[m][i];
+  }
+  const auto most = [](const Doubles& values) { return *std::max_element(values.begin(), values.end()); };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    field(kClusterCentre + axis) = float(centre[int(axis)]);
+    field(kClusterExtent + axis) = atLeast(most(farthest[axis]));
+  }
+  field(kClusterRadius) = atLeast(std::sqrt(most(farthest[3])));
+  std::array<double, 8> bounds{};  // as in shared.h, from kClusterAbsolute on
+  bool finite = true;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::array<double, kSums> moments;
+    for (std::size_t m = 0; m < kSums; ++m) moments[m] = total(sums[c][m]);
+    const auto norm = [&](int first, int count) {
+      double square = 0;
+      for (int m = first; m < first + count; ++m) square += moments[std::size_t(m)] * moments[std::size_t(m)];
+      return std::sqrt(square);
+    };
+    const double second = moments[kMoment2] + moments[kMoment2 + 3] + moments[kMoment2 + 5];
+    const std::array<double, 8> of_channel{moments[0],          moments[kAbsolute1], second,
+                                           moments[kAbsolute3], norm(kMoment1, 3),   norm(kDegree2, 5),
+                                           norm(kDegree3, 7),   norm(kDegree4, 9)};
+    for (std::size_t b = 0; b < bounds.size(); ++b) bounds[b] = std::max(bounds[b], of_channel[b]);
+    for (std::size_t m = 0; m < kMoments; ++m) {
+      float& moment = field(kClusterMoments + c * kMoments + m);
+      moment = float(moments[m]);
+      finite = finite && std::isfinite(moment);
+      if (!std::isfinite(moment)) moment = 0;
+    }
+  }
+  for (std::size_t b = 0; b < bounds.size(); ++b) field(kClusterAbsolute + b) = atLeast(bounds[b]);
+  if (!finite) field(kClusterAbsolute) = INFINITY;
+}
+
+}  // namespace
+
+LightClusters buildLightClusters(std::span<const UnboundedLight> lights) {
+  LightClusters clusters;
+  const std::size_t count = lights.size();
+  while ((std::size_t(kLeafLights) << clusters.levels) < count) ++clusters.levels;
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  if (count > 0) split(lights, order, clusters.levels, 0, 0);
+
+  LightPlanes planes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    planes.position[axis].resize(count);
+    planes.color[axis].resize(count);
+  }
+  clusters.lights = count;
+  const std::size_t leaves = std::size_t(1) << clusters.levels;
+  clusters.light_rows.resize(std::max<std::size_t>(leaves / 2, 1) * kLightRowFloats);
+  tbb::parallel_for(std::size_t(0), clusters.light_rows.size() / kLightRowFloats, [&](std::size_t row) {
+    float* const out = &clusters.light_rows[row * kLightRowFloats];
+    std::fill_n(out, kLightRowFloats, 0.0f);
+    for (std::size_t leaf = 2 * row; leaf < std::min(2 * row + 2, leaves); ++leaf) {
+      const std::size_t begin = clusterBegin(count, clusters.levels, leaf);
+      for (std::size_t i = begin; i < clusterBegin(count, clusters.levels, leaf + 1); ++i) {
+        const UnboundedLight& light = lights[order[i]];
+        float* const slot = out + leaf % 2 * kLeafLights + (i - begin);
+        setLight(light, slot);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          planes.position[axis][i] = light.position[int(axis)];
+          planes.color[axis][i] = slot[(kLightColor + axis) * kClusterSlots];
+        }
+      }
+    }
+  });
+  const auto uncounted = [](unsigned, unsigned, std::size_t) {};
+  clusters.rows.resize(forEachRowLevel(clusters.levels, uncounted) * kRowFloats);
+  forEachRowLevel(clusters.levels, [&](unsigned level, unsigned levels, std::size_t first_row) {
+    tbb::parallel_for(std::size_t(0), std::size_t(1) << level, [&](std::size_t row) {
+      float* out = &clusters.rows[(first_row + row) * kRowFloats];
+      std::fill_n(out, kRowFloats, 0.0f);
+      for (unsigned below = 1, slot = 0; below <= levels; ++below)
+        for (std::size_t i = 0; i < std::size_t(1) << below; ++i, ++slot) {
+          const unsigned at = level + below;
+          const std::size_t node = (row << below) + i;
+          setCluster(planes, clusterBegin(count, at, node), clusterBegin(count, at, node + 1), out + slot);
+        }
+    });
+  });
+  return clusters;
+}
+
+}  // namespace luciole

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "cl/buffer.hpp"
+#include "kernels/shared.h"
+#include "lights/light_clusters.hpp"
+#include "lights/light_tree.hpp"
+#include "lights/shade_lights.hpp"
+
+namespace luciole {
+
+/// Clusters that stand for lights, with Feature::kClusteredLights only.
+struct ClusterSet {
+  LightClusters diffuse;
+  LightClusters specular;  ///< of the same lights by their specular colours; empty where these are no others
+  std::size_t lights = 0;  ///< that they stand for
+  float light_error = 0;   ///< see ShadeSettings
+};
+
+/// The light that a G-buffer is lit by, as the kernels take it: lights, and what shines beside them. A layer
+/// of light is another one. Buffers are borrowed from the members before them, so it can be moved, but not
+/// copied.
+struct LightSet {
+  /// Ambient light, fog and background; all but plane_stride and texel_count, which depend on the G-buffer.
+  ShadeFrame frame{};
+  LightArray lights;                   ///< those that are summed by themselves, in the order of a Z curve
+  std::vector<std::uint32_t> order;    ///< the scene's index of each
+  std::vector<BeamLight> beam_lights;  ///< one for each, with Feature::kExact only
+  LightTree tree;
+  ClusterSet clusters;
+  Buffer<const ShadeLight> light_buffer;
+  Buffer<const float> tree_buffer;
+  Buffer<const BeamLight> beam_buffer;
+
+  LightSet() = default;
+  LightSet(LightSet&&) = default;
+};
+
+/// Sets what follows from the lights: the frame's count, the tree, and the device's buffers. Throws
+/// MachineError.
+void finishLightSet(Device& device, LightSet& set);
+
+/// The bytes of its lights, their tree and clusters on the device.
+std::size_t bytesOf(const LightSet& set);
+
+}  // namespace luciole

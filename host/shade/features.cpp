@@ -1,0 +1,254 @@
+#include "shade/features.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/shared.h"
+#include "raster/lift.hpp"
+#include "scene/tangents.hpp"
+#include "shade/clustered_light.hpp"
+#include "shadow/maps/shadow_views.hpp"
+
+namespace luciole {
+
+const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
+    {"POINT_LIGHTS", "point lights", "lights with a place"},
+    {"DIRECTIONAL_LIGHTS", "directional lights", "lights with a direction only"},
+    {"SPOT_LIGHTS", "spot lights", "lights with a place and a cone"},
+    {"SPOT_EXPONENT", "spot exponent", "OpenGL's cosine power inside a spot"},
+    {"SPOT_CONE", "spot cone", "glTF's ramp between two cones"},
+    {"ATTENUATION", "attenuation", "constant, linear and quadratic attenuation"},
+    {"SMOOTH_WINDOW", "smooth window", "ranges that fade as (1 - (d/r)^4)^2"},
+    {"KHR_WINDOW", "KHR window", "ranges that fade as 1 - (d/r)^4"},
+    {"SPECULAR", "specular", "highlights"},
+#define MODEL_ROW(name, typed, shown, meaning, diffuse, specular) {"k" #name "Model", shown, meaning},
+    EACH_MODEL(MODEL_ROW)
+#undef MODEL_ROW
+        {"AMBIENT", "ambient", "ambient reflection"},
+    {"LIGHT_AMBIENT", "light ambient", "ambient light of single lights"},
+    {"EMISSION", "emission", "surfaces that glow"},
+    {"PARALLEL_SHADOWS", "parallel shadows", "shadow maps of directional lights"},
+    {"PERSPECTIVE_SHADOWS", "perspective shadows", "shadow maps of narrow spots"},
+    {"CUBE_SHADOWS", "cube shadows", "shadow maps of point lights and wide spots"},
+    {"PCF", "PCF", "filtered shadow lookups"},
+    {"SOFT", "soft shadows", "shadow lookups as wide as the light's size makes them"},
+    {"EXACT", "exact shadows", "shadows known for each pixel and light beforehand"},
+    {"SOFT_EXACT", "soft exact shadows", "exact shadows of samples of lights of a size"},
+    {"HOLES", "holes", "textures with holes, through which light shines"},
+    {"LIFT", "lifted shadows", "shadow tests that start on the smooth surface above a facet"},
+    {"NORMAL_MAPS", "normal maps", "lights behind a surface, which a bent normal may face, are not seen"},
+    {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
+    {"FOG_EXP", "exp fog", "exp(-density z)"},
+    {"FOG_EXP2", "exp2 fog", "exp(-(density z)^2)"},
+    {"FOG_PER_CHANNEL", "fog per channel", "a density for each colour channel"},
+    {"FOG_RADIAL", "radial fog", "fog by distance instead of depth"},
+    {"PARALLEL_VIEW", "parallel view", "an orthographic camera's constant view vector"},
+    {"LIGHT_LISTS", "light lists", "lists of the lights that matter to a few pixels, instead of all lights"},
+    {"LONG_SUMS", "long sums", "more lights than float adds up one by one"},
+    {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
+    {"CLUSTERED_LIGHTS", "clustered lights", "clusters that stand for lights, with a bound of the error"},
+    {"CLUSTERED_HIGHLIGHTS", "clustered highlights", "highlights of clusters that stand for lights"},
+    {"MATERIAL_MODELS", "material models", "surfaces with models of their own"},
+}};
+
+std::vector<std::string> featureNames(const FeatureSet& features) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    if (features.has(static_cast<Feature>(i))) names.push_back(kFeatureTable[i].name);
+  return names;
+}
+
+SurfaceTraits materialTraits(const Scene& scene) {
+  SurfaceTraits traits;
+  traits.normal_maps = hasNormalMaps(scene);
+  for (const Material& material : scene.materials) {
+    traits.specular |= material.specular != glm::vec3(0.0f);
+    traits.emission |= material.emission != glm::vec3(0.0f);
+  }
+  const bool shadows =
+      std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.shadow; });
+  traits.smooth = shadows && hasBentCorners(scene);
+  traits.models = modelChoices(scene);
+  return traits;
+}
+
+void chooseModel(const ModelChoices& choices, ShadeSettings& settings) {
+  ModelChoices models = choices;  // with the picture's in the place of none
+  if (models[0]) models.set(modelNumber(settings.model));
+  models.reset(0);
+  settings.material_models = models.count() > 1;
+  for (const Model model : kAllModels)
+    if (models.count() == 1 && models[modelNumber(model)]) settings.model = model;
+}
+
+ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings) {
+  if (!scene.lights[light].shadow || settings.shadows == ShadowMethod::kOff) return ShadowWay::kNone;
+  if (settings.shadows == ShadowMethod::kExact || settings.shadows == ShadowMethod::kSoftExact)
+    return ShadowWay::kBeams;
+  if (settings.shadows != ShadowMethod::kAuto) return ShadowWay::kMap;
+  return settings.shadow_ways.empty() ? ShadowWay::kBeams : settings.shadow_ways[light];
+}
+
+LightUse lightUse(const ShadeSettings& settings) {
+  return {settings.material_models ? std::nullopt : std::optional(settings.model),
+          settings.shadows != ShadowMethod::kOff};
+}
+
+bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                     const ShadeSettings& settings) {
+  // Clusters know nothing of what stands behind a surface that a bent normal faces.
+  if (!scene.lighting || !(settings.light_error > 0) || surfaces.normal_maps) return false;
+  const auto counts = countReasons(scene.lights, lightUse(settings));
+  const std::size_t lights = counts[std::size_t(ExactReason::kNone)];
+  if (settings.always_clusters) return lights > 0;
+  return clustersPay({lights, settings.light_error, surfaces.specular}, view);
+}
+
+FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
+                          const ShadeSettings& settings, bool clustered) {
+  FeatureSet features;
+  features.set(Feature::kEmission, surfaces.emission);
+  features.set(Feature::kParallelView, camera.orthographic);
+  switch (scene.fog.mode) {
+    case FogMode::kNone:
+      break;
+    case FogMode::kLinear:
+      features.set(Feature::kFogLinear);
+      break;
+    case FogMode::kExp:
+      features.set(Feature::kFogExp);
+      break;
+    case FogMode::kExp2:
+      features.set(Feature::kFogExp2);
+      break;
+  }
+  if (scene.fog.mode != FogMode::kNone) {
+    const glm::vec3 density = scene.fog.density;
+    features.set(Feature::kFogRadial, scene.fog.radial);
+    features.set(Feature::kFogPerChannel,
+                 scene.fog.mode != FogMode::kLinear && (density.x != density.y || density.x != density.z));
+  }
+  if (!scene.lighting) {
+    features.set(Feature::kAmbient);  // unlit: diffuse colour under an ambient light of 1
+    return features;
+  }
+  bool any_specular = false, clusters_specular = false, any_cone = false, any_exponent = false;
+  std::size_t summed = 0;  // lights that are summed by themselves
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    const bool in_clusters = clustered && exactReason(light, lightUse(settings)) == ExactReason::kNone;
+    (in_clusters ? clusters_specular : any_specular) |= light.specular != glm::vec3(0.0f);
+    if (in_clusters) continue;
+    ++summed;
+    features.set(light.kind == LightKind::kPoint         ? Feature::kPointLights
+                 : light.kind == LightKind::kDirectional ? Feature::kDirectionalLights
+                                                         : Feature::kSpotLights);
+    if (light.kind == LightKind::kSpot) {
+      (light.falloff == SpotFalloff::kCone ? any_cone : any_exponent) = true;
+      if (light.exponent != 0) features.set(Feature::kSpotExponent);
+    }
+    if (light.kind != LightKind::kDirectional) {
+      if (light.attenuation != glm::vec3(1, 0, 0)) features.set(Feature::kAttenuation);
+      if (std::isfinite(light.range))
+        features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);
+    }
+    if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
+    const ShadowWay way = shadowWay(scene, i, settings);
+    if (way == ShadowWay::kNone) continue;
+    features.set(way == ShadowWay::kBeams                ? Feature::kExact
+                 : usesCubeMap(light)                    ? Feature::kCubeShadows
+                 : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
+                                                         : Feature::kPerspectiveShadows);
+    features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
+    features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
+    if (settings.shadows == ShadowMethod::kSoftExact &&
+        (light.kind == LightKind::kDirectional ? light.half_angle : light.radius) > 0)
+      features.set(Feature::kSoftExact);
+    features.set(Feature::kOutputShadow, settings.shadow_layer);
+  }
+  features.set(Feature::kLift, surfaces.smooth && features.shadows());
+  features.set(Feature::kNormalMaps, surfaces.normal_maps && !scene.lights.empty());
+  features.set(Feature::kHoles,
+               features.has(Feature::kExact) &&
+                   std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const Material& material) { return material.alpha_cutoff > 0; }));
+  features.set(Feature::kSpotCone, any_cone);
+  // A spot with an exponent of 0 needs no code of its own, unless cones are compiled: then the kernel has to
+  // tell it from a cone at run time.
+  if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
+  features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
+  features.set(Feature::kSpecular, surfaces.specular && any_specular);
+  const bool lit = !scene.lights.empty();
+  if (!settings.material_models || surfaces.models[0]) features.set(featureOf(settings.model), lit);
+  if (settings.material_models)
+    for (const Model model : kAllModels)
+      if (surfaces.models[modelNumber(model)]) features.set(featureOf(model), lit);
+  features.set(Feature::kMaterialModels, settings.material_models && lit);
+  features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
+  features.set(Feature::kLongSums, summed > kSumBlock);
+  // What clusters give a pixel reaches the shading kernels as light that the surface emits.
+  features.set(Feature::kClusteredLights, clustered);
+  features.set(Feature::kClusteredHighlights, surfaces.specular && clusters_specular);
+  if (clustered) features.set(Feature::kEmission);
+  return features;
+}
+
+FeatureSet lookupFeatures(const FeatureSet& features) {
+  FeatureSet lookups;
+  for (const Feature feature : {Feature::kParallelShadows, Feature::kPerspectiveShadows,
+                                Feature::kCubeShadows, Feature::kLift, Feature::kLightLists})
+    lookups.set(feature, features.has(feature));
+  return lookups;
+}
+
+FeatureSet beamFeatures(const FeatureSet& features) {
+  FeatureSet beams;
+  for (const Feature feature :
+       {Feature::kExact, Feature::kSoftExact, Feature::kHoles, Feature::kLift, Feature::kLightLists})
+    beams.set(feature, features.has(feature));
+  return beams;
+}
+
+FeatureSet clusterFeatures(const FeatureSet& features) {
+  FeatureSet kept;
+  for (const Feature feature : {Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp,
+                                Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial,
+                                Feature::kClusteredLights, Feature::kClusteredHighlights})
+    kept.set(feature, features.has(feature));
+  for (const Model model : kAllModels) kept.set(featureOf(model), features.has(featureOf(model)));
+  kept.set(Feature::kPointLights);
+  kept.set(Feature::kAttenuation);
+  return kept;
+}
+
+PlaneSet neededPlanes(const FeatureSet& features) {
+  return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights) ||
+                      features.has(Feature::kOrenNayar),  // for the shininess
+          .ambient = features.has(Feature::kAmbient),
+          .emission = features.has(Feature::kEmission),
+          .geometric_normal = features.shadowMaps() || features.has(Feature::kNormalMaps),
+          .lift = features.has(Feature::kLift),
+          .unbent = features.has(Feature::kNormalMaps),
+          .model = features.has(Feature::kMaterialModels)};
+}
+
+std::string featureDefines(const FeatureSet& features) {
+  unsigned models = 0;
+  for (const Model model : kAllModels) models |= unsigned(features.has(featureOf(model))) << unsigned(model);
+  std::string options = fmt::format("-DMODELS={}u ", models);
+  for (std::size_t i = 0; i < kFeatureCount; ++i) {
+    const auto feature = static_cast<Feature>(i);
+    if (!isModel(feature))
+      options += fmt::format("-D{}={} ", kFeatureTable[i].define, int(features.has(feature)));
+  }
+  return options;
+}
+
+std::string mathDefines(const ShadeSettings& settings) {
+  return fmt::format("-DLOG2_DEGREE={} -DEXP2_DEGREE={} -DPCF_WIDTH={} ", settings.log2_degree,
+                     settings.exp2_degree, settings.pcf_width);
+}
+
+}  // namespace luciole

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "cl/device.hpp"
+#include "gbuffer/gbuffer.hpp"
+#include "lights/cull.hpp"
+#include "lights/light_set.hpp"
+#include "shade/features.hpp"
+#include "shade/shade.hpp"
+
+namespace luciole {
+
+/// The points of a G-buffer as kernels take them. Buffers are borrowed from the G-buffer, and from the
+/// members before them: not to be copied.
+struct Points {
+  const GBuffer& gbuffer;
+  PackedNormals normal_packed;  ///< in the place of geometric normals that the G-buffer lacks
+  Plane no_lift;                ///< likewise: zeros
+  ModelPlane no_model;          ///< likewise: the picture's model
+  GBufferBuffers buffers;
+  std::size_t stride;  ///< elements in a plane
+  std::size_t bytes;   ///< of all planes
+};
+
+/// features: what of the planes is needed. unlit: the diffuse colour takes the place of ambient. Throws
+/// MachineError.
+Points pointsOnDevice(Device& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit);
+
+/// What cull() takes to cull the lights of these points. tests: see CullArguments.
+CullArguments cullArguments(const Points& points, const LightSet& lights, unsigned group_log2,
+                            unsigned tests);
+
+}  // namespace luciole

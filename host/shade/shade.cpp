@@ -1,0 +1,54 @@
+#include "shade/shade.hpp"
+
+#include "cl/launch.hpp"
+
+namespace luciole {
+
+GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
+                               const Plane& lift, const ModelPlane& model, bool unlit) {
+  // A single buffer for both: OpenCL leaves two buffers in the same host memory undefined.
+  const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
+  return {.position = borrowed(device, gbuffer.position),
+          .normal = borrowed(device, gbuffer.normal),
+          .diffuse = diffuse,
+          .specular = borrowed(device, gbuffer.specular),
+          .ambient = unlit ? diffuse : borrowed(device, gbuffer.ambient),
+          .emission = borrowed(device, gbuffer.emission),
+          .geometric_normal = borrowed(device, geometric_normal),
+          .model = borrowed(device, model),
+          .lift = borrowed(device, lift)};
+}
+
+void shade(Device& device, const std::string& defines, const ShadeArguments& arguments) {
+  Kernel kernel = makeKernel(device, "shade.cl", "shade", defines);
+  const GBufferBuffers& gbuffer = arguments.gbuffer;
+  const auto lanes = std::size_t(device.description.lanes);
+  const std::size_t pixels_per_item = lanes * ROWS_PER_ITEM(lanes, arguments.lists.tiles > 0);
+  // A group is a tile: its work-items share a light list.
+  launch(device, kernel,
+         {{"frame", arguments.frame},
+          {"position", gbuffer.position},
+          {"normal", gbuffer.normal},
+          {"diffuse", gbuffer.diffuse},
+          {"specular", gbuffer.specular},
+          {"ambient", gbuffer.ambient},
+          {"emission", gbuffer.emission},
+          {"geometric_normal", gbuffer.geometric_normal},
+          {"lift", gbuffer.lift},
+          {"model", gbuffer.model},
+          {"lights", arguments.lights},
+          {"list_starts", arguments.lists.starts},
+          {"list", arguments.lists.list},
+          {"shadow_maps", arguments.shadow_maps},
+          {"shadow_faces", arguments.shadow_faces},
+          {"shadow_texels", arguments.shadow_texels},
+          {"pair_bits", arguments.pair_bits},
+          {"ray_bits", arguments.ray_bits},
+          {"first_share", arguments.first_share},
+          {"shares", arguments.shares},
+          {"image", arguments.image}},
+         {.items = arguments.frame.plane_stride / pixels_per_item, .group = kTilePixels / pixels_per_item});
+  finish(device);
+}
+
+}  // namespace luciole

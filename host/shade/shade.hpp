@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "gbuffer/gbuffer.hpp"
+#include "kernels/shared.h"
+#include "lights/cull.hpp"
+
+namespace luciole {
+
+/// A G-buffer's groups on the device. A group that the G-buffer lacks is a buffer of 16 bytes.
+struct GBufferBuffers {
+  Buffer<const float> position, normal, diffuse, specular, ambient, emission;
+  Buffer<const uint> geometric_normal, model;
+  Buffer<const float> lift;
+};
+
+/// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals and the lift given instead of
+/// its own. unlit: the diffuse colour takes the place of ambient.
+GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
+                               const Plane& lift, const ModelPlane& model, bool unlit);
+
+struct ShadeArguments {
+  const ShadeFrame& frame;
+  const GBufferBuffers& gbuffer;
+  Buffer<const ShadeLight> lights;  ///< frame.light_count
+  const LightLists& lists;          ///< with Feature::kLightLists only
+  Buffer<const ShadowMap> shadow_maps;
+  Buffer<const ShadowFace> shadow_faces;
+  Buffer<const ShadowTexel> shadow_texels;  ///< frame.texel_count
+  Buffer<const uint> pair_bits;             ///< PairShadows::lit, with Feature::kExact only
+  Buffer<const uint> ray_bits;              ///< PairShadows::unsure, with Feature::kSoftExact only
+  Buffer<const uint> first_share;           ///< likewise
+  Buffer<const float> shares;               ///< likewise
+  Buffer<float> image;  ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
+};
+
+/// Launches kernels/shade.cl on every pixel of the G-buffer and waits for it. defines: the program's features
+/// (featureDefines) and mathDefines. Throws MachineError.
+void shade(Device& device, const std::string& defines, const ShadeArguments& arguments);
+
+}  // namespace luciole

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/array_memory.hpp"
+#include "cl/buffer.hpp"
+#include "kernels/shared.h"
+#include "lights/cull.hpp"
+#include "scene/scene.hpp"
+#include "shadow/exact/hole_masks.hpp"
+#include "shadow/exact/light_samples.hpp"
+#include "shadow/exact/triangle_tree.hpp"
+
+namespace luciole {
+
+/// Words of kernels/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel of
+/// its tile.
+using PairBits = std::vector<uint, ArrayAllocator<uint>>;
+
+/// What exact shadows need of a picture's scene, on the host and on the device. Buffers are borrowed from the
+/// members before them, so it can't be copied.
+struct BeamScene {
+  std::shared_ptr<const TriangleTree> tree;
+  std::shared_ptr<const HoleMasks> masks;  ///< null where no triangle has holes
+  glm::mat3 view_to_tree{1.0f};            ///< a rotation
+  float4 tree_most{};                      ///< the largest |x|, |y|, |z| in the tree
+  int soft_samples = 0;                    ///< of each light of a size; 0: none has one
+  std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
+  Buffer<const float> nodes, blocks;
+  Buffer<const int> children;
+  Buffer<const uint> block_bits;
+  Buffer<const unsigned char> hole_texels;
+  Buffer<const HoleTriangle> hole_triangles;
+  Buffer<const uint> first_hole_triangle;
+
+  BeamScene() = default;
+  BeamScene(const BeamScene&) = delete;
+  BeamScene& operator=(const BeamScene&) = delete;
+};
+
+/// Fills `beams` for what a camera sees. tree: of the scene, its origin the camera's eye. masks: of the tree,
+/// or null where no triangle has holes. soft_samples: of lights of a size; 0: they count as points, or for
+/// directional lights as single directions. Throws MachineError.
+void prepareBeams(Device& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
+                  std::shared_ptr<const HoleMasks> masks, int soft_samples, BeamScene& beams);
+
+/// A light in the tree's space. casts: whether beams tell of its shadow.
+BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams);
+
+struct BeamArguments {
+  std::size_t plane_stride;      ///< floats in a plane
+  Buffer<const float> position;  ///< G-buffer planes x, y, z; view space, metres
+  Buffer<const float> normal;    ///< G-buffer planes x, y, z; view space, unit
+  Buffer<const float> lift;      ///< a plane, metres, with Feature::kLift only
+  const LightLists& lists;       ///< with Feature::kLightLists only
+  Buffer<const BeamLight> lights;
+  const BeamScene& beams;
+  bool holes;  ///< with Feature::kHoles
+  bool soft;   ///< with Feature::kSoftExact
+};
+
+/// The exact shadows of all entries of the lists; without lists of each tile and light, tile by tile.
+struct PairShadows {
+  PairBits lit;
+  PairBits unsure;  ///< rays decide (tracePairs). Empty where no triangle has holes and no light a size
+  /// With lights of a size only, by tracePairs(): for each word of `unsure` the index of its first bit's
+  /// share; and the share of the light, in [0, 1], that reaches each unsure pair.
+  PairBits first_share;
+  std::vector<float, ArrayAllocator<float>> shares;
+  /// Pairs of pixels and lights of a size that no ray decides: all of the light reaches them, or nothing.
+  std::uint64_t soft_lit = 0, soft_dark = 0;
+};
+
+/// Launches kernels/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
+/// if the words don't fit into memory or there are 2²⁹ entries or more.
+PairShadows beamShadows(Device& device, const std::string& defines, const BeamArguments& arguments);
+
+}  // namespace luciole

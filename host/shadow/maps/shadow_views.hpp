@@ -1,0 +1,50 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "kernels/shared.h"
+#include "raster/view.hpp"
+#include "scene/bounds.hpp"
+#include "scene/scene.hpp"
+#include "shadow/maps/shadow_method.hpp"
+
+namespace luciole {
+
+/// What maps are planned for. It refers to the camera's view.
+struct PlanInput {
+  const View& camera;
+  ShadowMethod method;
+  glm::dmat4 view_to_world;              ///< the camera's
+  Bounds bounds;                         ///< of the scene, world space
+  std::span<const ShadowWay> ways = {};  ///< of each light; empty: all lights with a shadow have maps
+};
+
+/// What a light's map shows: a cascade a face of a directional light, a cone, or the six sides of a cube.
+struct PlannedMap {
+  ShadowMap lookup{};             ///< but for its faces' indices
+  std::vector<ShadowFace> faces;  ///< for lookups: nothing is drawn yet
+  std::vector<View> views;        ///< one a face, for drawing
+};
+
+/// Whether a shadowed light needs six faces: point lights, and spots too wide for one perspective map.
+bool usesCubeMap(const Light& light);
+
+/// How many faces a light's map has, at most.
+int facesOf(const Light& light);
+
+/// Width in texels of the border of a face of `size` texels a side, border included: as far around its place
+/// as a lookup may read. For soft shadows that is an eighth of what the face shows, at most 64 texels;
+/// otherwise 4.
+int borderOf(int size, ShadowMethod method);
+
+/// How far a light with a position can cast shadows, in metres, > 0: its range, or a little more than the
+/// distance to the farthest corner of the scene's bounds if that is less.
+double lightReach(const Light& light, const Bounds& scene);
+
+/// The map of a light with a shadow, whose faces have `size` texels a side. A directional light's texels stay
+/// where they are in the world while the camera moves, and keep their size while it turns.
+PlannedMap planMap(const Light& light, const PlanInput& input, int size);
+
+}  // namespace luciole

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "tools/bench/speed_input.hpp"
+#include "tools/bench/speed_table.hpp"
+
+namespace luciole {
+
+/// Measures culling and shading alone on the G-buffer of the input, whose planes and lights are ready before
+/// the clock starts; at its end stand float colours. Beside it, in the same rounds: the roof, which computes
+/// as many pairs with nothing to load or to wait for (tests/kernels/roof.cl), and a copy that moves as many
+/// bytes. Throws MachineError.
+SpeedTable measureGivenGBuffer(const SpeedInput& input);
+
+}  // namespace luciole

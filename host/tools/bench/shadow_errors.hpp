@@ -1,0 +1,20 @@
+#pragma once
+
+#include "shade/features.hpp"
+#include "tools/bench/shadow_truth.hpp"
+#include "tools/bench/speed_input.hpp"
+#include "tools/bench/speed_table.hpp"
+
+namespace luciole {
+
+/// Compares shadows with rays. For every method and size of maps: what getting ready and telling the shadows
+/// cost, how many pairs of a pixel and a light are wrong, and what Embree takes for the same pairs. Measures
+/// the scene given, with one sample and with several, alone and as frames of a moving camera, or
+/// makeShadowScenes() and some halls (makeLampHall) if there is none. Throws MachineError.
+SpeedTable measureShadowErrors(const SpeedInput& input);
+
+/// How many pairs of a pixel and a light these settings' shadows get wrong, in the picture of `size` pixels
+/// that the scene's first camera sees. Throws MachineError.
+ShadowErrors shadowErrors(Device& device, const Scene& scene, glm::ivec2 size, const ShadeSettings& settings);
+
+}  // namespace luciole

@@ -1,0 +1,121 @@
+#include "tools/cli/open_devices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+#include "tools/cli/event_log.hpp"
+#include "tools/devices/check_device.hpp"
+
+namespace luciole {
+namespace {
+
+/// What is said of a device whose bits are others than those of all others; empty: they are the same.
+std::string differenceOf(const DeviceDescription& device, const std::vector<std::string>& wrong) {
+  if (wrong.empty()) return "";
+  return fmt::format("{}: its pictures may have other bits than those of other devices: {}", device.name,
+                     wrong.front());
+}
+
+/// Checks a device that is open, notes the hash of its arithmetic, and says how it differs from others.
+std::string checkDevice(Device& device) {
+  try {
+    const ArithmeticCheck check = knownArithmetic(device);
+    device.description.arithmetic = check.sha256;
+    return differenceOf(device.description, check.wrong);
+  } catch (const MachineError& error) {
+    return differenceOf(device.description, {error.what()});
+  }
+}
+
+constexpr const char* kTellsAll = " (luciole devices --check tells all)";
+
+/// A device that --device all may mean.
+struct Candidate {
+  Device* device;
+  std::string difference = {};  ///< see checkDevice
+  std::string failure = {};     ///< why it can't be opened
+};
+
+/// Opens and checks all devices side by side.
+std::list<Candidate> openCandidates(const std::string& suffix, CommandContext& context) {
+  std::list<Candidate> candidates;
+  std::vector<std::future<void>> opening;
+  const std::size_t count = listDevices().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Candidate& candidate =
+        candidates.emplace_back(Candidate{i == 0 ? &context.device : &context.others.emplace_back()});
+    opening.push_back(std::async(std::launch::async, [&candidate, selector = std::to_string(i) + suffix] {
+      try {
+        openDevice(selector, *candidate.device);
+        candidate.difference = checkDevice(*candidate.device);
+      } catch (const MachineError& error) {
+        candidate.failure = error.what();
+      }
+    }));
+  }
+  for (std::future<void>& one : opening) one.get();
+  return candidates;
+}
+
+std::list<Sharer> openAllDevices(const PictureOptions& options, CommandContext& context) {
+  const std::list<Candidate> candidates =
+      openCandidates(options.device.substr(std::string_view(kAllDevices).size()), context);
+  if (candidates.empty()) selectDevice({}, "");  // which says what is missing
+  const bool any_exact = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& one) {
+    return one.failure.empty() && one.difference.empty();
+  });
+  std::list<Sharer> sharers;
+  std::vector<std::string> told;
+  for (const Candidate& candidate : candidates) {
+    const std::string& what = candidate.failure.empty() ? candidate.difference : candidate.failure;
+    if (!candidate.failure.empty() || (!what.empty() && (any_exact || !sharers.empty()))) {
+      told.push_back("left out: " + what);
+      continue;
+    }
+    if (!what.empty() && options.require_exact) throw MachineError("--require-exact: " + what);
+    if (!what.empty()) told.push_back(what + kTellsAll);
+    sharers.push_back({candidate.device});
+  }
+  if (sharers.empty()) throw MachineError(candidates.front().failure);
+  if (!options.quiet)
+    for (const std::string& warning : told) tellWarning(warning);
+  return sharers;
+}
+
+}  // namespace
+
+void startCheckedDevice(const PictureOptions& options, CommandContext& context) {
+  startDevice(options.device, context.device,
+              [&context, require = options.require_exact, quiet = options.quiet] {
+                const std::string difference = checkDevice(context.device);
+                if (difference.empty()) return;
+                if (require) throw MachineError("--require-exact: " + difference);
+                if (!quiet) tellWarning(difference + kTellsAll);
+              });
+}
+
+std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context) {
+  if (options.device.substr(0, options.device.find(',')) == kAllDevices)
+    return openAllDevices(options, context);
+  startCheckedDevice(options, context);
+  std::list<Sharer> one;
+  one.push_back({&context.device});
+  return one;
+}
+
+void logDevice(const DeviceDescription& device) {
+  EventFields fields{{"name", device.name},
+                     {"platform", device.platform},
+                     {"driver", device.version},
+                     {"lanes", device.lanes}};
+  if (!device.arithmetic.empty()) fields["arithmetic"] = device.arithmetic;
+  logEvent("device", fields);
+}
+
+}  // namespace luciole

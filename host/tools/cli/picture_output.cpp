@@ -1,0 +1,271 @@
+#include "tools/cli/picture_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/write_file.hpp"
+#include "gbuffer/camera_header.hpp"
+#include "image/exposure.hpp"
+#include "image/file_format.hpp"
+#include "image/film.hpp"
+#include "render/light_layers.hpp"
+#include "scene/json/mesh_file.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/cli/event_log.hpp"
+
+namespace luciole {
+namespace {
+
+/// What rounding to a 16-bit float changes: at most this share of a value, or this much of one below 2⁻¹⁴.
+constexpr double kHalfRelative = 0x1p-11, kHalfAbsolute = 0x1p-25;
+
+void logPicture(const PictureOptions& options, const Stats& stats, double ended, int frame) {
+  for (const auto& [stage, milliseconds] : stats.stages)
+    logEvent(
+        "stage",
+        {{"frame", frame}, {"stage", stageName(stage)}, {"milliseconds", eventMilliseconds(milliseconds)}});
+  EventFields done{{"frame", frame},
+                   {"file", options.output},
+                   {"width", stats.width},
+                   {"height", stats.height},
+                   {"triangles", stats.triangles},
+                   {"lights", stats.lights},
+                   {"milliseconds", eventMilliseconds(ended - stats.began)}};
+  if (!stats.hash.empty()) done["hash"] = stats.hash;
+  logEvent("frame_done", done);
+}
+
+/// Throws InputError for a compression that changes `what`.
+void checkLossless(const PictureOptions& options, const std::string& what) {
+  if (options.compression.empty()) return;
+  std::vector<std::string> lossless;
+  for (const ExrCompression& one : kExrCompressions)
+    if (one.is_lossless) lossless.push_back(one.name);
+  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+    throw InputError(
+        fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
+                    options.compression, what, fmt::join(lossless, ", ")));
+}
+
+}  // namespace
+
+WriteOptions fileOptions(const PictureOptions& options) {
+  return {.format = options.format,
+          .dither = options.dither == "on",
+          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
+          .bits = options.bits,
+          .half = options.half,
+          .compression = options.compression,
+          .alpha = options.alpha};
+}
+
+bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
+  if (!options.exposure.empty()) return options.exposure == "auto";
+  if (!isMeshFile(scene_path)) return false;
+  return isFilm(options.output, options.format) ||
+         !pictureFormat(options.output, fileOptions(options)).is_float;
+}
+
+void checkOtherOutputs(const PictureOptions& options) {
+  if (!options.trace.empty() && options.trace == options.output)
+    throw InputError(fmt::format("--trace {}: is the picture's own file", options.trace));
+  if (!options.trace.empty() && options.trace == options.stats)
+    throw InputError(fmt::format("--trace {}: is the file of --stats", options.trace));
+  if (options.hash)
+    for (const auto& [name, file] : {std::pair{"-o", options.output}, std::pair{"--stats", options.stats},
+                                     std::pair{"--trace", options.trace}})
+      if (file == "-")
+        throw InputError(
+            fmt::format("--hash: standard output can't take it and {} - together; name a file", name));
+}
+
+void checkOutput(const PictureOptions& options) {
+  checkWritable(options.output, fileOptions(options));
+  if (options.tone != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
+    throw InputError(fmt::format(
+        "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
+        options.tone, options.output));
+  const std::vector<Aov> aovs = aovsOf(options);
+  if (showsAov(options)) {
+    if (aovs.size() > 1 || aovs.front() == Aov::kMaterial)
+      throw InputError(
+          fmt::format("--aov {}: several layers, and {} shows one, such as --aov normal; an .exr holds all",
+                      options.aovs, options.output));
+    if (options.alpha) throw InputError("--alpha: a layer as a picture has no A; leave it out");
+  }
+  if (options.light_groups && outputFormat(options.output, options.format).extension != "exr")
+    throw InputError(fmt::format("--light-groups: {} cannot hold layers, an .exr can", options.output));
+  if (std::any_of(aovs.begin(), aovs.end(),
+                  [](Aov aov) { return aov == Aov::kCryptoObject || aov == Aov::kCryptoMaterial; }))
+    checkLossless(options, "Cryptomattes");
+  RenderSettings layers;
+  layers.aovs = aovs;
+  layers.light_groups = options.light_groups;
+  if (wantsLightLayers(layers))
+    for (const auto& [is_given, what] : {std::pair{options.light_error > 0, "--light-error"},
+                                         std::pair{options.shading == "gouraud", "--shading gouraud"}})
+      if (is_given)
+        throw InputError(
+            fmt::format("{}: layers of light add up to the picture only where each light is summed by itself "
+                        "in each pixel; "
+                        "leave out {}",
+                        what, options.light_groups ? "--light-groups" : "these of --aov"));
+  if (!options.stats.empty() && options.stats == options.output)
+    throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
+  checkOtherOutputs(options);
+}
+
+void checkDataOutput(const PictureOptions& options, const std::string& what) {
+  checkOutput(options);
+  checkLossless(options, what);
+}
+
+WriteOptions writeOptions(const PictureOptions& options, const std::optional<Camera>& camera,
+                          glm::ivec2 picture_size, glm::ivec2 crop_origin) {
+  WriteOptions file = fileOptions(options);
+  file.picture_size = picture_size;
+  file.crop_origin = crop_origin;
+  if (camera) file.exr = cameraAttributes(*camera, picture_size);
+  return file;
+}
+
+WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer) {
+  WriteOptions file = fileOptions(options);
+  file.picture_size = gbuffer.picture_size;
+  file.crop_origin = gbuffer.crop_origin;
+  file.display = gbuffer.display;
+  if (gbuffer.knows_camera)
+    file.exr = cameraAttributes(gbuffer.camera, gbuffer.picture_size, gbuffer.display.pixel_aspect);
+  return file;
+}
+
+void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
+  if (options.half) {
+    stats.errors.emplace_back("half_relative", kHalfRelative);
+    stats.errors.emplace_back("half_absolute", kHalfAbsolute);
+  }
+  if (limited == 0) return;
+  stats.warnings.push_back(fmt::format(
+      "{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
+      "--exposure, or take 32-bit floats and a lossless --compression",
+      options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
+  if (!options.quiet) tellWarning(stats.warnings.back());
+}
+
+void reportLightError(const PictureOptions& options, Stats& stats) {
+  // A few roundings more than allowed are no reason to worry anybody.
+  if (!(stats.light_error.least > 1.000001 * options.light_error)) return;
+  stats.warnings.push_back(fmt::format(
+      "--light-error {}: floats can't promise it for this picture; the least that they can is {:.3g}",
+      options.light_error, 1.05 * stats.light_error.least));
+  if (!options.quiet) tellWarning(stats.warnings.back());
+}
+
+bool showsAov(const PictureOptions& options) {
+  return !options.aovs.empty() && outputFormat(options.output, options.format).extension != "exr";
+}
+
+ShownLayer aovLayer(const std::vector<std::string>& channels) {
+  PicturePart part;
+  part.channels = channels;
+  std::vector<ShownLayer> layers = shownLayers({part});
+  ShownLayer layer = layers.at(1);                 // behind the colours
+  for (std::size_t i = 2; i < layers.size(); ++i)  // the further ranks of a Cryptomatte
+    layer.channels.insert(layer.channels.end(), layers[i].channels.begin(), layers[i].channels.end());
+  return layer;
+}
+
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture) {
+  picture.width = rows.width;
+  picture.height += rows.height;
+  picture.channels.clear();
+  for (const int channel : channels) picture.channels.push_back(rows.channels[std::size_t(channel)]);
+  for (std::size_t at = 0; at < rows.pixels.size(); at += rows.channels.size())
+    for (const int channel : channels) picture.pixels.push_back(rows.pixels[at + std::size_t(channel)]);
+}
+
+void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
+                       const Stats& stats, const Device* device) {
+  const bool is_light = shown.kind == LayerKind::kColor && layer.channels.size() == 3;
+  if (is_light) {
+    layer.channels = {"R", "G", "B"};
+    expose(layer, exposureOf(options));
+  }
+  const LayerPicture picture = layerPicture(shown.name, shown.kind, layer);
+  WriteOptions how = fileOptions(options);
+  how.dither = how.dither && is_light;  // equal values have equal colours
+  how.picture_size = picture.image.picture_size;
+  how.crop_origin = picture.image.crop_origin;
+  writeImage(picture.image, options.output, pictureMetadata(stats, device), how);
+  if (options.quiet) return;
+  for (const std::string& note : picture.notes) {
+    if (logsEvents())
+      logEvent("layer", {{"message", note}});
+    else
+      fmt::print(stderr, "{}: {}\n", options.output, note);
+  }
+}
+
+void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats, const Device* device) {
+  const ShownLayer shown = aovLayer(picture.channels);
+  Image layer;
+  appendRows(picture, shown.channels, layer);
+  PictureOptions exposed = options;
+  exposed.exposure.clear();  // its light is exposed
+  writeLayerPicture(exposed, shown, std::move(layer), stats, device);
+}
+
+Metadata pictureMetadata(const Stats& stats, const Device* device) {
+  Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
+  if (stats.measured_exposure)
+    metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));
+  if (device && !device->description.arithmetic.empty())
+    metadata.emplace_back("luciole:arithmetic", device->description.arithmetic);
+  if (device)
+    metadata.emplace_back(
+        "luciole:device",
+        fmt::format("{}, {}, driver {}, {} lanes", device->description.name, device->description.platform,
+                    device->description.version, device->description.lanes));
+  return metadata;
+}
+
+Stats laterStats(const std::string& command) {
+  Stats stats;
+  stats.command = command;
+  stats.began = millisecondsSinceStart();
+  return stats;
+}
+
+void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
+  const double ended = millisecondsSinceStart();
+  if (!options.stats.empty())
+    writeTextFile(options.stats,
+                  options.stats.ends_with(".csv") ? statsCsv(stats, ended) : statsJson(stats, ended));
+  if (!stats.hash.empty()) {
+    fmt::print("{}  {}\n", stats.hash, options.output);
+    std::fflush(stdout);  // whoever waits for a frame's line gets it when the frame is done
+  }
+  if (logsEvents()) return logPicture(options, stats, ended, frame);
+  if (options.quiet) return;
+  // Rounded down to whole milliseconds, so that the stages' sum isn't more than the picture's time.
+  const auto whole = [](double milliseconds) { return static_cast<std::int64_t>(milliseconds); };
+  std::string stages;
+  for (const auto& stage : stats.stages)
+    if (const std::int64_t share = whole(ownShare(stats, stage)); share > 0)
+      stages += fmt::format("{}{} {}", stages.empty() ? " (" : ", ", stageName(stage.first), share);
+  const std::string exposure =
+      stats.measured_exposure ? fmt::format("exposure {:+.2f} stops, ", *stats.measured_exposure) : "";
+  writeError(fmt::format("{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
+                         stats.height, stats.triangles, stats.lights, exposure, whole(ended - stats.began),
+                         stages, stages.empty() ? "" : ")",
+                         options.half ? ", colours rounded by up to 2^-11 of themselves" : ""));
+}
+
+}  // namespace luciole

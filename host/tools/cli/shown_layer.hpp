@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/layers.hpp"
+#include "tools/viewing/layer_picture.hpp"
+
+namespace luciole {
+
+/// A layer that can be shown: channels of one part of a file, or of one picture.
+struct ShownLayer {
+  std::string name;
+  int part = 0;
+  std::vector<int> channels;  ///< places in PicturePart::channels, in the order that layerPicture() wants
+  LayerKind kind = LayerKind::kValue;
+};
+
+/// All layers, in the order of their channels. The picture's own colours are called "color". The layers of a
+/// part with a name have it before theirs.
+std::vector<ShownLayer> shownLayers(const std::vector<PicturePart>& parts);
+
+/// The layer of that name: as it is, or after a dot at the end of a longer one, case ignored, or by what it
+/// holds: position, normal, depth ... Without a name the colours, or the only layer. Throws InputError
+/// "where:
+/// ..." that lists the layers.
+ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::string& name,
+                          const std::string& where);
+
+}  // namespace luciole

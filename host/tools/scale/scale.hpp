@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cl/device.hpp"
+#include "gbuffer/gbuffer.hpp"
+#include "render/render.hpp"
+#include "scene/lights/light_field.hpp"
+#include "tools/figures/kept_bounds.hpp"
+#include "tools/figures/rounds.hpp"
+
+// A many-light experiment: the same picture with more and more lights, made in several ways. A point is one
+// number of lights and one way. A log keeps the results of points; from it files and a page are made:
+//
+//   ScaleExperiment ─► runScale ─► ScaleLog ─► summarizeScale ─► results.csv, growth.json, report.html
+//                     (scale.cpp) (scale_log)  (scale_summary)   (scale_files)
+namespace luciole {
+
+/// An option in which points differ, beside the number of lights, and the values that it takes.
+struct ScaleAxis {
+  std::string name;
+  std::vector<std::string> values;
+  bool operator==(const ScaleAxis&) const = default;
+};
+
+/// The value of an axis whose option doesn't apply to the point, because another axis's takes its place.
+inline constexpr const char* kNotThis = "-";
+/// The axis of ShadeSettings::light_error.
+inline constexpr const char* kLightErrorAxis = "light-error";
+
+/// One way to make the picture, with one number of lights.
+struct ScalePoint {
+  std::uint64_t lights = 0;
+  std::vector<std::string> values;  ///< of the axes, in their order, or kNotThis
+  bool operator==(const ScalePoint&) const = default;
+};
+
+/// What an experiment is, apart from the machine that runs it. Equal descriptions mean the same experiment.
+struct ScaleDescription {
+  std::string version;                                        ///< of this program
+  std::string scene;                                          ///< its file
+  std::uint64_t digest = 0;                                   ///< of the scene's content, by sceneDigest
+  std::vector<std::pair<std::string, std::string>> settings;  ///< that all points share, for people to read
+  std::vector<std::uint64_t> lights;                          ///< ascending
+  std::vector<ScaleAxis> axes;
+  std::vector<ScalePoint> points;  ///< lights ascending, then by the axes' values
+  int repeats = 5;                 ///< timed runs of each point
+  bool operator==(const ScaleDescription&) const = default;
+};
+
+/// How a point's picture is made.
+struct ScaleTask {
+  RenderSettings settings;
+  std::size_t field = 0;  ///< index into ScaleExperiment::fields: its first lights replace the scene's
+  /// The range of all lights is chosen so that, on average, so many reach a point that the camera sees. 0:
+  /// the range is the field's.
+  double density = 0;
+  /// Then the range is taken away, and the lights are as bright as with it on average (removeRanges).
+  bool no_range = false;
+};
+
+struct ScaleExperiment {
+  ScaleDescription description;
+  std::vector<ScaleTask> tasks;    ///< one for each of description.points
+  std::vector<LightField> fields;  ///< with at least as many lights as any point
+  /// What is lit in place of the scene's surfaces. Then the tasks' settings have its size and camera.
+  std::optional<GBuffer> gbuffer{};
+  std::size_t check_pixels = 1024;  ///< about how many pixels are compared with the reference
+  std::uint64_t seed = 0;           ///< chooses these pixels
+  int truth_samples = 1;            ///< samples a pixel that make the truth
+  std::size_t too_exact = 0;        ///< points that aren't there because every light one by one takes long
+};
+
+/// What is measured only once for a point: the error of its picture, and counts.
+struct PointCheck {
+  std::uint64_t pairs_evaluated = 0;  ///< of a pixel and a light, or a cluster that stands for lights
+  std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
+  double reach =
+      0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
+  std::uint64_t pixels = 0;                    ///< compared with the reference
+  double mean_abs = 0, max_abs = 0, rmse = 0;  ///< errors of these pixels, in linear units
+  std::string picture, error_map, list_map;    ///< files in the experiment's folder
+  /// Where clusters stand for all lights of a picture of one sample a pixel, and a map of the bounds
+  std::optional<KeptBounds> bounds{};
+  std::string bound_map{};
+};
+
+/// The names of a check's figures that aren't finite, which JSON can't hold, each with the reason.
+std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck& check);
+
+/// One timed run.
+struct PointRun {
+  std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, in order
+  std::uint64_t device_bytes = 0;
+  std::uint64_t peak_bytes = 0;  ///< the most that the process had resident during the run
+};
+
+/// What is known of a point.
+struct PointRecord {
+  std::optional<PointCheck> check;
+  std::map<int, PointRun> runs;  ///< by repeat, counted from 0
+};
+
+/// The point in one line, and its key in the log: "lights=1000 culling=tiles tile=4".
+std::string pointName(const ScaleDescription& description, const ScalePoint& point);
+
+class ScaleLog;
+
+/// A point that the machine can't do, and why.
+struct ScaleFailure {
+  std::string point, reason;
+};
+
+/// Measures what the log lacks of the points `mine` (indices): checks each once and writes its pictures into
+/// the log's folder, then times all of them in rounds, after an untimed run of each point that this call
+/// didn't check. Replaces the scene's lights. on_progress: gets milliseconds as done and total; the total is
+/// an estimate. Returns the points at which the machine failed, which are left out. Throws InputError if a
+/// density is asked for and the camera sees nothing, and MachineError if the log can't be written.
+std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExperiment& experiment,
+                                   const std::vector<std::size_t>& mine, ScaleLog& log,
+                                   const OnProgress& on_progress);
+
+}  // namespace luciole

@@ -1,0 +1,86 @@
+// The pictures of the shipped scenes have the same bits on every OpenCL device that is found, for every width
+// of vectors, number of threads and way of culling: those whose hashes are in hashes.json (made by
+// make_hashes.sh).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "tools/cli/program_test.hpp"
+
+namespace luciole::test {
+namespace {
+
+const nlohmann::ordered_json& hashes() {
+  static const auto parsed = nlohmann::ordered_json::parse(
+      readText(std::string(LUCIOLE_SOURCE_DIR) + "/tests/tools/cli/hashes.json"));
+  return parsed;
+}
+
+/// The scenes and methods of shadows in hashes.json: "city hard" ...
+std::vector<std::string> pictures() {
+  std::vector<std::string> names;
+  for (const auto& [name, hash] : hashes().items()) names.push_back(name);
+  return names;
+}
+
+class SceneHashes : public ProgramTest, public testing::WithParamInterface<std::string> {
+ protected:
+  /// Expects the hash of a picture that the program makes with these options.
+  void expectHash(const std::string& options) { expectHash(options, succeed("luciole " + line(options))); }
+
+  /// The same of what the program has printed.
+  void expectHash(const std::string& options, const std::string& out) {
+    EXPECT_EQ(out.substr(0, 64), hashes()[GetParam()].get<std::string>()) << GetParam() << " " << options;
+  }
+
+  /// What follows "luciole" on the command line.
+  static std::string line(const std::string& options) {
+    const std::string picture = GetParam();
+    const std::size_t blank = picture.find(' ');
+    return "render '" LUCIOLE_SOURCE_DIR "/scenes/" + picture.substr(0, blank) +
+           ".json' --size 96x54 --shadows " + picture.substr(blank + 1) + " " + options +
+           " --hash --quiet -o a.exr";
+  }
+};
+
+TEST_P(SceneHashes, AreThoseOfEveryDeviceWidthThreadAndWayOfCulling) {
+  const std::string listed = succeed("luciole devices");
+  const auto devices = std::count(listed.begin(), listed.end(), '\n');
+  ASSERT_GT(devices, 0);
+  for (auto device = 0; device < devices; ++device) {
+    const std::string selector = "--device " + std::to_string(device);
+    for (const char* lanes : {"1", "4", "8", "16"}) expectHash(selector + ",lanes=" + lanes);
+    for (const char* options : {" --threads 1", " --culling none", " --tile 16"})
+      expectHash(selector + options);
+  }
+}
+
+// An interpreter of OpenCL: those that it makes in seconds.
+class SceneHashesUnderOclgrind : public SceneHashes {};
+
+TEST_P(SceneHashesUnderOclgrind, AreTheSame) {
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
+  for (const char* lanes : {"1", "16"}) {
+    const std::string options = std::string("--device ,lanes=") + lanes;
+    expectHash(options, underOclgrind(line(options)));
+  }
+}
+
+std::string nameOf(const testing::TestParamInfo<std::string>& test) {
+  std::string name = test.param;
+  name.replace(name.find(' '), 1, "_");
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneHashesUnderOclgrind,
+                         testing::Values("cornell hard", "cornell exact", "spheres hard", "underwater hard",
+                                         "colonnade hard"),
+                         nameOf);
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneHashes, testing::ValuesIn(pictures()), nameOf);
+
+}  // namespace
+}  // namespace luciole::test
