@@ -1,6 +1,6 @@
 // The table of shading models, shared by host and kernels: X(name in code, as people type it, as --stats shows it, what it does, the most that it makes of a
 // light of 1, as factors of the diffuse colour and as a channel of the highlight). The last two are expressions over f0, the specular colour's channel,
-// and n, the shininess: see modelBounds() in host/scene/model.hpp.
+// and n, the shininess: see modelBounds() in host/include/luciole/model.hpp.
 // A material may choose one; the others have that of the picture's settings. G-buffer files have these numbers: new rows go to the end.
 #ifndef LUCIOLE_MODELS_H
 #define LUCIOLE_MODELS_H

@@ -32,31 +32,7 @@ endforeach()
 # host/image/module.cpp looks for it there.
 install(TARGETS luciole_image_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/luciole)
 
-# Headers of the library's rooms, but those that only rooms themselves include: of libraries that no user of it needs, and what
-# includes them.
-set(headers "")
-foreach(room base image scene gbuffer raster rays load cl lights shadow shade lighting render reference)
-  file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/host host/${room}/*.hpp)
-  list(APPEND headers ${found})
-endforeach()
-set(inner "<(Imf|OpenImageIO|isa-l|nlohmann|png|tbb)")
-set(before "")
-while(NOT headers STREQUAL before)
-  set(before ${headers})
-  foreach(header IN LISTS before)
-    file(STRINGS host/${header} includes REGEX "^#include (${inner})")
-    if(includes)
-      list(REMOVE_ITEM headers ${header})
-      string(APPEND inner "|\"${header}\"")
-    endif()
-  endforeach()
-endwhile()
-foreach(header IN LISTS headers)
-  get_filename_component(place ${header} DIRECTORY)
-  install(FILES host/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/luciole/${place})
-endforeach()
-file(GLOB shared_headers CONFIGURE_DEPENDS kernels/*.h)
-install(FILES ${shared_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/luciole/kernels)
+install(DIRECTORY host/include/luciole DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/Luciole)
 install(EXPORT LucioleTargets NAMESPACE luciole:: DESTINATION ${config})
@@ -117,7 +93,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "fonts-dejavu-core, libjs-chart.js")
 # What its headers include.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libglm-dev, ocl-icd-opencl-dev, opencl-clhpp-headers")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libglm-dev")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "Luciole (French: firefly) rasterizes a scene on the host and lights it by
 OpenCL kernels, on any device, PoCL on a plain CPU first: point, directional

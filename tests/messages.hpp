@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole::test {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "render/render.hpp"
 #include "shared_files.hpp"
 
@@ -19,8 +19,8 @@ inline Scene sceneFromJson(const std::string& json) {
 }
 
 /// The default device, opened once a process.
-inline Device& testDevice() {
-  static Device device;
+inline OpenedDevice& testDevice() {
+  static OpenedDevice device;
   static const bool opened = (openDevice("", device), true);
   (void)opened;
   return device;
@@ -36,7 +36,8 @@ inline RenderSettings settingsFor(const Scene& scene, glm::ivec2 size) {
   return settings;
 }
 
-inline Image picture(const Scene& scene, const RenderSettings& settings, Device& device = testDevice()) {
+inline Image picture(const Scene& scene, const RenderSettings& settings,
+                     OpenedDevice& device = testDevice()) {
   Stats stats;
   return renderScene(device, scene, settings, stats);
 }

@@ -1,4 +1,4 @@
-#include "base/array_memory.hpp"
+#include "luciole/array_memory.hpp"
 
 #include <sys/mman.h>
 

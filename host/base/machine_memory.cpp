@@ -14,7 +14,7 @@
 #include <optional>
 #include <sstream>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "base/cleanup.hpp"
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/utf8.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <system_error>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 

@@ -7,10 +7,10 @@
 #include <new>
 #include <vector>
 
-#include "base/array_memory.hpp"
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 #include "cl/driver_call.hpp"
+#include "luciole/array_memory.hpp"
 
 namespace luciole {
 namespace {
@@ -42,13 +42,13 @@ struct Loan {
   }
 };
 
-void count(Device& device, std::uint64_t Traffic::*kind, std::size_t bytes) {
+void count(OpenedDevice& device, std::uint64_t Traffic::*kind, std::size_t bytes) {
   const std::lock_guard lock(device.notes_mutex);
   device.traffic.*kind += bytes;
 }
 
 /// clCreateBuffer. Throws MachineError.
-cl::Buffer create(Device& device, cl_mem_flags flags, std::size_t size, void* array) {
+cl::Buffer create(OpenedDevice& device, cl_mem_flags flags, std::size_t size, void* array) {
   try {
     return callDriver([&] { return cl::Buffer(device.context, flags, size, array); });
   } catch (const cl::Error& error) {
@@ -57,7 +57,7 @@ cl::Buffer create(Device& device, cl_mem_flags flags, std::size_t size, void* ar
 }
 
 /// A buffer in the host's array, for devices that share memory.
-DeviceMemory inPlace(Device& device, cl_mem_flags access, void* array, std::size_t size) {
+DeviceMemory inPlace(OpenedDevice& device, cl_mem_flags access, void* array, std::size_t size) {
   return {create(device, access | CL_MEM_USE_HOST_PTR, size, array), std::make_shared<Loan>(device.queue)};
 }
 
@@ -65,7 +65,7 @@ DeviceMemory inPlace(Device& device, cl_mem_flags access, void* array, std::size
 
 namespace bytes {
 
-DeviceMemory make(Device& device, std::size_t size) {
+DeviceMemory make(OpenedDevice& device, std::size_t size) {
   size = std::max(size, sizeof(cl_float4));
   DeviceMemory memory;
   if (!device.shares_host_memory) {
@@ -87,7 +87,7 @@ DeviceMemory make(Device& device, std::size_t size) {
   return memory;
 }
 
-DeviceMemory borrow(Device& device, const void* array, std::size_t size) {
+DeviceMemory borrow(OpenedDevice& device, const void* array, std::size_t size) {
   if (size == 0) return make(device, 0);
   void* const values = const_cast<void*>(array);
   if (device.shares_host_memory) return inPlace(device, CL_MEM_READ_ONLY, values, size);
@@ -98,12 +98,12 @@ DeviceMemory borrow(Device& device, const void* array, std::size_t size) {
   return memory;
 }
 
-DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size) {
+DeviceMemory borrowForOutput(OpenedDevice& device, void* array, std::size_t size) {
   if (size == 0 || !device.shares_host_memory) return make(device, size);
   return inPlace(device, CL_MEM_READ_WRITE, array, size);
 }
 
-void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range) {
+void write(OpenedDevice& device, const DeviceMemory& memory, const void* whole, const IndexRange& range) {
   if (range.count == 0 || range.rows == 0) return;
   const char* const first = static_cast<const char*>(whole) + range.first;
   const std::size_t size = range.count * range.rows;
@@ -126,7 +126,8 @@ void write(Device& device, const DeviceMemory& memory, const void* whole, const 
   if (!device.shares_host_memory) count(device, &Traffic::bytes_up, size);
 }
 
-void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size) {
+void read(OpenedDevice& device, const DeviceMemory& memory, std::size_t offset, void* array,
+          std::size_t size) {
   if (size == 0) return;
   finish(device);  // apart from the copy, so that a kernel's error names the kernel
   try {
@@ -150,7 +151,7 @@ void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* 
   if (!device.shares_host_memory) count(device, &Traffic::bytes_down, size);
 }
 
-void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size) {
+void copy(OpenedDevice& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size) {
   try {
     if (size == 0) return;
     queueCommand(device, "copy", {{"bytes", std::int64_t(size)}}, [&](cl::Event* event) {
@@ -161,7 +162,7 @@ void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std:
   }
 }
 
-void fill(Device& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
+void fill(OpenedDevice& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
           std::size_t size) {
   // Not by clEnqueueFillBuffer: Oclgrind 21.10 takes memory filled by it for uninitialized.
   const auto* const first = static_cast<const std::byte*>(element);

@@ -39,19 +39,20 @@ struct Buffer {
 /// bytes get 16.
 namespace bytes {
 /// See makeBuffer().
-DeviceMemory make(Device& device, std::size_t size);
+DeviceMemory make(OpenedDevice& device, std::size_t size);
 /// See borrowed().
-DeviceMemory borrow(Device& device, const void* array, std::size_t size);
+DeviceMemory borrow(OpenedDevice& device, const void* array, std::size_t size);
 /// See borrowedForOutput().
-DeviceMemory borrowForOutput(Device& device, void* array, std::size_t size);
+DeviceMemory borrowForOutput(OpenedDevice& device, void* array, std::size_t size);
 /// Copies a range of bytes to the same place in the buffer. whole: the array that the buffer is a copy of.
-void write(Device& device, const DeviceMemory& memory, const void* whole, const IndexRange& range);
+void write(OpenedDevice& device, const DeviceMemory& memory, const void* whole, const IndexRange& range);
 /// See download().
-void read(Device& device, const DeviceMemory& memory, std::size_t offset, void* array, std::size_t size);
+void read(OpenedDevice& device, const DeviceMemory& memory, std::size_t offset, void* array,
+          std::size_t size);
 /// Queues a copy of the first `size` bytes.
-void copy(Device& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size);
+void copy(OpenedDevice& device, const DeviceMemory& from, const DeviceMemory& to, std::size_t size);
 /// See fill().
-void fill(Device& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
+void fill(OpenedDevice& device, const DeviceMemory& memory, const void* element, std::size_t element_size,
           std::size_t size);
 }  // namespace bytes
 
@@ -64,13 +65,13 @@ using ElementOf = std::remove_reference_t<std::ranges::range_reference_t<Array>>
 
 /// An owned buffer, its content undefined.
 template <class T>
-Buffer<T> makeBuffer(Device& device, std::size_t count) {
+Buffer<T> makeBuffer(OpenedDevice& device, std::size_t count) {
   return {bytes::make(device, count * sizeof(T)), count};
 }
 
 /// A borrowed buffer (see Buffer) of an array that kernels read.
 template <HostArray Array>
-Buffer<const ElementOf<Array>> borrowed(Device& device, Array&& array) {
+Buffer<const ElementOf<Array>> borrowed(OpenedDevice& device, Array&& array) {
   const std::span values(array);
   return {bytes::borrow(device, values.data(), values.size_bytes()), values.size()};
 }
@@ -78,7 +79,7 @@ Buffer<const ElementOf<Array>> borrowed(Device& device, Array&& array) {
 /// A borrowed buffer that kernels write. It starts undefined. download() brings its content to the array,
 /// which is undefined until then.
 template <HostArray Array>
-Buffer<ElementOf<Array>> borrowedForOutput(Device& device, Array&& array) {
+Buffer<ElementOf<Array>> borrowedForOutput(OpenedDevice& device, Array&& array) {
   const std::span values(array);
   return {bytes::borrowForOutput(device, values.data(), values.size_bytes()), values.size()};
 }
@@ -86,7 +87,7 @@ Buffer<ElementOf<Array>> borrowedForOutput(Device& device, Array&& array) {
 /// Makes `buffer`, an owned one or one without memory yet, hold at least `count` elements. If it has to grow,
 /// its content is lost.
 template <class T>
-void reserve(Device& device, std::size_t count, Buffer<T>& buffer) {
+void reserve(OpenedDevice& device, std::size_t count, Buffer<T>& buffer) {
   if (buffer.memory.handle() && buffer.count >= count) return;
   buffer = {};  // freed first, so that memory need not hold both
   buffer = makeBuffer<T>(device, count);
@@ -99,7 +100,8 @@ void reserve(Device& device, std::size_t count, Buffer<T>& buffer) {
 /// - Otherwise it is owned, and keeps its memory if that is large enough; so it may hold more elements than
 ///   the array. Only the ranges are copied, adjacent ones by a single copy.
 template <class T, HostArray Array>
-void refresh(Device& device, Array&& array, std::span<const IndexRange> changed, Buffer<const T>& buffer) {
+void refresh(OpenedDevice& device, Array&& array, std::span<const IndexRange> changed,
+             Buffer<const T>& buffer) {
   if (device.shares_host_memory) {
     buffer = borrowed(device, array);
     return;
@@ -130,14 +132,14 @@ void giveBack(Buffer<T>& buffer) {
 
 /// Writes `value` to every element.
 template <class T>
-void fill(Device& device, const Buffer<T>& buffer, const std::type_identity_t<T>& value) {
+void fill(OpenedDevice& device, const Buffer<T>& buffer, const std::type_identity_t<T>& value) {
   bytes::fill(device, buffer.memory, &value, sizeof(T), buffer.count * sizeof(T));
 }
 
 /// Waits for everything queued, then copies as many elements as `out` has, from `first` on, to `out`. Nothing
 /// is copied if `out` is the array that the buffer lies in.
 template <class T>
-void download(Device& device, const Buffer<T>& buffer,
+void download(OpenedDevice& device, const Buffer<T>& buffer,
               std::span<std::remove_const_t<std::type_identity_t<T>>> out, std::size_t first = 0) {
   bytes::read(device, buffer.memory, first * sizeof(T), out.data(), out.size_bytes());
 }

@@ -33,13 +33,13 @@ cl::Kernel kernelOf(const cl::Program& program, const char* name) {
   return callDriver([&] { return cl::Kernel(program, name); });
 }
 
-cl::Program built(const Device& device, const std::string& source, const std::string& options) {
+cl::Program built(const OpenedDevice& device, const std::string& source, const std::string& options) {
   const cl::Program program = callDriver([&] { return cl::Program(device.context, source); });
   callDriver([&] { program.build({device.device}, options.c_str()); });
   return program;
 }
 
-cl::Program compile(const Device& device, const std::string& source, const std::string& options) {
+cl::Program compile(const OpenedDevice& device, const std::string& source, const std::string& options) {
   requireMemory(kCompilerBytes, "compiling kernels");
   if (device.description.platform == kPocl) {
     try {
@@ -54,7 +54,7 @@ cl::Program compile(const Device& device, const std::string& source, const std::
 
 /// The program of a kept binary. Empty if the driver doesn't take it, or makes other kernels of it than those
 /// that were kept with it.
-std::optional<Program> restored(const Device& device, KeptProgram kept, const std::string& options) {
+std::optional<Program> restored(const OpenedDevice& device, KeptProgram kept, const std::string& options) {
   try {
     const cl::Program program = callDriver([&] {
       return cl::Program(device.context, {device.device}, cl::Program::Binaries{std::move(kept.binary)});
@@ -88,7 +88,8 @@ std::optional<KeptProgram> toKeep(const cl::Program& program) {
 
 }  // namespace
 
-std::string describeProgram(const Device& device, const std::string& source, const std::string& options) {
+std::string describeProgram(const OpenedDevice& device, const std::string& source,
+                            const std::string& options) {
   const cl::Platform platform(device.device.getInfo<CL_DEVICE_PLATFORM>());
   std::ostringstream text;
   text << "Luciole " LUCIOLE_VERSION "\n"
@@ -130,7 +131,7 @@ std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel) {
   return arguments;
 }
 
-Program buildProgram(const Device& device, const std::string& source, const std::string& options) {
+Program buildProgram(const OpenedDevice& device, const std::string& source, const std::string& options) {
   if (device.program_cache.empty()) return {compile(device, source, options), {}};
   const std::string description = describeProgram(device, source, options);
   if (std::optional<KeptProgram> kept = findProgram(device.program_cache, description))

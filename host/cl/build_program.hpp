@@ -9,11 +9,12 @@ namespace luciole {
 /// The program of this source, built with these options for the device: from its binary in the device's
 /// program cache where that holds it, otherwise by the platform's compiler, and then kept there. Throws
 /// cl::Error as OpenCL does (cl::BuildError with the compiler's log) and MachineError if memory is short.
-Program buildProgram(const Device& device, const std::string& source, const std::string& options);
+Program buildProgram(const OpenedDevice& device, const std::string& source, const std::string& options);
 
 /// All that the bits of a program may depend on, as text: its source and options, the device with its driver,
 /// what the environment tells compilers, and this program's version. Throws cl::Error.
-std::string describeProgram(const Device& device, const std::string& source, const std::string& options);
+std::string describeProgram(const OpenedDevice& device, const std::string& source,
+                            const std::string& options);
 
 /// What OpenCL tells of a kernel's arguments. Throws cl::Error if it doesn't tell.
 std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel);

@@ -56,12 +56,12 @@ void tie(const DoneCommand& done, CommandTrace& trace) {
 
 }  // namespace
 
-void noteCommand(Device& device, QueuedCommand&& command) {
+void noteCommand(OpenedDevice& device, QueuedCommand&& command) {
   const std::lock_guard lock(device.notes_mutex);
   device.trace->commands.push_back(std::move(command));
 }
 
-void recordCommands(Device& device) {
+void recordCommands(OpenedDevice& device) {
   if (!device.trace) return;
   const std::lock_guard lock(device.notes_mutex);
   CommandTrace& trace = *device.trace;

@@ -42,15 +42,15 @@ struct CommandTrace {
 
 /// Records the commands that are done. Without a trace it does nothing. Throws MachineError where the device
 /// doesn't tell.
-void recordCommands(Device& device);
+void recordCommands(OpenedDevice& device);
 
 /// See queueCommand().
-void noteCommand(Device& device, QueuedCommand&& command);
+void noteCommand(OpenedDevice& device, QueuedCommand&& command);
 
 /// Calls enqueue(cl::Event*), which queues one command and has OpenCL fill in the event, and notes the
 /// command for recordCommands(). Without a trace the pointer is null, and nothing is noted.
 template <class Enqueue>
-void queueCommand(Device& device, const char* name, std::initializer_list<TraceArgument> arguments,
+void queueCommand(OpenedDevice& device, const char* name, std::initializer_list<TraceArgument> arguments,
                   Enqueue&& enqueue) {
   if (!device.trace) {
     callDriver([&] { enqueue(static_cast<cl::Event*>(nullptr)); });

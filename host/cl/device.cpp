@@ -14,7 +14,6 @@
 #include <optional>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
 #include "base/trace.hpp"
@@ -22,6 +21,7 @@
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 #include "cl/driver_call.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {
@@ -182,7 +182,7 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
   throw InputError(fmt::format("device: {}: no device has this in its name", selector));
 }
 
-void openDevice(const std::string& selector, Device& device) {
+void openDevice(const std::string& selector, OpenedDevice& device) {
   const std::int64_t begin = nanosecondsSinceStart();
   const std::vector<FoundDevice> found = findDevices();
   std::vector<DeviceDescription> descriptions;
@@ -218,7 +218,7 @@ void openDevice(const std::string& selector, Device& device) {
   traceEvent("open device", kTraceStage, begin, end);
 }
 
-void startDevice(const std::string& selector, Device& device, std::function<void()> then) {
+void startDevice(const std::string& selector, OpenedDevice& device, std::function<void()> then) {
   device.opening = std::async(std::launch::async, [selector, &device, then = std::move(then)] {
                      const TraceThread thread("device opener");
                      openDevice(selector, device);
@@ -226,16 +226,16 @@ void startDevice(const std::string& selector, Device& device, std::function<void
                    }).share();
 }
 
-void awaitDevice(const Device& device) {
+void awaitDevice(const OpenedDevice& device) {
   if (device.opening.valid()) device.opening.get();
 }
 
-Traffic trafficOf(Device& device) {
+Traffic trafficOf(OpenedDevice& device) {
   const std::lock_guard lock(device.notes_mutex);
   return device.traffic;
 }
 
-void finish(Device& device) {
+void finish(OpenedDevice& device) {
   try {
     callDriver([&] { device.queue.finish(); });
   } catch (const cl::Error& error) {
@@ -245,5 +245,20 @@ void finish(Device& device) {
   }
   recordCommands(device);
 }
+
+Device Device::open(const std::string& selector) {
+  auto opened = std::make_unique<OpenedDevice>();
+  openDevice(selector, *opened);
+  return Device(std::move(opened));
+}
+
+Device::Device(std::unique_ptr<OpenedDevice> opened) : opened_(std::move(opened)) {}
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+const DeviceDescription& Device::description() const { return opened_->description; }
+
+OpenedDevice& opened(Device& device) { return *device.opened_; }
 
 }  // namespace luciole

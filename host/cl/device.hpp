@@ -13,32 +13,15 @@
 #include <vector>
 
 #include "cl/program.hpp"
+#include "luciole/device.hpp"
 
 namespace luciole {
 
 struct CommandTrace;
 
-/// An OpenCL device as `luciole devices` lists it.
-struct DeviceDescription {
-  std::string platform;
-  std::string name;
-  std::string version;  ///< the driver's
-  int lanes = 1;        ///< pixels a work-item shades: 16, 8, 4 or 1, by the device's native vector width
-  unsigned compute_units = 0;  ///< work-groups that run at once; on a CPU, the device's threads
-  /// The hash of what it makes of hard numbers (see ArithmeticCheck). Empty: nobody has asked.
-  std::string arithmetic = {};
-};
-
-/// Bytes that buffers have copied and allocated. A device that shares the host's memory copies nothing.
-struct Traffic {
-  std::uint64_t bytes_up = 0;    ///< copied from the host to the device
-  std::uint64_t bytes_down = 0;  ///< copied from the device to the host
-  std::uint64_t bytes_made =
-      0;  ///< allocated as memory of buffers; those that lie in an array of the host's don't count
-};
-
 /// An opened device, and what every launch on it needs.
-struct Device {
+struct OpenedDevice {
+  std::mutex use;  ///< held by a call of the library while it works on the device
   DeviceDescription description;
   cl::Device device;
   cl::Context context;
@@ -67,10 +50,6 @@ struct Device {
   std::shared_future<void> opening;
 };
 
-/// All OpenCL devices of all platforms, in the runtime's order. Empty if there is none. Throws MachineError
-/// if this process may not take the memory that a platform needs.
-std::vector<DeviceDescription> listDevices();
-
 /// Which of listDevices() a selector means. "": PoCL's first device where there is one, otherwise the first.
 /// A number: that one. Anything else: the first whose name or platform contains it, case ignored. Throws
 /// InputError if none fits and MachineError if there is no device at all. A suffix ",lanes=N" (1, 4, 8, 16)
@@ -80,24 +59,27 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
 /// Opens the device that `selector` means, for profiling if a trace is recorded. A selector that ends in
 /// ",lanes=N" sets its lanes. Throws as selectDevice and listDevices do, InputError for other lanes than 1,
 /// 4, 8 and 16, and MachineError if the device fails.
-void openDevice(const std::string& selector, Device& device);
+void openDevice(const std::string& selector, OpenedDevice& device);
 
 /// The selector that means all devices, where a command takes several.
 constexpr const char* kAllDevices = "all";
 
 /// openDevice(), and then `then` if there is one, in a thread of its own. Nobody else may use `device` until
 /// awaitDevice() has returned.
-void startDevice(const std::string& selector, Device& device, std::function<void()> then = {});
+void startDevice(const std::string& selector, OpenedDevice& device, std::function<void()> then = {});
 
 /// Waits until the device is open. Throws what that thread threw. For a device that no thread opens it does
 /// nothing.
-void awaitDevice(const Device& device);
+void awaitDevice(const OpenedDevice& device);
 
 /// The bytes that buffers have copied and allocated so far. Any thread may ask.
-Traffic trafficOf(Device& device);
+Traffic trafficOf(OpenedDevice& device);
+
+/// What a device holds.
+OpenedDevice& opened(Device& device);
 
 /// Waits until everything queued is done, and records it if there is a trace. Throws MachineError if a kernel
 /// failed. The message names the kernel queued last: OpenCL doesn't tell which one it was.
-void finish(Device& device);
+void finish(OpenedDevice& device);
 
 }  // namespace luciole

@@ -3,7 +3,7 @@
 #include <CL/opencl.hpp>
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 

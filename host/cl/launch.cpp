@@ -17,8 +17,8 @@ namespace {
 /// The kernel `name` of the program with this key and these defines. A program that isn't there yet is built
 /// from what source() returns.
 template <class Source>
-Kernel makeKernelOf(Device& device, const std::string& key, const char* name, const std::string& defines,
-                    Source&& source) {
+Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* name,
+                    const std::string& defines, Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
     // -w: clang counts its warnings on standard error, and has some of vectors wider than the processor's.
@@ -86,16 +86,17 @@ std::vector<cl_uint> matchArguments(const Kernel& kernel, const std::vector<Kern
 
 }  // namespace
 
-Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines) {
+Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name,
+                  const std::string& defines) {
   return makeKernelOf(device, file, name, defines, [&] { return kernelSource(file); });
 }
 
-Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
                             const std::string& defines) {
   return makeKernelOf(device, source, name, defines, [&] { return source; });
 }
 
-void launch(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
+void launch(OpenedDevice& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
             const WorkItems& work) {
   const std::vector<cl_uint> places = matchArguments(kernel, arguments);
   if (work.items == 0) return;

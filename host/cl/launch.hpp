@@ -110,10 +110,11 @@ struct Kernel {
 /// program is built only once for a device and the same options. Any thread may call it. Throws MachineError
 /// with the first 1000 characters of the compiler's log if it doesn't compile, if memory is short, and if the
 /// platform doesn't tell the kernel's arguments; std::logic_error for a file that isn't there.
-Kernel makeKernel(Device& device, const std::string& file, const char* name, const std::string& defines);
+Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name,
+                  const std::string& defines);
 
 /// The same for any source text whose includes are in place (see expandKernelSource).
-Kernel makeKernelFromSource(Device& device, const std::string& source, const char* name,
+Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
                             const std::string& defines);
 
 /// The size of a launch. A kernel's result may not depend on `group`, because it is halved until the device
@@ -132,7 +133,7 @@ struct WorkItems {
 ///   has another type than in its source, and if the kernel may write to a Buffer of const elements;
 /// - MachineError if the device refuses an argument or the launch.
 /// Both messages name the kernel and the argument.
-void launch(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
+void launch(OpenedDevice& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
             const WorkItems& work);
 
 }  // namespace luciole

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
-#include "scene/pose.hpp"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
 
 namespace luciole {
 namespace {

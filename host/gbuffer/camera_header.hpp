@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "image/image.hpp"
-#include "scene/scene.hpp"
+#include "luciole/image.hpp"
+#include "luciole/scene.hpp"
 
 // The camera in the header of an EXR file, as OpenEXR's standard attributes define it
 // (ImfStandardAttributes.h):

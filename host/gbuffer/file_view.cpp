@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/error.hpp"
 #include "gbuffer/camera_header.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "gbuffer/layouts.hpp"
 #include "gbuffer/pixel_rays.hpp"
-#include "image/image.hpp"
-#include "scene/scene.hpp"
+#include "luciole/image.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -1,4 +1,4 @@
-#include "gbuffer/gbuffer_file.hpp"
+#include "luciole/gbuffer_file.hpp"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/packed_normal.hpp"
-#include "gbuffer/planes.hpp"
 #include "image/file_format.hpp"
+#include "luciole/error.hpp"
+#include "luciole/planes.hpp"
 
 namespace luciole {
 namespace {

@@ -9,18 +9,20 @@
 #include <limits>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/file_view.hpp"
-#include "gbuffer/gbuffer_file.hpp"
 #include "gbuffer/layer_planes.hpp"
 #include "gbuffer/packed_normal.hpp"
-#include "gbuffer/planes.hpp"
 #include "gbuffer/rebuild_normals.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
+#include "luciole/gbuffer_file.hpp"
+#include "luciole/planes.hpp"
+#include "scene/models.hpp"
 
 namespace luciole {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
 #include "gbuffer/layouts.hpp"
-#include "image/image.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

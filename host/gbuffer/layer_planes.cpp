@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -1,12 +1,16 @@
-#include "gbuffer/planes.hpp"
+#include "luciole/planes.hpp"
 
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "kernels/shared.h"
+
 namespace luciole {
 namespace {
+
+static_assert(GBuffer::kTileSide == kTileSize && GBuffer::kTileSide * GBuffer::kTileSide == kTilePixels);
 
 /// Makes a group of `count` zeros, in the memory that it has where that is enough.
 template <class Group>

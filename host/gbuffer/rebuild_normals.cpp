@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "gbuffer/planes.hpp"
+#include "luciole/planes.hpp"
 
 namespace luciole {
 namespace {

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <string>
 
-#include "base/error.hpp"
 #include "base/picture_size.hpp"
-#include "scene/validate_scene.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
+#include "luciole/validate_scene.hpp"
+#include "scene/models.hpp"
 
 namespace luciole {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 
 namespace luciole {
 

@@ -1,4 +1,4 @@
-#include "image/compare.hpp"
+#include "luciole/compare.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 // Cryptomatte: mattes of things by their names. "Cryptomatte Specification", version 1.2, Psyop, 2018, after
 // J. Friedman and A. Jones, "Fully automatic ID mattes with support for motion blur and transparency",

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

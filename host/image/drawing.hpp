@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 // Pictures with captions below them, on white paper: what the module's maps share. Nothing outside the folder
 // includes this.

@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

@@ -19,12 +19,12 @@
 #include <optional>
 #include <span>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/utf8.hpp"
 #include "image/exr_threads.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 // The layout: "OpenEXR File Layout", the OpenEXR project's technical documentation.
 namespace luciole {

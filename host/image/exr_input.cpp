@@ -16,7 +16,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <new>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "base/text_file.hpp"
@@ -25,6 +24,7 @@
 #include "image/exr_threads.hpp"
 #include "image/exr_zip.hpp"
 #include "image/picture_claims.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/array_memory.hpp"
 #include "image/layers.hpp"
+#include "luciole/array_memory.hpp"
 
 namespace luciole {
 

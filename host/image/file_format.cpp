@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "image/cryptomatte.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

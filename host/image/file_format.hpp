@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

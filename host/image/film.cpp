@@ -22,11 +22,11 @@
 #include <vector>
 
 #include "base/cleanup.hpp"
-#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/write_file.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/picture_size.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "image/image.hpp"
 #include "image/row_file.hpp"
+#include "luciole/image.hpp"
 
 // Bare arrays of floats, which OpenImageIO doesn't know or doesn't write in all versions.
 //

@@ -1,4 +1,4 @@
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <memory>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/utf8.hpp"
 #include "image/layers.hpp"
@@ -18,6 +17,7 @@
 #include "image/picture_file.hpp"
 #include "image/row_file.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

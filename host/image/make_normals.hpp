@@ -1,6 +1,6 @@
 #pragma once
 
-#include "image/texture.hpp"
+#include "luciole/texture.hpp"
 
 namespace luciole {
 

@@ -7,13 +7,13 @@
 #include <optional>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/threads.hpp"
 #include "base/trace.hpp"
 #include "image/file_format.hpp"
 #include "image/float_file.hpp"
 #include "image/quick_texture.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

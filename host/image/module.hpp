@@ -6,11 +6,11 @@
 #include "base/cleanup.hpp"
 #include "image/file_format.hpp"
 #include "image/heat_map.hpp"
-#include "image/image.hpp"
 #include "image/layers.hpp"
 #include "image/read_texture.hpp"
 #include "image/row_file.hpp"
 #include "image/side_by_side.hpp"
+#include "luciole/image.hpp"
 
 // OpenImageIO brings some 260 libraries along, which take the dynamic loader 0.2 s. So what includes it is a
 // module of its own, which the library loads when it first reads a picture, or writes one that is neither PNG

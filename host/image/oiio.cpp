@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/picture_size.hpp"
 #include "image/exr_header.hpp"
 #include "image/picture_claims.hpp"
 #include "image/png_input.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 MemoryFile::MemoryFile() : descriptor_(memfd_create("luciole", MFD_CLOEXEC)) {

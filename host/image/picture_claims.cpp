@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <system_error>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/picture_size.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
-#include "image/image.hpp"
 #include "image/oiio.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 namespace {

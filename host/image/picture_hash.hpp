@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/sha256.hpp"
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

@@ -2,7 +2,7 @@
 
 #include <png.h>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 

@@ -15,13 +15,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/threads.hpp"
 #include "base/utf8.hpp"
 #include "image/deflate.hpp"
 #include "image/png_filters.hpp"
 #include "image/row_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

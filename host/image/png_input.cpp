@@ -11,8 +11,8 @@
 #include <cstring>
 #include <vector>
 
-#include "base/error.hpp"
 #include "image/oiio.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "image/texture.hpp"
+#include "luciole/texture.hpp"
 
 namespace luciole {
 

@@ -7,13 +7,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/array_memory.hpp"
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "image/build_mips.hpp"
 #include "image/oiio.hpp"
 #include "image/spread_texels.hpp"
 #include "image/srgb.hpp"
+#include "luciole/array_memory.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "image/texture.hpp"
+#include "luciole/texture.hpp"
 
 namespace luciole {
 

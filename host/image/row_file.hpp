@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "image/file_format.hpp"
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "image/drawing.hpp"
 #include "image/heat_map.hpp"
 #include "image/label_font.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

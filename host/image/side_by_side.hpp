@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "image/compare.hpp"
-#include "image/image.hpp"
+#include "luciole/compare.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

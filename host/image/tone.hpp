@@ -1,15 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
+
+#include "luciole/image.hpp"
 
 namespace luciole {
-
-/// How linear light, after exposure, is brought into [0,1], the range of files of integers.
-enum class ToneCurve : std::uint8_t {
-  kClip,    ///< as it is; above 1 it is 1
-  kFilmic,  ///< filmicTone()
-};
 
 /// A film's curve for one channel of linear light, before the sRGB transfer: shadows get a toe and highlights
 /// a shoulder, and 1 is reached at 7.24. NaN gives 0. K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2016: a

@@ -12,14 +12,15 @@
 #include <span>
 #include <vector>
 
-#include "base/error.hpp"
 #include "image/dither.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
 #include "image/float_file.hpp"
-#include "image/image.hpp"
 #include "image/row_file.hpp"
 #include "image/srgb_codes.hpp"
+#include "image/tone.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 namespace {

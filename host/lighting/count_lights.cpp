@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/shared.h"
 #include "lights/count_in_range.hpp"
 
 namespace luciole {

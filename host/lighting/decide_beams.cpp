@@ -22,7 +22,7 @@ TracedPairs traceUnsure(const StageInput& input, PairShadows& pairs) {
                     input.lists, input.pass.features.has(Feature::kSoftExact), pairs);
 }
 
-PairBuffers borrowPairs(Device& device, const PairShadows& pairs) {
+PairBuffers borrowPairs(OpenedDevice& device, const PairShadows& pairs) {
   return {borrowed(device, pairs.lit), borrowed(device, pairs.unsure), borrowed(device, pairs.first_share),
           borrowed(device, pairs.shares)};
 }

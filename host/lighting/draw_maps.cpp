@@ -9,7 +9,7 @@
 
 namespace luciole {
 
-void borrowMaps(Device& device, MapScene& maps) {
+void borrowMaps(OpenedDevice& device, MapScene& maps) {
   maps.maps = borrowed(device, maps.host.maps);
   maps.faces = borrowed(device, maps.host.faces);
   maps.texels = borrowed(device, maps.host.texels);
@@ -32,7 +32,8 @@ std::vector<std::uint32_t> findTexels(const StageInput& input) {
                     maps.host.bin_count);
 }
 
-void drawMaps(Device& device, const Scene& scene, std::span<const std::uint32_t> needed, MapScene& maps) {
+void drawMaps(OpenedDevice& device, const Scene& scene, std::span<const std::uint32_t> needed,
+              MapScene& maps) {
   giveBack(maps.faces);
   giveBack(maps.texels);
   const std::vector<IndexRange> drawn = drawNeeded(scene, needed, maps.host);

@@ -5,7 +5,7 @@
 
 #include "cl/buffer.hpp"
 #include "kernels/shared.h"
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 #include "shadow/maps/shadow_maps.hpp"
 
 namespace luciole {
@@ -24,11 +24,12 @@ struct MapScene {
 };
 
 /// Makes the device's buffers of what is planned and drawn. Throws MachineError.
-void borrowMaps(Device& device, MapScene& maps);
+void borrowMaps(OpenedDevice& device, MapScene& maps);
 
 /// Draws those parts of the maps that lookups need and that aren't drawn yet, and brings the device's buffers
 /// up to date. needed: as findTexels() returns it. Throws as drawNeeded does.
-void drawMaps(Device& device, const Scene& scene, std::span<const std::uint32_t> needed, MapScene& maps);
+void drawMaps(OpenedDevice& device, const Scene& scene, std::span<const std::uint32_t> needed,
+              MapScene& maps);
 
 /// Takes the maps back from the device.
 ShadowMaps takeMaps(MapScene& maps);

@@ -14,7 +14,7 @@ namespace {
 /// Whether culling and shading go together, without lists in memory: where nothing else reads them and there
 /// are many lights. A few are faster by lists, whose rows of pixels are lit four side by side. A device of
 /// single lanes has far more threads than a picture has blocks of tiles.
-bool needsNoLists(const Device& device, const Lighting& lighting, const LightPass& pass) {
+bool needsNoLists(const OpenedDevice& device, const Lighting& lighting, const LightPass& pass) {
   const FeatureSet& features = pass.features;
   return features.has(Feature::kLightLists) && features.has(Feature::kLongSums) && !features.shadows() &&
          !pass.counts.list_length && lighting.group_log2 == 4 && device.description.lanes > 1;
@@ -47,7 +47,8 @@ std::size_t bytesOf(const StageInput& input, const ClusterLight& clusters, const
 
 }  // namespace
 
-LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, LightPass pass, Stats& stats) {
+LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& lighting, LightPass pass,
+                       Stats& stats) {
   const FeatureSet& features = pass.features;
   const bool by_tiles = needsNoLists(device, lighting, pass);
   const bool by_lists = features.has(Feature::kLightLists) && !by_tiles;

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "gbuffer/gbuffer.hpp"
 #include "lighting/lighting.hpp"
+#include "luciole/gbuffer.hpp"
 #include "shade/clustered_light.hpp"
 #include "shadow/exact/pair_rays.hpp"
 
@@ -48,6 +48,7 @@ struct LightPass {
 /// lists, that is without shadows and without counting how long lists are. Draws those parts of the scene's
 /// shadow maps that it looks up and that weren't drawn before. Adds the times of its stages to `stats`, and
 /// raises stats.device_bytes to what it needs. Throws MachineError.
-LitPlanes lightGBuffer(Device& device, const Scene& scene, Lighting& lighting, LightPass pass, Stats& stats);
+LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& lighting, LightPass pass,
+                       Stats& stats);
 
 }  // namespace luciole

@@ -61,8 +61,8 @@ ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
 }
 
 /// Fills in the picture's lights. Shadow maps are planned.
-void prepareLightSet(Device& device, const Scene& scene, const Camera& camera, const ShadeSettings& settings,
-                     const Lighting& lighting, LightSet& set) {
+void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& camera,
+                     const ShadeSettings& settings, const Lighting& lighting, LightSet& set) {
   if (scene.lighting) {
     const bool clustered = lighting.features.has(Feature::kClusteredLights);
     if (clustered)
@@ -86,7 +86,7 @@ void prepareLightSet(Device& device, const Scene& scene, const Camera& camera, c
 
 }  // namespace
 
-void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
+void prepareLighting(OpenedDevice& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
                      Stats& stats, KeptShadows* kept) {
   KeptShadows none;

@@ -9,8 +9,8 @@
 #include "lighting/stats.hpp"
 #include "lights/cull.hpp"
 #include "lights/light_set.hpp"
+#include "luciole/scene.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 #include "shade/features.hpp"
 #include "shadow/exact/beam_shadows.hpp"
 
@@ -37,7 +37,7 @@ struct Lighting {
 /// none is drawn yet. kept: of the picture before this one, or null: see KeptShadows. The device may still be
 /// opening: this waits for it as late as possible. Adds the times of its stages to `stats`. Throws
 /// MachineError, and what opening the device throws.
-void prepareLighting(Device& device, const Scene& scene, const Camera& camera, const View& view,
+void prepareLighting(OpenedDevice& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
                      Stats& stats, KeptShadows* kept = nullptr);
 

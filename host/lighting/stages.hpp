@@ -14,7 +14,7 @@ namespace luciole {
 
 /// What all stages know: the points, their lights, and what a picture's G-buffers share.
 struct StageInput {
-  Device& device;
+  OpenedDevice& device;
   const Scene& scene;
   const Lighting& lighting;
   const LightPass& pass;
@@ -39,7 +39,7 @@ struct PairBuffers {
   Buffer<const uint> pair_bits, ray_bits, first_share;
   Buffer<const float> shares;
 };
-PairBuffers borrowPairs(Device& device, const PairShadows& pairs);
+PairBuffers borrowPairs(OpenedDevice& device, const PairShadows& pairs);
 
 /// The light of clusters: planes r g b.
 struct ClusterLight {

@@ -1,91 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "base/clock.hpp"
-#include "cl/device.hpp"
+#include "luciole/stats.hpp"
 
 namespace luciole {
-
-/// The steps to a picture that are timed, roughly in their order.
-enum class Stage : std::uint8_t {
-  kLoadScene,
-  kReadGBuffer,
-  kOpenDevice,
-  kCompileKernels,
-  kWaitForDevice,
-  kWaitForKernels,
-  kMeasureExposure,
-  kTriangleTree,
-  kPrepareLights,
-  kGatherVertices,
-  kRasterize,
-  kCull,
-  kFindShadowTexels,
-  kShadowMaps,
-  kBeamShadows,
-  kShadowRays,
-  kClusteredLight,
-  kShade,
-  kReadBack,
-  kResolve,
-  kCountLights,
-  kCheckGBuffer,
-  kWrite,
-};
-
-/// The stage's name in --stats, bench and scale.
-const char* stageName(Stage stage);
 
 /// Whether a stage is done only once in a process (opening the device, compiling kernels, waiting for them),
 /// so that it is no work on the picture.
 bool isStart(Stage stage);
-
-/// Bounds of the error of light that clusters give (ShadeSettings::light_error), in all channels of all
-/// points that were lit, in linear radiance before exposure.
-struct LightErrorStats {
-  double largest = 0, sum = 0;
-  double least = 0;  ///< the least E that would allow all of them: the largest of bound / max(1, colour)
-  std::uint64_t values = 0;
-};
-
-/// What one of several devices did for a picture.
-struct DeviceShare {
-  DeviceDescription device;
-  std::uint64_t rows = 0;   ///< of the picture that it made
-  double milliseconds = 0;  ///< that it took for them
-  std::string error;        ///< why it was left out in the middle; empty: it wasn't
-};
-
-/// What a picture cost: the content of --stats.
-struct Stats {
-  std::string command;
-  DeviceDescription device;
-  std::vector<DeviceShare> shares;  ///< where several devices made the picture
-  std::uint64_t triangles = 0;
-  std::uint64_t lights = 0;
-  std::vector<std::string> features;
-  std::vector<std::string> warnings;  ///< see Scene::warnings
-  int width = 0, height = 0, samples = 1;
-  std::optional<double> measured_exposure;  ///< stops, if the picture's exposure was measured
-  std::vector<std::pair<Stage, double>>
-      stages;  ///< milliseconds, summed over the samples, in order of first use
-  /// Of the stages, those that ran in threads of their own beside others
-  std::vector<Stage> beside;
-  double began = 0;  ///< when the picture was begun, in milliseconds since the program's start
-  std::string hash;  ///< of the picture, see PictureHash; empty: nobody asked
-  std::vector<std::pair<std::string, std::uint64_t>> counts;
-  std::vector<std::pair<std::string, double>> errors;  ///< by name, if the command measures any
-  LightErrorStats light_error;                         ///< without values where no light was stood for
-  /// Bytes of OpenCL buffers for one sample of the largest band, including those in the host's arrays
-  std::size_t device_bytes = 0;
-  Traffic traffic;  ///< of the whole picture, compiling its kernels included
-};
 
 /// Adds `milliseconds` to the stage, which starts at 0.
 void addStage(Stats& stats, Stage stage, double milliseconds);
@@ -121,34 +46,5 @@ auto timed(Stats& stats, Stage stage, Function&& function) {
 /// A stage's share of the picture's time, milliseconds: the time it took, or 0 if it ran beside others. The
 /// sum over all stages is at most the picture's time.
 double ownShare(const Stats& stats, const std::pair<Stage, double>& stage);
-
-/// Milliseconds of a stage; 0 for one that did not run.
-double stageTime(const Stats& stats, Stage stage);
-
-/// A count of the statistics; 0 for one that isn't there.
-std::uint64_t countOf(const Stats& stats, std::string_view name);
-
-/// The JSON text that --stats writes. ended: when the picture was done, in milliseconds since the program's
-/// start. About time it says:
-/// - stages: how long each took, in milliseconds. Opening the device and compiling kernels run in threads of
-///   their own beside other stages, so the sum may be more than the whole; "wait for …" is the time that the
-///   picture had to wait for them. wall_milliseconds of a stage: its share of the whole (see ownShare).
-/// - picture_milliseconds: the whole, from the picture's beginning to its end. The first picture's beginning
-///   is the program's start.
-/// - wall_milliseconds: from the program's start to the picture's end (see millisecondsSinceStart).
-/// - cold_start_milliseconds: opening the device and compiling the kernels.
-/// - kernels_compiled: how many kernels weren't in the cache: 0 if the start was a warm one, null if the
-///   platform doesn't tell (see kernelsCompiled).
-/// - threads: those that the process has now. device.compute_units: see DeviceDescription.
-/// About memory it says:
-/// - peak_bytes: of the process, as the system counts it. device_bytes: see Stats.
-/// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.
-std::string statsJson(const Stats& stats, double ended);
-
-/// The same as two lines of CSV: names, and values. The columns are always the same, so that the files of
-/// many runs make one table; a cell is empty where there is no such figure, and 0 for a stage that did not
-/// run or a count of nothing. What has no fixed number of values (features, warnings, several devices) is in
-/// the JSON alone.
-std::string statsCsv(const Stats& stats, double ended);
 
 }  // namespace luciole

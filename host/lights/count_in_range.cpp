@@ -1,10 +1,11 @@
 #include "lights/count_in_range.hpp"
 
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
 
 namespace luciole {
 
-void countInRange(Device& device, const CountInRangeArguments& arguments) {
+void countInRange(OpenedDevice& device, const CountInRangeArguments& arguments) {
   Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", "");
   const auto lanes = std::size_t(device.description.lanes);
   launch(device, kernel,

@@ -15,6 +15,6 @@ struct CountInRangeArguments {
 
 /// Launches kernels/count_in_range.cl: counts for each pixel the lights in whose range it lies. Doesn't wait.
 /// Throws MachineError.
-void countInRange(Device& device, const CountInRangeArguments& arguments);
+void countInRange(OpenedDevice& device, const CountInRangeArguments& arguments);
 
 }  // namespace luciole

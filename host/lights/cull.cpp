@@ -1,7 +1,8 @@
 #include "lights/cull.hpp"
 
-#include "base/error.hpp"
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 constexpr const char* kFile = "cull.cl";
 
 /// The lists' lengths, or then the lists themselves: see kernels/cull.cl.
-void findLights(Device& device, const CullArguments& arguments, bool fill, const LightLists& lists) {
+void findLights(OpenedDevice& device, const CullArguments& arguments, bool fill, const LightLists& lists) {
   Kernel find_lights = makeKernel(device, kFile, "find_lights", "");
   launch(device, find_lights,
          {{"position", arguments.position},
@@ -30,7 +31,7 @@ void findLights(Device& device, const CullArguments& arguments, bool fill, const
 
 }  // namespace
 
-void cull(Device& device, const CullArguments& arguments, LightLists& lists) {
+void cull(OpenedDevice& device, const CullArguments& arguments, LightLists& lists) {
   lists.tiles = arguments.plane_stride / kTilePixels;
   reserve(device, lists.tiles * kFoundPerTile, lists.found);
   reserve(device, lists.tiles + 1, lists.starts);

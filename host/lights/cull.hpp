@@ -35,6 +35,6 @@ constexpr unsigned groupLog2(int tile_size) { return tile_size == 4 ? 4 : tile_s
 /// long as no light gives ambient light or `tests` lacks kByFacing, it leaves out only lights to which
 /// shading would add exactly zero. Reuses the buffers of `lists` that are large enough. Throws MachineError,
 /// also for lists of more than 2³² − 2 entries.
-void cull(Device& device, const CullArguments& arguments, LightLists& lists);
+void cull(OpenedDevice& device, const CullArguments& arguments, LightLists& lists);
 
 }  // namespace luciole

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "scene/model.hpp"
-#include "scene/scene.hpp"
+#include "luciole/model.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

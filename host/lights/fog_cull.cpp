@@ -6,6 +6,7 @@
 #include <span>
 
 #include "scene/bounds.hpp"
+#include "scene/models.hpp"
 
 namespace luciole {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "luciole/model.hpp"
+#include "luciole/scene.hpp"
 #include "raster/view.hpp"
-#include "scene/model.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "base/array_memory.hpp"
 #include "kernels/shared.h"
+#include "luciole/array_memory.hpp"
 
 namespace luciole {
 

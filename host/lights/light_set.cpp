@@ -2,7 +2,7 @@
 
 namespace luciole {
 
-void finishLightSet(Device& device, LightSet& set) {
+void finishLightSet(OpenedDevice& device, LightSet& set) {
   set.frame.light_count = static_cast<uint>(set.lights.size());
   set.tree = buildLightTree(set.lights);
   set.light_buffer = borrowed(device, set.lights);

@@ -41,7 +41,7 @@ struct LightSet {
 
 /// Sets what follows from the lights: the frame's count, the tree, and the device's buffers. Throws
 /// MachineError.
-void finishLightSet(Device& device, LightSet& set);
+void finishLightSet(OpenedDevice& device, LightSet& set);
 
 /// The bytes of its lights, their tree and clusters on the device.
 std::size_t bytesOf(const LightSet& set);

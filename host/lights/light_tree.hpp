@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "base/array_memory.hpp"
 #include "kernels/shared.h"
-#include "scene/scene.hpp"
+#include "luciole/array_memory.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/array_memory.hpp"
+#include "luciole/array_memory.hpp"
 
 namespace luciole {
 

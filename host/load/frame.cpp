@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "luciole/pose.hpp"
 #include "rays/ray_cast.hpp"
 #include "scene/bounds.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -1,15 +1,15 @@
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "base/error.hpp"
 #include "load/frame.hpp"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
-#include "scene/pose.hpp"
 #include "scene/tangents.hpp"
 
 namespace luciole {

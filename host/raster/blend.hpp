@@ -4,8 +4,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 
 // Blended surfaces are dithered: each sample of a pixel shows one or doesn't, so that the share of samples
 // that do is its opacity (Enderton, Sintorn, Shirley and Luebke, "Stochastic transparency", 2010). Nothing is

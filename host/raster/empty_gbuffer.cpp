@@ -5,9 +5,10 @@
 #include <tuple>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/picture_size.hpp"
-#include "gbuffer/planes.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
+#include "luciole/planes.hpp"
 
 namespace luciole {
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "raster/view.hpp"
 
 namespace luciole {

@@ -4,7 +4,8 @@
 #include <limits>
 
 #include "gbuffer/packed_normal.hpp"
-#include "gbuffer/planes.hpp"
+#include "kernels/shared.h"
+#include "luciole/planes.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/geometry.hpp"
 #include "raster/rasterize.hpp"

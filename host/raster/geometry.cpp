@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "raster/clip.hpp"
 
 namespace luciole {

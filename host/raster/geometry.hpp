@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "raster/clip.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

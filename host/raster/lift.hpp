@@ -3,7 +3,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 // Where shadow tests start: not on the facet that a pixel shows but above it, near the smooth surface that
 // the vertex normals describe. At the terminator a facet faces away from a light that its shading normals

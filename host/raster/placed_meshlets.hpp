@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "raster/geometry.hpp"
 #include "raster/meshlets.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -5,20 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
+#include "luciole/gbuffer.hpp"
+#include "luciole/settings.hpp"
 #include "raster/meshlets.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
-
-/// Where a surface's normals and colours are evaluated.
-enum class Shading : std::uint8_t {
-  kFlat,     ///< the triangle's own normal
-  kGouraud,  ///< colours lit at the vertices, interpolated
-  kPhong,    ///< normals interpolated
-};
 
 /// Counts of triangles. Each is counted once in `submitted`, and in at most one of the others. The parts and
 /// samples of a picture that is drawn in several calls share their counts: a triangle is outside if it covers

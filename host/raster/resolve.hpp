@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "raster/coverage.hpp"
 #include "raster/rasterize.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "raster/seen_surface.hpp"
 #include "raster/square_values.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "base/array_memory.hpp"
+#include "luciole/array_memory.hpp"
 #include "raster/bins.hpp"
 #include "raster/coverage.hpp"
 #include "raster/sample_pattern.hpp"

@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "luciole/scene.hpp"
 #include "raster/square.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/array_memory.hpp"
+#include "luciole/array_memory.hpp"
 #include "raster/geometry.hpp"
 #include "raster/placed_meshlets.hpp"
 

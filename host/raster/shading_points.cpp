@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "kernels/shared.h"
 #include "raster/concatenate.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/resolve_square.hpp"

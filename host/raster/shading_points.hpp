@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "kernels/shared.h"
+#include "luciole/gbuffer.hpp"
 #include "raster/bins.hpp"
 #include "raster/rasterize.hpp"
 #include "raster/sample_pattern.hpp"

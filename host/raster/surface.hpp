@@ -2,9 +2,9 @@
 
 #include <glm/glm.hpp>
 
+#include "luciole/scene.hpp"
 #include "raster/geometry.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "luciole/error.hpp"
+#include "luciole/validate_scene.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/resolve_square.hpp"
 #include "raster/seen_surface.hpp"
 #include "raster/shading_points.hpp"
-#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {

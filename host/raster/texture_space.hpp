@@ -5,9 +5,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "raster/rasterize.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 

@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "scene/scene.hpp"
+#include "luciole/settings.hpp"
 
 namespace luciole {
 
@@ -38,11 +38,6 @@ glm::dmat4 orthographicProjection(double left, double right, double bottom, doub
 
 /// The inverse of camera_to_world: the transposed rotation, so that no rounding of an inversion enters.
 glm::dmat4 worldToView(const Camera& camera);
-
-/// Part of a picture, in pixels from its top left corner.
-struct Crop {
-  int x = 0, y = 0, width = 0, height = 0;
-};
 
 /// A rectangle of the whole picture's pixels.
 struct PixelRectangle {

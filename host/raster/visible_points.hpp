@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "scene/bounds.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

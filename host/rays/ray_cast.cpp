@@ -15,7 +15,7 @@
 #include <iterator>
 #include <limits>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

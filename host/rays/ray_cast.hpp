@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 struct RTCSceneTy;  // Embree's
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "kernels/shared.h"
+#include "luciole/validate_scene.hpp"
 #include "raster/opacity.hpp"
-#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <glm/glm.hpp>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "rays/ray_cast.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

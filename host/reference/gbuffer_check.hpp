@@ -4,9 +4,9 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

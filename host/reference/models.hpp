@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-#include "scene/model.hpp"
+#include "luciole/model.hpp"
 
 // The reflection models in double precision, written from the papers and independently of kernels/. Each
 // names its paper in models.cpp.

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "luciole/scene.hpp"
 #include "rays/shadow_rays.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -10,11 +10,11 @@
 #include <mutex>
 #include <optional>
 
-#include "base/error.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "gbuffer/validate_gbuffer.hpp"
+#include "luciole/error.hpp"
+#include "luciole/validate_scene.hpp"
 #include "reference/models.hpp"
-#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
-#include "image/image.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/image.hpp"
+#include "luciole/model.hpp"
+#include "luciole/scene.hpp"
 #include "reference/ray_shadows.hpp"
-#include "scene/model.hpp"
-#include "scene/scene.hpp"
 
 // The lighting equations in double precision, written from the specification and the papers and independently
 // of kernels/, so that pictures are compared with code that they don't share. World space throughout, metres.

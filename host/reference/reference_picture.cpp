@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "image/exposure.hpp"
+#include "luciole/reference.hpp"
+#include "luciole/validate_scene.hpp"
+#include "rays/shadow_rays.hpp"
 #include "scene/tangents.hpp"
-#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -99,6 +101,19 @@ std::vector<double> referenceCoverage(const Scene& scene, const View& view, int 
   }
   for (double& share : covered) share /= samples;
   return covered;
+}
+
+std::vector<glm::dvec3> referencePicture(const Scene& scene, const RenderSettings& settings,
+                                         std::span<const glm::ivec2> pixels) {
+  validateScene(scene);
+  const View view = cameraView(settings.camera, settings.size, settings.crop);
+  ReferenceSettings reference{.model = settings.shade.model};
+  RayScene rays;
+  if (settings.shade.shadows != ShadowMethod::kOff) {
+    rays = buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3]));
+    reference.shadow_rays = &rays;
+  }
+  return referencePicture(scene, view, settings.shading, settings.samples, pixels, reference);
 }
 
 }  // namespace luciole

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "image/cryptomatte.hpp"
+#include "kernels/shared.h"
 #include "raster/square.hpp"
 
 namespace luciole {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "gbuffer/gbuffer.hpp"
-#include "image/image.hpp"
 #include "lighting/light_gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/image.hpp"
 #include "render/pixel_sums.hpp"
 #include "render/render.hpp"
 

@@ -92,8 +92,9 @@ int bandEnd(int first, const BandLimits& limits) {
   return whole_bins > first ? whole_bins : end;
 }
 
-void makeBands(Device& device, const Scene& scene, const RenderSettings& settings, const PicturePlan& plan,
-               const NextBand& next, const BandSink& take, Stats& stats, KeptShadows* kept) {
+void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
+               const PicturePlan& plan, const NextBand& next, const BandSink& take, Stats& stats,
+               KeptShadows* kept) {
   const TrafficMeter meter{device, stats};
   const glm::ivec2 size = plan.view.crop_size;
   const TraceSpan span("picture", {{"width", size.x},

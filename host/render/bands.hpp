@@ -32,7 +32,8 @@ using BandSink = std::function<void(const Band& band, const Image& rows)>;
 
 /// Makes the bands of a planned picture that `next` asks for. The scene and the settings are valid. All else:
 /// see renderBands().
-void makeBands(Device& device, const Scene& scene, const RenderSettings& settings, const PicturePlan& plan,
-               const NextBand& next, const BandSink& take, Stats& stats, KeptShadows* kept);
+void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
+               const PicturePlan& plan, const NextBand& next, const BandSink& take, Stats& stats,
+               KeptShadows* kept);
 
 }  // namespace luciole

@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "base/trace.hpp"
+#include "kernels/shared.h"
 #include "lighting/light_gbuffer.hpp"
 
 namespace luciole {
 
-void compileKernels(Device& device, const FeatureSet& features, const ShadeSettings& settings) {
+void compileKernels(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings) {
   GBuffer empty;  // one tile of background
   empty.tiles_x = empty.tiles_y = 1;
   empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
@@ -37,7 +38,7 @@ void compileKernels(Device& device, const FeatureSet& features, const ShadeSetti
                ignored);
 }
 
-std::future<double> startCompiling(Device& device, const PicturePlan& plan) {
+std::future<double> startCompiling(OpenedDevice& device, const PicturePlan& plan) {
   return std::async(std::launch::async, [&device, &plan] {
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
@@ -47,7 +48,7 @@ std::future<double> startCompiling(Device& device, const PicturePlan& plan) {
   });
 }
 
-void awaitKernels(std::future<double>& compiling, Device& device, const RenderSettings& settings,
+void awaitKernels(std::future<double>& compiling, OpenedDevice& device, const RenderSettings& settings,
                   Stats& stats) {
   const double milliseconds = timed(stats, Stage::kWaitForKernels, [&] {
     if (settings.on_long_compile && compiling.wait_for(std::chrono::seconds(1)) != std::future_status::ready)

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "kernels/shared.h"
 #include "lights/exact_reason.hpp"
 
 namespace luciole {

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "base/error.hpp"
 #include "image/light_names.hpp"
+#include "luciole/error.hpp"
 #include "render/assemble.hpp"
 #include "scene/light_groups.hpp"
 
@@ -35,7 +35,7 @@ std::vector<LightPart> lightParts() {
 void darken(float4& color) { color.x = color.y = color.z = 0; }
 
 /// What lights a layer. chosen: its lights, by their places in the picture's, in its order.
-LightSet layerLights(Device& device, const LightSet& lights, std::span<const std::uint32_t> chosen,
+LightSet layerLights(OpenedDevice& device, const LightSet& lights, std::span<const std::uint32_t> chosen,
                      const LightLayer& layer) {
   LightSet set;
   set.frame = lights.frame;
@@ -88,7 +88,7 @@ std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& se
   return layers;
 }
 
-std::vector<LitLayer> prepareLayers(Device& device, const Scene& scene, const LightSet& lights,
+std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const LightSet& lights,
                                     const FeatureSet& features, std::vector<LightLayer> layers) {
   std::vector<std::uint32_t> all(lights.lights.size());
   std::iota(all.begin(), all.end(), 0u);

@@ -44,7 +44,7 @@ struct LitLayer {
 
 /// These layers of a picture whose lighting is prepared. features: of the picture. Lights keep their shadow
 /// maps and the place of their samples.
-std::vector<LitLayer> prepareLayers(Device& device, const Scene& scene, const LightSet& lights,
+std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const LightSet& lights,
                                     const FeatureSet& features, std::vector<LightLayer> layers);
 
 /// The features to light a layer with, of those that its picture has.

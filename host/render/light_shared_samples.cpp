@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "gbuffer/planes.hpp"
+#include "kernels/shared.h"
+#include "luciole/planes.hpp"
 #include "raster/shading_points.hpp"
 #include "render/assemble.hpp"
 #include "render/count_picture.hpp"

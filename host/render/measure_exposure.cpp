@@ -9,7 +9,8 @@
 
 namespace luciole {
 
-double measureExposure(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
+                       Stats& stats) {
   RenderSettings small;
   small.size = measuringSize(settings.size);
   small.camera = settings.camera;

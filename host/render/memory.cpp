@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/machine_memory.hpp"
+#include "kernels/shared.h"
 #include "lights/exact_reason.hpp"
 #include "raster/bins.hpp"
 #include "render/assemble.hpp"

@@ -3,9 +3,9 @@
 #include <cstddef>
 
 #include "kernels/shared.h"
+#include "luciole/scene.hpp"
 #include "raster/shading_points.hpp"
 #include "render/plan.hpp"
-#include "scene/scene.hpp"
 
 // How much memory pictures and lights take, computed from the sizes of their parts.
 namespace luciole {

@@ -1,4 +1,5 @@
 #include "render/pixel_sums.hpp"
+#include "kernels/shared.h"
 
 #include <tbb/parallel_for.h>
 

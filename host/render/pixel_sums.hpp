@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "raster/shading_points.hpp"
 
 namespace luciole {

@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "raster/view.hpp"
 #include "render/light_layers.hpp"
 #include "render/render.hpp"
-#include "scene/scene.hpp"
 #include "shade/features.hpp"
 
 namespace luciole {

@@ -19,7 +19,7 @@ struct UsedMemory {
 
 /// A picture that is ready to be made.
 struct ReadyPicture {
-  Device& device;
+  OpenedDevice& device;
   const Scene& scene;
   const RenderSettings& settings;
   const PicturePlan& plan;
@@ -33,7 +33,7 @@ struct ReadyPicture {
 
 /// Adds to a picture's statistics what buffers cost while it exists.
 struct TrafficMeter {
-  Device& device;
+  OpenedDevice& device;
   Stats& stats;
   Traffic before = trafficOf(device);
 

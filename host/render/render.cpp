@@ -5,11 +5,11 @@
 #include <future>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
 #include "gbuffer/validate_gbuffer.hpp"
 #include "lights/fog_cull.hpp"
+#include "luciole/error.hpp"
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
 #include "render/bands.hpp"
@@ -29,8 +29,8 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
   stats.features = featureNames(features);
 }
 
-void renderBands(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
-                 Stats& stats, KeptShadows* kept) {
+void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
+                 const RowSink& take, Stats& stats, KeptShadows* kept) {
   validate(scene, settings, kept);
   const PicturePlan plan = planPicture(scene, settings);
   std::optional<int> begun;
@@ -44,7 +44,7 @@ void renderBands(Device& device, const Scene& scene, const RenderSettings& setti
       device, scene, settings, plan, next, [&](const Band&, const Image& rows) { take(rows); }, stats, kept);
 }
 
-Image renderScene(Device& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
   Image picture;
   renderBands(
       device, scene, settings,
@@ -58,7 +58,8 @@ Image renderScene(Device& device, const Scene& scene, const RenderSettings& sett
   return picture;
 }
 
-GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+GBuffer rasterizeScene(OpenedDevice* device, const Scene& scene, const RenderSettings& settings,
+                       Stats& stats) {
   validate(scene, settings);
   const bool gouraud = settings.shading == Shading::kGouraud;
   if (gouraud && !device)
@@ -101,8 +102,8 @@ GBuffer rasterizeScene(Device* device, const Scene& scene, const RenderSettings&
   return gbuffer;
 }
 
-Image shadeGBuffer(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings,
-                   Stats& stats) {
+Image shadeGBuffer(OpenedDevice& device, const Scene& scene, const GBuffer& gbuffer,
+                   const RenderSettings& settings, Stats& stats) {
   validateGBuffer(gbuffer);
   RenderSettings one_sample = settings;
   one_sample.samples = 1;

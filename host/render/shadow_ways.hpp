@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
+#include "luciole/scene.hpp"
+#include "luciole/settings.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 #include "shade/features.hpp"
-#include "shadow/maps/shadow_method.hpp"
 
 namespace luciole {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/trace.hpp"
+#include "luciole/error.hpp"
 #include "raster/bins.hpp"
 #include "render/bands.hpp"
 #include "render/validate.hpp"

@@ -6,14 +6,14 @@
 #include "cl/device.hpp"
 #include "lighting/kept_shadows.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/scene.hpp"
 #include "render/render.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 
 /// A device that makes pictures beside others.
 struct Sharer {
-  Device* device;
+  OpenedDevice* device;
   KeptShadows kept = {};    ///< from picture to picture
   double rows = 0;          ///< that it made so far
   double milliseconds = 0;  ///< that it took for them

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "render/render.hpp"
 
 // Layers that say what a pixel's samples see: objects and materials, by number or as Cryptomattes by name.

@@ -1,4 +1,5 @@
 #include "render/uneven_pixels.hpp"
+#include "kernels/shared.h"
 
 #include <tbb/parallel_for.h>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "raster/shading_points.hpp"
 
 namespace luciole {

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/error.hpp"
 #include "base/picture_size.hpp"
 #include "image/exposure.hpp"
+#include "luciole/error.hpp"
+#include "luciole/validate_scene.hpp"
 #include "render/light_layers.hpp"
-#include "scene/validate_scene.hpp"
+#include "scene/models.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 

@@ -1,4 +1,4 @@
-#include "scene/curve.hpp"
+#include "luciole/curve.hpp"
 
 #include <algorithm>
 #include <cmath>

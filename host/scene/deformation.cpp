@@ -1,4 +1,4 @@
-#include "scene/deformation.hpp"
+#include "luciole/deformation.hpp"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "luciole/scene.hpp"
 #include "scene/normals.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 namespace {

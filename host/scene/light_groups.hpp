@@ -5,7 +5,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

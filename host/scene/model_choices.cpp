@@ -1,8 +1,11 @@
 #include <algorithm>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
+#include "scene/models.hpp"
 
 namespace luciole {
+
+const char* modelName(Model model) { return kModelNames[std::size_t(model)]; }
 
 ModelChoices modelChoices(const Scene& scene) {
   ModelChoices choices;

@@ -1,4 +1,4 @@
-#include "scene/pose.hpp"
+#include "luciole/pose.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/place_limits.hpp"
 
 namespace luciole {

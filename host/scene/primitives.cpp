@@ -1,4 +1,4 @@
-#include "scene/primitives.hpp"
+#include "luciole/primitives.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -3,7 +3,7 @@
 #include <concepts>
 #include <type_traits>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 // For code that visits a scene field by field. Each function below names all members of one plain struct by a
 // structured binding, so a struct that gets a member doesn't compile here until it is named too.

@@ -1,4 +1,4 @@
-#include "scene/validate_scene.hpp"
+#include "luciole/validate_scene.hpp"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -11,12 +11,13 @@
 #include <cstdint>
 #include <span>
 
-#include "base/error.hpp"
 #include "base/picture_size.hpp"
 #include "base/text_file.hpp"
 #include "base/trace.hpp"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
+#include "scene/models.hpp"
 #include "scene/place_limits.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
 #include "raster/geometry.hpp"
 
 namespace luciole {
@@ -28,7 +29,7 @@ double pixelAngle(const View& view) {
 
 }  // namespace
 
-ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
+ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments) {
   Kernel kernel = makeKernel(device, "clustered_light.cl", "clustered_light", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;

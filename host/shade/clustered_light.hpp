@@ -30,7 +30,7 @@ struct ClusteredLightCounts {
 
 /// Launches kernels/clustered_light.cl on every tile of the G-buffer and waits for it. defines: the program's
 /// features (featureDefines). Throws MachineError.
-ClusteredLightCounts clusteredLight(Device& device, const std::string& defines,
+ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments);
 
 /// Lights that clusters could stand for.

@@ -7,6 +7,7 @@
 
 #include "kernels/shared.h"
 #include "raster/lift.hpp"
+#include "scene/models.hpp"
 #include "scene/tangents.hpp"
 #include "shade/clustered_light.hpp"
 #include "shadow/maps/shadow_views.hpp"

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "lights/exact_reason.hpp"
+#include "luciole/scene.hpp"
+#include "luciole/settings.hpp"
 #include "raster/rasterize.hpp"
-#include "scene/model.hpp"
-#include "scene/scene.hpp"
+#include "scene/models.hpp"
 #include "shadow/maps/shadow_maps.hpp"
 
 namespace luciole {
@@ -92,39 +93,12 @@ struct SurfaceTraits {
 /// The traits of a scene's materials and meshes. `smooth` is set only if a light casts shadows.
 SurfaceTraits materialTraits(const Scene& scene);
 
-enum class Culling : std::uint8_t { kNone, kTiles };
-
 /// The feature of a program that compiles this model.
 constexpr Feature featureOf(Model model) { return Feature(unsigned(Feature::kPhong) + unsigned(model)); }
 
 constexpr bool isModel(Feature feature) {
   return feature >= Feature::kPhong && unsigned(feature) < unsigned(Feature::kPhong) + kModelNames.size();
 }
-
-/// How to light a G-buffer, apart from what the scene says.
-struct ShadeSettings {
-  Model model = Model::kPhong;  ///< of surfaces that choose none
-  /// Surfaces have different models: G-buffers say which (GBuffer::model). See chooseModel().
-  bool material_models = false;
-  Culling culling = Culling::kTiles;
-  int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
-  ShadowMethod shadows = ShadowMethod::kHard;
-  bool shadow_layer = false;  ///< also write how visible, on average, lights with shadows are
-  /// With ShadowMethod::kAuto the way of each light. Empty: a picture's are chosen by shadowWays, and where
-  /// no picture is known, all are exact.
-  std::vector<ShadowWay> shadow_ways{};
-  int soft_samples =
-      16;             ///< of a light that has a size, with ShadowMethod::kSoftExact, 1 to kMostSoftSamples
-  int pcf_width = 2;  ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
-  ShadowLimits shadow_limits{};
-  int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
-  int exp2_degree = 6;
-  /// E, 0 to 1: lights may be stood for by clusters of them as long as each pixel's error stays below
-  /// E·max(1, colour) in each channel. 0: each light is summed by itself.
-  float light_error = 0;
-  /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
-  bool always_clusters = false;
-};
 
 /// Sets the model of a picture whose surfaces choose these: the one that all have, or `material_models`.
 void chooseModel(const ModelChoices& choices, ShadeSettings& settings);

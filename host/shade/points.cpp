@@ -21,7 +21,7 @@ PackedNormals packNormals(const GBuffer& gbuffer) {
 
 }  // namespace
 
-Points pointsOnDevice(Device& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit) {
+Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit) {
   const std::size_t stride = gbuffer.pixels();
   const bool asks_facets = features.shadowMaps() || features.has(Feature::kNormalMaps);
   PackedNormals packed;

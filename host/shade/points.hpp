@@ -1,9 +1,9 @@
 #pragma once
 
 #include "cl/device.hpp"
-#include "gbuffer/gbuffer.hpp"
 #include "lights/cull.hpp"
 #include "lights/light_set.hpp"
+#include "luciole/gbuffer.hpp"
 #include "shade/features.hpp"
 #include "shade/shade.hpp"
 
@@ -23,7 +23,7 @@ struct Points {
 
 /// features: what of the planes is needed. unlit: the diffuse colour takes the place of ambient. Throws
 /// MachineError.
-Points pointsOnDevice(Device& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit);
+Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit);
 
 /// What cull() takes to cull the lights of these points. tests: see CullArguments.
 CullArguments cullArguments(const Points& points, const LightSet& lights, unsigned group_log2,

@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
+#include "luciole/gbuffer.hpp"
 #include "shade/features.hpp"
 
 // What is rounded between the light of clusters and the colours of a picture, for the bounds of its error.

@@ -1,11 +1,13 @@
 #include "shade/shade.hpp"
 
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
 
 namespace luciole {
 
-GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
-                               const Plane& lift, const ModelPlane& model, bool unlit) {
+GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
+                               const PackedNormals& geometric_normal, const Plane& lift,
+                               const ModelPlane& model, bool unlit) {
   // A single buffer for both: OpenCL leaves two buffers in the same host memory undefined.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
   return {.position = borrowed(device, gbuffer.position),
@@ -19,7 +21,7 @@ GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const Pac
           .lift = borrowed(device, lift)};
 }
 
-void shade(Device& device, const std::string& defines, const ShadeArguments& arguments) {
+void shade(OpenedDevice& device, const std::string& defines, const ShadeArguments& arguments) {
   Kernel kernel = makeKernel(device, "shade.cl", "shade", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const auto lanes = std::size_t(device.description.lanes);

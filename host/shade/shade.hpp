@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
 #include "lights/cull.hpp"
+#include "luciole/gbuffer.hpp"
 
 namespace luciole {
 
@@ -17,8 +17,9 @@ struct GBufferBuffers {
 
 /// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals and the lift given instead of
 /// its own. unlit: the diffuse colour takes the place of ambient.
-GBufferBuffers borrowedGBuffer(Device& device, const GBuffer& gbuffer, const PackedNormals& geometric_normal,
-                               const Plane& lift, const ModelPlane& model, bool unlit);
+GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
+                               const PackedNormals& geometric_normal, const Plane& lift,
+                               const ModelPlane& model, bool unlit);
 
 struct ShadeArguments {
   const ShadeFrame& frame;
@@ -37,6 +38,6 @@ struct ShadeArguments {
 
 /// Launches kernels/shade.cl on every pixel of the G-buffer and waits for it. defines: the program's features
 /// (featureDefines) and mathDefines. Throws MachineError.
-void shade(Device& device, const std::string& defines, const ShadeArguments& arguments);
+void shade(OpenedDevice& device, const std::string& defines, const ShadeArguments& arguments);
 
 }  // namespace luciole

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
 
 namespace luciole {
 namespace {
@@ -38,7 +39,8 @@ TileBlock chooseBlock(int tiles_x, int tiles_y, std::size_t threads) {
 }
 static_assert(kBlockTiles == 4 * 4);
 
-TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTilesArguments& arguments) {
+TileCounts shadeTiles(OpenedDevice& device, const std::string& defines,
+                      const ShadeTilesArguments& arguments) {
   Kernel kernel = makeKernel(device, "shade_tiles.cl", "shade_tiles", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const std::size_t blocks = blockCount(arguments.block, arguments.tiles_x, arguments.tiles_y);

@@ -35,6 +35,6 @@ struct TileCounts {
 /// Launches kernels/shade_tiles.cl on every pixel of the G-buffer and waits for it: the same picture as by
 /// cull() and shade(), without lists in memory. defines: the program's features (featureDefines), without
 /// shadows, and mathDefines. Throws MachineError.
-TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTilesArguments& arguments);
+TileCounts shadeTiles(OpenedDevice& device, const std::string& defines, const ShadeTilesArguments& arguments);
 
 }  // namespace luciole

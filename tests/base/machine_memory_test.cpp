@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

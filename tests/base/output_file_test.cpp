@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

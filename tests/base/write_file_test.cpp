@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

@@ -21,7 +21,7 @@ using Bytes = std::array<std::uint64_t, 3>;
 
 /// With memory that is the host's, as a CPU has it, and as if it had memory of its own.
 struct Buffers : testing::TestWithParam<bool> {
-  Device device;
+  OpenedDevice device;
   Buffers() {
     openDevice("", device);
     device.shares_host_memory = GetParam();
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Memory, Buffers, testing::Bool(),
                          [](const auto& test) { return test.param ? "Shared" : "Apart"; });
 
 template <class Values>
-concept Borrowable = requires(Device& device, Values&& values) {
+concept Borrowable = requires(OpenedDevice& device, Values&& values) {
   borrowed(device, std::forward<Values>(values));
 };
 static_assert(Borrowable<const std::vector<int>&> && Borrowable<std::span<int>>);

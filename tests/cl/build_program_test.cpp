@@ -22,13 +22,13 @@ using testing::Not;
 
 constexpr const char* kOptions = "-cl-std=CL1.2 -cl-denorms-are-zero -cl-kernel-arg-info";
 
-std::string optionsOf(const Device& device, const Program& program) {
+std::string optionsOf(const OpenedDevice& device, const Program& program) {
   return program.program.getBuildInfo<CL_PROGRAM_BUILD_OPTIONS>(device.device);
 }
 
 /// PoCL's compiler, which reads builtins.clh in place of its own header.
 struct PoclCompiler : testing::Test {
-  Device device;
+  OpenedDevice device;
   void SetUp() override {
     openDevice("", device);
     if (device.description.platform != "Portable Computing Language") GTEST_SKIP() << "not PoCL";
@@ -114,7 +114,7 @@ struct KeptPrograms : testing::Test {
   /// What the kernel gives for 1, on a device opened anew, as in another run. restored: whether its program
   /// came from the folder.
   float run(bool& restored, const std::string& defines = "-DPLUS=2") const {
-    Device device;
+    OpenedDevice device;
     openDevice("", device);
     device.program_cache = cache;
     Kernel kernel = makeKernelFromSource(device, source, "probe", defines);
@@ -159,7 +159,7 @@ TEST_F(KeptPrograms, ThoseOfOtherOptionsAreOthers) {
 TEST_F(KeptPrograms, AreKeptUnderAllThatTheirBitsDependOn) {
   expectCompiled(3);
   const nlohmann::json file = nlohmann::json::from_cbor(readText(kept().front()).substr(16));
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   const cl::Platform platform(device.device.getInfo<CL_DEVICE_PLATFORM>());
   for (const std::string& part :

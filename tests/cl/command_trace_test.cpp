@@ -13,7 +13,7 @@ constexpr const char* kCountUp =
     "kernel void count_up(global uint* numbers) { numbers[get_global_id(0)] += 1; }";
 
 /// Runs a kernel three times on numbers that are brought there and back.
-void countUp(Device& device, std::size_t count) {
+void countUp(OpenedDevice& device, std::size_t count) {
   std::vector<uint> numbers(count, 7), read(count);
   const Buffer<uint> buffer = makeBuffer<uint>(device, count);
   fill(device, buffer, 7);
@@ -23,7 +23,7 @@ void countUp(Device& device, std::size_t count) {
   for (const uint number : read) ASSERT_EQ(number, 10u);
 }
 
-bool isProfiled(const Device& device) {
+bool isProfiled(const OpenedDevice& device) {
   return (device.queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_PROFILING_ENABLE) != 0;
 }
 
@@ -35,7 +35,7 @@ const std::variant<std::int64_t, double, std::string>& argumentOf(const TraceEve
 }
 
 TEST(CommandTrace, WithoutATraceNoQueueIsProfiledAndNoCommandIsNoted) {
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   EXPECT_FALSE(isProfiled(device));
   EXPECT_EQ(device.trace, nullptr);
@@ -47,7 +47,7 @@ TEST(CommandTrace, WithoutATraceNoQueueIsProfiledAndNoCommandIsNoted) {
 
 TEST(CommandTrace, TellsEachCommandInItsOrderBetweenItsQueueingAndItsEnd) {
   startTrace();
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   EXPECT_TRUE(isProfiled(device));
   const std::int64_t before = nanosecondsSinceStart();
@@ -88,7 +88,7 @@ TEST(CommandTrace, TellsEachCommandInItsOrderBetweenItsQueueingAndItsEnd) {
 
 TEST(CommandTrace, TellsWhatOpeningADeviceAndBuildingAProgramTook) {
   startTrace();
-  Device device;
+  OpenedDevice device;
   startDevice("", device);
   awaitDevice(device);
   countUp(device, 16);

@@ -54,13 +54,13 @@ TEST(SelectDevice, WithoutAnyDeviceItSaysWhatToInstall) {
 }
 
 TEST(OpenDevice, LanesAreTheDevicesOwnOrForced) {
-  Device own;
+  OpenedDevice own;
   openDevice("", own);
   const std::vector<DeviceDescription> all = listDevices();
   EXPECT_EQ(own.description.lanes, all[selectDevice(all, "")].lanes);
   EXPECT_THAT(own.description.lanes, testing::AnyOf(1, 4, 8, 16));
   for (const int lanes : {1, 4, 8, 16}) {
-    Device device;
+    OpenedDevice device;
     openDevice(",lanes=" + std::to_string(lanes), device);
     EXPECT_EQ(device.description.lanes, lanes);
     EXPECT_EQ(device.description.name, own.description.name);
@@ -69,14 +69,14 @@ TEST(OpenDevice, LanesAreTheDevicesOwnOrForced) {
 
 TEST(OpenDevice, OtherLanesAreRefused) {
   for (const char* selector : {",lanes=2", ",lanes=0", ",lanes=", ",lanes=8x", ",lanes=-4", ",lanes=32"}) {
-    Device device;
+    OpenedDevice device;
     EXPECT_THAT(messageOf<InputError>([&] { openDevice(selector, device); }), HasSubstr("1, 4, 8 or 16"))
         << selector;
   }
 }
 
 TEST(StartDevice, IsOpenOnceAwaited) {
-  Device own, started;
+  OpenedDevice own, started;
   openDevice("", own);
   startDevice("", started);
   awaitDevice(started);
@@ -87,14 +87,14 @@ TEST(StartDevice, IsOpenOnceAwaited) {
 }
 
 TEST(StartDevice, ErrorsReachEveryThreadThatAwaits) {
-  Device device;
+  OpenedDevice device;
   startDevice("no such device", device);
   for (int i = 0; i < 2; ++i)
     EXPECT_THAT(messageOf<InputError>([&] { awaitDevice(device); }), HasSubstr("no device has this"));
 }
 
 TEST(StartDevice, ItsThreadEndsBeforeTheDevice) {
-  Device device;
+  OpenedDevice device;
   startDevice("", device);
 }
 

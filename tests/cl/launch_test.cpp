@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 /// A device of the test's own.
 struct WithDevice : testing::Test {
-  Device device;
+  OpenedDevice device;
   WithDevice() { openDevice("", device); }
 };
 

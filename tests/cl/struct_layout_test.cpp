@@ -19,7 +19,7 @@ std::vector<uint> report(const char* kernel_name, std::size_t count,
   std::ifstream file(LUCIOLE_SOURCE_DIR "/tests/cl/struct_layout.cl");
   std::stringstream text;
   text << file.rdbuf();
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   Kernel kernel =
       makeKernelFromSource(device, expandKernelSource("struct_layout.cl", text.str()), kernel_name, "");

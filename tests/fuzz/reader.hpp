@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "gbuffer/gbuffer_input.hpp"
-#include "image/image.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/json/light_list.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/obj/mtl.hpp"
-#include "scene/pose.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"
 #include "tools/scale/scale_files.hpp"

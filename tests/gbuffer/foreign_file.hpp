@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
 #include "image/oiio.hpp"
+#include "luciole/gbuffer.hpp"
 
 // EXR files as other programs write them.
 namespace luciole::test {

@@ -1,4 +1,4 @@
-#include "gbuffer/gbuffer_file.hpp"
+#include "luciole/gbuffer_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,12 +13,13 @@
 #include <limits>
 #include <utility>
 
-#include "base/error.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "image/oiio.hpp"
 #include "image/read_texture.hpp"
-#include "scene/pose.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
 #include "shared_files.hpp"
 #include "tools/cli/run_program.hpp"
 

@@ -8,9 +8,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/foreign_file.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

@@ -10,8 +10,8 @@
 
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/foreign_file.hpp"
-#include "gbuffer/gbuffer_file.hpp"
 #include "gbuffer/gbuffer_input.hpp"
+#include "luciole/gbuffer_file.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {

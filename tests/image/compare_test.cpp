@@ -1,4 +1,4 @@
-#include "image/compare.hpp"
+#include "luciole/compare.hpp"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

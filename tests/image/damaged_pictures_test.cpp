@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "base/error.hpp"
-#include "image/image.hpp"
 #include "image/read_texture.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 #include "shared_files.hpp"
 #include "tools/cli/run_program.hpp"
 

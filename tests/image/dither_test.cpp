@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "image/image.hpp"
 #include "image/srgb.hpp"
+#include "luciole/image.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
-#include "image/image.hpp"
 #include "image/layers.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

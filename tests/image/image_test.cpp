@@ -1,4 +1,4 @@
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,9 +18,9 @@
 #include <thread>
 #include <utility>
 
-#include "base/error.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
+#include "luciole/error.hpp"
 #include "messages.hpp"
 #include "shared_files.hpp"
 
@@ -209,7 +209,8 @@ TEST(Image, TheFormatMayBeNamedApartFromTheFile) {
   EXPECT_EQ(readText(folder / "b.exr").substr(0, 4), "\x89PNG");
   EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}, {.format = "pgn"}); }),
               HasSubstr("unknown format 'pgn'"));
-  EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}); }), HasSubstr("options.format"));
+  EXPECT_THAT(messageOf<InputError>([&] { writeImage(image, folder / "c", {}); }),
+              HasSubstr("options.format"));
   EXPECT_EQ(filesIn(folder).size(), 2u);
 }
 

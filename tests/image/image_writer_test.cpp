@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/utf8.hpp"
 #include "image/exr_input.hpp"
 #include "image/layers.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "base/error.hpp"
-#include "image/image.hpp"
 #include "image/read_texture.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 #include "png_chunk.hpp"
 #include "shared_files.hpp"
 #include "tools/cli/run_program.hpp"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
 #include "image/read_texture.hpp"
+#include "luciole/image.hpp"
 #include "png_chunk.hpp"
 #include "shared_files.hpp"
 

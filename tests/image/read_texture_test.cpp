@@ -11,9 +11,9 @@
 #include <span>
 #include <string>
 
-#include "base/error.hpp"
-#include "image/image.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 #include "png_chunk.hpp"
 #include "shared_files.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "image/heat_map.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

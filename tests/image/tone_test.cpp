@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "image/image.hpp"
 #include "image/srgb.hpp"
+#include "luciole/image.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

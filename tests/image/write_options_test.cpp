@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "image/file_format.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
 #include "messages.hpp"
 #include "shared_files.hpp"
 

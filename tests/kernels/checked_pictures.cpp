@@ -12,8 +12,9 @@
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "lighting/light_gbuffer.hpp"
+#include "luciole/primitives.hpp"
 #include "raster/view.hpp"
-#include "scene/primitives.hpp"
+#include "scene/models.hpp"
 #include "shade/clustered_light.hpp"
 #include "tools/bench/pair_visibility.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 constexpr int kWidth = 17, kHeight = 17;  // tiles cut on both sides
 
 /// Buffers with the host's bytes in place look unwritten to Oclgrind 21.10, so they are copied.
-void openChecked(int lanes, Device& device) {
+void openChecked(int lanes, OpenedDevice& device) {
   openDevice(",lanes=" + std::to_string(lanes), device);
   device.shares_host_memory = false;
 }
@@ -46,7 +47,7 @@ void addObjects(const Camera& camera, Scene& scene) {
 /// end for unwritten. That is also why nothing is rendered here, which lights more than one G-buffer.
 void lightPicture(unsigned number) {
   constexpr int kLanes[] = {1, 4, 8};
-  Device device;
+  OpenedDevice device;
   openChecked(kLanes[number % 3], device);
   Random random(number);
   Camera camera = randomCamera(random);
@@ -92,7 +93,7 @@ void lightPicture(unsigned number) {
 
 /// Returns whether it gives any light.
 bool lightByClusters(int lanes) {
-  Device device;
+  OpenedDevice device;
   openChecked(lanes, device);
   Random random(static_cast<unsigned>(lanes));
   const Camera camera;
@@ -120,7 +121,7 @@ bool lightByClusters(int lanes) {
 }
 
 void makeMistake(const char* mistake) {
-  Device device;
+  OpenedDevice device;
   openChecked(1, device);
   Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), mistake, "");
   const Buffer<float> values = makeBuffer<float>(device, 16);

@@ -10,6 +10,7 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "kernels/shared.h"
 #include "lights/light_tree.hpp"
 #include "scene/bounds.hpp"
 #include "single_precision.hpp"
@@ -52,7 +53,7 @@ struct Lists {
 /// By buffers that may have held other lists.
 Lists cullInto(LightLists& lists, int lanes, const Points& points, std::span<const ShadeLight> lights,
                unsigned group_log2, unsigned tests) {
-  Device& device = deviceWithLanes(lanes);
+  OpenedDevice& device = deviceWithLanes(lanes);
   const LightTree tree = buildLightTree(lights);
   cull(device,
        {.position = borrowed(device, points.position),

@@ -10,7 +10,8 @@
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
 #include "lighting/light_gbuffer.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
+#include "scene/models.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {
@@ -224,7 +225,7 @@ Scene sceneWith(const FeatureSet& features, const Camera& camera, Random& random
 /// time, and the operations that are left are the same in both. How shadow maps are filtered is a choice of
 /// method, which no scene makes; both have it alike.
 void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const FeatureSet& needed, Model model) {
-  Device& device = deviceWithLanes(listDevices().at(selectDevice(listDevices(), "")).lanes);
+  OpenedDevice& device = deviceWithLanes(listDevices().at(selectDevice(listDevices(), "")).lanes);
   const FeatureSet all = everyFeature(needed);
   const ShadowMethod method = needed.has(Feature::kSoftExact) ? ShadowMethod::kSoftExact
                               : needed.has(Feature::kExact)   ? ShadowMethod::kExact

@@ -71,7 +71,7 @@ void expectFog(const ShadeFrame& frame, const char* defines) {
   const float color_of_fog[3] = {frame.fog_color.x, frame.fog_color.y, frame.fog_color.z};
   const float density[3] = {frame.fog_density.x, frame.fog_density.y, frame.fog_density.z};
   for (const int lanes : lanesFor(defines)) {
-    Device& device = deviceWithLanes(lanes);
+    OpenedDevice& device = deviceWithLanes(lanes);
     const auto out = probe(device, "fog_probe.cl", "probe_fog", in, 3, {{"frame", frame}}, defines);
     for (std::size_t i = 0; i < in[0].size(); ++i) {
       const double distance =
@@ -120,7 +120,7 @@ TEST(FogKernels, OutsideTheFogColoursStayAsTheyAre) {
   thin.fog_mode = kFogExp2;
   thin.fog_density = {0, 0, 0, 0};
   for (const int lanes : kAllLanes) {
-    Device& device = deviceWithLanes(lanes);
+    OpenedDevice& device = deviceWithLanes(lanes);
     for (const ShadeFrame& frame : {none, before, thin}) {
       EXPECT_EQ(probe(device, "fog_probe.cl", "probe_fog", in, 3, {{"frame", frame}}), colors)
           << frame.fog_mode;
@@ -136,7 +136,7 @@ TEST(FogKernels, BeyondTheFogNothingIsLeft) {
   for (const uint mode : {kFogLinear, kFogExp, kFogExp2}) {
     frame.fog_mode = mode;
     for (const int lanes : kAllLanes) {
-      Device& device = deviceWithLanes(lanes);
+      OpenedDevice& device = deviceWithLanes(lanes);
       const auto out = probe(device, "fog_probe.cl", "probe_fog", in, 3, {{"frame", frame}});
       EXPECT_EQ(out[0], Column(in[0].size(), frame.fog_color.x)) << mode;
       EXPECT_EQ(out[2], Column(in[0].size(), frame.fog_color.z)) << mode;

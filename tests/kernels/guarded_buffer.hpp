@@ -15,7 +15,7 @@ namespace luciole::test {
 /// written.
 class GuardedBuffer {
  public:
-  GuardedBuffer(Device& device, std::size_t bytes)
+  GuardedBuffer(OpenedDevice& device, std::size_t bytes)
       : guard_bytes_((bytes / kStep + 1) * kStep),
         words_((2 * guard_bytes_ + (bytes / kStep + 1) * kStep) / sizeof(std::uint32_t)) {
     std::vector<std::uint32_t> words(words_, kGuard);
@@ -26,7 +26,8 @@ class GuardedBuffer {
     part_ = whole_.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region);
     end_ = guard_bytes_ + bytes;
   }
-  GuardedBuffer(Device& device, std::span<const std::byte> content) : GuardedBuffer(device, content.size()) {
+  GuardedBuffer(OpenedDevice& device, std::span<const std::byte> content)
+      : GuardedBuffer(device, content.size()) {
     if (!content.empty()) device.queue.enqueueWriteBuffer(part_, CL_TRUE, 0, content.size(), content.data());
   }
 
@@ -37,7 +38,7 @@ class GuardedBuffer {
   }
 
   /// Whether all that was launched before left the guard words alone.
-  bool intact(Device& device) const {
+  bool intact(OpenedDevice& device) const {
     std::vector<std::uint8_t> bytes(words_ * sizeof(std::uint32_t));
     device.queue.enqueueReadBuffer(whole_, CL_TRUE, 0, bytes.size(), bytes.data());
     const auto isGuard = [](std::uint8_t byte) { return byte == 0xff; };

@@ -14,7 +14,7 @@ namespace {
 /// Writes a float to `values[place]` of a guarded buffer of 16 and says whether its guard words were left
 /// alone.
 bool intactAfterWriteAt(int place) {
-  Device& device = deviceWithLanes(1);
+  OpenedDevice& device = deviceWithLanes(1);
   const GuardedBuffer values(device, 16 * sizeof(float));
   Kernel kernel = makeKernelFromSource(device, probeSource("mistake_probe.cl"), "write_at", "");
   launch(device, kernel, {{"values", values.as<float>()}, {"place", place}}, {.items = 1});
@@ -27,7 +27,7 @@ TEST(GuardedBuffer, SeesAWriteJustPastEitherEndAndAsFarAsItIsLong) {
 }
 
 TEST(GuardedBuffer, ReadsPastTheEndAreNaN) {
-  Device& device = deviceWithLanes(1);
+  OpenedDevice& device = deviceWithLanes(1);
   const std::vector<float> ones(16, 1.0f);
   const GuardedBuffer values(device, std::as_bytes(std::span(ones)));
   std::vector<float> found(1);

@@ -4,8 +4,8 @@
 //   --benchmark_report_aggregates_only
 #include <benchmark/benchmark.h>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/math_functions.hpp"
+#include "luciole/gbuffer.hpp"
 
 namespace luciole::test {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kBlock = 2048;  // values: three columns of them fit a first-level cache of 32 KiB
 constexpr std::size_t kItems = 2048;
 
-Device& device() {
-  static Device opened;
+OpenedDevice& device() {
+  static OpenedDevice opened;
   static const bool once = (openDevice("", opened), true);
   (void)once;
   return opened;

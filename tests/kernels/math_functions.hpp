@@ -151,7 +151,8 @@ inline std::string degreeDefines(int log2, int exp2) {
 
 /// Calls `use(arguments, result, exact)` for every result that the device gives.
 template <class Use>
-void forEachResult(Device& device, const MathFunction& function, const std::string& defines, Use&& use) {
+void forEachResult(OpenedDevice& device, const MathFunction& function, const std::string& defines,
+                   Use&& use) {
   const auto out =
       probe(device, "math_probe.cl", function.kernel, function.in, function.outputs, {}, defines);
   for (std::size_t i = 0; i < function.in[0].size(); ++i) {
@@ -162,7 +163,8 @@ void forEachResult(Device& device, const MathFunction& function, const std::stri
   }
 }
 
-inline MathErrors measureErrors(Device& device, const MathFunction& function, const std::string& defines) {
+inline MathErrors measureErrors(OpenedDevice& device, const MathFunction& function,
+                                const std::string& defines) {
   MathErrors errors;
   std::size_t count = 0;
   forEachResult(device, function, defines, [&](const double*, float result, double exact) {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "gbuffer/packed_normal.hpp"
 #include "kernels/math_functions.hpp"
+#include "luciole/error.hpp"
 #include "single_precision.hpp"
 
 namespace luciole::test {
@@ -152,7 +152,7 @@ TEST(MathKernels, UnpackedNormalsAreTheHosts) {
 
 TEST(MathKernels, PowerOfTwoAtEveryDegree) {
   const MathFunction exp2 = exp2ProductFunction();
-  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+  forEachProgram([&](OpenedDevice& device, const Degrees& degrees, const std::string& defines) {
     double worst = 0, worst_ulp = 0;  // as a share of the bound
     forEachResult(device, exp2, defines, [&](const double*, float result, double exact) {
       const double error = std::abs(result - exact);
@@ -186,7 +186,7 @@ TEST(MathKernels, PowersBelowTheBorderAreZero) {
 
 TEST(MathKernels, ExponentialAtEveryDegree) {
   const MathFunction exp = expFunction();
-  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+  forEachProgram([&](OpenedDevice& device, const Degrees& degrees, const std::string& defines) {
     double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
     forEachResult(device, exp, defines, [&](const double* x, float result, double exact) {
       const double error = std::abs(result - exact);
@@ -205,7 +205,7 @@ TEST(MathKernels, ExponentialAtEveryDegree) {
 
 TEST(MathKernels, LogarithmOfOnePlusAtEveryDegree) {
   const MathFunction log2 = log2OnePlusFunction();
-  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+  forEachProgram([&](OpenedDevice& device, const Degrees& degrees, const std::string& defines) {
     const MathErrors errors = measureErrors(device, log2, defines);
     EXPECT_LE(errors.max_relative, degrees.log2_error);
     if (degrees.log2 == kUsual.log2) {
@@ -229,7 +229,7 @@ TEST(MathKernels, LogarithmOfOnePlusAtItsEnds) {
 
 TEST(MathKernels, PowerOfOnePlusAtEveryDegree) {
   const MathFunction pow = powOnePlusFunction();
-  forEachProgram([&](Device& device, const Degrees& degrees, const std::string& defines) {
+  forEachProgram([&](OpenedDevice& device, const Degrees& degrees, const std::string& defines) {
     double worst = 0, worst_absolute = 0;  // as a share of the bound; of 1
     forEachResult(device, pow, defines, [&](const double* a, float result, double exact) {
       // What the logarithm is off moves the exponent.

@@ -29,9 +29,9 @@ inline std::vector<int> lanesFor(const std::string& defines) {
 }
 
 /// The default device with that many lanes, opened once a process.
-inline Device& deviceWithLanes(int lanes) {
-  static std::map<int, Device> devices;
-  Device& device = devices[lanes];
+inline OpenedDevice& deviceWithLanes(int lanes) {
+  static std::map<int, OpenedDevice> devices;
+  OpenedDevice& device = devices[lanes];
   if (!device.context()) openDevice(",lanes=" + std::to_string(lanes), device);
   return device;
 }
@@ -71,7 +71,7 @@ struct ProbeInput {
 /// Runs kernel `name` of tests/kernels/`file`, whose arguments are in, out, stride and those of `more`: a
 /// work-item reads LANES cases from the columns of `in`, and writes as many of `outputs` columns, `stride`
 /// floats apart. Throws std::runtime_error where the kernel wrote past the end of a buffer.
-inline std::vector<Column> probe(Device& device, const std::string& file, const char* name,
+inline std::vector<Column> probe(OpenedDevice& device, const std::string& file, const char* name,
                                  const std::vector<Column>& in, std::size_t outputs,
                                  const std::vector<ProbeInput>& more = {}, const std::string& defines = "") {
   constexpr std::size_t kMostLanes = 16;

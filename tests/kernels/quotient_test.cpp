@@ -89,7 +89,7 @@ bool isSame(float a, float b) {
 TEST(QuotientKernels, AreRoundedToNearestByTheDeviceAndByOurOwn) {
   const auto [a, b] = hardPairs();
   for (const int lanes : kAllLanes) {
-    Device& device = deviceWithLanes(lanes);
+    OpenedDevice& device = deviceWithLanes(lanes);
     const std::string own_of_device = device.arithmetic;
     for (const std::string& arithmetic :
          {own_of_device, std::string("-cl-denorms-are-zero -DOWN_QUOTIENTS")}) {

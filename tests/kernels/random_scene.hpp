@@ -8,8 +8,9 @@
 #include <limits>
 #include <random>
 
-#include "gbuffer/gbuffer.hpp"
-#include "scene/scene.hpp"
+#include "kernels/shared.h"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "shade/features.hpp"
 
 // Random surfaces and lights that try everything shading does.

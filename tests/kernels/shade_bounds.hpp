@@ -5,11 +5,11 @@
 #include <glm/glm.hpp>
 #include <stdexcept>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/shared.h"
+#include "luciole/gbuffer.hpp"
+#include "luciole/model.hpp"
+#include "luciole/scene.hpp"
 #include "reference/models.hpp"
-#include "scene/model.hpp"
-#include "scene/scene.hpp"
 #include "single_precision.hpp"
 
 // What float may make of the lighting equation: for each pixel an interval that holds both the exact value

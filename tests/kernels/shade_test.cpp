@@ -8,6 +8,7 @@
 #include "lighting/light_gbuffer.hpp"
 #include "reference/reference.hpp"
 #include "scene/bounds.hpp"
+#include "scene/models.hpp"
 
 namespace luciole::test {
 namespace {
@@ -23,7 +24,8 @@ FeatureSet unshadowed(Culling culling) {
   return features;
 }
 
-Plane shadeOn(Device& device, const Scene& scene, const GBuffer& gbuffer, Model model, Culling culling) {
+Plane shadeOn(OpenedDevice& device, const Scene& scene, const GBuffer& gbuffer, Model model,
+              Culling culling) {
   Lighting lighting;
   Stats stats;
   const FeatureSet features = unshadowed(culling);
@@ -69,7 +71,7 @@ void expectShaded(const Scene& scene, const GBuffer& gbuffer, Model model, const
 class ShadeKernel : public testing::TestWithParam<int> {};
 
 TEST_P(ShadeKernel, MatchesTheReference) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   Random random{unsigned(GetParam())};
   Tightness tightness;
   int round = 0;
@@ -126,7 +128,7 @@ Light grazing(const glm::dvec3& point, const glm::dvec3& normal, Random& random)
 
 // Few pixels are covered, so that many lists show one: what bounds a list then leaves nothing to spare.
 TEST_P(ShadeKernel, CullingChangesNoBitOfScatteredPixelsAtTheEdgesOfLights) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   Random random(11);
   const Camera camera = randomCamera(random);
   const GBuffer gbuffer = randomGBuffer(camera, 61, 47, 0.93, random);
@@ -159,7 +161,7 @@ TEST_P(ShadeKernel, CullingChangesNoBitOfScatteredPixelsAtTheEdgesOfLights) {
 }
 
 TEST_P(ShadeKernel, PicturesOfOnlyBackground) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   Random random(1);
   const Camera camera = randomCamera(random);
   Scene scene = randomScene(camera, 5, random);
@@ -173,7 +175,7 @@ TEST_P(ShadeKernel, PicturesOfOnlyBackground) {
 }
 
 TEST_P(ShadeKernel, OnlyFiniteColoursLeave) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   Random random(1);
   const Camera camera;
   GBuffer gbuffer = randomGBuffer(camera, 16, 16, 0, random);

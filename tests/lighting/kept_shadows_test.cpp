@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
-#include "scene/pose.hpp"
+#include "luciole/pose.hpp"
 #include "shadow/maps/draw_shadow_maps.hpp"
 #include "shadow/maps/shadow_scenes.hpp"
 #include "shadow/maps/texel_place.hpp"

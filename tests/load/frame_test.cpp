@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/primitives.hpp"
 #include "scene/bounds.hpp"
-#include "scene/primitives.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

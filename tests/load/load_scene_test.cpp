@@ -1,4 +1,4 @@
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/warning_texts.hpp"
 #include "shared_files.hpp"
 

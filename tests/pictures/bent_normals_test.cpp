@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "gbuffer/gbuffer_file.hpp"
+#include "luciole/gbuffer_file.hpp"
 #include "rays/shadow_rays.hpp"
 #include "reference/reference_picture.hpp"
 #include "render_json.hpp"

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "image/image.hpp"
 #include "kernels/probe.hpp"
+#include "luciole/image.hpp"
 #include "pictures/scene_hunt.hpp"
 #include "render_json.hpp"
+#include "scene/models.hpp"
 #include "tools/cli/run_program.hpp"
 
 namespace luciole::test {

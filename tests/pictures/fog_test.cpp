@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "pictures/surfaces_seen.hpp"
 #include "render_json.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "pictures/shot.hpp"
 
 namespace luciole::test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "pictures/shot.hpp"
 #include "scene/gltf/gltf_file.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "kernels/shared.h"
 #include "lighting/light_gbuffer.hpp"
 #include "raster/opacity.hpp"
 #include "shadow/exact/brute_shadows.hpp"
@@ -122,7 +123,7 @@ struct Shadows {
 
 Shadows shadowsOn(const GBuffer& seen, const Scene& scene, const View& view, const FeatureSet& features,
                   const ShadeSettings& settings, int lanes, bool ignorant) {
-  Device& device = deviceWithLanes(lanes);
+  OpenedDevice& device = deviceWithLanes(lanes);
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, scene.cameras[0], view, features, settings, lighting, stats);
@@ -183,7 +184,7 @@ TEST(SoftExact, AgreesWithBruteForceBehindHoles) {
   settings.soft_samples = 8;
   const FeatureSet features = neededFeatures(scene, scene.cameras[0], materialTraits(scene), settings);
   const GBuffer gbuffer = rasterize(seen, allObjects(seen), view, Shading::kPhong, neededPlanes(features));
-  Device& device = deviceWithLanes(16);
+  OpenedDevice& device = deviceWithLanes(16);
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, scene.cameras[0], view, features, settings, lighting, stats);

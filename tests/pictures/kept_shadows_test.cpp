@@ -46,7 +46,7 @@ void moveSomething(Scene& scene, Camera& camera, Random& random) {
 }
 
 /// Makes pictures one after another, and each by itself.
-void expectSamePictures(Device& device, const RenderSettings& given, int frames) {
+void expectSamePictures(OpenedDevice& device, const RenderSettings& given, int frames) {
   Random random(17);
   Scene scene = sceneFromJson(kKeptScene);
   RenderSettings settings = given;
@@ -81,7 +81,7 @@ TEST_P(KeptPictures, AreThoseThatAreMadeByThemselves) {
 }
 
 TEST_P(KeptPictures, AreSoOnADeviceWithMemoryOfItsOwn) {
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   device.shares_host_memory = false;
   expectSamePictures(device, keptSettings(GetParam(), 1), 8);

@@ -17,7 +17,7 @@ struct Experiment {
   std::vector<std::string> scenes{std::begin(kCertifiedScenes), std::end(kCertifiedScenes)}, placements;
 };
 
-void checkScene(Device& device, const Experiment& experiment, const std::string& name) {
+void checkScene(OpenedDevice& device, const Experiment& experiment, const std::string& name) {
   Scene scene = loadScene(LUCIOLE_SOURCE_DIR "/scenes/" + name + ".json");
   for (const auto& [placement, shape] : kCertifiedPlacements) {
     const auto& asked = experiment.placements;
@@ -48,7 +48,7 @@ int run(int count, char** arguments) {
   app.add_option("--placement", experiment.placements, "box, clusters or surface (default: all)");
   app.add_flag("--highlights", experiment.highlights, "lights have a specular part");
   CLI11_PARSE(app, count, arguments);
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   fmt::print("| scene | placement | stood for | E | values | broken | unmet | true/bound, worst | mean ");
   fmt::print("| true/E, worst | bound/E, worst | mean |\n");

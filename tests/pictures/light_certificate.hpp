@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference.hpp"
 #include "render/render.hpp"
@@ -85,7 +85,7 @@ struct CertificateCheck {
 };
 
 /// Lights the pixels by clusters within `light_error`, and compares.
-inline CertificateCheck checkCertificate(Device& device, const TrueLight& truth, float light_error) {
+inline CertificateCheck checkCertificate(OpenedDevice& device, const TrueLight& truth, float light_error) {
   RenderSettings settings;
   settings.shade.light_error = light_error;
   settings.shade.always_clusters = true;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "base/error.hpp"
 #include "kernels/random_scene.hpp"
+#include "luciole/error.hpp"
 #include "pictures/surfaces_seen.hpp"
 #include "render_json.hpp"
 #include "single_precision.hpp"

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 
-#include "gbuffer/gbuffer_file.hpp"
 #include "kernels/probe.hpp"
+#include "luciole/gbuffer_file.hpp"
 #include "reference/reference.hpp"
 #include "render/plan.hpp"
 #include "render_json.hpp"
+#include "scene/models.hpp"
 
 namespace luciole::test {
 namespace {
@@ -65,7 +66,7 @@ class MaterialModels : public testing::TestWithParam<std::tuple<int, LitCase>> {
 TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
   const int lanes = std::get<0>(GetParam());
   const LitCase of = std::get<1>(GetParam());
-  Device& device = deviceWithLanes(lanes);
+  OpenedDevice& device = deviceWithLanes(lanes);
   const auto settingsOf = [&](const Scene& scene) {
     RenderSettings settings = settingsFor(scene, kBallsSize);
     settings.shading = of.shading;

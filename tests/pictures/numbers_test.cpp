@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
-#include "gbuffer/gbuffer_file.hpp"
-#include "image/image.hpp"
 #include "image/oiio.hpp"
 #include "kernels/random_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/gbuffer_file.hpp"
+#include "luciole/image.hpp"
 #include "pictures/surfaces_seen.hpp"
 #include "render_json.hpp"
+#include "scene/models.hpp"
 #include "single_precision.hpp"
 
 namespace luciole::test {

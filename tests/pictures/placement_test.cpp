@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "pictures/shot.hpp"
 
 namespace luciole::test {

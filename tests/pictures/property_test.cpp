@@ -3,8 +3,8 @@
 // the environment starts elsewhere. From 1000000 on scenes are of more kinds, most with a program of their
 // own to compile:
 //
-//   for s in $(seq 100 100 20000); do LUCIOLE_SEED=$s build/tests/pictures_test --gtest_filter='Property.*' ||
-//   break; done
+//   for s in $(seq 100 100 20000); do LUCIOLE_SEED=$s build/tests/pictures_test --gtest_filter='Property.*'
+//   || break; done
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -38,7 +38,7 @@ Case caseOf(const SceneJson& json, ShadowMethod shadows) {
   return made;
 }
 
-Image pictureOf(const Case& of, Device& device = testDevice()) {
+Image pictureOf(const Case& of, OpenedDevice& device = testDevice()) {
   Stats stats;
   return renderScene(device, of.scene, of.settings, stats);
 }
@@ -248,12 +248,12 @@ TEST(Property, LanesChangeNothing) {
 
 /// PoCL as devices compute that differ from it in what OpenCL leaves open: quotients that aren't rounded
 /// right, denormals that aren't flushed, and what an integer becomes that a float doesn't fit into.
-Device& otherDevice(std::size_t which) {
+OpenedDevice& otherDevice(std::size_t which) {
   static const char* const kArithmetic[] = {
       "-cl-denorms-are-zero -DOWN_QUOTIENTS", "-cl-fp32-correctly-rounded-divide-sqrt",
       "-cl-denorms-are-zero -cl-fp32-correctly-rounded-divide-sqrt -DSATURATING"};
-  static Device devices[std::size(kArithmetic)];
-  Device& device = devices[which];
+  static OpenedDevice devices[std::size(kArithmetic)];
+  OpenedDevice& device = devices[which];
   if (!device.context()) {
     openDevice("", device);
     device.arithmetic = kArithmetic[which];

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernels/random_scene.hpp"
+#include "scene/models.hpp"
 
 // Random scenes as the text of a scene file, so that one that fails a test can be kept and rendered by hand.
 namespace luciole::test {

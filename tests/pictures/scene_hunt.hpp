@@ -7,7 +7,7 @@
 #include <fstream>
 #include <optional>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "pictures/shrink.hpp"
 
 namespace luciole::test {

@@ -6,9 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/shade_bounds.hpp"
+#include "kernels/shared.h"
+#include "luciole/gbuffer.hpp"
 #include "reference/reference.hpp"
 #include "render/render.hpp"
 

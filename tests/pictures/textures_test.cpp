@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
-#include "image/image.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 #include "pictures/shot.hpp"
 #include "png_chunk.hpp"
 

@@ -7,7 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "gbuffer/gbuffer_file.hpp"
+#include "kernels/shared.h"
+#include "luciole/gbuffer_file.hpp"
 #include "pictures/shot.hpp"
 #include "single_precision.hpp"
 

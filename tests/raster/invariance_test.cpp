@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "kernels/shared.h"
 #include "raster/raster_scenes.hpp"
 
 namespace luciole::test {

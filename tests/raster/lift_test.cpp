@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "luciole/primitives.hpp"
 #include "raster/raster_scenes.hpp"
-#include "scene/primitives.hpp"
 
 namespace luciole::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "raster/rasterize.hpp"
 #include "shadow/maps/draw_shadow_maps.hpp"
 #include "shadow/maps/shadow_maps.hpp"

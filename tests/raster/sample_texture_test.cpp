@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "raster/raster_scenes.hpp"
 
 namespace luciole::test {

@@ -8,6 +8,7 @@
 #include <random>
 #include <tuple>
 
+#include "kernels/shared.h"
 #include "raster/raster_scenes.hpp"
 
 namespace luciole::test {

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "raster/raster_scenes.hpp"
 #include "scene/tangents.hpp"
 

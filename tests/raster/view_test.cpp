@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "raster/raster_scenes.hpp"
 
 namespace luciole::test {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "rays/shadow_rays.hpp"
 
 namespace luciole {

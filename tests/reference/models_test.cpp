@@ -1,4 +1,5 @@
 #include "reference/models.hpp"
+#include "scene/models.hpp"
 
 #include <gtest/gtest.h>
 

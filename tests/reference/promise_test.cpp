@@ -7,6 +7,7 @@
 
 #include "reference/reference_picture.hpp"
 #include "render_json.hpp"
+#include "scene/models.hpp"
 
 namespace luciole::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "image/light_names.hpp"
+#include "luciole/error.hpp"
 #include "render/light_layers.hpp"
 #include "render_json.hpp"
 

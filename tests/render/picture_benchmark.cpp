@@ -6,16 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/shared.h"
 #include "lighting/light_gbuffer.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "reference/reference.hpp"
 #include "render/render.hpp"
 
 namespace luciole {
 namespace {
 
-Device& device() {
-  static Device opened;
+OpenedDevice& device() {
+  static OpenedDevice opened;
   static const bool once = (openDevice("", opened), true);
   (void)once;
   return opened;

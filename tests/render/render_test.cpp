@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "reference/reference.hpp"
 #include "render_json.hpp"
 

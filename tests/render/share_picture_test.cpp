@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
 #include "render/count_picture.hpp"
 #include "render_json.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole::test {
 namespace {
@@ -74,7 +74,7 @@ class SharedPictures : public testing::Test {
     EXPECT_EQ(rows, std::uint64_t(one.height));
   }
 
-  std::list<Device> devices;
+  std::list<OpenedDevice> devices;
   std::list<Sharer> sharers;
 };
 

@@ -13,14 +13,14 @@
 #include <type_traits>
 #include <vector>
 
-#include "base/error.hpp"
-#include "gbuffer/planes.hpp"
 #include "gbuffer/validate_gbuffer.hpp"
+#include "luciole/error.hpp"
+#include "luciole/planes.hpp"
+#include "luciole/pose.hpp"
+#include "luciole/validate_scene.hpp"
 #include "raster/texture_space.hpp"
 #include "reference/reference_picture.hpp"
-#include "scene/pose.hpp"
 #include "scene/scene_fields.hpp"
-#include "scene/validate_scene.hpp"
 
 namespace luciole {
 namespace {
@@ -257,7 +257,7 @@ TEST(Validate, TellsThePlaceAndWhatIsWrong) {
     one.spoil(broken, settings_broken);
     try {
       // Nothing touches the device, which isn't open, before.
-      Device device;
+      OpenedDevice device;
       Stats stats;
       renderScene(device, broken, settings_broken, stats);
       ADD_FAILURE() << "passed: " << one.message;
@@ -289,7 +289,7 @@ TEST(Validate, AGBufferWhosePlanesDontFitIsRefused) {
     GBuffer broken = whole;
     spoil(broken);
     try {
-      Device device;
+      OpenedDevice device;
       Stats stats;
       shadeGBuffer(device, fullScene(), broken, settings, stats);
       ADD_FAILURE() << "passed: " << message;

@@ -9,10 +9,10 @@
 #include <limits>
 #include <string>
 
-#include "base/error.hpp"
-#include "load/load_scene.hpp"
-#include "scene/curve.hpp"
-#include "scene/pose.hpp"
+#include "luciole/curve.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"
 

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
+#include "luciole/scene.hpp"
 #include "scene/gltf/gltf.hpp"
 #include "scene/obj/obj.hpp"
-#include "scene/scene.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"
 

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <string>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/gltf/gltf_file.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {

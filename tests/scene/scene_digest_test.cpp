@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "scene/scene_fields.hpp"
 #include "shared_files.hpp"
 

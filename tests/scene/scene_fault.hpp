@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole::test {
 

@@ -16,7 +16,7 @@
 #include <valijson/validator.hpp>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/small_scenes.hpp"
 #include "shared_files.hpp"

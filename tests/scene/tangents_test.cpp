@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "scene/primitives.hpp"
+#include "luciole/primitives.hpp"
 
 namespace luciole {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/warning.hpp"
+#include "luciole/warning.hpp"
 
 namespace luciole::test {
 

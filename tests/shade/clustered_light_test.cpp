@@ -18,7 +18,7 @@ struct Lit {
   ClusteredLightCounts counts;
 };
 
-Lit lightBy(Device& device, const GBuffer& gbuffer, const Lights& lights, float light_error,
+Lit lightBy(OpenedDevice& device, const GBuffer& gbuffer, const Lights& lights, float light_error,
             const Fog& fog = {}, bool highlights = false) {
   const LightClusters clusters = buildLightClusters(lights);
   ShadeFrame frame{};
@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Lanes, ClusteredLight, testing::ValuesIn(kAllLanes),
                          testing::PrintToStringParamName());
 
 TEST_P(ClusteredLight, IsWithinItsBoundOfTheTruthAtEveryPixel) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   Random random(3);
   for (const double bend : {0.0, 0.3}) {
     const GBuffer gbuffer = wavySurface(48, 40, bend, random);

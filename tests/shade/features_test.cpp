@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render_json.hpp"
+#include "scene/models.hpp"
 
 namespace luciole::test {
 namespace {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 
+#include "kernels/shared.h"
 #include "render_json.hpp"
 
 namespace luciole::test {

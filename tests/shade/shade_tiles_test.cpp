@@ -7,7 +7,9 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/random_scene.hpp"
+#include "kernels/shared.h"
 #include "lighting/light_gbuffer.hpp"
+#include "scene/models.hpp"
 
 namespace luciole::test {
 namespace {
@@ -17,7 +19,7 @@ struct LitTiles {
   TileCounts counts;
 };
 
-LitTiles litByTiles(Device& device, const Lighting& lighting, const GBuffer& gbuffer, TileBlock block) {
+LitTiles litByTiles(OpenedDevice& device, const Lighting& lighting, const GBuffer& gbuffer, TileBlock block) {
   ShadeFrame frame = lighting.lights.frame;
   frame.plane_stride = uint(gbuffer.pixels());
   frame.texel_count = 1;
@@ -41,7 +43,7 @@ LitTiles litByTiles(Device& device, const Lighting& lighting, const GBuffer& gbu
 
 /// By bits, so that −0 is not 0. Those of every block, and of lists. What is counted doesn't depend on
 /// blocks.
-void expectBitsOfLists(Device& device, const Scene& scene, const GBuffer& gbuffer, Model model) {
+void expectBitsOfLists(OpenedDevice& device, const Scene& scene, const GBuffer& gbuffer, Model model) {
   const ShadeSettings settings{.model = model};
   const FeatureSet features =
       neededFeatures(scene, gbuffer.camera, {.specular = true, .emission = true}, settings);
@@ -68,7 +70,7 @@ void expectBitsOfLists(Device& device, const Scene& scene, const GBuffer& gbuffe
 class ShadeTiles : public testing::TestWithParam<int> {};
 
 TEST_P(ShadeTiles, GiveTheBitsOfListsForEveryModelFogAndKindOfLight) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   Random random(5);
   int round = 0;
   for (const glm::ivec2& size : {glm::ivec2(130, 71), glm::ivec2(400, 9)}) {
@@ -121,7 +123,7 @@ Scene lightsInGap() {
 }
 
 TEST_P(ShadeTiles, FindNoLightInTheGapBetweenNearAndFarSurfaces) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   const Camera camera;
   const GBuffer gbuffer = gappedGBuffer(camera, 64, 8);
   Scene scene = lightsInGap();
@@ -145,7 +147,7 @@ TEST_P(ShadeTiles, FindNoLightInTheGapBetweenNearAndFarSurfaces) {
 
 // No box around such a group of pixels is without the gap: its very pixels decide.
 TEST_P(ShadeTiles, FindNoLightInAGapBetweenNeighbouringPixels) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   const Camera camera;
   const GBuffer gbuffer = gappedGBuffer(camera, 64, 1);
   const Scene scene = lightsInGap();
@@ -191,7 +193,7 @@ TEST_P(ShadeTiles, FindDirectionalLightsWhereSurfacesFaceAwayFromTheEye) {
 
 // Each pixel meets more lights than are found at once, and more than a block of a sum takes.
 TEST_P(ShadeTiles, GiveTheBitsOfListsForAHundredThousandLights) {
-  Device& device = deviceWithLanes(GetParam());
+  OpenedDevice& device = deviceWithLanes(GetParam());
   const Camera camera;
   Random random(4);
   GBuffer gbuffer = gappedGBuffer(camera, 40, 8);

@@ -21,8 +21,8 @@ constexpr const char* kTrafficScene =
   "light_fields": [{"count": 100, "seed": 3, "min": [-4, 0, -4], "max": [4, 2, 4], "range": 0.8, "intensity": 0.5}]})";
 
 /// A device with memory of its own, as far as this program is told.
-Device& deviceApart() {
-  static Device device;
+OpenedDevice& deviceApart() {
+  static OpenedDevice device;
   static const bool opened = (openDevice("", device), device.shares_host_memory = false, true);
   (void)opened;
   return device;
@@ -38,7 +38,7 @@ RenderSettings sampledSettings(const Scene& scene, ShadowMethod method, int samp
   return settings;
 }
 
-Traffic trafficOfPicture(Device& device, const Scene& scene, const RenderSettings& settings) {
+Traffic trafficOfPicture(OpenedDevice& device, const Scene& scene, const RenderSettings& settings) {
   Stats stats;
   renderScene(device, scene, settings, stats);
   return stats.traffic;
@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, TrafficByMethod,
                                          ShadowMethod::kSoftExact));
 
 TEST(Traffic, NothingIsCopiedWhereMemoryIsShared) {
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   if (!device.shares_host_memory) GTEST_SKIP() << "the default device has memory of its own";
   const Scene scene = sceneFromJson(kTrafficScene);

@@ -3,15 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
-
-/// Which of a glTF file's choices a scene shows.
-struct GltfChoice {
-  std::string variant{};    ///< of materials (KHR_materials_variants), by its name; "": the default materials
-  std::string animation{};  ///< the only one that runs, by its name or counted from 0; "": all run together
-};
 
 /// Appends everything the file's default scene shows to `scene`: meshes, materials, textures, objects, lights
 /// and cameras. Reads .gltf and .glb. Meshes deform by morph targets and skins. Throws InputError; its

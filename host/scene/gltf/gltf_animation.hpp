@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "scene/animation.hpp"
+#include "luciole/animation.hpp"
 #include "scene/gltf/gltf_model.hpp"
 
 namespace luciole {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
+#include "luciole/error.hpp"
 #include "scene/gltf/gltf_model.hpp"
 
 namespace luciole {

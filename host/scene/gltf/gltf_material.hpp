@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/gltf/gltf_model.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

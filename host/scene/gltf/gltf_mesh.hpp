@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/gltf/gltf_model.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/gltf/gltf_draco.hpp"
 #include "scene/gltf/gltf_meshopt.hpp"
 #include "scene/gltf/gltf_resources.hpp"

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "luciole/warning.hpp"
 #include "scene/gltf/gltf_json.hpp"
-#include "scene/warning.hpp"
 
 namespace luciole {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "scene/pose.hpp"
+#include "luciole/pose.hpp"
 
 namespace luciole {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/animation.hpp"
+#include "luciole/animation.hpp"
 #include "scene/gltf/gltf_animation.hpp"
 #include "scene/gltf/gltf_model.hpp"
 

@@ -3,8 +3,8 @@
 #include <map>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/gltf/gltf_nodes.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -11,8 +11,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/find_file.hpp"
 
 namespace luciole {

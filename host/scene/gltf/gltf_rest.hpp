@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/gltf/gltf_model.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -11,8 +11,8 @@
 #include <limits>
 #include <span>
 
-#include "base/error.hpp"
 #include "base/write_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/did_you_mean.hpp"
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "scene/curve.hpp"
+#include "luciole/curve.hpp"
 #include "scene/json/json_fields.hpp"
 
 namespace luciole {

@@ -2,10 +2,10 @@
 
 #include <string>
 
+#include "luciole/scene.hpp"
 #include "scene/json/json_fields.hpp"
 #include "scene/light_groups.hpp"
 #include "scene/lights/light_field.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "luciole/scene.hpp"
 #include "scene/json/json_fields.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/json/json_fields.hpp"
 
 namespace luciole {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/find_file.hpp"
 #include "scene/json/scene_changes.hpp"
 #include "scene/lights/light_field.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

@@ -10,8 +10,8 @@
 #include <iterator>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/json/json_fields.hpp"
 #include "scene/lights/light_field.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/obj/obj.hpp"
 
 namespace luciole {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/did_you_mean.hpp"
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/json/json_light.hpp"
 #include "scene/json/json_object.hpp"
 #include "scene/json/json_scene.hpp"

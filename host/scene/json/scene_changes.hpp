@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/find_file.hpp"
 #include "scene/json/json_fields.hpp"
-#include "scene/scene.hpp"
 
 // Places of a scene that get another value, as --set has them.
 namespace luciole {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

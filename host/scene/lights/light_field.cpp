@@ -8,9 +8,9 @@
 #include <new>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/random.hpp"
+#include "luciole/error.hpp"
 #include "scene/bounds.hpp"
 #include "scene/lights/light_places.hpp"
 #include "scene/lights/light_range.hpp"

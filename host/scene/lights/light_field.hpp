@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "scene/bounds.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

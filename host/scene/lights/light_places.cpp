@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "base/random.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

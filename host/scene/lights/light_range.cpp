@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/bounds.hpp"
 #include "scene/z_curve.hpp"
 

@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

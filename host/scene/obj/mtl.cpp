@@ -12,9 +12,9 @@
 #include <string_view>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
+#include "luciole/error.hpp"
 #include "scene/find_file.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/obj/obj_text.hpp"

@@ -12,10 +12,10 @@
 #include <set>
 #include <unordered_map>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
 #include "scene/find_file.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/normals.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

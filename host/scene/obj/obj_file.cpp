@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/obj/obj_text.hpp"
 
 namespace luciole {

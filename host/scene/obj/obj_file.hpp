@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/warning.hpp"
+#include "luciole/warning.hpp"
 
 namespace luciole {
 

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {
@@ -33,7 +34,7 @@ float4 rowOf(const glm::mat3& matrix, int row, float w) {
 
 }  // namespace
 
-void prepareBeams(Device& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
+void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
                   std::shared_ptr<const HoleMasks> masks, int soft_samples, BeamScene& beams) {
   beams.tree = std::move(tree);
   beams.masks = std::move(masks);
@@ -74,7 +75,7 @@ BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams) {
   return result;
 }
 
-PairShadows beamShadows(Device& device, const std::string& defines, const BeamArguments& arguments) {
+PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const BeamArguments& arguments) {
   const BeamScene& beams = arguments.beams;
   const std::size_t tiles = arguments.plane_stride / kTilePixels;
   const std::size_t entries =

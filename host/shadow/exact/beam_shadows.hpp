@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "base/array_memory.hpp"
 #include "cl/buffer.hpp"
 #include "kernels/shared.h"
 #include "lights/cull.hpp"
-#include "scene/scene.hpp"
+#include "luciole/array_memory.hpp"
+#include "luciole/scene.hpp"
 #include "shadow/exact/hole_masks.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/exact/triangle_tree.hpp"
@@ -43,7 +43,7 @@ struct BeamScene {
 /// Fills `beams` for what a camera sees. tree: of the scene, its origin the camera's eye. masks: of the tree,
 /// or null where no triangle has holes. soft_samples: of lights of a size; 0: they count as points, or for
 /// directional lights as single directions. Throws MachineError.
-void prepareBeams(Device& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
+void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
                   std::shared_ptr<const HoleMasks> masks, int soft_samples, BeamScene& beams);
 
 /// A light in the tree's space. casts: whether beams tell of its shadow.
@@ -75,6 +75,6 @@ struct PairShadows {
 
 /// Launches kernels/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
 /// if the words don't fit into memory or there are 2²⁹ entries or more.
-PairShadows beamShadows(Device& device, const std::string& defines, const BeamArguments& arguments);
+PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const BeamArguments& arguments);
 
 }  // namespace luciole

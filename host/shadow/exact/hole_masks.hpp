@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "kernels/shared.h"
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 #include "shadow/exact/triangle_tree.hpp"
 
 namespace luciole {

@@ -9,8 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "kernels/shared.h"
+#include "luciole/error.hpp"
 #include "raster/opacity.hpp"
 #include "shadow/exact/exact_ray.hpp"
 #include "shadow/exact/light_samples.hpp"
@@ -46,7 +47,7 @@ struct HostLists {
   }
 };
 
-HostLists downloadLists(Device& device, const LightLists& lists, std::size_t lights) {
+HostLists downloadLists(OpenedDevice& device, const LightLists& lists, std::size_t lights) {
   HostLists result{{}, {}, lights};
   if (lists.tiles == 0) return result;
   result.starts.resize(lists.tiles + 1);
@@ -122,8 +123,9 @@ struct Tracer {
 
 }  // namespace
 
-TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const LightSet& lights,
-                       const GBuffer& gbuffer, const LightLists& lists, bool soft, PairShadows& shadows) {
+TracedPairs tracePairs(OpenedDevice& device, const Scene& scene, const BeamScene& beams,
+                       const LightSet& lights, const GBuffer& gbuffer, const LightLists& lists, bool soft,
+                       PairShadows& shadows) {
   const std::size_t tiles = gbuffer.pixels() / kTilePixels;
   const HostLists host_lists = downloadLists(device, lists, lights.beam_lights.size());
   if (soft) shadows.shares.resize(placeShares(host_lists, tiles, shadows));

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "gbuffer/gbuffer.hpp"
 #include "lights/light_set.hpp"
-#include "scene/scene.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "shadow/exact/beam_shadows.hpp"
 
 namespace luciole {
@@ -19,7 +19,8 @@ struct TracedPairs {
 /// and BeamScene::soft_samples to a light of a size. It sets the bits of those that are lit, or with `soft`
 /// PairShadows::first_share and shares. lights, lists, soft: those that beamShadows() had. Works on all
 /// cores. Throws MachineError if the device fails or memory doesn't suffice.
-TracedPairs tracePairs(Device& device, const Scene& scene, const BeamScene& beams, const LightSet& lights,
-                       const GBuffer& gbuffer, const LightLists& lists, bool soft, PairShadows& shadows);
+TracedPairs tracePairs(OpenedDevice& device, const Scene& scene, const BeamScene& beams,
+                       const LightSet& lights, const GBuffer& gbuffer, const LightLists& lists, bool soft,
+                       PairShadows& shadows);
 
 }  // namespace luciole

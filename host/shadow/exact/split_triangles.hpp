@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/array_memory.hpp"
+#include "luciole/array_memory.hpp"
 
 // How the tree over a scene's triangles divides them: by the surface area heuristic (J. Goldsmith and J.
 // Salmon, 1987) over bins (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007).

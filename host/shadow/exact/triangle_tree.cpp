@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
+#include "luciole/error.hpp"
 #include "shadow/exact/placed_triangles.hpp"
 #include "shadow/exact/triangle_topology.hpp"
 

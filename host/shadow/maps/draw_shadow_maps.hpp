@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/index_range.hpp"
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 #include "shadow/maps/shadow_maps.hpp"
 
 namespace luciole {

@@ -1,11 +1,12 @@
 #include "shadow/maps/find_needed.hpp"
 
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
 
 namespace luciole {
 
-std::vector<std::uint32_t> findNeeded(Device& device, const std::string& defines, const Lookups& lookups,
-                                      std::size_t bin_count) {
+std::vector<std::uint32_t> findNeeded(OpenedDevice& device, const std::string& defines,
+                                      const Lookups& lookups, std::size_t bin_count) {
   std::vector<std::uint32_t> result(bin_count);
   const Buffer<uint> needed = borrowedForOutput(device, result);
   fill(device, needed, kNotNeeded);

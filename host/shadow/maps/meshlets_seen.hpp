@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "raster/bins.hpp"
 #include "raster/meshlets.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

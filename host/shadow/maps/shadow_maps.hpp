@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "base/array_memory.hpp"
 #include "kernels/shared.h"
+#include "luciole/array_memory.hpp"
+#include "luciole/scene.hpp"
+#include "luciole/settings.hpp"
 #include "raster/meshlets.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
-#include "shadow/maps/shadow_method.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 
 namespace luciole {

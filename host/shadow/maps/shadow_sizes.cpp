@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "raster/geometry.hpp"
 #include "shadow/maps/frustum.hpp"
 

@@ -4,19 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "luciole/settings.hpp"
 #include "shadow/maps/shadow_views.hpp"
 
 namespace luciole {
-
-/// How much shadow maps may take.
-struct ShadowLimits {
-  int size = 2048;  ///< texels a side of a cascade and of a spot's map; a cube's face: half
-  std::size_t bytes = std::size_t(512) << 20;  ///< of all maps together
-};
-
-/// Texels a side: the fewest of a face, and the most that ShadowLimits::size may ask for.
-inline constexpr int kSmallestFace = 16, kLargestFace = 16384;
 
 /// Texels a side of each light's faces; 0: no shadow.
 struct ShadowSizes {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "kernels/shared.h"
+#include "luciole/scene.hpp"
+#include "luciole/settings.hpp"
 #include "raster/view.hpp"
 #include "scene/bounds.hpp"
-#include "scene/scene.hpp"
-#include "shadow/maps/shadow_method.hpp"
 
 namespace luciole {
 

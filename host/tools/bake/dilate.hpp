@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "image/compare.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/compare.hpp"
 #include "render/render.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/bench_scene.hpp"
@@ -21,8 +21,8 @@ struct AntiAliasedRow {
   std::size_t whole;  ///< the row of as many samples, all shaded
 };
 
-Image makeAntiAliased(Device& device, const Scene& scene, glm::ivec2 size, int samples, SampleShading shading,
-                      Stats& stats) {
+Image makeAntiAliased(OpenedDevice& device, const Scene& scene, glm::ivec2 size, int samples,
+                      SampleShading shading, Stats& stats) {
   RenderSettings settings;
   settings.size = size;
   settings.camera = scene.cameras.front();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "tools/bench/anti_aliasing.hpp"
 #include "tools/bench/culled_shading.hpp"
 #include "tools/bench/given_gbuffer.hpp"
@@ -58,7 +58,7 @@ BenchResult runBench(const Scene& scene, const BenchSettings& settings, const Be
   };
   if (!choice.given && std::find(choice.only.begin(), choice.only.end(), kCullAndShade) != choice.only.end())
     throw InputError(fmt::format("--only \"{}\": needs --gbuffer and --scene", kCullAndShade));
-  Device device;
+  OpenedDevice device;
   openDevice(settings.device, device);
   const bool draws = !choice.given || choice.only != std::vector<std::string>{kCullAndShade};
   const Scene& described = draws ? scene : choice.given->scene;

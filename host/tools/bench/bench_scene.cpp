@@ -4,9 +4,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "load/frame.hpp"
+#include "luciole/pose.hpp"
+#include "luciole/primitives.hpp"
 #include "scene/lights/light_field.hpp"
-#include "scene/pose.hpp"
-#include "scene/primitives.hpp"
 
 namespace luciole {
 namespace {

@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/error.hpp"
 #include "base/threads.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "cl/buffer.hpp"
-#include "gbuffer/gbuffer.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/gbuffer.hpp"
 #include "render/render.hpp"
 #include "tools/bench/shading_rate.hpp"
 
@@ -17,7 +17,7 @@ ShadeSettings shadeSettings(const GivenGBuffer& given) {
   return {.model = given.model, .shadows = ShadowMethod::kOff};
 }
 
-Stats shadeGiven(Device& device, const GivenGBuffer& given, bool count_lights) {
+Stats shadeGiven(OpenedDevice& device, const GivenGBuffer& given, bool count_lights) {
   RenderSettings settings;
   settings.count_lights = count_lights;
   settings.shade = shadeSettings(given);
@@ -37,7 +37,7 @@ double planeBytes(const GivenGBuffer& given) {
   return double(gbuffer.pixels()) * floats * sizeof(float);
 }
 
-double copyMilliseconds(Device& device, const Buffer<float>& from, const Buffer<float>& to) {
+double copyMilliseconds(OpenedDevice& device, const Buffer<float>& from, const Buffer<float>& to) {
   finish(device);
   return millisecondsOf([&] {
     bytes::copy(device, from.memory, to.memory, from.count * sizeof(float));

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/error.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/error.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference.hpp"
 #include "render/render.hpp"
@@ -89,7 +89,7 @@ RenderSettings settingsFor(float light_error) {
 }
 
 /// Milliseconds of all that lighting the G-buffer takes, the tree of lights included.
-double lightingTime(Device& device, const LitStage& stage, float light_error) {
+double lightingTime(OpenedDevice& device, const LitStage& stage, float light_error) {
   Stats stats;
   shadeGBuffer(device, stage.scene, stage.gbuffer, settingsFor(light_error), stats);
   double sum = 0;
@@ -109,8 +109,8 @@ bool takesTooLong(const LitStage& stage, float light_error) {
 }
 
 /// How the picture with this error keeps its bounds; nothing where no light is stood for.
-std::optional<KeptBounds> judge(Device& device, const LitStage& stage, const std::vector<glm::dvec3>& truth,
-                                float light_error) {
+std::optional<KeptBounds> judge(OpenedDevice& device, const LitStage& stage,
+                                const std::vector<glm::dvec3>& truth, float light_error) {
   RenderSettings settings = settingsFor(light_error);
   settings.aovs = {Aov::kLightError};
   Stats stats;

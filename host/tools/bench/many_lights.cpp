@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kernels/shared.h"
 #include "lighting/stats.hpp"
 #include "render/render.hpp"
 #include "tools/bench/speed_scenes.hpp"
@@ -25,7 +26,7 @@ double listBytes(const GBuffer& gbuffer, double entries) {
   return entries * sizeof(ListEntry) + double(starts) * sizeof(cl_uint);
 }
 
-Stats shadeRow(Device& device, const ManyLightsRow& row, bool count_lights) {
+Stats shadeRow(OpenedDevice& device, const ManyLightsRow& row, bool count_lights) {
   RenderSettings settings;
   settings.count_lights = count_lights;
   Stats stats;

@@ -13,7 +13,7 @@ namespace luciole {
 namespace {
 
 /// The chosen device, opened for each lane width that a variant asks for.
-using Devices = std::map<int, Device>;
+using Devices = std::map<int, OpenedDevice>;
 
 Devices openDevices(const std::string& selector, const std::vector<VariantGroup>& groups) {
   Devices devices;
@@ -51,7 +51,7 @@ Image runVariant(const Bench& bench, const VariantGroup& group, const Variant& v
   picture.shade = variant.shade;
   picture.samples = variant.samples;
   picture.sample_shading = SampleShading::kAll;
-  Device& device = bench.devices.at(variant.lanes);
+  OpenedDevice& device = bench.devices.at(variant.lanes);
   return group.samples ? renderScene(device, bench.scene, picture, stats)
                        : shadeGBuffer(device, bench.scene, bench.gbuffer, picture, stats);
 }

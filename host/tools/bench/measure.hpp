@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "image/compare.hpp"
+#include "luciole/compare.hpp"
 #include "render/render.hpp"
 #include "tools/bench/variants.hpp"
 #include "tools/figures/rounds.hpp"

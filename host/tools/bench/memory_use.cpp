@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/write_file.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "render/memory.hpp"
 #include "render/plan.hpp"
 #include "tools/bench/child_process.hpp"

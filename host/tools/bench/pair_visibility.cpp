@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-std::vector<float> pairVisibility(Device& device, const std::string& defines, const GBuffer& gbuffer,
+std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defines, const GBuffer& gbuffer,
                                   const ShadowMaps& shadows, std::span<const MapPair> pairs) {
   // A row of lanes shares its map. Lanes without a pair repeat the row's last one.
   const std::size_t lanes = std::size_t(device.description.lanes);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "shadow/maps/shadow_maps.hpp"
 
 namespace luciole {
@@ -20,7 +20,7 @@ struct MapPair {
 /// in [0, 1], that reaches the point, as shading computes it. The G-buffer needs geometric normals. Sort
 /// pairs by map, because a row of lanes shares its map. defines: the program's features (featureDefines).
 /// Throws MachineError.
-std::vector<float> pairVisibility(Device& device, const std::string& defines, const GBuffer& gbuffer,
+std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defines, const GBuffer& gbuffer,
                                   const ShadowMaps& shadows, std::span<const MapPair> pairs);
 
 }  // namespace luciole

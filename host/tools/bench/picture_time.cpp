@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/write_file.hpp"
 #include "lighting/stats.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
 #include "tools/bench/child_process.hpp"
 
 namespace luciole {

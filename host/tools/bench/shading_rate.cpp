@@ -8,6 +8,7 @@
 #include "base/embedded_files.hpp"
 #include "cl/kernel_source.hpp"
 #include "cl/launch.hpp"
+#include "kernels/shared.h"
 #include "lighting/stats.hpp"
 #include "render/render.hpp"
 
@@ -40,7 +41,7 @@ std::vector<ShadeLight> shadeLights(const Scene& scene) {
   return lights;
 }
 
-double launchMilliseconds(Device& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
+double launchMilliseconds(OpenedDevice& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,
                           const WorkItems& work) {
   return millisecondsOf([&] {
     launch(device, kernel, arguments, work);
@@ -60,7 +61,7 @@ std::vector<float4> packed(const Plane& planes, std::size_t pixels) {
 
 /// tests/kernels/plain.cl and its arguments.
 struct Plain {
-  Plain(Device& on_device, const AllPairs& pairs)
+  Plain(OpenedDevice& on_device, const AllPairs& pairs)
       : device(on_device),
         pixels(pairs.gbuffer.pixels()),
         position(packed(pairs.gbuffer.position, pixels)),
@@ -96,7 +97,7 @@ struct Plain {
     return colors;
   }
 
-  Device& device;
+  OpenedDevice& device;
   std::size_t pixels;
   std::vector<float4> position, normal, diffuse, specular;
   std::vector<ShadeLight> lights;
@@ -108,7 +109,7 @@ struct Plain {
 
 /// tests/kernels/roof.cl and its arguments, for the same number of pairs.
 struct Roof {
-  Roof(Device& on_device, const AllPairs& pairs)
+  Roof(OpenedDevice& on_device, const AllPairs& pairs)
       : device(on_device),
         rows(pairs.gbuffer.pixels() / std::size_t(device.description.lanes)),
         lights(shadeLights(pairs.scene)),
@@ -128,7 +129,7 @@ struct Roof {
         {.items = rows, .group = std::size_t(kTilePixels / device.description.lanes)});
   }
 
-  Device& device;
+  OpenedDevice& device;
   std::size_t rows;
   std::vector<ShadeLight> lights;
   Buffer<const ShadeLight> light_buffer;
@@ -137,7 +138,7 @@ struct Roof {
   Kernel kernel;
 };
 
-double shadeMilliseconds(Device& device, const AllPairs& pairs) {
+double shadeMilliseconds(OpenedDevice& device, const AllPairs& pairs) {
   RenderSettings settings;
   settings.shade.culling = Culling::kNone;
   Stats stats;
@@ -187,7 +188,7 @@ AllPairs makeAllPairs(glm::ivec2 size, int lights) {
   return pairs;
 }
 
-Image shadePlainly(Device& device, const AllPairs& pairs) {
+Image shadePlainly(OpenedDevice& device, const AllPairs& pairs) {
   Plain plain(device, pairs);
   plain.run();
   const std::vector<float4> colors = plain.picture();
@@ -201,7 +202,7 @@ Image shadePlainly(Device& device, const AllPairs& pairs) {
   return image;
 }
 
-double roofMilliseconds(Device& device, const AllPairs& pairs) {
+double roofMilliseconds(OpenedDevice& device, const AllPairs& pairs) {
   Roof roof(device, pairs);
   return roof.run();
 }

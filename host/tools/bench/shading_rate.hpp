@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gbuffer/gbuffer.hpp"
-#include "image/image.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/image.hpp"
 #include "tools/bench/speed_input.hpp"
 #include "tools/bench/speed_table.hpp"
 
@@ -16,11 +16,11 @@ struct AllPairs {
 AllPairs makeAllPairs(glm::ivec2 size, int lights);
 
 /// The picture made by tests/kernels/plain.cl, channels R G B. Throws MachineError.
-Image shadePlainly(Device& device, const AllPairs& pairs);
+Image shadePlainly(OpenedDevice& device, const AllPairs& pairs);
 
 /// Milliseconds that the roof takes for these pairs (see measureShadingRate). The first run for a device
 /// compiles. Throws MachineError.
-double roofMilliseconds(Device& device, const AllPairs& pairs);
+double roofMilliseconds(OpenedDevice& device, const AllPairs& pairs);
 
 /// Measures how many pairs of a pixel and a light the shade kernel computes in a second if nothing is culled,
 /// beside the plain kernel and the roof: the rate at which the vector units could issue the shade kernel's

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "kernels/shared.h"
 #include "lighting/light_gbuffer.hpp"
 #include "lighting/stats.hpp"
 #include "raster/rasterize.hpp"
@@ -97,8 +98,8 @@ TexelSide texelSides(const Scene& scene, const ShadowMaps& shadows) {
 
 /// Sets the visibility of the pairs with lights whose shadows are exact. A pair that culling left out gets
 /// the truth, because the light adds nothing there.
-void addExactVisibility(Device& device, const Judged& judged, const Lighting& lighting, const LitPlanes& lit,
-                        std::vector<float>& visibility) {
+void addExactVisibility(OpenedDevice& device, const Judged& judged, const Lighting& lighting,
+                        const LitPlanes& lit, std::vector<float>& visibility) {
   const LightSet& lights = lighting.lights;
   std::vector<uint> starts(lighting.lists.tiles + 1);
   std::vector<ListEntry> list(lighting.lists.entries);
@@ -122,7 +123,7 @@ void addExactVisibility(Device& device, const Judged& judged, const Lighting& li
 }
 
 /// Sets the visibility of the pairs with lights that have maps.
-void addMapVisibility(Device& device, const Judged& judged, const Lighting& lighting,
+void addMapVisibility(OpenedDevice& device, const Judged& judged, const Lighting& lighting,
                       std::vector<float>& visibility) {
   std::vector<MapPair> map_pairs;
   std::vector<std::size_t> indices;
@@ -166,7 +167,7 @@ RenderSettings pictureOf(const Judged& judged, const ShadeSettings& shade, int s
   return settings;
 }
 
-Verdict judgeShadows(Device& device, const Judged& judged, const std::vector<std::uint8_t>& edges,
+Verdict judgeShadows(OpenedDevice& device, const Judged& judged, const std::vector<std::uint8_t>& edges,
                      const ShadeSettings& given) {
   const Scene& scene = judged.scene;
   const Camera& camera = judged.gbuffer.camera;
@@ -236,7 +237,7 @@ struct ShadowRow {
 /// Milliseconds of getting ready (planning and drawing maps, and building the tree of triangles), and of
 /// telling each pair's shadow (finding what maps must show, beams, rays through holes, and shading). A
 /// frame's share of them.
-std::vector<double> timeShadows(Device& device, const ShadowRow& row) {
+std::vector<double> timeShadows(OpenedDevice& device, const ShadowRow& row) {
   if (row.embree) {
     const double ready = millisecondsOf([&] { buildRayScene(row.judged->scene, row.judged->rays.origin); });
     const double tell = bareRays(*row.judged).milliseconds;
@@ -376,7 +377,7 @@ void timeRows(const SpeedInput& input, std::vector<ShadowRow> rows, SpeedTable& 
 
 }  // namespace
 
-ShadowErrors shadowErrors(Device& device, const Scene& scene, glm::ivec2 size,
+ShadowErrors shadowErrors(OpenedDevice& device, const Scene& scene, glm::ivec2 size,
                           const ShadeSettings& settings) {
   const auto judged = judgeScene(scene, size);
   return judgeShadows(device, *judged, edgesOf(*judged, settings.shadow_limits), settings).errors;

@@ -15,6 +15,7 @@ SpeedTable measureShadowErrors(const SpeedInput& input);
 
 /// How many pairs of a pixel and a light these settings' shadows get wrong, in the picture of `size` pixels
 /// that the scene's first camera sees. Throws MachineError.
-ShadowErrors shadowErrors(Device& device, const Scene& scene, glm::ivec2 size, const ShadeSettings& settings);
+ShadowErrors shadowErrors(OpenedDevice& device, const Scene& scene, glm::ivec2 size,
+                          const ShadeSettings& settings);
 
 }  // namespace luciole

@@ -9,8 +9,8 @@
 
 #include "base/random.hpp"
 #include "load/frame.hpp"
-#include "scene/pose.hpp"
-#include "scene/primitives.hpp"
+#include "luciole/pose.hpp"
+#include "luciole/primitives.hpp"
 
 namespace luciole {
 namespace {

@@ -11,7 +11,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "load/load_scene.hpp"
+#include "kernels/shared.h"
+#include "luciole/load_scene.hpp"
 #include "raster/view.hpp"
 #include "rays/shadow_rays.hpp"
 #include "scene/bounds.hpp"

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "rays/ray_cast.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

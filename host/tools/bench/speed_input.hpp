@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "gbuffer/gbuffer.hpp"
-#include "scene/model.hpp"
-#include "scene/scene.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/model.hpp"
+#include "luciole/scene.hpp"
 #include "tools/figures/rounds.hpp"
 
 namespace luciole {
@@ -23,7 +23,7 @@ struct GivenGBuffer {
 
 /// The input of the measurements of speed.
 struct SpeedInput {
-  Device& device;
+  OpenedDevice& device;
   std::string device_selector;          ///< that opened it
   const Scene* scene = nullptr;         ///< null: the built-in scenes only
   const GivenGBuffer* given = nullptr;  ///< for measureGivenGBuffer, which needs it

@@ -5,10 +5,10 @@
 
 #include "image/build_mips.hpp"
 #include "load/frame.hpp"
+#include "luciole/pose.hpp"
+#include "luciole/primitives.hpp"
 #include "raster/rasterize.hpp"
 #include "scene/lights/light_field.hpp"
-#include "scene/pose.hpp"
-#include "scene/primitives.hpp"
 #include "shade/features.hpp"
 
 namespace luciole {

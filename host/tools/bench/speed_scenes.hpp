@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "gbuffer/gbuffer.hpp"
-#include "scene/scene.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -1,4 +1,5 @@
 #include "tools/bench/variants.hpp"
+#include "scene/models.hpp"
 
 #include <fmt/format.h>
 

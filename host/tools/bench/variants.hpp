@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lighting/stats.hpp"
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 #include "shade/features.hpp"
 
 namespace luciole {

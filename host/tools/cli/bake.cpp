@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "image/picture_hash.hpp"
 #include "image/png_bytes.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
 #include "raster/lift.hpp"
 #include "raster/texture_space.hpp"
 #include "render/render.hpp"

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/error.hpp"
 #include "base/write_file.hpp"
-#include "gbuffer/gbuffer_file.hpp"
+#include "luciole/error.hpp"
+#include "luciole/gbuffer_file.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/bench_scene.hpp"

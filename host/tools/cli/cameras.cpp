@@ -7,8 +7,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "scene/warning.hpp"
+#include "luciole/warning.hpp"
 
 namespace luciole {
 
@@ -17,10 +17,10 @@ enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3
 
 /// What the program and a command know of each other.
 struct CommandContext {
-  std::string command_line;    ///< as typed, for metadata and statistics
-  int status = kDone;          ///< where the command leaves the exit status
-  Device device{};             ///< for the command to open; the end of the process closes it
-  std::list<Device> others{};  ///< that --device all opens beside it
+  std::string command_line;          ///< as typed, for metadata and statistics
+  int status = kDone;                ///< where the command leaves the exit status
+  OpenedDevice device{};             ///< for the command to open; the end of the process closes it
+  std::list<OpenedDevice> others{};  ///< that --device all opens beside it
 };
 
 /// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see

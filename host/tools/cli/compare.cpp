@@ -1,4 +1,4 @@
-#include "image/compare.hpp"
+#include "luciole/compare.hpp"
 
 #include <fmt/format.h>
 
@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "base/dump_utf8.hpp"
-#include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "image/heat_map.hpp"
 #include "image/side_by_side.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/difference_json.hpp"
 #include "tools/cli/event_log.hpp"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "cl/device.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/devices/check_device.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 /// Checks a device and prints what its bits are. Returns whether they are those of every other.
 bool tellBits(const std::string& selector) {
-  Device device;
+  OpenedDevice device;
   ArithmeticCheck arithmetic;
   std::string picture;
   const double milliseconds = millisecondsOf([&] {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "image/compare.hpp"
+#include "luciole/compare.hpp"
 
 namespace luciole {
 

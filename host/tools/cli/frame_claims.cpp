@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

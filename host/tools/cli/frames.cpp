@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/picture_options.hpp"
 
 namespace luciole {

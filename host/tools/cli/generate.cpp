@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/write_file.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/bounds.hpp"
 #include "scene/json/light_list.hpp"

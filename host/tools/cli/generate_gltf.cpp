@@ -3,9 +3,9 @@
 #include <string>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/write_file.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
 #include "reference/reference_picture.hpp"
 #include "render/render.hpp"
 #include "tools/assets/lights_asset.hpp"

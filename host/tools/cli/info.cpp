@@ -9,16 +9,16 @@
 #include <utility>
 
 #include "base/dump_utf8.hpp"
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "base/write_file.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/layers.hpp"
 #include "lights/exact_reason.hpp"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
 #include "render/plan.hpp"
 #include "scene/json/mesh_file.hpp"
-#include "scene/pose.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/frames.hpp"
 #include "tools/cli/picture_options.hpp"

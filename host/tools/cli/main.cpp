@@ -25,10 +25,10 @@
 
 #include "base/cleanup.hpp"
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/utf8.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/option_names.hpp"

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/write_file.hpp"
 #include "image/exposure.hpp"
 #include "image/srgb.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/mix_page.hpp"

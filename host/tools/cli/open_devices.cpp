@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/devices/check_device.hpp"
 
@@ -23,7 +23,7 @@ std::string differenceOf(const DeviceDescription& device, const std::vector<std:
 }
 
 /// Checks a device that is open, notes the hash of its arithmetic, and says how it differs from others.
-std::string checkDevice(Device& device) {
+std::string checkDevice(OpenedDevice& device) {
   try {
     const ArithmeticCheck check = knownArithmetic(device);
     device.description.arithmetic = check.sha256;
@@ -37,7 +37,7 @@ constexpr const char* kTellsAll = " (luciole devices --check tells all)";
 
 /// A device that --device all may mean.
 struct Candidate {
-  Device* device;
+  OpenedDevice* device;
   std::string difference = {};  ///< see checkDevice
   std::string failure = {};     ///< why it can't be opened
 };

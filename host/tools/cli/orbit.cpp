@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "luciole/pose.hpp"
 #include "scene/bounds.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole {
 namespace {

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 // render --orbit: the camera goes once round what it looks at.
 namespace luciole {

@@ -9,16 +9,17 @@
 #include <limits>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "base/threads.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
 #include "raster/blend.hpp"
 #include "raster/coarse_triangles.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
+#include "scene/models.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "tools/cli/cameras.hpp"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "image/image.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/image.hpp"
+#include "luciole/load_scene.hpp"
 #include "render/render.hpp"
 
 namespace luciole {
@@ -99,7 +99,7 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
 /// that are too large for it (coarseTriangleWidth).
 Scene openLitScene(const std::string& path, double frame, const PictureOptions& options);
 
-/// Warns of blended materials (scene/scene.hpp) that one sample a pixel shows as grain.
+/// Warns of blended materials (luciole/scene.hpp) that one sample a pixel shows as grain.
 void warnOfDither(Scene& scene, const PictureOptions& options);
 
 /// The layers that --aov names, each once. Throws InputError.

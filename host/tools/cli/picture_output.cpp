@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/write_file.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "luciole/error.hpp"
 #include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "tools/cli/commands.hpp"
@@ -192,7 +192,7 @@ void appendRows(const Image& rows, const std::vector<int>& channels, Image& pict
 }
 
 void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
-                       const Stats& stats, const Device* device) {
+                       const Stats& stats, const OpenedDevice* device) {
   const bool is_light = shown.kind == LayerKind::kColor && layer.channels.size() == 3;
   if (is_light) {
     layer.channels = {"R", "G", "B"};
@@ -213,7 +213,8 @@ void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, I
   }
 }
 
-void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats, const Device* device) {
+void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats,
+              const OpenedDevice* device) {
   const ShownLayer shown = aovLayer(picture.channels);
   Image layer;
   appendRows(picture, shown.channels, layer);
@@ -222,7 +223,7 @@ void writeAov(const PictureOptions& options, const Image& picture, const Stats& 
   writeLayerPicture(exposed, shown, std::move(layer), stats, device);
 }
 
-Metadata pictureMetadata(const Stats& stats, const Device* device) {
+Metadata pictureMetadata(const Stats& stats, const OpenedDevice* device) {
   Metadata metadata{{"Software", "Luciole " LUCIOLE_VERSION}, {"ImageDescription", stats.command}};
   if (stats.measured_exposure)
     metadata.emplace_back("luciole:exposure", fmt::format("{:+.2f}", *stats.measured_exposure));

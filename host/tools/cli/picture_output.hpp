@@ -5,10 +5,10 @@
 #include <string>
 
 #include "cl/device.hpp"
-#include "gbuffer/gbuffer.hpp"
-#include "image/image.hpp"
 #include "lighting/stats.hpp"
-#include "scene/scene.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/image.hpp"
+#include "luciole/scene.hpp"
 #include "tools/cli/picture_options.hpp"
 #include "tools/cli/shown_layer.hpp"
 
@@ -56,14 +56,15 @@ void appendRows(const Image& rows, const std::vector<int>& channels, Image& pict
 /// Writes a layer as a picture to look at (see layerPicture), light with the exposure of the options. layer:
 /// its channels alone. Tells what its colours mean where it doesn't itself, unless --quiet. device: as below.
 void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
-                       const Stats& stats, const Device* device);
+                       const Stats& stats, const OpenedDevice* device);
 
 /// The same of the layer that --aov names, of a picture that was made with it.
-void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats, const Device* device);
+void writeAov(const PictureOptions& options, const Image& picture, const Stats& stats,
+              const OpenedDevice* device);
 
 /// Text attributes for the picture's file: software, command, the exposure if it was measured, and device.
 /// device: null if none was used.
-Metadata pictureMetadata(const Stats& stats, const Device* device);
+Metadata pictureMetadata(const Stats& stats, const OpenedDevice* device);
 
 /// The statistics of a picture that is begun now, after others.
 Stats laterStats(const std::string& command);

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "raster/view.hpp"
 #include "reference/reference.hpp"
 #include "reference/reference_picture.hpp"
@@ -77,7 +77,8 @@ std::string surfaceText(const Scene& scene, const PixelTerms& terms, const Camer
 
 }  // namespace
 
-std::string probeText(Device& device, const Scene& scene, RenderSettings settings, const glm::ivec2& pixel) {
+std::string probeText(OpenedDevice& device, const Scene& scene, RenderSettings settings,
+                      const glm::ivec2& pixel) {
   if (pixel.x < 0 || pixel.y < 0 || pixel.x >= settings.size.x || pixel.y >= settings.size.y)
     throw InputError(fmt::format("--probe {},{}: the picture has {}x{} pixels, from 0,0 on", pixel.x, pixel.y,
                                  settings.size.x, settings.size.y));

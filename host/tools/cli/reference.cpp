@@ -7,10 +7,10 @@
 #include <optional>
 #include <random>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
-#include "gbuffer/gbuffer_file.hpp"
 #include "image/file_format.hpp"
+#include "luciole/error.hpp"
+#include "luciole/gbuffer_file.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
 #include "render/memory.hpp"

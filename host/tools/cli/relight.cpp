@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "gbuffer/gbuffer_input.hpp"
 #include "image/exposure.hpp"
 #include "image/light_names.hpp"
 #include "image/picture_hash.hpp"
+#include "luciole/error.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/surface_ids.hpp"
@@ -166,7 +166,7 @@ void refuseSurfaceIds(const PictureOptions& options) {
 void lightAndWrite(CommandContext& context, const PictureOptions& options, const Scene& scene,
                    const std::string& scene_path, const GBuffer& gbuffer, Image picture, int frame,
                    Stats& stats) {
-  Device& device = context.device;
+  OpenedDevice& device = context.device;
   RenderSettings settings = renderSettings(options, scene);
   const bool adds = !picture.pixels.empty();
   const float exposure = settings.exposure;

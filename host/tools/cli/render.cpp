@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/trace.hpp"
-#include "gbuffer/gbuffer_file.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
 #include "image/picture_hash.hpp"
 #include "image/side_by_side.hpp"
+#include "luciole/error.hpp"
+#include "luciole/gbuffer_file.hpp"
+#include "luciole/pose.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/share_picture.hpp"
 #include "render/surface_ids.hpp"
-#include "scene/pose.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/frame_claims.hpp"
@@ -63,7 +63,7 @@ Crop windowOf(const RenderSettings& settings) {
 }
 
 /// The exposure of each picture, by one a camera: measured at this frame, or none where the options say it.
-std::vector<std::optional<double>> chooseExposures(Device& device, Scene& scene, int frame,
+std::vector<std::optional<double>> chooseExposures(OpenedDevice& device, Scene& scene, int frame,
                                                    const RenderOptions& options,
                                                    const std::vector<PictureOptions>& pictures,
                                                    Stats& stats) {
@@ -127,7 +127,7 @@ void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const Picture
   settings = withExposure(settings, stats);
   settings.on_pass = on_pass;
   settings.on_long_compile = tellsCompiling(progress);
-  Device* const device = sharers.front().device;
+  OpenedDevice* const device = sharers.front().device;
   if (showsAov(options)) {
     ShownLayer shown;
     const Image layer = renderLayer(sharers, scene, options, settings, keeps, shown, stats);
@@ -534,7 +534,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     Stats stats;
     stats.command = context.command_line;
     std::list<Sharer> sharers = startSharers(*options, context);
-    Device& device = *sharers.front().device;
+    OpenedDevice& device = *sharers.front().device;
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
     });
@@ -622,7 +622,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
         timed(stats, Stage::kLoadScene, [&] { return openLitScene(*scene_path, frame, *options); });
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     // Only Gouraud shading needs a device to rasterize: it lights the vertices.
-    Device& device = context.device;
+    OpenedDevice& device = context.device;
     const bool lit = options->shading == "gouraud";
     if (lit) {
       openDevice(options->device, device);

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/write_file.hpp"
-#include "gbuffer/gbuffer_file.hpp"
+#include "luciole/error.hpp"
+#include "luciole/gbuffer_file.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/picture_options.hpp"
@@ -97,7 +97,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
     writeError(fmt::format(
         "points with a light error of 0 that are left out, as so many lights one by one take long: {}\n",
         experiment.too_exact));
-  Device device;
+  OpenedDevice device;
   openDevice(options.picture.device, device);
   device.description.arithmetic = knownArithmetic(device).sha256;
   ScaleLog log(options.output, experiment.description);

@@ -6,13 +6,14 @@
 #include <charconv>
 #include <map>
 
-#include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
+#include "luciole/error.hpp"
 #include "raster/visible_points.hpp"
 #include "scene/bounds.hpp"
 #include "scene/json/light_list.hpp"
+#include "scene/models.hpp"
 #include "scene/scene_digest.hpp"
 #include "tools/cli/suggest.hpp"
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "image/file_format.hpp"
 #include "image/heat_map.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/picture_options.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

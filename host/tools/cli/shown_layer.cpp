@@ -7,9 +7,9 @@
 #include <map>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "gbuffer/layouts.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/suggest.hpp"
 
 namespace luciole {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "base/error.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/json/scene_changes.hpp"
 
 namespace luciole {

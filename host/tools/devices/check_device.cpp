@@ -10,7 +10,6 @@
 #include <limits>
 #include <sstream>
 
-#include "base/array_memory.hpp"
 #include "base/random.hpp"
 #include "base/sha256.hpp"
 #include "base/text_file.hpp"
@@ -20,8 +19,9 @@
 #include "cl/launch.hpp"
 #include "cl/program_cache.hpp"
 #include "image/picture_hash.hpp"
+#include "luciole/array_memory.hpp"
+#include "luciole/primitives.hpp"
 #include "render/render.hpp"
-#include "scene/primitives.hpp"
 
 namespace luciole {
 namespace {
@@ -42,7 +42,7 @@ std::string valueText(std::uint32_t bits, bool is_float) {
                   : fmt::format("{:#010x}", bits);
 }
 
-std::string keptPlace(const Device& device) {
+std::string keptPlace(const OpenedDevice& device) {
   const std::string folder = userCache("checks");
   if (folder.empty()) return "";
   const std::string description =
@@ -184,7 +184,7 @@ std::string describe(const WrongOperation& wrong) {
                      valueText(wrong.got, wrong.is_float), valueText(wrong.expected, wrong.is_float));
 }
 
-ArithmeticCheck checkArithmetic(Device& device) {
+ArithmeticCheck checkArithmetic(OpenedDevice& device) {
   const std::vector<Operands> cases = hardOperands();
   const std::size_t stride = (cases.size() + kMostLanes - 1) / kMostLanes * kMostLanes;
   std::vector<float, ArrayAllocator<float>> columns(3 * stride);
@@ -214,7 +214,7 @@ ArithmeticCheck checkArithmetic(Device& device) {
   return check;
 }
 
-ArithmeticCheck knownArithmetic(Device& device) {
+ArithmeticCheck knownArithmetic(OpenedDevice& device) {
   const std::string place = keptPlace(device);
   if (!place.empty() && isFile(place)) {
     std::istringstream lines(readFile(place));
@@ -236,7 +236,7 @@ ArithmeticCheck knownArithmetic(Device& device) {
   return check;
 }
 
-std::string checkPicture(Device& device) {
+std::string checkPicture(OpenedDevice& device) {
   const Scene scene = checkScene();
   RenderSettings settings;
   settings.size = {96, 64};

@@ -38,15 +38,15 @@ struct ArithmeticCheck {
 };
 
 /// Runs every operation that kernels are made of on the device. Throws MachineError.
-ArithmeticCheck checkArithmetic(Device& device);
+ArithmeticCheck checkArithmetic(OpenedDevice& device);
 
 /// The same, without running anything where this version of the program has checked this device with this
 /// driver and these lanes before: luciole/checks in the user's cache remembers. Throws MachineError.
-ArithmeticCheck knownArithmetic(Device& device);
+ArithmeticCheck knownArithmetic(OpenedDevice& device);
 
 /// The PictureHash of a small picture that the device makes of a scene of its own: lights of all kinds,
 /// highlights, fog and culling, without shadows. Throws MachineError.
-std::string checkPicture(Device& device);
+std::string checkPicture(OpenedDevice& device);
 
 /// What checkPicture() gives on a device that computes as the standard says.
 extern const char* const kCheckedPicture;

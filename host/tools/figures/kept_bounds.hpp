@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

@@ -26,7 +26,7 @@ std::string systemName() {
 
 }  // namespace
 
-Machine describeMachine(const Device& device) {
+Machine describeMachine(const OpenedDevice& device) {
   return {.processor = processorName(),
           .threads = threadCount(),
           .memory_bytes = std::uint64_t(machineMemory()),

@@ -18,6 +18,6 @@ struct Machine {
 };
 
 /// Describes this machine, with an opened device. What the system doesn't tell is "unknown".
-Machine describeMachine(const Device& device);
+Machine describeMachine(const OpenedDevice& device);
 
 }  // namespace luciole

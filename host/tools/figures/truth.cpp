@@ -1,6 +1,6 @@
 #include "tools/figures/truth.hpp"
 
-#include "image/compare.hpp"
+#include "luciole/compare.hpp"
 #include "reference/reference_picture.hpp"
 
 namespace luciole {

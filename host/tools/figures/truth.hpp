@@ -1,6 +1,6 @@
 #pragma once
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "raster/view.hpp"
 #include "reference/reference.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/shared.h"
 #include "render/memory.hpp"
 
 namespace luciole {

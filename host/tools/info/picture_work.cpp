@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "kernels/shared.h"
 #include "render/memory.hpp"
 #include "render/shadow_ways.hpp"
 #include "shade/clustered_light.hpp"

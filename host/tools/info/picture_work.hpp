@@ -1,7 +1,7 @@
 #pragma once
 
+#include "luciole/scene.hpp"
 #include "render/plan.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

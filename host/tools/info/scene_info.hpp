@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "luciole/scene.hpp"
 #include "scene/bounds.hpp"
-#include "scene/scene.hpp"
 
 namespace luciole {
 

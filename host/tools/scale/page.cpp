@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/embedded_files.hpp"
-#include "base/error.hpp"
 #include "base/page_text.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -10,11 +10,11 @@
 #include <new>
 #include <optional>
 
-#include "base/error.hpp"
 #include "base/peak_memory.hpp"
-#include "image/compare.hpp"
 #include "image/heat_map.hpp"
 #include "lighting/stats.hpp"
+#include "luciole/compare.hpp"
+#include "luciole/error.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference_picture.hpp"
 #include "scene/lights/light_range.hpp"
@@ -55,7 +55,7 @@ struct LightsKey {
 
 /// What all points of an experiment share.
 struct Bench {
-  Device& device;
+  OpenedDevice& device;
   Scene& scene;
   const ScaleExperiment& experiment;
   ScaleLog& log;
@@ -316,7 +316,7 @@ std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck
   return reasons;
 }
 
-std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExperiment& experiment,
+std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const ScaleExperiment& experiment,
                                    const std::vector<std::size_t>& mine, ScaleLog& log,
                                    const OnProgress& on_progress) {
   const ScaleDescription& description = experiment.description;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 #include "render/render.hpp"
 #include "scene/lights/light_field.hpp"
 #include "tools/figures/kept_bounds.hpp"
@@ -121,7 +121,7 @@ struct ScaleFailure {
 /// didn't check. Replaces the scene's lights. on_progress: gets milliseconds as done and total; the total is
 /// an estimate. Returns the points at which the machine failed, which are left out. Throws InputError if a
 /// density is asked for and the camera sees nothing, and MachineError if the log can't be written.
-std::vector<ScaleFailure> runScale(Device& device, Scene& scene, const ScaleExperiment& experiment,
+std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const ScaleExperiment& experiment,
                                    const std::vector<std::size_t>& mine, ScaleLog& log,
                                    const OnProgress& on_progress);
 

@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/output_file.hpp"
 #include "base/text_file.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "luciole/scene.hpp"
 #include "raster/view.hpp"
-#include "scene/scene.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 
 namespace luciole {

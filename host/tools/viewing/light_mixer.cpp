@@ -9,12 +9,12 @@
 #include <functional>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/machine_memory.hpp"
 #include "base/text_file.hpp"
 #include "image/exr_input.hpp"
 #include "image/file_format.hpp"
 #include "image/light_names.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

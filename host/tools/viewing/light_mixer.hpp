@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 // Pictures made anew from the layers of their groups of lights, without shading again.
 namespace luciole {

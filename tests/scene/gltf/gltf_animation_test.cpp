@@ -3,9 +3,9 @@
 #include <cmath>
 #include <functional>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/gltf/gltf_file.hpp"
-#include "scene/pose.hpp"
 
 namespace luciole::test {
 namespace {

@@ -7,9 +7,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <tuple>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/gltf/gltf_file.hpp"
-#include "scene/pose.hpp"
 #include "scene/warning_texts.hpp"
 
 namespace luciole::test {

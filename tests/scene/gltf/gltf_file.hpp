@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/gltf/gltf.hpp"
 #include "shared_files.hpp"
 

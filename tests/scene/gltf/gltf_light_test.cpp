@@ -6,9 +6,9 @@
 #include <limits>
 #include <string>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
+#include "luciole/pose.hpp"
 #include "scene/gltf/gltf_loader.hpp"
-#include "scene/pose.hpp"
 #include "scene/warning_texts.hpp"
 
 namespace luciole::test {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "scene/gltf/gltf_file.hpp"
 
 namespace luciole::test {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/gltf/gltf_loader.hpp"
 
 namespace luciole::test {

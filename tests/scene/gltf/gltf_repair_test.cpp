@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "load/load_scene.hpp"
+#include "luciole/load_scene.hpp"
 #include "scene/gltf/gltf_loader.hpp"
 #include "scene/warning_texts.hpp"
 

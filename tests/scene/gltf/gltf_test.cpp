@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/gltf/gltf_loader.hpp"
 #include "scene/warning_texts.hpp"
 #include "shared_files.hpp"

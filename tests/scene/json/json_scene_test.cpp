@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
 #include "load/frame.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/json/write_scene.hpp"
 #include "scene/lights/light_field.hpp"
-#include "scene/pose.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

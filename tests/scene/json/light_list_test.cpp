@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

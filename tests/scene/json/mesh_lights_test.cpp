@@ -5,10 +5,10 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "scene/json/write_scene.hpp"
-#include "scene/pose.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {

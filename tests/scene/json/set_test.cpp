@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/scene_changes.hpp"
 #include "shared_files.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/bounds.hpp"
 
 namespace luciole {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "scene/lights/light_field.hpp"
 
 namespace luciole {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 
 namespace luciole {

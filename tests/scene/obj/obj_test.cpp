@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.hpp"
-#include "image/image.hpp"
+#include "luciole/error.hpp"
+#include "luciole/image.hpp"
 #include "scene/warning_texts.hpp"
 #include "shared_files.hpp"
 

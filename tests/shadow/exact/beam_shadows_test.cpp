@@ -11,7 +11,7 @@
 #include "kernels/random_scene.hpp"
 #include "kernels/shared.h"
 #include "lighting/light_gbuffer.hpp"
-#include "scene/pose.hpp"
+#include "luciole/pose.hpp"
 #include "shadow/exact/brute_shadows.hpp"
 
 namespace luciole::test {
@@ -108,7 +108,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
   const FeatureSet features = neededFeatures(scene, camera, materialTraits(scene), settings);
   GBuffer gbuffer = rasterize(seen, allObjects(seen), view, Shading::kPhong, neededPlanes(features));
   if (move) move(gbuffer);
-  Device& device = deviceWithLanes(lanes);
+  OpenedDevice& device = deviceWithLanes(lanes);
   Lighting lighting;
   Stats stats;
   prepareLighting(device, scene, camera, view, features, settings, lighting, stats);

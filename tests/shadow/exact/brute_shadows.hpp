@@ -6,10 +6,10 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "gbuffer/gbuffer.hpp"
 #include "kernels/exact_sign.h"
 #include "kernels/shared.h"
 #include "lighting/lighting.hpp"
+#include "luciole/gbuffer.hpp"
 #include "shadow/exact/exact_ray.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/exact/triangle_tree.hpp"

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 // Scenes of triangles that share no corners, for tests of the tree over them.
 namespace luciole::test {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <tuple>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shadow/exact/loose_triangles.hpp"
 #include "shadow/maps/shadow_scenes.hpp"
 

@@ -57,18 +57,18 @@ ShadeSettings shadeSettings(Culling culling, ShadowMethod method) {
 
 /// A scene, its G-buffer, and its lights on a device.
 struct Prepared {
-  Prepared(Device& device, const Scene& scene_, const ShadeSettings& settings) : scene(scene_) {
+  Prepared(OpenedDevice& device, const Scene& scene_, const ShadeSettings& settings) : scene(scene_) {
     const Camera& camera = scene.cameras.front();
     const View view = cameraView(camera, kOddSize);
     features = neededFeatures(scene, camera, materialTraits(scene), settings);
     gbuffer = rasterize(scene, allObjects(scene), view, Shading::kFlat, neededPlanes(features));
     prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
   }
-  Plane light(Device& device) {
+  Plane light(OpenedDevice& device) {
     return lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats).color;
   }
 
-  void drawEverything(Device& device) {
+  void drawEverything(OpenedDevice& device) {
     ShadowMaps& maps = lighting.maps.host;
     giveBack(lighting.maps.faces);
     const std::vector<IndexRange> drawn = drawNeeded(scene, everything(maps), maps);
@@ -103,7 +103,7 @@ TEST(FindNeeded, EveryTexelThatALookupReadsIsDrawn) {
   for (const bool orthographic : {false, true})
     for (const Culling culling : {Culling::kTiles, Culling::kNone})
       for (const int lanes : {1, 16}) {
-        Device& device = deviceWithLanes(lanes);
+        OpenedDevice& device = deviceWithLanes(lanes);
         const Scene scene = crowdedScene(orthographic, random);
         Prepared prepared(device, scene, shadeSettings(culling, ShadowMethod::kPcf));
         prepared.light(device);
@@ -146,7 +146,7 @@ TEST(FindNeeded, PictureIsTheSameAsWithEveryTexelDrawn) {
     for (const Culling culling : {Culling::kTiles, Culling::kNone})
       for (const ShadowMethod method : {ShadowMethod::kHard, ShadowMethod::kPcf})
         for (const int lanes : {1, 16}) {
-          Device& device = deviceWithLanes(lanes);
+          OpenedDevice& device = deviceWithLanes(lanes);
           const Scene scene = crowdedScene(orthographic, random);
           Prepared some(device, scene, shadeSettings(culling, method)),
               all(device, scene, shadeSettings(culling, method));
@@ -159,7 +159,7 @@ TEST(FindNeeded, PictureIsTheSameAsWithEveryTexelDrawn) {
 
 TEST(FindNeeded, NothingThatIsSeenNeedsNothing) {
   Random random(7);
-  Device& device = deviceWithLanes(16);
+  OpenedDevice& device = deviceWithLanes(16);
   Scene scene = crowdedScene(false, random);
   // From outside, looking away.
   scene.cameras.front().camera_to_world =
@@ -175,7 +175,7 @@ TEST(FindNeeded, NothingThatIsSeenNeedsNothing) {
 TEST(FindNeeded, ScenesThatCastAlikeShareItsProgram) {
   Random random(7);
   Scene scene = crowdedScene(false, random);
-  Device& device = deviceWithLanes(4);
+  OpenedDevice& device = deviceWithLanes(4);
   const auto programs = [&] {
     return std::count_if(device.programs.begin(), device.programs.end(),
                          [](const auto& program) { return program.first.ends_with("find_needed.cl"); });

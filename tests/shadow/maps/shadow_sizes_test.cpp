@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shadow/maps/shadow_scenes.hpp"
 
 namespace luciole::test {

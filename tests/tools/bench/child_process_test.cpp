@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole::test {
 namespace {

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "kernels/shared.h"
 #include "raster/rasterize.hpp"
 #include "rays/shadow_rays.hpp"
 #include "render_json.hpp"

@@ -5,6 +5,7 @@
 
 #include "kernels/probe.hpp"
 #include "kernels/shade_bounds.hpp"
+#include "kernels/shared.h"
 #include "lighting/stats.hpp"
 #include "render/render.hpp"
 #include "tools/bench/shading_rate.hpp"
@@ -125,7 +126,7 @@ TEST(AllPairs, EveryLightReachesAndFacesEveryPixel) {
 
 TEST(AllPairs, ThePlainKernelAndOursMakeTheSamePicture) {
   const AllPairs pairs = makeAllPairs({64, 32}, 64);
-  Device& device = deviceWithLanes(16);
+  OpenedDevice& device = deviceWithLanes(16);
   RenderSettings settings;
   settings.shade.culling = Culling::kNone;
   Stats stats;

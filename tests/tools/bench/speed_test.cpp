@@ -6,9 +6,9 @@
 #include <array>
 
 #include "base/embedded_files.hpp"
-#include "base/error.hpp"
 #include "kernels/probe.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/error.hpp"
+#include "luciole/load_scene.hpp"
 #include "shared_files.hpp"
 #include "tools/bench/culled_shading.hpp"
 #include "tools/bench/light_errors.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

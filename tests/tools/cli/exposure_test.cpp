@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "image/image.hpp"
 #include "image/srgb.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/run_program.hpp"
 
 namespace luciole::test {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "image/image.hpp"
-#include "load/load_scene.hpp"
+#include "luciole/image.hpp"
+#include "luciole/load_scene.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

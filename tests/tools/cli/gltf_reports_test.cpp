@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "shared_files.hpp"
 #include "tools/cli/program_test.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 #include "tools/scale/browser.hpp"
 

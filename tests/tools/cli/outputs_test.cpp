@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "gbuffer/gbuffer_file.hpp"
-#include "image/image.hpp"
 #include "image/srgb.hpp"
-#include "load/load_scene.hpp"
-#include "scene/pose.hpp"
+#include "luciole/gbuffer_file.hpp"
+#include "luciole/image.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/pose.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

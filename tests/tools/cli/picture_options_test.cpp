@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "gbuffer/gbuffer_file.hpp"
-#include "image/image.hpp"
 #include "image/layers.hpp"
 #include "image/srgb.hpp"
+#include "luciole/gbuffer_file.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

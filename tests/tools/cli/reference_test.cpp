@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

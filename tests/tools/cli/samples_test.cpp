@@ -1,7 +1,7 @@
 // --samples-shading: what of a pixel's samples is shaded.
 #include <nlohmann/json.hpp>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

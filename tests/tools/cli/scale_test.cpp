@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "image/compare.hpp"
-#include "image/image.hpp"
+#include "luciole/compare.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/run_program.hpp"
 
 namespace luciole::test {

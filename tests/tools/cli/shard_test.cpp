@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 
 namespace luciole {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
 #include "image/srgb.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {

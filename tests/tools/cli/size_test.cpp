@@ -5,7 +5,7 @@
 #include <string>
 #include <tuple>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/run_program.hpp"
 
 namespace luciole::test {

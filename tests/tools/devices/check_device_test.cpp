@@ -30,7 +30,7 @@ std::size_t placeOf(const std::string& operation, std::size_t which, std::size_t
 
 /// The lines of a device that computes with these options of its compiler.
 std::string wrongWith(const std::string& options, int lanes = 8) {
-  Device device;
+  OpenedDevice device;
   openDevice(",lanes=" + std::to_string(lanes), device);
   device.arithmetic += options;
   std::string lines;
@@ -39,7 +39,7 @@ std::string wrongWith(const std::string& options, int lanes = 8) {
 }
 
 TEST(CheckArithmetic, EveryWidthComputesAsTheHostDoesAndHasOneHash) {
-  Device& first = deviceWithLanes(1);
+  OpenedDevice& first = deviceWithLanes(1);
   const ArithmeticCheck check = checkArithmetic(first);
   EXPECT_EQ(check.sha256.size(), 64u);
   for (const int lanes : kAllLanes) {
@@ -51,7 +51,7 @@ TEST(CheckArithmetic, EveryWidthComputesAsTheHostDoesAndHasOneHash) {
 }
 
 TEST(CheckArithmetic, DenormalsMayBeKept) {
-  Device device;
+  OpenedDevice device;
   openDevice("", device);
   device.arithmetic = "-cl-fp32-correctly-rounded-divide-sqrt";
   const ArithmeticCheck check = checkArithmetic(device);
@@ -116,7 +116,7 @@ TEST(KnownArithmetic, IsRememberedForADeviceItsOptionsAndLanes) {
     for (const auto& entry : std::filesystem::directory_iterator(place)) paths.push_back(entry.path());
     return paths;
   };
-  Device& device = deviceWithLanes(4);
+  OpenedDevice& device = deviceWithLanes(4);
   const ArithmeticCheck check = knownArithmetic(device);
   EXPECT_THAT(check.wrong, IsEmpty());
   ASSERT_EQ(files().size(), 1u);
@@ -141,7 +141,7 @@ TEST(CheckPicture, HasItsHashAtEveryWidthAndWithOwnQuotientsAndDenormals) {
   for (const int lanes : kAllLanes) EXPECT_EQ(checkPicture(deviceWithLanes(lanes)), kCheckedPicture) << lanes;
   for (const char* arithmetic :
        {"-cl-denorms-are-zero -DOWN_QUOTIENTS", "-cl-fp32-correctly-rounded-divide-sqrt"}) {
-    Device device;
+    OpenedDevice device;
     openDevice("", device);
     device.arithmetic = arithmetic;
     EXPECT_EQ(checkPicture(device), kCheckedPicture) << arithmetic;

@@ -8,7 +8,7 @@
 #include <regex>
 #include <thread>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "tools/cli/run_program.hpp"
 #include "tools/scale/browser.hpp"
 #include "tools/scale/made_up_page.hpp"

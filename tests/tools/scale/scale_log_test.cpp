@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 #include "tools/scale/made_up_experiment.hpp"
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "base/error.hpp"
+#include "luciole/error.hpp"
 #include "shared_files.hpp"
 #include "tools/scale/made_up_experiment.hpp"
 #include "tools/scale/scale_files.hpp"

@@ -3,7 +3,7 @@
 #include <compare>
 #include <cstdint>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

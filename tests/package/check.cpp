@@ -1,12 +1,11 @@
-// Lights a triangle, given as the planes of a G-buffer, and a mesh, both to memory. Headers lie in the
-// target's include folder, by the names that they have in host/. Prints the brightest colours, and how far
-// both pictures are from the formula.
+// Holds a triangle, given as the planes of a G-buffer, and a mesh to the formula. Prints the brightest
+// colours, and how far both pictures are from it.
 #include <cmath>
 #include <cstdio>
 
-#include "gbuffer/planes.hpp"
-#include "render/render.hpp"
-#include "scene/primitives.hpp"
+#include <luciole/planes.hpp>
+#include <luciole/primitives.hpp>
+#include <luciole/render.hpp>
 
 using namespace luciole;
 
@@ -34,16 +33,16 @@ float errorOf(const Image& picture, Covers&& covers) {
 }
 
 int main() {
-  Device device;
-  openDevice("", device);  // PoCL's where there is one
-  Stats stats;
+  Device device = Device::open();
   Scene scene;
   scene.lights = {{.diffuse = glm::vec3(6), .specular = glm::vec3(6)}};
   RenderSettings settings{.size{kSide, kSide}, .camera{.fov_y = glm::radians(90.0)}};
 
   // The triangle: a G-buffer in view space, whose other pixels stay background.
-  GBuffer gbuffer{
-      .width = kSide, .height = kSide, .tiles_x = kSide / kTileSize, .tiles_y = kSide / kTileSize};
+  GBuffer gbuffer{.width = kSide,
+                  .height = kSide,
+                  .tiles_x = kSide / GBuffer::kTileSide,
+                  .tiles_y = kSide / GBuffer::kTileSide};
   gbuffer.camera = settings.camera;
   gbuffer.picture_size = settings.size;
   allocatePlanes({.specular = true}, gbuffer);
@@ -57,13 +56,13 @@ int main() {
       storePixel(glm::vec3(0.25f), place, stride, gbuffer.specular);
       gbuffer.specular[3 * stride + place] = 8;  // the shininess
     }
-  const Image triangle = shadeGBuffer(device, scene, gbuffer, settings, stats);
+  const Image triangle = shade(device, scene, gbuffer, settings).image;
 
   // The mesh: a square of 2 m, the middle quarter of the picture, turned from +y to face the eye.
   scene.materials = {{.diffuse = glm::vec3(0.5f), .specular = glm::vec3(0.25f), .shininess = 8}};
   scene.meshes = {makePrimitive({.kind = PrimitiveKind::kPlane}, 0)};
   scene.objects = {{.object_to_world = {{2, 0, 0, 0}, {0, 0, 2, 0}, {0, -2, 0, 0}, {0, 0, -2, 1}}}};
-  const Image mesh = renderScene(device, scene, settings, stats);
+  const Image mesh = render(device, scene, settings).image;
 
   const float triangle_error = errorOf(triangle, [](int x, int y) { return x <= y; });
   const float mesh_error = errorOf(mesh, [](int x, int y) { return x >= 8 && x < 24 && y >= 8 && y < 24; });

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "image/texture.hpp"
-#include "scene/animation.hpp"
-#include "scene/model.hpp"
-#include "scene/warning.hpp"
+#include "luciole/animation.hpp"
+#include "luciole/model.hpp"
+#include "luciole/texture.hpp"
+#include "luciole/warning.hpp"
 
 namespace luciole {
 
@@ -48,53 +48,53 @@ struct Facets {
 /// Phong's reflection coefficients, linear Rec.709. Defaults are OpenGL's.
 /// The diffuse map multiplies ambient and diffuse; vertex colours likewise, and emission where it says so.
 struct Material {
-  std::string name;
+  std::string name = {};
   glm::vec3 ambient{0.2f};
   glm::vec3 diffuse{0.8f};
   glm::vec3 specular{0.0f};
   glm::vec3 emission{0.0f};
   float shininess = 0.0f;  ///< exponent n ≥ 0 of the specular lobe
-  TextureUse diffuse_map;
-  TextureUse emission_map;
+  TextureUse diffuse_map = {};
+  TextureUse emission_map = {};
   /// Bends the normals that surfaces are lit by, with Shading::kPhong. Of a texture of TextureKind::kNormals
   /// or kBump.
-  TextureUse normal_map;
+  TextureUse normal_map = {};
   float normal_scale = 1.0f;  ///< multiplies the map's slopes; |normal_scale| ≤ kMostNormalScale
-  TextureUse alpha_map;       ///< opacity: its alpha where it has one that varies, else its red (OBJ map_d)
+  TextureUse alpha_map = {};  ///< opacity: its alpha where it has one that varies, else its red (OBJ map_d)
   float alpha = 1.0f;         ///< constant opacity, multiplied with the maps' and the vertex colour's alpha
   float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
   /// What a camera sees is dithered by the opacity instead (raster/blend.hpp): alpha_cutoff is for shadows
   /// alone.
   bool blended = false;
-  bool double_sided = false;      ///< otherwise back faces are culled
-  bool colored_emission = false;  ///< vertex colours multiply the emission too
-  std::optional<Model> model;     ///< how it reflects light; none: as the picture's settings say
+  bool double_sided = false;        ///< otherwise back faces are culled
+  bool colored_emission = false;    ///< vertex colours multiply the emission too
+  std::optional<Model> model = {};  ///< how it reflects light; none: as the picture's settings say
   /// What `specular` and `shininess`, which are of Phong's model, stand for. See takeFacets().
-  std::optional<Facets> facets;
+  std::optional<Facets> facets = {};
 };
 
 /// An indexed triangle mesh in its own (object) space, metres. All per-vertex arrays have positions.size()
 /// elements or, where optional, none. Counter-clockwise triangles face the viewer.
 struct Mesh {
-  std::string name;
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;  ///< unit, never missing: loaders make them
-  std::vector<glm::vec2> uvs;      ///< optional; v grows downwards: (0,0) is the picture's top left corner
-  std::vector<glm::vec2> emission_uvs;  ///< optional; emission maps use these instead of `uvs`
+  std::string name = {};
+  std::vector<glm::vec3> positions = {};
+  std::vector<glm::vec3> normals = {};  ///< unit, never missing: loaders make them
+  std::vector<glm::vec2> uvs = {};  ///< optional; v grows downwards: (0,0) is the picture's top left corner
+  std::vector<glm::vec2> emission_uvs = {};  ///< optional; emission maps use these instead of `uvs`
   /// Optional; where red of a normal map points, unit, and in w the side of green: ±1 × cross(normal,
   /// tangent) points up in the picture. All zero at vertices that have none; addTangents() gives those that
   /// need one.
-  std::vector<glm::vec4> tangents;
-  std::vector<glm::vec2> normal_uvs;  ///< optional; normal maps use these instead of `uvs`
+  std::vector<glm::vec4> tangents = {};
+  std::vector<glm::vec2> normal_uvs = {};  ///< optional; normal maps use these instead of `uvs`
   /// Optional; light maps are laid out by these instead of `uvs`. May be any numbers: see lightMapUvs().
-  std::vector<glm::vec2> lightmap_uvs;
-  std::vector<glm::vec4> colors;  ///< optional; linear RGBA that multiplies the material's
-  std::vector<glm::uvec3> triangles;
-  std::vector<std::uint32_t> triangle_materials;  ///< one a triangle, indexes Scene::materials
-  std::vector<std::uint32_t> sources;  ///< of a mesh that deforms: which vertex of the RestShape each is
+  std::vector<glm::vec2> lightmap_uvs = {};
+  std::vector<glm::vec4> colors = {};  ///< optional; linear RGBA that multiplies the material's
+  std::vector<glm::uvec3> triangles = {};
+  std::vector<std::uint32_t> triangle_materials = {};  ///< one a triangle, indexes Scene::materials
+  std::vector<std::uint32_t> sources = {};  ///< of a mesh that deforms: which vertex of the RestShape each is
   /// The same surface in smaller triangles, which takes its place where colours are lit at vertices (Gouraud
   /// shading). Null: the mesh itself.
-  std::shared_ptr<const Mesh> divided;
+  std::shared_ptr<const Mesh> divided = {};
 };
 
 /// A mesh placed in the world.
@@ -162,7 +162,7 @@ struct Fog {
 
 /// A camera looks along its −z, x to the right, y up (OpenGL's eye space, which is also glTF's).
 struct Camera {
-  std::string name;
+  std::string name = {};
   glm::dmat4 camera_to_world{1.0};  ///< a rigid motion: rotation and translation only
   bool orthographic = false;
   double fov_y = 0.7853981633974483;  ///< radians, perspective only
@@ -170,38 +170,45 @@ struct Camera {
   double near = 0.1;                  ///< metres, > 0
   double far = 1000.0;                ///< metres, > near; of a perspective camera it may be infinite
   /// What it goes round where it is told to, and about which way, of any length: see render --orbit.
-  std::optional<glm::dvec3> target;  ///< what it looks at, where the file says it or the scene was framed
+  std::optional<glm::dvec3> target =
+      {};  ///< what it looks at, where the file says it or the scene was framed
   glm::dvec3 up{0.0, 1.0, 0.0};
 };
 
 /// Everything a picture is made of: the output of the loaders, and the input of every later stage.
 /// Indices are valid, and numbers finite unless their comment says otherwise: see validateScene().
 struct Scene {
-  std::string name;               ///< the file, for messages and metadata
-  std::vector<Warning> warnings;  ///< all of them; the command line prints them
+  std::string name = {};               ///< the file, for messages and metadata
+  std::vector<Warning> warnings = {};  ///< all of them; the command line prints them
   /// Picture files that the scene names and that don't exist, a line each as above. Materials are loaded
   /// without them; loadScene() decides whether that is an error.
-  std::vector<std::string> missing_textures;
+  std::vector<std::string> missing_textures = {};
   /// glTF extensions that a file uses and that are not supported, each once. There is a warning of each.
-  std::vector<std::string> ignored_extensions;
-  std::vector<std::string> variants;    ///< of a glTF file, see loadGltf()
-  std::vector<std::string> animations;  ///< of a glTF file: their names, or indices where they have none
-  std::vector<Texture> textures;
-  std::vector<Material> materials;
-  std::vector<Mesh> meshes;
-  std::vector<Object> objects;
-  std::vector<Light> lights;
+  std::vector<std::string> ignored_extensions = {};
+  std::vector<std::string> variants = {};    ///< of a glTF file, see loadGltf()
+  std::vector<std::string> animations = {};  ///< of a glTF file: their names, or indices where they have none
+  std::vector<Texture> textures = {};
+  std::vector<Material> materials = {};
+  std::vector<Mesh> meshes = {};
+  std::vector<Object> objects = {};
+  std::vector<Light> lights = {};
   std::vector<std::string> light_groups{"default"};  ///< names; the first is of lights that name no group
-  std::vector<Camera> cameras;     ///< may be empty after a loader; never after completeScene()
-  std::optional<glm::ivec2> size;  ///< the picture's size that the file asks for
+  std::vector<Camera> cameras = {};     ///< may be empty after a loader; never after completeScene()
+  std::optional<glm::ivec2> size = {};  ///< the picture's size that the file asks for
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
-  Fog fog;
+  Fog fog = {};
   bool says_light = false;   ///< its file says what lights it, even if that is nothing: see completeScene()
   bool adds_camera = false;  ///< its file has no camera: this one was chosen, see completeScene()
   bool adds_lights = false;  ///< its file says nothing of light: these lights were chosen
   bool lighting = true;      ///< false: every surface shows its emission + diffuse colour unlit
-  Animation animation;       ///< what moves: poseScene() sets cameras, lights, objects and meshes by it
+  Animation animation = {};  ///< what moves: poseScene() sets cameras, lights, objects and meshes by it
+};
+
+/// Which of a glTF file's choices a scene shows.
+struct GltfChoice {
+  std::string variant{};    ///< of materials (KHR_materials_variants), by its name; "": the default materials
+  std::string animation{};  ///< the only one that runs, by its name or counted from 0; "": all run together
 };
 
 /// The models that materials choose whose surfaces the scene has. O(triangles) where a material chooses one.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "gbuffer/gbuffer.hpp"
+#include "luciole/gbuffer.hpp"
 
 namespace luciole {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/array_memory.hpp"
+#include "luciole/array_memory.hpp"
 
 namespace luciole {
 
@@ -18,7 +18,7 @@ struct MipLevel {
   /// 4 values a texel, RGBA, each 16-bit unsigned normalized. Alpha is linear. Colour is sRGB-encoded in the
   /// finest level (so that an 8-bit file's codes are kept exactly, as code × 257), and in the others the
   /// square root of the linear value, which decodes fast. 8 bytes a texel.
-  Texels texels;
+  Texels texels = {};
 };
 
 /// What a texture's numbers mean.
@@ -31,8 +31,8 @@ enum class TextureKind : std::uint8_t {
 /// A filtered texture: levels[0] is the picture itself, each next level half the size, down to 1×1.
 /// Never empty once loaded.
 struct Texture {
-  std::string name;  ///< for messages: the file's path, or where it lies inside its glTF
-  std::vector<MipLevel> levels;
+  std::string name = {};  ///< for messages: the file's path, or where it lies inside its glTF
+  std::vector<MipLevel> levels = {};
   bool alpha_varies = false;  ///< between the texels of levels[0]
   TextureKind kind = TextureKind::kColor;
   bool linear = false;  ///< the file's numbers are linear: levels[0] has their sRGB codes

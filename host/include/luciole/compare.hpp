@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 
@@ -14,8 +14,8 @@ namespace luciole {
 /// finite count in `nonfinite`, and as an infinite difference in max_abs, the percentiles and `over`. The
 /// means leave them out, and are infinite where no other pair is left.
 struct ImageDifference {
-  std::vector<std::string> channels;  ///< compared
-  std::uint64_t pixels = 0;           ///< compared
+  std::vector<std::string> channels = {};  ///< compared
+  std::uint64_t pixels = 0;                ///< compared
   double max_abs = 0;
   double mean_abs = 0;
   double max_relative = 0;  ///< max_abs / the largest magnitude of A's finite compared values
@@ -33,7 +33,8 @@ struct ImageDifference {
   std::array<int, 2> worst_pixel{};     ///< x, y of max_abs
   int width = 0;
   int height = 0;
-  std::vector<double> of_pixel;  ///< row-major: the largest difference of a pixel's channels, or kNotCompared
+  std::vector<double> of_pixel =
+      {};  ///< row-major: the largest difference of a pixel's channels, or kNotCompared
 };
 /// Half, one and four 8-bit steps of a linear [0,1] range.
 inline constexpr std::array<double, 3> kOverLimits{0.5 / 255, 1.0 / 255, 4.0 / 255};

@@ -25,7 +25,7 @@ struct CurveKey {
 /// the last one's.
 struct Curve {
   Interpolation interpolation = Interpolation::kLinear;
-  std::vector<CurveKey> keys;  ///< in ascending order of frames; empty: the value isn't animated
+  std::vector<CurveKey> keys = {};  ///< in ascending order of frames; empty: the value isn't animated
 };
 
 /// A curve that is the same at every frame.

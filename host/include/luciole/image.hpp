@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "image/tone.hpp"
-
 namespace luciole {
 
 /// What an EXR says of its whole picture beside the size.
@@ -22,10 +20,10 @@ struct Display {
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::string> channels;  ///< names as EXR has them: "R", "G", "B", "normal.X" …
-  std::vector<float> pixels;          ///< width × height × channels.size()
-  glm::ivec2 picture_size{0};         ///< of the whole picture, of which the file says that this is a part
-  glm::ivec2 crop_origin{0};          ///< where in the whole picture pixel (0,0) lies
+  std::vector<std::string> channels = {};  ///< names as EXR has them: "R", "G", "B", "normal.X" …
+  std::vector<float> pixels = {};          ///< width × height × channels.size()
+  glm::ivec2 picture_size{0};  ///< of the whole picture, of which the file says that this is a part
+  glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   Display display{};
 };
 
@@ -35,8 +33,14 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Attributes of an EXR's header that other formats can't store.
 struct ExrAttributes {
-  Metadata texts;
-  std::vector<std::pair<std::string, glm::mat4>> matrices;
+  Metadata texts = {};
+  std::vector<std::pair<std::string, glm::mat4>> matrices = {};
+};
+
+/// How linear light, after exposure, is brought into [0,1], the range of files of integers.
+enum class ToneCurve : std::uint8_t {
+  kClip,    ///< as it is; above 1 it is 1
+  kFilmic,  ///< filmicTone()
 };
 
 class Film;

@@ -6,10 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "base/array_memory.hpp"
-#include "image/image.hpp"
-#include "kernels/shared.h"
-#include "scene/scene.hpp"
+#include "luciole/array_memory.hpp"
+#include "luciole/image.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 
@@ -28,7 +27,7 @@ constexpr std::size_t everyOtherBit(std::size_t v) {
 
 /// What the camera sees, one sample a pixel, laid out for the kernels.
 ///
-///     tile (kTileSize × kTileSize pixels)      a plane group, here 3 components of `pixels()` floats each
+///     tile (kTileSide × kTileSide pixels)      a plane group, here 3 components of `pixels()` floats each
 ///     ┌────────┬────────┬──────                ┌───────────────┬───────────────┬───────────────┐
 ///     │ 0      │ 1      │ 2                    │ x of tile 0,1…│ y of tile 0,1…│ z of tile 0,1…│
 ///     ├────────┼────────┼──────                └───────────────┴───────────────┴───────────────┘
@@ -45,31 +44,34 @@ struct GBuffer {
   int height = 0;  ///< pixels
   int tiles_x = 0;
   int tiles_y = 0;
-  Plane position;                  ///< x y z
-  Plane normal;                    ///< x y z, unit, turned towards the viewer on double-sided surfaces
-  Plane diffuse;                   ///< r g b, linear reflectance
-  Plane specular;                  ///< r g b and shininess; optional
-  Plane ambient;                   ///< r g b; optional
-  Plane emission;                  ///< r g b; optional
-  PackedNormals geometric_normal;  ///< the triangle's own, on the side that `normal` was turned to; optional
+  Plane position = {};  ///< x y z
+  Plane normal = {};    ///< x y z, unit, turned towards the viewer on double-sided surfaces
+  Plane diffuse = {};   ///< r g b, linear reflectance
+  Plane specular = {};  ///< r g b and shininess; optional
+  Plane ambient = {};   ///< r g b; optional
+  Plane emission = {};  ///< r g b; optional
+  PackedNormals geometric_normal =
+      {};  ///< the triangle's own, on the side that `normal` was turned to; optional
   /// Whether geometric_normal is instead the interpolated normal that a normal map may have bent. Lights that
   /// stand behind it are not seen, even by a bent normal that faces them.
   bool knows_unbent = false;
-  Plane lift;        ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
-  ModelPlane model;  ///< optional
-  Camera camera;     ///< whose view space this is
+  Plane lift = {};        ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
+  ModelPlane model = {};  ///< optional
+  Camera camera = {};     ///< whose view space this is
   bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   Display display{};           ///< of the file that it was read from
 
+  static constexpr int kTileSide = 16;  ///< pixels; tiles_x · kTileSide ≥ width
+
   /// Pixels in a plane, tiles beyond the edge included.
-  std::size_t pixels() const { return std::size_t(tiles_x) * tiles_y * kTilePixels; }
+  std::size_t pixels() const { return std::size_t(tiles_x) * tiles_y * kTileSide * kTileSide; }
 
   /// The place in a plane of pixel (x, y), counted from the top left.
   std::size_t index(int x, int y) const {
-    const std::size_t tile = std::size_t(y / kTileSize) * tiles_x + x / kTileSize;
-    return tile * kTilePixels + 2 * everyOtherBit(y % kTileSize) + everyOtherBit(x % kTileSize);
+    const std::size_t tile = std::size_t(y / kTileSide) * tiles_x + x / kTileSide;
+    return tile * kTileSide * kTileSide + 2 * everyOtherBit(y % kTileSide) + everyOtherBit(x % kTileSide);
   }
 };
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "scene/curve.hpp"
-#include "scene/deformation.hpp"
+#include "luciole/curve.hpp"
+#include "luciole/deformation.hpp"
 
 namespace luciole {
 
@@ -36,21 +36,21 @@ struct Attachment {
 struct CameraMotion {
   std::uint32_t camera = 0;  ///< in Scene::cameras
   bool orbits = false;
-  Curve eye;  ///< world, metres; of one that orbits azimuth, elevation (degrees) and distance (orbitEye)
-  Curve target;
+  Curve eye = {};  ///< world, metres; of one that orbits azimuth, elevation (degrees) and distance (orbitEye)
+  Curve target = {};
   glm::dvec3 up{0.0, 1.0, 0.0};
-  Curve fov_y;  ///< degrees; without keys the camera's own stays
+  Curve fov_y = {};  ///< degrees; without keys the camera's own stays
 };
 
 /// A light whose members change. A curve without keys leaves the light's own.
 struct LightMotion {
   std::uint32_t light = 0;  ///< in Scene::lights
-  Curve position;
-  Curve direction;  ///< any length but 0
-  Curve target;     ///< world; instead of `direction`: what a spot shines at
-  Curve color;
-  Curve intensity;
-  Curve range;
+  Curve position = {};
+  Curve direction = {};  ///< any length but 0
+  Curve target = {};     ///< world; instead of `direction`: what a spot shines at
+  Curve color = {};
+  Curve intensity = {};
+  Curve range = {};
   glm::vec3 ambient{0.0f}, diffuse{0.0f}, specular{0.0f};  ///< the light's colours without the intensity
   float own_intensity = 1.0f;
 };
@@ -58,12 +58,12 @@ struct LightMotion {
 /// What moves in a scene, and how; empty where nothing moves.
 struct Animation {
   double frame_rate = 24;  ///< frames a second, for files with times in seconds: frame 1 is time 0
-  std::vector<Curve> curves;
-  std::vector<MovingNode> nodes;  ///< parents first
-  std::vector<Attachment> objects, attached_cameras, attached_lights;
-  std::vector<CameraMotion> cameras;
-  std::vector<LightMotion> lights;
-  std::vector<Deformation> deformations;
+  std::vector<Curve> curves = {};
+  std::vector<MovingNode> nodes = {};  ///< parents first
+  std::vector<Attachment> objects = {}, attached_cameras = {}, attached_lights = {};
+  std::vector<CameraMotion> cameras = {};
+  std::vector<LightMotion> lights = {};
+  std::vector<Deformation> deformations = {};
   int no_mesh = -1;  ///< in Scene::meshes: the empty mesh of flattened objects; -1: nothing is attached
 };
 

@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/gltf/gltf.hpp"
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scene/scene.hpp"
+#include "luciole/scene.hpp"
 
 namespace luciole {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "gbuffer/gbuffer.hpp"
-#include "image/image.hpp"
+#include "luciole/gbuffer.hpp"
+#include "luciole/image.hpp"
 
 namespace luciole {
 

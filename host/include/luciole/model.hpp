@@ -1,0 +1,35 @@
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace luciole {
+
+/// The reflection models. A picture's settings choose one, and a material may choose its own.
+enum class Model : std::uint8_t {
+  kPhong,         ///< highlights of (R·V)ⁿ
+  kBlinnPhong,    ///< highlights of (N·H)ⁿ
+  kToon,          ///< light in flat steps
+  kCookTorrance,  ///< rough surfaces, D G F / (4 N·L N·V)
+  kOrenNayar,     ///< rough matte surfaces, with Phong's highlights
+};
+inline constexpr std::size_t kNumberOfModels = 5;
+
+/// The model's name in scene files: "phong" …
+const char* modelName(Model model);
+
+/// A material's model as G-buffers have it: 0 where it chooses none.
+inline constexpr std::uint32_t modelNumber(const std::optional<Model>& chosen) {
+  return chosen ? std::uint32_t(*chosen) + 1 : 0;
+}
+/// The model behind such a number, in a picture of this model.
+inline constexpr Model modelOfNumber(std::uint32_t number, Model of_picture) {
+  return number > 0 ? Model(number - 1) : of_picture;
+}
+
+/// Which models surfaces choose: bit i is set if one has the modelNumber() i.
+using ModelChoices = std::bitset<kNumberOfModels + 1>;
+
+}  // namespace luciole

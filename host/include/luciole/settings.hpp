@@ -1,0 +1,150 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "luciole/scene.hpp"
+
+namespace luciole {
+
+/// Where a surface's normals and colours are evaluated.
+enum class Shading : std::uint8_t {
+  kFlat,     ///< the triangle's own normal
+  kGouraud,  ///< colours lit at the vertices, interpolated
+  kPhong,    ///< normals interpolated
+};
+
+/// How it is told whether a point is in a light's shadow.
+enum class ShadowMethod : std::uint8_t {
+  kOff,
+  kHard,       ///< by a map: the texel that the point falls into
+  kPcf,        ///< by a map: the nearest texels, weighted (percentage-closer filtering)
+  kSoft,       ///< by a map: a disc as wide as the penumbra that the light's size gives
+  kExact,      ///< by the triangles themselves: whether one is between the point and the light's centre
+  kSoftExact,  ///< likewise, for samples of the light's size: the share of them that the point sees
+  kAuto,       ///< for each light kExact or kHard: see shadowWays
+};
+
+/// Who tells whether points are in a light's shadow.
+enum class ShadowWay : std::uint8_t {
+  kNone,   ///< nobody: it casts none
+  kMap,    ///< its shadow map
+  kBeams,  ///< kernels/beam_shadows.cl: exact
+};
+
+/// How much shadow maps may take.
+struct ShadowLimits {
+  int size = 2048;  ///< texels a side of a cascade and of a spot's map; a cube's face: half
+  std::size_t bytes = std::size_t(512) << 20;  ///< of all maps together
+};
+
+/// Texels a side: the fewest of a face, and the most that ShadowLimits::size may ask for.
+inline constexpr int kSmallestFace = 16, kLargestFace = 16384;
+
+/// Which lights a pixel is shaded by.
+enum class Culling : std::uint8_t {
+  kNone,   ///< all
+  kTiles,  ///< those that may reach its square of pixels
+};
+
+/// How to light a G-buffer, apart from what the scene says.
+struct ShadeSettings {
+  Model model = Model::kPhong;  ///< of surfaces that choose none
+  /// Surfaces have different models: G-buffers say which (GBuffer::model). See chooseModel().
+  bool material_models = false;
+  Culling culling = Culling::kTiles;
+  int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
+  ShadowMethod shadows = ShadowMethod::kHard;
+  bool shadow_layer = false;  ///< also write how visible, on average, lights with shadows are
+  /// With ShadowMethod::kAuto the way of each light. Empty: a picture's are chosen by shadowWays, and where
+  /// no picture is known, all are exact.
+  std::vector<ShadowWay> shadow_ways{};
+  int soft_samples =
+      16;             ///< of a light that has a size, with ShadowMethod::kSoftExact, 1 to kMostSoftSamples
+  int pcf_width = 2;  ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
+  ShadowLimits shadow_limits{};
+  int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
+  int exp2_degree = 6;
+  /// E, 0 to 1: lights may be stood for by clusters of them as long as each pixel's error stays below
+  /// E·max(1, colour) in each channel. 0: each light is summed by itself.
+  float light_error = 0;
+  /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
+  bool always_clusters = false;
+};
+
+/// Part of a picture, in pixels from its top left corner.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Extra layers of an EXR.
+enum class Aov : std::uint8_t {
+  kPosition,
+  kNormal,
+  kDepth,
+  kDiffuse,
+  kMaterial,
+  kLightCount,  ///< lights in range of the pixel
+  kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
+                ///< counted from the band's first pixel, so it depends on the band and the crop
+  kShadow,
+  /// Bounds of the error, r g b, in the units of R G B, that lights that clusters stand for may make
+  /// (ShadeSettings::light_error): the mean over the samples. With Shading::kGouraud the largest of any
+  /// vertex.
+  kLightError,
+  kShadingCount,  ///< points that were shaded for all samples of the pixel
+  // The parts of the picture's light, whose sum is the picture, as light_layers.hpp tells.
+  kAmbient,  ///< ambient light: the scene's, and the lights' own
+  kDiffuseLight,
+  kSpecularLight,
+  kEmission,  ///< and the background
+  kFog,       ///< the fog's own colour
+  // What renderBands() alone knows, by surface_ids.hpp. Objects and materials are numbered as in the scene.
+  kObjectId,        ///< -1 where nothing is seen
+  kMaterialId,      ///< likewise
+  kCryptoObject,    ///< Cryptomatte: which objects cover how much of the pixel's samples
+  kCryptoMaterial,  ///< the same of materials
+};
+
+/// What of a pixel's samples is shaded.
+enum class SampleShading : std::uint8_t {
+  kShared,  ///< a point for those that see the same surface (SharedSamples)
+  kAll,     ///< each of them, at its own place
+};
+
+struct RenderSettings {
+  glm::ivec2 size{1280, 720};
+  Camera camera = {};
+  std::optional<Crop> crop = {};
+  int samples = 1;  ///< per pixel, at the points of a Hammersley set
+  SampleShading sample_shading = SampleShading::kShared;
+  Shading shading = Shading::kPhong;
+  ShadeSettings shade = {};
+  /// Layers. But for kLightError, kShadingCount, Cryptomattes and the parts of the light they show the first
+  /// sample, or the point that is shaded for it.
+  std::vector<Aov> aovs = {};
+  /// Adds three channels for each group of lights that has any, and three for what no light gives: their sum
+  /// is the picture. Neither these nor parts of the light go with ShadeSettings::light_error, which is
+  /// ignored beside them, nor with Shading::kGouraud.
+  bool light_groups = false;
+  float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
+  /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
+  /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that
+  /// the fog hides are drawn too: they look like the scene's background, but hide any other.
+  bool alpha = false;
+  /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
+  bool count_lights = false;
+  /// Rows that are rendered at a time, at most; 0: as bandHeight() says. The picture's colours don't depend
+  /// on it, with a light error as long as it is a multiple of kBinSize.
+  int band_height = 0;
+  /// Called after each pass over a band, if set: how many rows are done, of how many, in all passes together.
+  std::function<void(int done, int rows)> on_pass = {};
+  /// Called once if set and a picture has waited a second for its kernels to be compiled.
+  std::function<void()> on_long_compile = {};
+};
+
+}  // namespace luciole
