@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "long_run.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {
@@ -34,7 +35,8 @@ void expectCertified(const std::string& name, Model model, bool highlights, std:
 }
 
 TEST_P(LightCertificate, HoldsAtEveryPixelForEachPlacementAndError) {
-  ASSERT_NO_FATAL_FAILURE(expectCertified(GetParam(), Model::kPhong, false, 10'000, {96, 54}));
+  const glm::ivec2 size = longRun() ? glm::ivec2(96, 54) : glm::ivec2(56, 32);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(GetParam(), Model::kPhong, false, 10'000, size));
 }
 
 /// The scenes with shiny surfaces.
@@ -51,7 +53,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(HighlightCertificate, HoldsAtEveryPixelForEachPlacementAndError) {
   const auto& [scene, model] = GetParam();
-  ASSERT_NO_FATAL_FAILURE(expectCertified(scene, model, true, 10000, {48, 27}));
+  const glm::ivec2 size = longRun() ? glm::ivec2(48, 27) : glm::ivec2(32, 18);
+  ASSERT_NO_FATAL_FAILURE(expectCertified(scene, model, true, 10'000, size));
 }
 
 }  // namespace

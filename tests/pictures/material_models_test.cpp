@@ -61,19 +61,20 @@ struct LitCase {
   ShadowMethod shadows;
 };
 
-class MaterialModels : public testing::TestWithParam<std::tuple<int, LitCase>> {};
-
-TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
-  const int lanes = std::get<0>(GetParam());
-  const LitCase of = std::get<1>(GetParam());
-  OpenedDevice& device = deviceWithLanes(lanes);
-  const auto settingsOf = [&](const Scene& scene) {
+class MaterialModels : public testing::TestWithParam<LitCase> {
+ protected:
+  static RenderSettings settingsOf(const Scene& scene) {
     RenderSettings settings = settingsFor(scene, kBallsSize);
-    settings.shading = of.shading;
-    settings.shade.shadows = of.shadows;
+    settings.shading = GetParam().shading;
+    settings.shade.shadows = GetParam().shadows;
     settings.shade.model = Model::kToon;  // the floor's
     return settings;
-  };
+  }
+};
+
+TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
+  const LitCase of = GetParam();
+  OpenedDevice& device = deviceWithLanes(16);
   const Scene mixed = sceneFromJson(ballsOf(of.lights));
   Stats stats;
   const Image shown = renderScene(device, mixed, settingsOf(mixed), stats);
@@ -95,15 +96,21 @@ TEST_P(MaterialModels, LightEachSurfaceAsAPictureOfItsModelAlone) {
   }
   EXPECT_GT(*std::min_element(pixels.begin(), pixels.end()), 50) << "too few to tell";
 }
-INSTANTIATE_TEST_SUITE_P(
-    Lanes, MaterialModels,
-    testing::Combine(testing::ValuesIn(kAllLanes),
-                     testing::Values(LitCase{"Lists", Shading::kPhong, 20, ShadowMethod::kExact},
-                                     LitCase{"Tiles", Shading::kPhong, 200, ShadowMethod::kOff},
-                                     LitCase{"Vertices", Shading::kGouraud, 20, ShadowMethod::kOff})),
-    [](const auto& test) {
-      return std::string(std::get<1>(test.param).name) + std::to_string(std::get<0>(test.param));
-    });
+
+// So at every width each surface is as a picture of its model alone, whose programs needn't be compiled for
+// that.
+TEST_P(MaterialModels, HaveTheSameBitsAtEveryWidth) {
+  const Scene mixed = sceneFromJson(ballsOf(GetParam().lights));
+  const Image widest = picture(mixed, settingsOf(mixed), deviceWithLanes(16));
+  for (const int lanes : {1, 4, 8})
+    EXPECT_EQ(picture(mixed, settingsOf(mixed), deviceWithLanes(lanes)).pixels, widest.pixels)
+        << lanes << " lanes";
+}
+INSTANTIATE_TEST_SUITE_P(Cases, MaterialModels,
+                         testing::Values(LitCase{"Lists", Shading::kPhong, 20, ShadowMethod::kExact},
+                                         LitCase{"Tiles", Shading::kPhong, 200, ShadowMethod::kOff},
+                                         LitCase{"Vertices", Shading::kGouraud, 20, ShadowMethod::kOff}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(MaterialModel, ThatAllSurfacesHaveIsThePicturesAndNeedsNoPlane) {
   const Scene toons = sceneFromJson(ballsOf(5, "toon"));

@@ -206,7 +206,7 @@ TEST_P(ShadeTiles, GiveTheBitsOfListsForAHundredThousandLights) {
     light.range = float(0.02 * depth * random.between(0.5, 8));
     scene.lights.push_back(light);
   }
-  expectBitsOfLists(device, scene, gbuffer, Model::kBlinnPhong);
+  expectBitsOfLists(device, scene, gbuffer, Model::kPhong);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lanes, ShadeTiles, testing::ValuesIn(kAllLanes), testing::PrintToStringParamName());

@@ -15,11 +15,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Clusters pay where a picture has enough pixels, and each of them is narrow.
-constexpr const char* kManyLights = R"({"size": [256, 144],
-  "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "fov_y": 15, "keys": [{"frame": 1, "eye": [0, 3, 5]}, {"frame": 3, "eye": [2, 3, 4]}]},
+// As few lights and pixels as clusters still pay for at errors that floats can't promise: for that a picture
+// must have enough pixels, and each of them be narrow.
+constexpr int kManyLightsCount = 20'000;
+constexpr const char* kManyLights = R"({"size": [128, 72],
+  "camera": {"eye": [0, 3, 5], "target": [0, 0, 0], "fov_y": 6, "keys": [{"frame": 1, "eye": [0, 3, 5]}, {"frame": 3, "eye": [2, 3, 4]}]},
   "objects": [{"primitive": "plane", "scale": 4}],
-  "light_fields": [{"count": 40000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "no_range": true}]})";
+  "light_fields": [{"count": 20000, "min": [-4, 0.1, -4], "max": [4, 3, 4], "no_range": true}]})";
 
 class LightError : public ProgramTest {
  protected:
@@ -99,7 +101,7 @@ TEST_F(LightError, LessThanFloatsCanPromiseIsToldInOneLine) {
 TEST_F(LightError, TheLeastThatFloatsCanPromiseIsPromised) {
   writeText(folder / "many.json", kManyLights);
   const std::string render = "luciole render many.json --quiet -o out.exr --stats stats.json --light-error ";
-  succeed(render + "1e-6");
+  succeed(render + "1e-5");
   const auto told = nlohmann::json::parse(readText(folder / "stats.json"));
   const std::string warning = told["warnings"].at(0), before = "the least that they can is ";
   ASSERT_THAT(warning, HasSubstr(before));
@@ -118,7 +120,7 @@ TEST_F(LightError, ChangesNoBitWithThreadsLanesOrTiles) {
   const std::string render =
       "luciole render many.json --quiet --size 150x100 --samples 4 --light-error 1/256 --aov light_error ";
   succeed(render + "-o usual.exr --stats stats.json");
-  EXPECT_EQ(standIns(), 40'000);
+  EXPECT_EQ(standIns(), kManyLightsCount);
   for (const char* other : {"--threads 1", "--threads 2", "--threads 3", "--device ,lanes=1",
                             "--device ,lanes=4", "--device ,lanes=8", "--tile 16", "--culling none"})
     succeed(render + other + " -o other.exr && luciole compare usual.exr other.exr --max-abs 0");
@@ -128,7 +130,7 @@ TEST_F(LightError, FramesAndTheirShardsArePicturesRenderedAlone) {
   writeText(folder / "many.json", kManyLights);
   const std::string render = "luciole render many.json --quiet --light-error 1/256 --aov light_error ";
   succeed(render + "--frames 1 -o one.exr --stats stats.json");
-  EXPECT_EQ(standIns(), 40'000);
+  EXPECT_EQ(standIns(), kManyLightsCount);
   succeed(render + "--frames 1-3 -o all.#.exr");
   succeed(render + "--frames 1-3 --shard 1/2 -o part.#.exr");
   succeed(render + "--frames 1-3 --shard 2/2 -o part.#.exr");
