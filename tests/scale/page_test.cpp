@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <regex>
-#include <thread>
 
 #include "base/error.hpp"
 #include "cli/run_program.hpp"
@@ -428,14 +426,8 @@ TEST(Page, GivesEachPlotsNumbersAsCsv) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
   Browser browser;
   browser.open(pageOf(madeUpVariants()));
-  browser.call("Browser.setDownloadBehavior",
-               {{"behavior", "allow"}, {"downloadPath", browser.folder() / "downloads"}});
   const auto downloaded = [&](const std::string& figure, const std::string& name) {
-    browser.evaluate("document.querySelector('#" + figure + " .under button').click()");
-    const std::string path = browser.folder() / ("downloads/" + name);
-    for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return readText(path);
+    return browser.download("document.querySelector('#" + figure + " .under button').click()", name);
   };
   EXPECT_EQ(downloaded("compared_plot", "total-time-of-each-variant.csv"),
             "Lights,Culling,\"Median, ms\",\"Lower quartile, ms\",\"Upper quartile, ms\"\r\n"
