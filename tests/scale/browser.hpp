@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -22,15 +23,16 @@ extern char** environ;
 
 namespace luciole::test {
 
-/// A headless Chromium with one page, off the network, that is told what to do over a pipe (Chrome DevTools
-/// Protocol: https://chromedevtools.github.io/devtools-protocol/). All that it writes goes into a temporary
-/// folder. Throws std::runtime_error where the browser answers with an error, or not within kLongestWait.
+/// A headless Chromium with one page at a time, off the network, that is told what to do over a pipe (Chrome
+/// DevTools Protocol: https://chromedevtools.github.io/devtools-protocol/). All that it writes goes into a
+/// temporary folder. Throws std::runtime_error where the browser answers with an error, or not within
+/// kLongestWait.
 class Browser {
  public:
   Browser() {
     try {
       start();
-      connect();
+      renewPage();
     } catch (...) {
       stop();
       throw;
@@ -39,6 +41,26 @@ class Browser {
   ~Browser() { stop(); }
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
+
+  /// Closes the page, and opens an empty one that shares nothing with it.
+  void renewPage() {
+    session_.clear();
+    if (!context_.empty()) call("Target.disposeBrowserContext", {{"browserContextId", context_}});
+    context_ = call("Target.createBrowserContext")["browserContextId"];
+    const std::string target =
+        call("Target.createTarget", {{"url", "about:blank"}, {"browserContextId", context_}})["targetId"];
+    session_ = call("Target.attachToTarget", {{"targetId", target}, {"flatten", true}})["sessionId"];
+    events_.clear();
+    for (const char* domain : {"Page", "Runtime", "Log", "Network"}) call(std::string(domain) + ".enable");
+    call("Page.setLifecycleEventsEnabled", {{"enabled", true}});
+    call("Network.emulateNetworkConditions",
+         {{"offline", true}, {"latency", 0}, {"downloadThroughput", 0}, {"uploadThroughput", 0}});
+    resize(1280, 900);
+    setColorScheme("light");
+  }
+
+  /// Whether it has left an answer or event out, so that no more is to be expected of it.
+  bool isBroken() const { return broken_; }
 
   /// Sends a command and waits for its result; events that arrive meanwhile are kept.
   nlohmann::json call(const std::string& method,
@@ -52,7 +74,7 @@ class Browser {
     for (;;) {
       const nlohmann::json message = nextMessage(method, deadline);
       if (!message.contains("id")) {
-        events_.push_back(message);
+        keepEvent(message);
       } else if (message["id"] == last_id_) {
         if (message.contains("error")) throw std::runtime_error(method + ": " + message["error"].dump());
         return message["result"];
@@ -84,8 +106,10 @@ class Browser {
 
   /// The text of the file `name` that the page lets be downloaded where `click` is evaluated on it.
   std::string download(const std::string& click, const std::string& name) {
-    call("Browser.setDownloadBehavior",
-         {{"behavior", "allow"}, {"downloadPath", folder_ / "downloads"}, {"eventsEnabled", true}});
+    call("Browser.setDownloadBehavior", {{"behavior", "allow"},
+                                         {"browserContextId", context_},
+                                         {"downloadPath", folder_ / "downloads"},
+                                         {"eventsEnabled", true}});
     evaluate(click);
     const nlohmann::json begun = waitForEvent("Browser.downloadWillBegin", [&](const nlohmann::json& event) {
       return event["suggestedFilename"] == name;
@@ -211,17 +235,6 @@ class Browser {
     if (failure != 0) throw std::runtime_error("chromium doesn't start");
   }
 
-  void connect() {
-    const std::string target = call("Target.createTarget", {{"url", "about:blank"}})["targetId"];
-    session_ = call("Target.attachToTarget", {{"targetId", target}, {"flatten", true}})["sessionId"];
-    for (const char* domain : {"Page", "Runtime", "Log", "Network"}) call(std::string(domain) + ".enable");
-    call("Page.setLifecycleEventsEnabled", {{"enabled", true}});
-    call("Network.emulateNetworkConditions",
-         {{"offline", true}, {"latency", 0}, {"downloadThroughput", 0}, {"uploadThroughput", 0}});
-    resize(1280, 900);
-    setColorScheme("light");
-  }
-
   /// Its ends to read from and to write to, above the numbers that the browser gives a meaning.
   static std::array<int, 2> makePipe() {
     std::array<int, 2> low, high;
@@ -240,6 +253,11 @@ class Browser {
     return found;
   }
 
+  /// But for what a page before has still to tell.
+  void keepEvent(const nlohmann::json& event) {
+    if (event.value("sessionId", session_) == session_) events_.push_back(event);
+  }
+
   /// The parameters of the first event of this name that fits, among those that came already or the next.
   template <typename Fits>
   nlohmann::json waitForEvent(const std::string& name, const Fits& fits) {
@@ -247,16 +265,18 @@ class Browser {
     for (std::size_t i = 0;; ++i) {
       while (i == events_.size())
         if (const nlohmann::json message = nextMessage(name, deadline); !message.contains("id"))
-          events_.push_back(message);
+          keepEvent(message);
       if (events_[i]["method"] == name && fits(events_[i]["params"])) return events_[i]["params"];
     }
   }
 
   nlohmann::json nextMessage(const std::string& waiting_for, Clock::time_point deadline) {
+    broken_ = true;
     for (;;) {
       if (const std::size_t end = received_.find('\0'); end != std::string::npos) {
         const std::string message = received_.substr(0, end);
         received_.erase(0, end + 1);
+        broken_ = false;
         return nlohmann::json::parse(message);
       }
       pollfd readable{answers_, POLLIN, 0};
@@ -274,8 +294,21 @@ class Browser {
   pid_t process_ = 0;
   int commands_ = -1, answers_ = -1;
   int last_id_ = 0;
-  std::string session_, received_;
+  bool broken_ = false;
+  std::string context_, session_, received_;
   std::vector<nlohmann::json> events_;
 };
+
+/// A browser with an empty page. It takes seconds to start, so all tests of a process share one.
+inline Browser& browserWithEmptyPage() {
+  static std::unique_ptr<Browser> shared;
+  if (shared && !shared->isBroken()) {
+    shared->renewPage();
+  } else {
+    shared.reset();
+    shared = std::make_unique<Browser>();
+  }
+  return *shared;
+}
 
 }  // namespace luciole::test
