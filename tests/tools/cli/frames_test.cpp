@@ -43,9 +43,6 @@ class Frames : public ProgramTest {
  protected:
   Frames() { writeText(folder / "scene.json", kMovingScene); }
 
-  void expectEqual(const std::string& a, const std::string& b) {
-    succeed(fmt::format("luciole compare {} {} --max-abs 0", a, b));
-  }
   /// The names that start so, in order.
   std::vector<std::string> files(const std::string& start) {
     std::set<std::string> names;
@@ -69,7 +66,7 @@ TEST_F(Frames, EachOfARangeIsThatFrameRenderedAlone) {
                                 "f.007.exr", "f.008.exr", "f.009.exr"}));
   for (const int frame : {1, 3, 8}) {
     succeed(fmt::format("luciole render scene.json --frames {} -o alone.exr", frame));
-    expectEqual(fmt::format("f.00{}.exr", frame), "alone.exr");
+    expectSamePicture(fmt::format("f.00{}.exr", frame), "alone.exr");
   }
   EXPECT_EQ(runLine(folder, "luciole compare f.001.exr f.002.exr --max-abs 0").status, 1);
 }
@@ -100,7 +97,7 @@ TEST_F(Frames, AMeshThatDeformsHasTheShadowOfItsFrame) {
     succeed(fmt::format("luciole render slide.json --frames 1-13x4 --shadows {} -o f.##.exr", shadows));
     for (const int frame : {5, 13}) {
       succeed(fmt::format("luciole render slide.json --frames {} --shadows {} -o alone.exr", frame, shadows));
-      expectEqual(fmt::format("f.{:02}.exr", frame), "alone.exr");
+      expectSamePicture(fmt::format("f.{:02}.exr", frame), "alone.exr");
     }
   }
   // Where it is at frame 13, a still one casts the same shadow.
@@ -117,12 +114,12 @@ TEST_F(Frames, OneIsTheSceneThatAHandHasPosed) {
   // Smooth through two keys is straight, and a member that one key alone names stays.
   writeText(folder / "hand.json", kThirdFrame);
   succeed("luciole render scene.json --frames 3 -o a.exr && luciole render hand.json -o b.exr");
-  expectEqual("a.exr", "b.exr");
+  expectSamePicture("a.exr", "b.exr");
 }
 
 TEST_F(Frames, WithoutTheOptionASceneShowsItsFirst) {
   succeed("luciole render scene.json -o a.exr && luciole render scene.json --frames 1 -o b.exr");
-  expectEqual("a.exr", "b.exr");
+  expectSamePicture("a.exr", "b.exr");
 }
 
 TEST_F(Frames, EveryStageTakesTheSameOne) {
@@ -130,7 +127,7 @@ TEST_F(Frames, EveryStageTakesTheSameOne) {
       "luciole render scene.json --frames 4 -o f.##.exr && luciole gbuffer scene.json --frames 4 -o g.#.exr");
   EXPECT_EQ(files("f."), Names{"f.04.exr"});
   succeed("luciole shade g.4.exr --scene scene.json --frames 4 -o shaded.exr");
-  expectEqual("f.04.exr", "shaded.exr");
+  expectSamePicture("f.04.exr", "shaded.exr");
   // The same surfaces and lights as the double precision reference's; other frames differ by far more.
   succeed("luciole render scene.json --frames 4 --shadows off -o plain.exr");
   succeed("luciole reference scene.json --frames 4 --shadows off -o truth.exr");
@@ -161,10 +158,10 @@ TEST_F(Frames, WhatIsFlattenedAtAFrameIsNotThere) {
   for (const char* options : {"--shadows exact", "--shadows soft --shading gouraud", "--shading flat"}) {
     succeed(fmt::format("luciole render scene.json --frames 2 -o a.exr {}", options));
     succeed(fmt::format("luciole render bare.json -o b.exr {}", options));
-    expectEqual("a.exr", "b.exr");
+    expectSamePicture("a.exr", "b.exr");
   }
   succeed("luciole reference scene.json --frames 2 -o a.exr && luciole reference bare.json -o b.exr");
-  expectEqual("a.exr", "b.exr");
+  expectSamePicture("a.exr", "b.exr");
   writeText(folder / "scene.json", scene(box));
   succeed("luciole render scene.json --shadows exact --frames 1-3 -o alone.#.exr");
 }
@@ -183,7 +180,7 @@ TEST_F(Frames, ListsNameFramesRangesAndSteps) {
   EXPECT_EQ(files("f."), (Names{"f.10.png", "f.13.png"})) << "the last need not be one of them";
   succeed(
       "luciole render scene.json --frames 5,3 -o f.#.exr && luciole render scene.json --frames 3 -o a.exr");
-  expectEqual("f.3.exr", "a.exr");
+  expectSamePicture("f.3.exr", "a.exr");
 }
 
 TEST_F(Frames, ListsAreResumedAndSharedByTheirOrder) {
@@ -248,7 +245,7 @@ TEST_F(Frames, ResumeMakesTheMissingAndTouchesNoOther) {
   EXPECT_EQ(readText(folder / "f.2.exr"), text);
   for (const int frame : {1, 4, 6}) {
     succeed(fmt::format("luciole render scene.json --frames {} -o alone.exr", frame));
-    expectEqual(fmt::format("f.{}.exr", frame), "alone.exr");
+    expectSamePicture(fmt::format("f.{}.exr", frame), "alone.exr");
   }
   EXPECT_EQ(told("luciole render scene.json --frames 1-6 -o f.#.exr --resume --quiet"), "");
 }
@@ -261,7 +258,7 @@ TEST_F(Frames, KilledAndResumedTheyAreWhatTheyWouldHaveBeen) {
   EXPECT_EQ(files(".luciole").size(), 0u);
   succeed(line + "f.#.exr --resume && " + line + "whole.#.exr");
   for (int frame = 1; frame <= 8; ++frame)
-    expectEqual(fmt::format("f.{}.exr", frame), fmt::format("whole.{}.exr", frame));
+    expectSamePicture(fmt::format("f.{}.exr", frame), fmt::format("whole.{}.exr", frame));
 }
 
 TEST_F(Frames, ShardsShareThem) {

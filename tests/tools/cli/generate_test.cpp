@@ -70,7 +70,7 @@ class Generate : public ProgramTest {
     double mean, deviation;
   };
   Count lightsInRange(const std::string& scene) {
-    succeed("luciole render " + scene + " --quiet --aov depth,light_count -o counted.exr");
+    succeed("luciole render " + scene + " --quiet --size 160x90 --aov depth,light_count -o counted.exr");
     const Image image = readImage(folder / "counted.exr");
     const auto channel = [&](const char* name) {
       return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) -

@@ -143,7 +143,7 @@ TEST_F(MixCommand, PageMixesInTheBrowserWhatTheCommandMixes) {
   succeed("luciole mix groups.exr --light-mixer 'rim=0.5:#ff8000' --quiet -o page.html");
   const std::string page = readText(folder / "page.html");
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(page);
   const auto expectPicture = [&](const std::string& spec) {
     succeed("luciole mix groups.exr --light-mixer '" + spec + "' --dither off --bits 8 --quiet -o mixed.png");

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "image/image.hpp"
 #include "tools/cli/run_program.hpp"
 
 namespace luciole::test {
@@ -45,6 +46,15 @@ class ProgramTest : public testing::Test {
     EXPECT_EQ(outcome.status, status) << line << "\n" << outcome.err;
     EXPECT_TRUE(isOneLine(outcome.err)) << line << "\n" << outcome.err;
     EXPECT_NE(outcome.err.find(what), std::string::npos) << line << "\n" << outcome.err;
+  }
+
+  /// Expects the same channels and pixels in both pictures, bit for bit. Quicker than `luciole compare` of
+  /// two EXR files, which loads OpenImageIO anew each time.
+  void expectSamePicture(const std::string& a, const std::string& b) {
+    const Image one = readImage(folder / a), other = readImage(folder / b);
+    EXPECT_EQ(one.width, other.width) << a << ", " << b;
+    EXPECT_EQ(one.channels, other.channels) << a << ", " << b;
+    EXPECT_TRUE(one.pixels == other.pixels) << a << ", " << b;
   }
 
   const TemporaryFolder folder;

@@ -79,11 +79,11 @@ TEST_F(Progress, OfTheReferenceAndOfAnExperimentShowsTheTimeLeft) {
 }
 
 TEST_F(Progress, SaysThatKernelsAreCompiledAfterASecond) {
-  // With an empty cache exact shadows take seconds.
+  // With an empty cache this scene's kernels take seconds.
   const auto cold = [](const std::string& name) {
     return "export POCL_CACHE_DIR=$PWD/" + name + " XDG_CACHE_HOME=$PWD/" + name + "; mkdir " + name + "; ";
   };
-  const std::string line = "render scene.json --shadows exact -o out.png";
+  const std::string line = "render scene.json --shadows off -o out.png";
   EXPECT_THAT(runOnTerminal(folder, line, cold("terminal")), HasSubstr("\r\x1b[Kcompiling kernels\r\x1b[K"));
   EXPECT_THAT(runLine(folder, cold("pipe") + "luciole " + line).err, Not(HasSubstr("compiling")));
   EXPECT_THAT(runLine(folder, cold("log") + "luciole " + line + " --log json").err,

@@ -138,23 +138,33 @@ std::vector<Section> sectionsToRun() {
   return sections;
 }
 
-/// Pixels and minutes of measuring are not what a reader would find broken. A crop is of the size that it
-/// stands beside.
+/// Pixels, lights and minutes of measuring are not what a reader would find broken. A probe lies in its
+/// picture, and a crop is as much smaller as its picture.
 std::string atLittleCost(std::string command) {
+  const auto has = [&](const char* words) { return command.find(words) != std::string::npos; };
+  const auto replace = [&](const char* words, const char* others) {
+    command = std::regex_replace(command, std::regex(words), others);
+  };
   if (command.rfind("./luciole bench", 0) == 0) {
-    command += " --size 160x90 --repeats 1";
-    if (command.find("--only") == std::string::npos) command += " --only shading --only samples";
+    command += " --size 64x36 --repeats 1";
+    if (!has("--only")) command += " --only shading --only samples";
   }
   if (command.rfind("./luciole scale scenes/", 0) == 0)
     command += " --size 64x36 --repeat 1 --check-pixels 16";
-  command = std::regex_replace(command, std::regex("1000,2000,...,1024000"), "1000,2000");
-  command = std::regex_replace(command, std::regex("--frames 1-120\\b"), "--frames 1-2");
-  command = std::regex_replace(command, std::regex("--samples 16\\b"), "--samples 2");
-  if (command.find("--crop") != std::string::npos) return command;
-  command = std::regex_replace(command, std::regex("--size 1920x1080"), "--size 240x135");
-  command = std::regex_replace(command, std::regex("--size 960x540"), "--size 240x135");
-  command = std::regex_replace(command, std::regex("--size 640x360"), "--size 160x90");
-  command = std::regex_replace(command, std::regex("--size 480x270"), "--size 160x90");
+  if (has(" scenes/") && (has(" render ") || has(" shadow-map ")) && !has("--size"))
+    command += " --size 64x48";
+  replace("1000,2000,\\.\\.\\.,1024000", "1000,2000");
+  replace("1,10,\\.\\.\\.,10+\\b", "1,10,...,100");
+  replace("--count 500\\b", "--count 20");
+  replace("--frames 1-120\\b", "--frames 1-2");
+  replace("--samples 16\\b", "--samples 2");
+  if (has("--crop")) {
+    replace("--crop (\\d+)0,(\\d+)0,(\\d+)0,(\\d+)0\\b", "--crop $1,$2,$3,$4");
+    replace("--size 960x540", "--size 96x54");
+  } else {
+    replace("--size \\d{3,4}x\\d{3,4}", has("--probe") ? "--size 160x90" : "--size 64x36");
+    replace("--size 640\\b(?!x)", "--size 64");
+  }
   return command;
 }
 

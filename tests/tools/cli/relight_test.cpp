@@ -47,7 +47,7 @@ TEST_F(RelightCommand, OfAGBufferFromHereDoesWhatShadeDoesAndSaysWhatItFound) {
               HasSubstr("g.exr: named as Luciole's: position = P, normal = N, depth = Z, diffuse = diffuse, "
                         "specular = specular, shininess = shininess"));
   EXPECT_THAT(told_lines, HasSubstr("g.exr: positions in world space, camera the file's"));
-  succeed("luciole compare a.exr b.exr --max-abs 0");
+  expectSamePicture("a.exr", "b.exr");
   EXPECT_EQ(told("luciole relight g.exr --lights scene.json --quiet -o b.exr"), "");
   const std::string events = told("luciole relight g.exr --lights scene.json --log json -o b.exr");
   EXPECT_THAT(events, HasSubstr(R"("event":"layers")"));
@@ -67,7 +67,7 @@ TEST_F(RelightCommand, AGBufferOfAGltfHasTheCoefficientsOfItsModel) {
     succeed("luciole render metal.gltf --size 64x36" + with + "-o " + model + ".exr");
     succeed("luciole gbuffer metal.gltf --size 64x36" + with + "-o g.exr");
     succeed("luciole shade g.exr --scene metal.gltf" + with + "-o shaded.exr");
-    succeed("luciole compare " + model + ".exr shaded.exr --max-abs 0");
+    expectSamePicture(model + ".exr", "shaded.exr");
   }
   EXPECT_EQ(runLine(folder, "luciole compare phong.exr cook-torrance.exr --max-abs 1e-3").status, 1);
 }
@@ -82,8 +82,7 @@ TEST_F(RelightCommand, BothCommandsUnderstandOtherProgramsNames) {
   succeed(
       "luciole relight wall.exr --lights lamp.json --channels position=where,normal=facing --quiet -o "
       "told.exr");
-  for (const char* other : {"python.exr", "shaded.exr", "told.exr"})
-    succeed(std::string("luciole compare blender.exr ") + other + " --max-abs 0");
+  for (const char* other : {"python.exr", "shaded.exr", "told.exr"}) expectSamePicture("blender.exr", other);
   // Straight ahead the lamp of 16 is 4 m away: 16 · 0.8 / 4².
   EXPECT_NEAR(readImage(folder / "told.exr").pixels[(3 * 8 + 4) * 3], 0.8f, 1e-6f);
 }
@@ -216,7 +215,7 @@ TEST_F(RelightCommand, TheScenesCameraCountsWhereTheFileHasNone) {
   EXPECT_THAT(told("luciole relight wall.exr --lights lamp.json --camera-to-world "
                    "'1 0 0 0  0 1 0 0  0 0 1 5  0 0 0 1' -o b.exr"),
               HasSubstr("camera as told"));
-  succeed("luciole compare a.exr b.exr --max-abs 0");
+  expectSamePicture("a.exr", "b.exr");
   succeed(
       "luciole relight wall.exr --lights lamp.json --camera-to-world '-1,0,0,0,0,1,0,0,0,0,-1,5,0,0,0,1' "
       "--quiet -o c.exr");

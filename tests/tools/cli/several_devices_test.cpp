@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "long_run.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {
@@ -64,7 +65,7 @@ TEST_F(SeveralDevices, OneThatFailsIsLeftOutAndItsRowsAreMadeByAnother) {
   const std::string line = "luciole render " + scene("city") + "--shadows hard --hash ";
   const std::string one = succeed(line + "--quiet -o a.exr");
   int in_the_middle = 0;
-  for (int number = 1; number <= 61; number += 4) {
+  for (int number = 1; number <= 61; number += longRun() ? 4 : 12) {
     const Outcome outcome =
         runLine(folder, failingAt(number) + line + "--device all --stats stats.json -o a.exr");
     ASSERT_EQ(outcome.status, 0) << number << "\n" << outcome.err;

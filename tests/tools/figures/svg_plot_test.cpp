@@ -101,7 +101,7 @@ Plot crowdedPlot() {
 
 TEST(SvgPlot, IsWellFormedAndItsTextsLieInsideApartAndOffTheFront) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   const std::string svg = svgPlot(crowdedPlot());
   browser.open("<!DOCTYPE html><meta charset=\"utf-8\"><body>" + svg.substr(svg.find("<svg")));
   EXPECT_EQ(browser.evaluate("new DOMParser().parseFromString(document.querySelector('svg').outerHTML, "

@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -22,15 +23,16 @@ extern char** environ;
 
 namespace luciole::test {
 
-/// A headless Chromium with one page, off the network, that is told what to do over a pipe (Chrome DevTools
-/// Protocol: https://chromedevtools.github.io/devtools-protocol/). All that it writes goes into a temporary
-/// folder. Throws std::runtime_error where the browser answers with an error, or not within 40 seconds.
+/// A headless Chromium with one page at a time, off the network, that is told what to do over a pipe (Chrome
+/// DevTools Protocol: https://chromedevtools.github.io/devtools-protocol/). All that it writes goes into a
+/// temporary folder. Throws std::runtime_error where the browser answers with an error, or not within
+/// kLongestWait.
 class Browser {
  public:
   Browser() {
     try {
       start();
-      connect();
+      renewPage();
     } catch (...) {
       stop();
       throw;
@@ -40,18 +42,39 @@ class Browser {
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
+  /// Closes the page, and opens an empty one that shares nothing with it.
+  void renewPage() {
+    session_.clear();
+    if (!context_.empty()) call("Target.disposeBrowserContext", {{"browserContextId", context_}});
+    context_ = call("Target.createBrowserContext")["browserContextId"];
+    const std::string target =
+        call("Target.createTarget", {{"url", "about:blank"}, {"browserContextId", context_}})["targetId"];
+    session_ = call("Target.attachToTarget", {{"targetId", target}, {"flatten", true}})["sessionId"];
+    events_.clear();
+    for (const char* domain : {"Page", "Runtime", "Log", "Network"}) call(std::string(domain) + ".enable");
+    call("Page.setLifecycleEventsEnabled", {{"enabled", true}});
+    call("Network.emulateNetworkConditions",
+         {{"offline", true}, {"latency", 0}, {"downloadThroughput", 0}, {"uploadThroughput", 0}});
+    resize(1280, 900);
+    setColorScheme("light");
+  }
+
+  /// Whether it has left an answer or event out, so that no more is to be expected of it.
+  bool isBroken() const { return broken_; }
+
   /// Sends a command and waits for its result; events that arrive meanwhile are kept.
   nlohmann::json call(const std::string& method,
                       const nlohmann::json& parameters = nlohmann::json::object()) {
+    const auto deadline = Clock::now() + kLongestWait;
     nlohmann::json command{{"id", ++last_id_}, {"method", method}, {"params", parameters}};
     if (!session_.empty()) command["sessionId"] = session_;
     const std::string text = command.dump();
     if (write(commands_, text.c_str(), text.size() + 1) != static_cast<ssize_t>(text.size() + 1))
       throw std::runtime_error(method + ": the browser doesn't listen");
     for (;;) {
-      const nlohmann::json message = nextMessage(method);
+      const nlohmann::json message = nextMessage(method, deadline);
       if (!message.contains("id")) {
-        events_.push_back(message);
+        keepEvent(message);
       } else if (message["id"] == last_id_) {
         if (message.contains("error")) throw std::runtime_error(method + ": " + message["error"].dump());
         return message["result"];
@@ -74,10 +97,29 @@ class Browser {
   void open(const std::string& html) {
     const std::string path = folder_ / "page.html";
     std::ofstream(path, std::ios::binary) << html;
-    call("Page.navigate", {{"url", "file://" + path}});
-    while (evaluate("location.protocol + document.readyState") != "file:complete")
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const nlohmann::json loader = call("Page.navigate", {{"url", "file://" + path}})["loaderId"];
+    waitForEvent("Page.lifecycleEvent", [&](const nlohmann::json& event) {
+      return event["loaderId"] == loader && event["name"] == "load";
+    });
     settle();
+  }
+
+  /// The text of the file `name` that the page lets be downloaded where `click` is evaluated on it.
+  std::string download(const std::string& click, const std::string& name) {
+    call("Browser.setDownloadBehavior", {{"behavior", "allow"},
+                                         {"browserContextId", context_},
+                                         {"downloadPath", folder_ / "downloads"},
+                                         {"eventsEnabled", true}});
+    evaluate(click);
+    const nlohmann::json begun = waitForEvent("Browser.downloadWillBegin", [&](const nlohmann::json& event) {
+      return event["suggestedFilename"] == name;
+    });
+    // The file has its name before it has its content.
+    const nlohmann::json ended = waitForEvent("Browser.downloadProgress", [&](const nlohmann::json& event) {
+      return event["guid"] == begun["guid"] && event["state"] != "inProgress";
+    });
+    if (ended["state"] != "completed") throw std::runtime_error("download " + name + ": " + ended.dump());
+    return readText(folder_ / ("downloads/" + name));
   }
 
   /// Waits until the page has been laid out and painted after what was done to it.
@@ -132,9 +174,11 @@ class Browser {
     return found;
   }
 
-  const TemporaryFolder& folder() const { return folder_; }
-
  private:
+  using Clock = std::chrono::steady_clock;
+  /// For each answer and event: on a loaded machine a browser takes half a minute to start.
+  static constexpr std::chrono::seconds kLongestWait{120};
+
   /// The profile is no use to anybody, so nothing is lost by ending without goodbye.
   void stop() {
     if (process_ == 0) return;
@@ -191,16 +235,6 @@ class Browser {
     if (failure != 0) throw std::runtime_error("chromium doesn't start");
   }
 
-  void connect() {
-    const std::string target = call("Target.createTarget", {{"url", "about:blank"}})["targetId"];
-    session_ = call("Target.attachToTarget", {{"targetId", target}, {"flatten", true}})["sessionId"];
-    for (const char* domain : {"Page", "Runtime", "Log", "Network"}) call(std::string(domain) + ".enable");
-    call("Network.emulateNetworkConditions",
-         {{"offline", true}, {"latency", 0}, {"downloadThroughput", 0}, {"uploadThroughput", 0}});
-    resize(1280, 900);
-    setColorScheme("light");
-  }
-
   /// Its ends to read from and to write to, above the numbers that the browser gives a meaning.
   static std::array<int, 2> makePipe() {
     std::array<int, 2> low, high;
@@ -219,16 +253,35 @@ class Browser {
     return found;
   }
 
-  nlohmann::json nextMessage(const std::string& waiting_for) {
+  /// But for what a page before has still to tell.
+  void keepEvent(const nlohmann::json& event) {
+    if (event.value("sessionId", session_) == session_) events_.push_back(event);
+  }
+
+  /// The parameters of the first event of this name that fits, among those that came already or the next.
+  template <typename Fits>
+  nlohmann::json waitForEvent(const std::string& name, const Fits& fits) {
+    const auto deadline = Clock::now() + kLongestWait;
+    for (std::size_t i = 0;; ++i) {
+      while (i == events_.size())
+        if (const nlohmann::json message = nextMessage(name, deadline); !message.contains("id"))
+          keepEvent(message);
+      if (events_[i]["method"] == name && fits(events_[i]["params"])) return events_[i]["params"];
+    }
+  }
+
+  nlohmann::json nextMessage(const std::string& waiting_for, Clock::time_point deadline) {
+    broken_ = true;
     for (;;) {
       if (const std::size_t end = received_.find('\0'); end != std::string::npos) {
         const std::string message = received_.substr(0, end);
         received_.erase(0, end + 1);
+        broken_ = false;
         return nlohmann::json::parse(message);
       }
       pollfd readable{answers_, POLLIN, 0};
-      constexpr int kLongestWait = 40000;
-      if (poll(&readable, 1, kLongestWait) != 1)
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+      if (left.count() <= 0 || poll(&readable, 1, static_cast<int>(left.count())) != 1)
         throw std::runtime_error(waiting_for + ": no answer from the browser");
       std::array<char, 65536> part;
       const ssize_t count = read(answers_, part.data(), part.size());
@@ -241,8 +294,21 @@ class Browser {
   pid_t process_ = 0;
   int commands_ = -1, answers_ = -1;
   int last_id_ = 0;
-  std::string session_, received_;
+  bool broken_ = false;
+  std::string context_, session_, received_;
   std::vector<nlohmann::json> events_;
 };
+
+/// A browser with an empty page. It takes seconds to start, so all tests of a process share one.
+inline Browser& browserWithEmptyPage() {
+  static std::unique_ptr<Browser> shared;
+  if (shared && !shared->isBroken()) {
+    shared->renewPage();
+  } else {
+    shared.reset();
+    shared = std::make_unique<Browser>();
+  }
+  return *shared;
+}
 
 }  // namespace luciole::test

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <regex>
-#include <thread>
 
 #include "luciole/error.hpp"
 #include "tools/cli/run_program.hpp"
@@ -103,9 +101,9 @@ TEST(Page, SaysWhatToInstallWhereChartJsIsMissing) {
 
 // -------------------------------------------------------------------------------------------- in a browser
 
-TEST(Page, DrawsEveryPlotFromItsDataOffTheNetworkWithoutComplaint) {
+TEST(PageInBrowser, DrawsEveryPlotFromItsDataOffTheNetworkWithoutComplaint) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   EXPECT_THAT(linesOf(browser, "compared_plot"),
               Json({{"culling none", {{1, 2.01}, {100, 3}, {10000, 102}}},
@@ -135,9 +133,9 @@ TEST(Page, DrawsEveryPlotFromItsDataOffTheNetworkWithoutComplaint) {
         << address;
 }
 
-TEST(Page, SummarizesInASentenceAndSaysWhatIsMissing) {
+TEST(PageInBrowser, SummarizesInASentenceAndSaysWhatIsMissing) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   Json data = madeUpVariants();
   data["title"] = "</script><b>bold</b> & \"quoted\"";
   data["incomplete"] = 3;
@@ -155,9 +153,9 @@ TEST(Page, SummarizesInASentenceAndSaysWhatIsMissing) {
             Json({"culling none", "1.00 (0.95 to 1.05)"}));
 }
 
-TEST(Page, SaysWhyThereIsNoGrowth) {
+TEST(PageInBrowser, SaysWhyThereIsNoGrowth) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   Json data = madeUpVariants();
   data["growth"][0].update({{"c", nullptr}, {"reason", "too few numbers of lights: 3 of 5"}});
   browser.open(pageOf(data));
@@ -170,9 +168,9 @@ TEST(Page, SaysWhyThereIsNoGrowth) {
       Json({"none", "rasterize", "–", "–", "–", "–", "–", "no growth beyond noise"}));
 }
 
-TEST(Page, NamesOfTheFrontAreNotStruckThroughByItsLine) {
+TEST(PageInBrowser, NamesOfTheFrontAreNotStruckThroughByItsLine) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpFront()));
   // What is written on the plot when it is drawn again, and the front between its points.
   const Json struck = browser.evaluate(R"((() => {
@@ -199,9 +197,9 @@ TEST(Page, NamesOfTheFrontAreNotStruckThroughByItsLine) {
   EXPECT_EQ(struck["struck"], Json::array());
 }
 
-TEST(Page, ShowsZeroErrorBelowAllOthersUnderItsOwnName) {
+TEST(PageInBrowser, ShowsZeroErrorBelowAllOthersUnderItsOwnName) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   const Json lines = linesOf(browser, "error_plot");
   const double floor = lines["culling none"][0][1];
@@ -234,9 +232,9 @@ Json madeUpShadows() {
   return data;
 }
 
-TEST(Page, PointsOfDifferentTruthsAreKeptApartAndItSaysSo) {
+TEST(PageInBrowser, PointsOfDifferentTruthsAreKeptApartAndItSaysSo) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpShadows()));
   EXPECT_EQ(
       browser.evaluate("document.getElementById('truths').innerText"),
@@ -270,9 +268,9 @@ TEST(Page, PointsOfDifferentTruthsAreKeptApartAndItSaysSo) {
   EXPECT_EQ(browser.evaluate("document.getElementById('error_truth').checkVisibility()"), false);
 }
 
-TEST(Page, SaysUnderItsTableWhyACellIsADash) {
+TEST(PageInBrowser, SaysUnderItsTableWhyACellIsADash) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   Json data = madeUpVariants();
   data["points"][0]["reach"] = nullptr;
   data["points"][1]["reach"] = 3;
@@ -284,9 +282,9 @@ TEST(Page, SaysUnderItsTableWhyACellIsADash) {
   EXPECT_EQ(browser.evaluate("/NaN|Infinity|undefined/.test(document.body.innerText)"), false);
 }
 
-TEST(Page, ChoicesChangeWhatIsShown) {
+TEST(PageInBrowser, ChoicesChangeWhatIsShown) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   choose(browser, "variant", "culling tiles");
   EXPECT_EQ(linesOf(browser, "stage_plot")["total"], Json({{1, 2.02}, {100, 4}, {10000, 202}}));
@@ -317,9 +315,9 @@ TEST(Page, ChoicesChangeWhatIsShown) {
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 
-TEST(Page, SlidersGoThroughTheLightErrorsOfOneNumberOfLights) {
+TEST(PageInBrowser, SlidersGoThroughTheLightErrorsOfOneNumberOfLights) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpPageOfLightErrors()));
   const auto shown = [&](const std::string& side) {
     return browser.evaluate(
@@ -350,9 +348,9 @@ TEST(Page, SlidersGoThroughTheLightErrorsOfOneNumberOfLights) {
   EXPECT_EQ(browser.evaluate("document.getElementById('error_a').checkVisibility()"), false);
 }
 
-TEST(Page, DrawsBoundsBesideTrueErrorsAgainstTime) {
+TEST(PageInBrowser, DrawsBoundsBesideTrueErrorsAgainstTime) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   Json data = madeUpPageOfLightErrors();
   browser.open(pageOf(data));
   EXPECT_EQ(linesOf(browser, "bound_plot"), Json({{"bound", {{302, 1.0 / 32}, {502, 1.0 / 512}}},
@@ -373,9 +371,9 @@ TEST(Page, DrawsBoundsBesideTrueErrorsAgainstTime) {
   EXPECT_EQ(browser.evaluate("document.getElementById('bounds').checkVisibility()"), false);
 }
 
-TEST(Page, SliderDividesThePicturesByKeyboardPointerAndTouch) {
+TEST(PageInBrowser, SliderDividesThePicturesByKeyboardPointerAndTouch) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   // The share of the width at which each picture is cut, from its left and right, and where the divider
   // stands.
@@ -424,18 +422,12 @@ TEST(Page, SliderDividesThePicturesByKeyboardPointerAndTouch) {
   EXPECT_EQ(browser.evaluate("document.getElementById('split').checkVisibility()"), false);
 }
 
-TEST(Page, GivesEachPlotsNumbersAsCsv) {
+TEST(PageInBrowser, GivesEachPlotsNumbersAsCsv) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
-  browser.call("Browser.setDownloadBehavior",
-               {{"behavior", "allow"}, {"downloadPath", browser.folder() / "downloads"}});
   const auto downloaded = [&](const std::string& figure, const std::string& name) {
-    browser.evaluate("document.querySelector('#" + figure + " .under button').click()");
-    const std::string path = browser.folder() / ("downloads/" + name);
-    for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return readText(path);
+    return browser.download("document.querySelector('#" + figure + " .under button').click()", name);
   };
   EXPECT_EQ(downloaded("compared_plot", "total-time-of-each-variant.csv"),
             "Lights,Culling,\"Median, ms\",\"Lower quartile, ms\",\"Upper quartile, ms\"\r\n"
@@ -459,9 +451,9 @@ TEST(Page, GivesEachPlotsNumbersAsCsv) {
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 
-TEST(Page, SortsItsPointsByAnyColumn) {
+TEST(PageInBrowser, SortsItsPointsByAnyColumn) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   const auto click = [&](int column) {
     browser.evaluate("document.querySelectorAll('#points_table thead button')[" + std::to_string(column) +
@@ -477,9 +469,9 @@ TEST(Page, SortsItsPointsByAnyColumn) {
   EXPECT_EQ(click(1)[0], "2.03 ms");
 }
 
-TEST(Page, FollowsLightAndDark) {
+TEST(PageInBrowser, FollowsLightAndDark) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   const auto colours = [&] {
     browser.settle();
@@ -525,9 +517,9 @@ constexpr const char* kFaintTexts = R"((() => {
   return faint;
 })())";
 
-TEST(Page, TextStandsOutInLightAndDark) {
+TEST(PageInBrowser, TextStandsOutInLightAndDark) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   Json data = madeUpHundreds();
   data["incomplete"] = 1;
   browser.open(pageOf(data));
@@ -539,9 +531,9 @@ TEST(Page, TextStandsOutInLightAndDark) {
   }
 }
 
-TEST(Page, FitsAPhoneWithoutScrollingSideways) {
+TEST(PageInBrowser, FitsAPhoneWithoutScrollingSideways) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.resize(320, 640);
   for (Json data : {madeUpVariants(), madeUpHundreds(), madeUpPageOfLightErrors()}) {
     data["settings"]["a_word"] = std::string(200, 'x');
@@ -556,9 +548,9 @@ TEST(Page, FitsAPhoneWithoutScrollingSideways) {
   }
 }
 
-TEST(Page, TabReachesEveryControlInItsOrder) {
+TEST(PageInBrowser, TabReachesEveryControlInItsOrder) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpVariants()));
   browser.evaluate(
       R"(window.controls = [...document.querySelectorAll('a[href], button, select, input, summary, [tabindex="0"]')]
@@ -592,9 +584,9 @@ constexpr const char* kUnpacked = R"(async encoded => {
   return unpacked;
 })";
 
-TEST(Page, PrintsItsPlotsInLightColours) {
+TEST(PageInBrowser, PrintsItsPlotsInLightColours) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.setColorScheme("dark");
   browser.open(pageOf(madeUpVariants()));
   // A legend has the colours of its plot, which are to be found in the plot itself.
@@ -618,9 +610,9 @@ TEST(Page, PrintsItsPlotsInLightColours) {
   EXPECT_EQ(countOf(pdf, "/Width 4\n/Height 2"), 2U);
 }
 
-TEST(Page, FiltersHundredsOfPoints) {
+TEST(PageInBrowser, FiltersHundredsOfPoints) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   browser.open(pageOf(madeUpHundreds()));
   const auto shown = [&] {
     return Json{linesOf(browser, "compared_plot").size(),
@@ -651,9 +643,9 @@ TEST(Page, FiltersHundredsOfPoints) {
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 
-TEST(Page, WorksWithOneVariantOneCountAndNothingElse) {
+TEST(PageInBrowser, WorksWithOneVariantOneCountAndNothingElse) {
   LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
-  Browser browser;
+  Browser& browser = browserWithEmptyPage();
   const Json point{{"lights", 1000}, {"milliseconds", {{"median", 3.2}, {"low", 3.1}, {"high", 3.4}}}};
   const Json nothing{{"title", "t"}, {"points", Json::array()}}, one{{"title", "t"}, {"points", {point}}};
   Json nulls = one;
