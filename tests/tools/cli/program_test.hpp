@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "image/image.hpp"
+#include "luciole/image.hpp"
 #include "tools/cli/run_program.hpp"
 
 namespace luciole::test {
