@@ -269,19 +269,18 @@ SpeedTable measureFeatureCosts(const SpeedInput& input) {
   }
   const Scene shipped = is_named ? Scene{} : loadScene(path);
   const ScratchFolder folder;
-  const auto cache = kernelCacheIn(folder);
   const std::vector<FeaturePair> pairs = featurePairs(input, is_named ? *input.scene : shipped, path, folder);
   for (const FeaturePair& pair : pairs)
     for (const Arguments& arguments : {pair.with, pair.without})
-      if (!arguments.empty()) runChild(input.program, arguments, cache);  // compiles
+      if (!arguments.empty()) runChild(input.program, arguments, {});  // compiles what no cache has
   std::vector<int> runs(pairs.size());
   const auto figures = runInRounds(pairs.size(), rounds, table.name, input.on_progress, [&](std::size_t row) {
     const auto& [name, with, without] = pairs[row];
     if (without.empty()) return std::vector<double>(3);
     // Either goes first in turn.
     const bool with_first = runs[row]++ % 2 == 0;
-    const double first = runChild(input.program, with_first ? with : without, cache);
-    const double second = runChild(input.program, with_first ? without : with, cache);
+    const double first = runChild(input.program, with_first ? with : without, {});
+    const double second = runChild(input.program, with_first ? without : with, {});
     const double milliseconds = with_first ? first : second, less = with_first ? second : first;
     return std::vector<double>{milliseconds, less, milliseconds - less};
   });
