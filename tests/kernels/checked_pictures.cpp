@@ -68,7 +68,9 @@ void lightPicture(unsigned number) {
   settings.model = kAllModels[(number + number / 4) % std::size(kAllModels)];
   settings.culling = number % 4 == 1 ? Culling::kNone : Culling::kTiles;
 
-  GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  // A point takes up to half a second. Beams take many together.
+  const bool by_beams = method == ShadowMethod::kExact || method == ShadowMethod::kSoftExact;
+  GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, by_beams ? 0.3 : 0.9, random);
   if (number % 2 == 1) gbuffer.lift.resize(gbuffer.pixels(), 0.25f);
   const View view = cameraView(camera, {kWidth, kHeight});
   const FeatureSet features = neededFeatures(
@@ -91,13 +93,26 @@ void lightPicture(unsigned number) {
   pairVisibility(device, featureDefines(features) + mathDefines(settings), with_facets, shadows, pairs);
 }
 
+/// Makes of each two pixels side by side one point.
+void pairPixels(GBuffer& gbuffer) {
+  for (int y = 0; y < gbuffer.height; ++y)
+    for (int x = 1; x < gbuffer.width; x += 2)
+      for (Plane* plane : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular,
+                           &gbuffer.ambient, &gbuffer.emission})
+        for (std::size_t at = 0; at < plane->size(); at += gbuffer.pixels())
+          (*plane)[at + gbuffer.index(x, y)] = (*plane)[at + gbuffer.index(x - 1, y)];
+}
+
 /// Returns whether it gives any light.
 bool lightByClusters(int lanes) {
   OpenedDevice device;
   openChecked(lanes, device);
   Random random(static_cast<unsigned>(lanes));
   const Camera camera;
-  const GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  // With eight lanes few points, in groups, take every way that many do.
+  const bool few = lanes == 8;
+  GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, few ? 0.7 : 0.3, random);
+  if (few) pairPixels(gbuffer);
   std::vector<UnboundedLight> lights;
   for (int i = 0; i < 150; ++i) lights.push_back({10.0 * random.direction(), 0.1 * random.color(), 1});
   const LightClusters clusters = buildLightClusters(lights);

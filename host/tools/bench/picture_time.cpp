@@ -272,7 +272,7 @@ SpeedTable measureFeatureCosts(const SpeedInput& input) {
   const std::vector<FeaturePair> pairs = featurePairs(input, is_named ? *input.scene : shipped, path, folder);
   for (const FeaturePair& pair : pairs)
     for (const Arguments& arguments : {pair.with, pair.without})
-      if (!arguments.empty()) runChild(input.program, arguments, {});  // compiles what isn't in the cache
+      if (!arguments.empty()) runChild(input.program, arguments, {});  // compiles what no cache has
   std::vector<int> runs(pairs.size());
   const auto figures = runInRounds(pairs.size(), rounds, table.name, input.on_progress, [&](std::size_t row) {
     const auto& [name, with, without] = pairs[row];
