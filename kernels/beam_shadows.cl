@@ -1,11 +1,13 @@
 // Which pixels each light's shadows leave lit: exactly, by rays that go together.
 //
-// All rays between a tile's points and a light share an end. So instead of a ray for each pair, a walk through a tree over the scene's triangles
-// finds what lies in the beam between them: most beams hold nothing, or a triangle that hides all of the points.
+// All rays between a tile's points and a light share an end. So instead of a ray for each pair, a walk
+// through a tree over the scene's triangles finds what lies in the beam between them: most beams hold
+// nothing, or a triangle that hides all of the points.
 //
-// In: planes of a G-buffer, light lists, lights and the tree. Out: for each entry of the lists kPairWords words, a bit for each pixel of the tile: the
-// light reaches it. Where the scene has materials with holes, or lights of a size, also as many words of the pixels for which rays decide: those
-// from which a texture is between, and those for which no single triangle, or the absence of any, decides about all of a light.
+// In: planes of a G-buffer, light lists, lights and the tree. Out: for each entry of the lists kPairWords
+// words, a bit for each pixel of the tile: the light reaches it. Where the scene has materials with holes, or
+// lights of a size, also as many words of the pixels for which rays decide: those from which a texture is
+// between, and those for which no single triangle, or the absence of any, decides about all of a light.
 //
 //   the tile's points in clusters, clusters in bundles (beam_points.clh)
 //   └─ for each light of the tile's list, for each bundle
@@ -13,8 +15,9 @@
 //        a walk with the beam of the bundle (beam.clh) until kBatch candidates are found
 //        └─ for each cluster: its candidates (blockers.clh, candidates.clh), and alone the rest of the walk
 //
-// A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a walk of some 10 nodes and blocks of 16
-// triangles for each bundle and light; 15 instructions for each candidate and row of points.
+// A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a
+// walk of some 10 nodes and blocks of 16 triangles for each bundle and light; 15 instructions for each
+// candidate and row of points.
 #include "beam.clh"
 #include "beam_points.clh"
 #include "blockers.clh"
@@ -31,9 +34,10 @@ typedef struct {
   uint height;
 } BeamWalk;
 
-// Adds what may hide points of the beam to the candidates. Returns true if a triangle covers the beam. hollow: bits of those with holes.
-INLINE bool take_blockers(const Scene *scene, const Outlook *outlook, const Beam *beam, const Blockers *blockers, uint hollow,
-                          Candidates *candidates) {
+// Adds what may hide points of the beam to the candidates. Returns true if a triangle covers the beam.
+// hollow: bits of those with holes.
+INLINE bool take_blockers(const Scene* scene, const Outlook* outlook, const Beam* beam,
+                          const Blockers* blockers, uint hollow, Candidates* candidates) {
   Triangles triangles;
   if (!meet(beam, outlook, scene->blocks, blockers, &triangles)) return false;
   uint covers = triangles.covers & ~hollow;
@@ -45,24 +49,28 @@ INLINE bool take_blockers(const Scene *scene, const Outlook *outlook, const Beam
   return false;
 }
 
-// Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the beam.
-SHARED_WORK bool find_candidates(const Scene *scene, const Outlook *outlook, const Beam *beam, BeamWalk *walk, Candidates *candidates, uint batch) {
+// Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the
+// beam.
+SHARED_WORK bool find_candidates(const Scene* scene, const Outlook* outlook, const Beam* beam, BeamWalk* walk,
+                                 Candidates* candidates, uint batch) {
   candidates->count = 0;
-  int *stack = walk->stack;
+  int* stack = walk->stack;
   uint height = walk->height;
   bool covered = false;
   while (height && !covered && candidates->count < batch) {
     int reference = stack[--height];
     if (reference >= 0) {
       uint touched = touched_children(beam, scene->nodes + reference * (kNodeRows * kTreeWidth));
-      for (; touched; touched &= touched - 1) stack[height++] = scene->children[reference * kTreeWidth + lowest_bit(touched)];
+      for (; touched; touched &= touched - 1)
+        stack[height++] = scene->children[reference * kTreeWidth + lowest_bit(touched)];
       continue;
     }
     uint block = ~reference, bits = scene->block_bits[block];
     for (uint i = 0; i < kTreeWidth && !covered; i += LANES) {
       Blockers blockers;
       load_blockers(outlook, scene->blocks, block, i, bits >> i, &blockers);
-      covered = take_blockers(scene, outlook, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
+      covered =
+          take_blockers(scene, outlook, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
     }
   }
   walk->height = height;
@@ -70,7 +78,7 @@ SHARED_WORK bool find_candidates(const Scene *scene, const Outlook *outlook, con
 }
 
 // Those triangles that hid much from this light lately. Returns true if one covers the beam.
-INLINE bool recall(const Scene *scene, const Outlook *outlook, const Beam *beam, Candidates *candidates) {
+INLINE bool recall(const Scene* scene, const Outlook* outlook, const Beam* beam, Candidates* candidates) {
   candidates->count = 0;
   for (uint i = 0; i < kTreeWidth; i += LANES) {
     uint references[LANES], used = 0;
@@ -89,17 +97,19 @@ INLINE bool recall(const Scene *scene, const Outlook *outlook, const Beam *beam,
   return false;
 }
 
-INLINE void hide_all(const Cluster *cluster, Remaining *remaining) {
+INLINE void hide_all(const Cluster* cluster, Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) remaining->left[row] = 0;
 }
 
-INLINE Target target_of(const Scene *scene, const Outlook *outlook, const Cluster *cluster, const Remaining *remaining) {
-  return make_target(outlook, &cluster->bounds, bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
+INLINE Target target_of(const Scene* scene, const Outlook* outlook, const Cluster* cluster,
+                        const Remaining* remaining) {
+  return make_target(outlook, &cluster->bounds,
+                     bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
 }
 
 // Goes to the end of a walk for one cluster.
-SHARED_WORK void finish_cluster(const Scene *scene, const Outlook *outlook, const Cluster *cluster, BeamWalk *walk, Candidates *candidates,
-                         Remaining *remaining) {
+SHARED_WORK void finish_cluster(const Scene* scene, const Outlook* outlook, const Cluster* cluster,
+                                BeamWalk* walk, Candidates* candidates, Remaining* remaining) {
   Beam beam;
   uint left = 0;
   while (walk->height) {
@@ -122,23 +132,26 @@ SHARED_WORK void finish_cluster(const Scene *scene, const Outlook *outlook, cons
 // The clusters of a bundle that have points left, each with its target.
 typedef struct {
   uint count;
-  const Cluster *cluster[kMaxClusters];
+  const Cluster* cluster[kMaxClusters];
   Target target[kMaxClusters];
 } Active;
 
 // The beam to all of them, which are of a bundle with these bounds.
-INLINE void beam_to_all(const Outlook *outlook, const PointBounds *bounds, const Active *active, Beam *beam) {
+INLINE void beam_to_all(const Outlook* outlook, const PointBounds* bounds, const Active* active, Beam* beam) {
   Rectangle rectangle = no_rectangle();
   for (uint i = 0; i < active->count; ++i) grow_rectangle(&rectangle, &active->target[i].rectangle);
   Target target = {rectangle, *bounds};
   make_beam(beam, outlook, &target);
 }
 
-// Tests candidates against all clusters, and leaves those active that have points left. Returns whether any are.
-INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidates *candidates, Active *active, Remaining *remaining) {
+// Tests candidates against all clusters, and leaves those active that have points left. Returns whether any
+// are.
+INLINE bool test_all(const Scene* scene, const Outlook* outlook, const Candidates* candidates, Active* active,
+                     Remaining* remaining) {
   uint count = 0;
   for (uint i = 0; i < active->count; ++i) {
-    if (!test_candidates(scene, outlook, active->target + i, candidates, active->cluster[i], remaining)) continue;
+    if (!test_candidates(scene, outlook, active->target + i, candidates, active->cluster[i], remaining))
+      continue;
     active->cluster[count] = active->cluster[i];
     active->target[count++] = active->target[i];
   }
@@ -146,9 +159,10 @@ INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidate
   return count > 0;
 }
 
-// Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns false and does nothing if the light is
-// amid the points or near them.
-SHARED_WORK bool shade_alone(const Scene *scene, float4 place, float size, const Cluster *points, Remaining *remaining) {
+// Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns
+// false and does nothing if the light is amid the points or near them.
+SHARED_WORK bool shade_alone(const Scene* scene, float4 place, float size, const Cluster* points,
+                             Remaining* remaining) {
   Outlook outlook;
   for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
   if (!look(place, size, &points->bounds.box, &outlook)) return false;
@@ -160,8 +174,10 @@ SHARED_WORK bool shade_alone(const Scene *scene, float4 place, float size, const
   return true;
 }
 
-// Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't reach.
-SHARED_WORK void shade_points(const Scene *scene, float4 place, float size, const Cluster *cluster, Remaining *remaining) {
+// Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't
+// reach.
+SHARED_WORK void shade_points(const Scene* scene, float4 place, float size, const Cluster* cluster,
+                              Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
     uint lit = 0;
     for (uint points = remaining->left[row]; points; points &= points - 1) {
@@ -170,8 +186,10 @@ SHARED_WORK void shade_points(const Scene *scene, float4 place, float size, cons
       for (uint axis = 0; axis < 3; ++axis) box.low[axis] = box.high[axis] = scene->tile->place[axis][point];
       Cluster alone = {row, row + 1, false, bounds_of(&box)};
       remaining->left[row] = (ushort)(points & (0 - points));
-      // Nothing hides a point from a light where it is itself, and rays decide about one amid a light of a size.
-      if (!shade_alone(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f) remaining->unsure[row] |= remaining->left[row];
+      // Nothing hides a point from a light where it is itself, and rays decide about one amid a light of a
+      // size.
+      if (!shade_alone(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f)
+        remaining->unsure[row] |= remaining->left[row];
       lit |= remaining->left[row];
     }
     remaining->left[row] = (ushort)lit;
@@ -179,27 +197,29 @@ SHARED_WORK void shade_points(const Scene *scene, float4 place, float size, cons
 }
 
 // Takes from what is left of a bundle's points those that a light doesn't reach.
-SHARED_WORK void shade_bundle(const Scene *scene, float4 place, float size, const PointBounds *bounds, uint first, uint end, Remaining *remaining) {
-  TilePoints *tile = scene->tile;
+SHARED_WORK void shade_bundle(const Scene* scene, float4 place, float size, const PointBounds* bounds,
+                              uint first, uint end, Remaining* remaining) {
+  TilePoints* tile = scene->tile;
   Active active;
   active.count = 0;
   for (uint i = first; i < end; ++i) {
-    const Cluster *cluster = tile->cluster + i;
+    const Cluster* cluster = tile->cluster + i;
     if (!count_points(remaining->left, cluster->first_row, cluster->end_row)) continue;
     active.cluster[active.count++] = cluster;
   }
   if (!active.count) return;
   Outlook outlook;
   for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
-  Candidates *candidates = scene->candidates;
+  Candidates* candidates = scene->candidates;
   BeamWalk walk;
   if (!look(place, size, &bounds->box, &outlook)) {
     for (uint i = 0; i < active.count; ++i)
-      if (!shade_alone(scene, place, size, active.cluster[i], remaining)) shade_points(scene, place, size, active.cluster[i], remaining);
+      if (!shade_alone(scene, place, size, active.cluster[i], remaining))
+        shade_points(scene, place, size, active.cluster[i], remaining);
     return;
   }
   for (uint i = 0; i < active.count; ++i) {
-    const Cluster *cluster = active.cluster[i];
+    const Cluster* cluster = active.cluster[i];
     see_rows(tile, &outlook, cluster->first_row, cluster->end_row, remaining->left);
     active.target[i] = target_of(scene, &outlook, cluster, remaining);
   }
@@ -229,9 +249,9 @@ SHARED_WORK void shade_bundle(const Scene *scene, float4 place, float size, cons
   }
 }
 
-// Sets `remaining` to the points that a light may shine on: those in its range that face it. Margins make up for rounding and for the lift, so that
-// this misses none that shading lights. Returns how many there are.
-INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remaining *remaining) {
+// Sets `remaining` to the points that a light may shine on: those in its range that face it. Margins make up
+// for rounding and for the lift, so that this misses none that shading lights. Returns how many there are.
+INLINE uint find_receivers(const TilePoints* tile, const BeamLight* light, Remaining* remaining) {
   uint rows = tile->cluster_count ? tile->cluster[0].end_row : 0, count = 0;
   for (uint i = 1; i < tile->cluster_count; ++i) rows = max(rows, tile->cluster[i].end_row);
   bool parallel = light->place.w == 0.0f;
@@ -240,12 +260,14 @@ INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remai
     uint receives = 0;
     for (uint i = 0; i < kTreeWidth; i += LANES) {
       uint point = row * kTreeWidth + i;
-      vec3L n = {part_of(tile->normal[0], point), part_of(tile->normal[1], point), part_of(tile->normal[2], point)};
+      vec3L n = {part_of(tile->normal[0], point), part_of(tile->normal[1], point),
+                 part_of(tile->normal[2], point)};
       intL faces;
       if (parallel) {
         faces = dot3s(n, light->place) > -1e-5f;
       } else {
-        vec3L way = {light->place.x - part_of(tile->place[0], point), light->place.y - part_of(tile->place[1], point),
+        vec3L way = {light->place.x - part_of(tile->place[0], point),
+                     light->place.y - part_of(tile->place[1], point),
                      light->place.z - part_of(tile->place[2], point)};
         floatL length = abs_lanes(way.x) + abs_lanes(way.y) + abs_lanes(way.z);
         faces = dot3(n, way) > -1e-5f * length - tile->most_lift;
@@ -262,10 +284,11 @@ INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remai
 }
 
 // Writes bits of points to those of their pixels.
-INLINE void write_pixels(const TilePoints *tile, const ushort *left, const ushort *masked, uint keep, __global uint *words) {
+INLINE void write_pixels(const TilePoints* tile, const ushort* left, const ushort* masked, uint keep,
+                         __global uint* words) {
   for (uint i = 0; i < kPairWords; ++i) words[i] = 0;
   for (uint i = 0; i < tile->cluster_count; ++i) {
-    const Cluster *cluster = tile->cluster + i;
+    const Cluster* cluster = tile->cluster + i;
     for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
       uint bits = left[row] & (masked[row] ^ keep);
       if (cluster->whole) {
@@ -282,8 +305,8 @@ INLINE void write_pixels(const TilePoints *tile, const ushort *left, const ushor
 }
 
 // Finds the light's place in the memory.
-INLINE void recall_light(Scene *scene, uint light) {
-  Memory *memory = scene->memory;
+INLINE void recall_light(Scene* scene, uint light) {
+  Memory* memory = scene->memory;
   scene->place = light % kLightsRemembered;
   if (memory->light[scene->place] == light) return;
   memory->light[scene->place] = light;
@@ -292,9 +315,11 @@ INLINE void recall_light(Scene *scene, uint light) {
 }
 
 // Decides the pairs of a tile. All but `number`: see beam_shadows().
-WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const float *position, __global const float *normal, __global const float *lift,
-                     uint plane_stride, __global const BeamLight *lights, uint light_count, __global const uint *list_starts,
-                     __global const ListEntry *list, __global uint *lit, __global uint *unsure, __global uint *receivers) {
+WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const float* position,
+                     __global const float* normal, __global const float* lift, uint plane_stride,
+                     __global const BeamLight* lights, uint light_count, __global const uint* list_starts,
+                     __global const ListEntry* list, __global uint* lit, __global uint* unsure,
+                     __global uint* receivers) {
   uint entry = LIGHT_LISTS ? list_starts[number] : number * light_count;
   uint end = LIGHT_LISTS ? list_starts[number + 1] : entry + light_count;
   if (entry == end) return;
@@ -325,26 +350,42 @@ WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const fl
   }
 }
 
-// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only. nodes, children, blocks, block_bits,
-// root: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the
-// rotation from view space to the tree's axes; w of the first: the tree's scale. tree_most: the largest |x|, |y|, |z| in the tree. tiles: of the
-// G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no
-// shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT
-// only: of pixels that a light of a size may reach; 0 for other lights.
-KERNEL void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
-                         float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
-                         __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
-                         __global const int *children, __global const float *blocks, __global const uint *block_bits, __global const uchar *hole_texels,
-                         __global const HoleTriangle *hole_triangles, __global const uint *first_hole_triangle, int root, float4 tree_most, uint tiles, __global uint *lit, __global uint *unsure,
-                         __global uint *receivers) {
+// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
+// nodes, children, blocks, block_bits, root: see TriangleTree; with HOLES block_bits, hole_texels,
+// hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the rotation from view
+// space to the tree's axes; w of the first: the tree's scale. tree_most: the largest |x|, |y|, |z| in the
+// tree. tiles: of the G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a
+// bit for each pixel of the tile; 0 for lights that cast no shadow. unsure: as many, with HOLES or SOFT_EXACT
+// only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT only: of
+// pixels that a light of a size may reach; 0 for other lights.
+KERNEL void beam_shadows(uint plane_stride, __global const float* position, __global const float* normal,
+                         __global const float* lift, float4 to_tree_x, float4 to_tree_y, float4 to_tree_z,
+                         __global const BeamLight* lights, uint light_count, __global const uint* list_starts,
+                         __global const ListEntry* list, __global const float* nodes,
+                         __global const int* children, __global const float* blocks,
+                         __global const uint* block_bits, __global const uchar* hole_texels,
+                         __global const HoleTriangle* hole_triangles,
+                         __global const uint* first_hole_triangle, int root, float4 tree_most, uint tiles,
+                         __global uint* lit, __global uint* unsure, __global uint* receivers) {
   Memory memory;
   for (uint i = 0; i < kLightsRemembered; ++i) memory.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.
   Candidates candidates;
-  for (uint i = 0; i < sizeof(Candidates) / sizeof(uint); ++i) ((uint *)&candidates)[i] = 0;
-  Scene scene = {nodes, children, blocks, block_bits, {hole_texels, hole_triangles, first_hole_triangle}, root, {tree_most.x, tree_most.y, tree_most.z}, 0, &memory, &candidates, 0};
+  for (uint i = 0; i < sizeof(Candidates) / sizeof(uint); ++i) ((uint*)&candidates)[i] = 0;
+  Scene scene = {nodes,
+                 children,
+                 blocks,
+                 block_bits,
+                 {hole_texels, hole_triangles, first_hole_triangle},
+                 root,
+                 {tree_most.x, tree_most.y, tree_most.z},
+                 0,
+                 &memory,
+                 &candidates,
+                 0};
   ToTree to_tree = {to_tree_x, to_tree_y, to_tree_z, to_tree_x.w};
   uint first = get_global_id(0) * kBeamRun;
   for (uint tile = first; tile < tiles && tile < first + kBeamRun; ++tile)
-    shade_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts, list, lit, unsure, receivers);
+    shade_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts,
+               list, lit, unsure, receivers);
 }
