@@ -12,7 +12,7 @@
 //   the tile's points in clusters, clusters in bundles (beam_points.clh)
 //   └─ for each light of the tile's list, for each bundle
 //        the last triangles that hid much from this light; then
-//        a walk with the beam of the bundle (beam.clh) until kBatch candidates are found
+//        a walk with the beam of the bundle (beam.clh) until kCandidateBatch candidates are found
 //        └─ for each cluster: its candidates (blockers.clh, candidates.clh), and alone the rest of the walk
 //
 // A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a
@@ -36,22 +36,22 @@ typedef struct {
 
 // Adds what may hide points of the beam to the candidates. Returns true if a triangle covers the beam.
 // hollow: bits of those with holes.
-INLINE bool take_blockers(const Scene* scene, const Outlook* outlook, const Beam* beam,
-                          const Blockers* blockers, uint hollow, Candidates* candidates) {
+INLINE bool take_blockers(const Scene* scene, const LightView* view, const Beam* beam,
+                          const Blockers* blockers, uint holed, Candidates* candidates) {
   Triangles triangles;
-  if (!meet(beam, outlook, scene->blocks, blockers, &triangles)) return false;
-  uint covers = triangles.covers & ~hollow;
+  if (!test_triangles(beam, view, scene->blocks, blockers, &triangles)) return false;
+  uint covers = triangles.covers & ~holed;
   if (covers) {
-    remember(scene, reference_of(blockers, lowest_bit(covers)));
+    remember_blocker(scene, reference_of(blockers, lowest_bit(covers)));
     return true;
   }
-  append(candidates, &triangles, blockers, hollow);
+  append_candidates(candidates, &triangles, blockers, holed);
   return false;
 }
 
 // Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the
 // beam.
-SHARED_WORK bool find_candidates(const Scene* scene, const Outlook* outlook, const Beam* beam, BeamWalk* walk,
+SHARED_WORK bool find_candidates(const Scene* scene, const LightView* view, const Beam* beam, BeamWalk* walk,
                                  Candidates* candidates, uint batch) {
   candidates->count = 0;
   int* stack = walk->stack;
@@ -68,9 +68,8 @@ SHARED_WORK bool find_candidates(const Scene* scene, const Outlook* outlook, con
     uint block = ~reference, bits = scene->block_bits[block];
     for (uint i = 0; i < kTreeWidth && !covered; i += LANES) {
       Blockers blockers;
-      load_blockers(outlook, scene->blocks, block, i, bits >> i, &blockers);
-      covered =
-          take_blockers(scene, outlook, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
+      load_blockers(view, scene->blocks, block, i, bits >> i, &blockers);
+      covered = take_blockers(scene, view, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
     }
   }
   walk->height = height;
@@ -78,21 +77,22 @@ SHARED_WORK bool find_candidates(const Scene* scene, const Outlook* outlook, con
 }
 
 // Those triangles that hid much from this light lately. Returns true if one covers the beam.
-INLINE bool recall(const Scene* scene, const Outlook* outlook, const Beam* beam, Candidates* candidates) {
+INLINE bool test_remembered(const Scene* scene, const LightView* view, const Beam* beam,
+                            Candidates* candidates) {
   candidates->count = 0;
   for (uint i = 0; i < kTreeWidth; i += LANES) {
     uint references[LANES], used = 0;
     for (uint lane = 0; lane < LANES; ++lane) {
-      uint reference = scene->memory->reference[scene->place][i + lane];
+      uint reference = scene->cache->reference[scene->cache_slot][i + lane];
       bool is_one = reference != NO_TRIANGLE;
       used |= is_one ? 1u << lane : 0;
       references[lane] = is_one ? reference : 0;
     }
     if (!used) continue;
     Blockers blockers;
-    gather_blockers(outlook, scene->blocks, references, used, &blockers);
+    gather_blockers(view, scene->blocks, references, used, &blockers);
     // None of them has holes.
-    if (take_blockers(scene, outlook, beam, &blockers, 0, candidates)) return true;
+    if (take_blockers(scene, view, beam, &blockers, 0, candidates)) return true;
   }
   return false;
 }
@@ -101,31 +101,31 @@ INLINE void hide_all(const Cluster* cluster, Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) remaining->left[row] = 0;
 }
 
-INLINE Target target_of(const Scene* scene, const Outlook* outlook, const Cluster* cluster,
+INLINE Target target_of(const Scene* scene, const LightView* view, const Cluster* cluster,
                         const Remaining* remaining) {
-  return make_target(outlook, &cluster->bounds,
+  return make_target(view, &cluster->bounds,
                      bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
 }
 
 // Goes to the end of a walk for one cluster.
-SHARED_WORK void finish_cluster(const Scene* scene, const Outlook* outlook, const Cluster* cluster,
+SHARED_WORK void finish_cluster(const Scene* scene, const LightView* view, const Cluster* cluster,
                                 BeamWalk* walk, Candidates* candidates, Remaining* remaining) {
   Beam beam;
   uint left = 0;
   while (walk->height) {
-    if (has_size(outlook) && rays_decide(cluster, remaining)) return;
+    if (has_size(view) && rays_decide(cluster, remaining)) return;
     // A beam to half of the points meets less.
     uint now = count_points(remaining->left, cluster->first_row, cluster->end_row);
     if (left == 0 || 2 * now <= left) {
-      Target target = target_of(scene, outlook, cluster, remaining);
-      make_beam(&beam, outlook, &target);
+      Target target = target_of(scene, view, cluster, remaining);
+      make_beam(&beam, view, &target);
       left = now;
     }
-    if (find_candidates(scene, outlook, &beam, walk, candidates, 1)) {
+    if (find_candidates(scene, view, &beam, walk, candidates, 1)) {
       hide_all(cluster, remaining);
       return;
     }
-    if (candidates->count && !test_candidates(scene, outlook, 0, candidates, cluster, remaining)) return;
+    if (candidates->count && !test_candidates(scene, view, 0, candidates, cluster, remaining)) return;
   }
 }
 
@@ -137,20 +137,20 @@ typedef struct {
 } Active;
 
 // The beam to all of them, which are of a bundle with these bounds.
-INLINE void beam_to_all(const Outlook* outlook, const PointBounds* bounds, const Active* active, Beam* beam) {
+INLINE void beam_to_all(const LightView* view, const PointBounds* bounds, const Active* active, Beam* beam) {
   Rectangle rectangle = no_rectangle();
   for (uint i = 0; i < active->count; ++i) grow_rectangle(&rectangle, &active->target[i].rectangle);
   Target target = {rectangle, *bounds};
-  make_beam(beam, outlook, &target);
+  make_beam(beam, view, &target);
 }
 
 // Tests candidates against all clusters, and leaves those active that have points left. Returns whether any
 // are.
-INLINE bool test_all(const Scene* scene, const Outlook* outlook, const Candidates* candidates, Active* active,
+INLINE bool test_all(const Scene* scene, const LightView* view, const Candidates* candidates, Active* active,
                      Remaining* remaining) {
   uint count = 0;
   for (uint i = 0; i < active->count; ++i) {
-    if (!test_candidates(scene, outlook, active->target + i, candidates, active->cluster[i], remaining))
+    if (!test_candidates(scene, view, active->target + i, candidates, active->cluster[i], remaining))
       continue;
     active->cluster[count] = active->cluster[i];
     active->target[count++] = active->target[i];
@@ -161,23 +161,23 @@ INLINE bool test_all(const Scene* scene, const Outlook* outlook, const Candidate
 
 // Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns
 // false and does nothing if the light is amid the points or near them.
-SHARED_WORK bool shade_alone(const Scene* scene, float4 place, float size, const Cluster* points,
-                             Remaining* remaining) {
-  Outlook outlook;
-  for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
-  if (!look(place, size, &points->bounds.box, &outlook)) return false;
-  see_rows(scene->tile, &outlook, points->first_row, points->end_row, remaining->left);
+SHARED_WORK bool shadow_cluster(const Scene* scene, float4 place, float size, const Cluster* points,
+                                Remaining* remaining) {
+  LightView view;
+  for (uint axis = 0; axis < 3; ++axis) view.most[axis] = scene->most[axis];
+  if (!view_light(place, size, &points->bounds.box, &view)) return false;
+  project_rows(scene->tile, &view, points->first_row, points->end_row, remaining->left);
   BeamWalk walk;
   walk.height = 1;
   walk.stack[0] = scene->root;
-  finish_cluster(scene, &outlook, points, &walk, scene->candidates, remaining);
+  finish_cluster(scene, &view, points, &walk, scene->candidates, remaining);
   return true;
 }
 
 // Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't
 // reach.
-SHARED_WORK void shade_points(const Scene* scene, float4 place, float size, const Cluster* cluster,
-                              Remaining* remaining) {
+SHARED_WORK void shadow_points(const Scene* scene, float4 place, float size, const Cluster* cluster,
+                               Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
     uint lit = 0;
     for (uint points = remaining->left[row]; points; points &= points - 1) {
@@ -188,7 +188,7 @@ SHARED_WORK void shade_points(const Scene* scene, float4 place, float size, cons
       remaining->left[row] = (ushort)(points & (0 - points));
       // Nothing hides a point from a light where it is itself, and rays decide about one amid a light of a
       // size.
-      if (!shade_alone(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f)
+      if (!shadow_cluster(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f)
         remaining->unsure[row] |= remaining->left[row];
       lit |= remaining->left[row];
     }
@@ -197,8 +197,8 @@ SHARED_WORK void shade_points(const Scene* scene, float4 place, float size, cons
 }
 
 // Takes from what is left of a bundle's points those that a light doesn't reach.
-SHARED_WORK void shade_bundle(const Scene* scene, float4 place, float size, const PointBounds* bounds,
-                              uint first, uint end, Remaining* remaining) {
+SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, const PointBounds* bounds,
+                               uint first, uint end, Remaining* remaining) {
   TilePoints* tile = scene->tile;
   Active active;
   active.count = 0;
@@ -208,44 +208,44 @@ SHARED_WORK void shade_bundle(const Scene* scene, float4 place, float size, cons
     active.cluster[active.count++] = cluster;
   }
   if (!active.count) return;
-  Outlook outlook;
-  for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
+  LightView view;
+  for (uint axis = 0; axis < 3; ++axis) view.most[axis] = scene->most[axis];
   Candidates* candidates = scene->candidates;
   BeamWalk walk;
-  if (!look(place, size, &bounds->box, &outlook)) {
+  if (!view_light(place, size, &bounds->box, &view)) {
     for (uint i = 0; i < active.count; ++i)
-      if (!shade_alone(scene, place, size, active.cluster[i], remaining))
-        shade_points(scene, place, size, active.cluster[i], remaining);
+      if (!shadow_cluster(scene, place, size, active.cluster[i], remaining))
+        shadow_points(scene, place, size, active.cluster[i], remaining);
     return;
   }
   for (uint i = 0; i < active.count; ++i) {
     const Cluster* cluster = active.cluster[i];
-    see_rows(tile, &outlook, cluster->first_row, cluster->end_row, remaining->left);
-    active.target[i] = target_of(scene, &outlook, cluster, remaining);
+    project_rows(tile, &view, cluster->first_row, cluster->end_row, remaining->left);
+    active.target[i] = target_of(scene, &view, cluster, remaining);
   }
   Beam beam;
-  beam_to_all(&outlook, bounds, &active, &beam);
-  bool covered = recall(scene, &outlook, &beam, candidates);
+  beam_to_all(&view, bounds, &active, &beam);
+  bool covered = test_remembered(scene, &view, &beam, candidates);
   if (!covered && candidates->count) {
     uint before = active.count;
-    if (!test_all(scene, &outlook, candidates, &active, remaining)) return;
-    if (active.count < before) beam_to_all(&outlook, bounds, &active, &beam);
+    if (!test_all(scene, &view, candidates, &active, remaining)) return;
+    if (active.count < before) beam_to_all(&view, bounds, &active, &beam);
   }
   if (!covered) {
     walk.height = 1;
     walk.stack[0] = scene->root;
-    covered = find_candidates(scene, &outlook, &beam, &walk, candidates, kBatch);
+    covered = find_candidates(scene, &view, &beam, &walk, candidates, kCandidateBatch);
   }
   if (covered) {
     for (uint i = 0; i < active.count; ++i) hide_all(active.cluster[i], remaining);
     return;
   }
-  if (candidates->count && !test_all(scene, &outlook, candidates, &active, remaining)) return;
+  if (candidates->count && !test_all(scene, &view, candidates, &active, remaining)) return;
   for (uint i = 0; i < active.count && walk.height; ++i) {
     BeamWalk rest;
     rest.height = walk.height;
     for (uint j = 0; j < walk.height; ++j) rest.stack[j] = walk.stack[j];
-    finish_cluster(scene, &outlook, active.cluster[i], &rest, candidates, remaining);
+    finish_cluster(scene, &view, active.cluster[i], &rest, candidates, remaining);
   }
 }
 
@@ -260,18 +260,18 @@ INLINE uint find_receivers(const TilePoints* tile, const BeamLight* light, Remai
     uint receives = 0;
     for (uint i = 0; i < kTreeWidth; i += LANES) {
       uint point = row * kTreeWidth + i;
-      vec3L n = {part_of(tile->normal[0], point), part_of(tile->normal[1], point),
-                 part_of(tile->normal[2], point)};
+      vec3L n = {lanes_at(tile->normal[0], point), lanes_at(tile->normal[1], point),
+                 lanes_at(tile->normal[2], point)};
       intL faces;
       if (parallel) {
         faces = dot3s(n, light->place) > -1e-5f;
       } else {
-        vec3L way = {light->place.x - part_of(tile->place[0], point),
-                     light->place.y - part_of(tile->place[1], point),
-                     light->place.z - part_of(tile->place[2], point)};
-        floatL length = abs_lanes(way.x) + abs_lanes(way.y) + abs_lanes(way.z);
-        faces = dot3(n, way) > -1e-5f * length - tile->most_lift;
-        faces &= !(dot3(way, way) > reach2);
+        vec3L to_light = {light->place.x - lanes_at(tile->place[0], point),
+                          light->place.y - lanes_at(tile->place[1], point),
+                          light->place.z - lanes_at(tile->place[2], point)};
+        floatL length = abs_lanes(to_light.x) + abs_lanes(to_light.y) + abs_lanes(to_light.z);
+        faces = dot3(n, to_light) > -1e-5f * length - tile->most_lift;
+        faces &= !(dot3(to_light, to_light) > reach2);
       }
       receives |= lane_bits(faces) << i;
     }
@@ -305,21 +305,21 @@ INLINE void write_pixels(const TilePoints* tile, const ushort* left, const ushor
 }
 
 // Finds the light's place in the memory.
-INLINE void recall_light(Scene* scene, uint light) {
-  Memory* memory = scene->memory;
-  scene->place = light % kLightsRemembered;
-  if (memory->light[scene->place] == light) return;
-  memory->light[scene->place] = light;
-  memory->next[scene->place] = 0;
-  for (uint i = 0; i < kTreeWidth; ++i) memory->reference[scene->place][i] = NO_TRIANGLE;
+INLINE void select_cache_slot(Scene* scene, uint light) {
+  BlockerCache* cache = scene->cache;
+  scene->cache_slot = light % kCachedLights;
+  if (cache->light[scene->cache_slot] == light) return;
+  cache->light[scene->cache_slot] = light;
+  cache->next[scene->cache_slot] = 0;
+  for (uint i = 0; i < kTreeWidth; ++i) cache->reference[scene->cache_slot][i] = NO_TRIANGLE;
 }
 
 // Decides the pairs of a tile. All but `number`: see beam_shadows().
-WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const float* position,
-                     __global const float* normal, __global const float* lift, uint plane_stride,
-                     __global const BeamLight* lights, uint light_count, __global const uint* list_starts,
-                     __global const ListEntry* list, __global uint* lit, __global uint* unsure,
-                     __global uint* receivers) {
+WORK void shadow_tile(uint number, Scene scene, ToTree to_tree, __global const float* position,
+                      __global const float* normal, __global const float* lift, uint plane_stride,
+                      __global const BeamLight* lights, uint light_count, __global const uint* list_starts,
+                      __global const ListEntry* list, __global uint* lit, __global uint* unsure,
+                      __global uint* receivers) {
   uint entry = LIGHT_LISTS ? list_starts[number] : number * light_count;
   uint end = LIGHT_LISTS ? list_starts[number + 1] : entry + light_count;
   if (entry == end) return;
@@ -333,10 +333,11 @@ WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const fl
     Remaining remaining;
     uint received = light.casts ? find_receivers(&tile, &light, &remaining) : 0;
     if (received) {
-      recall_light(&scene, index);
+      select_cache_slot(&scene, index);
       uint first = 0;
       for (uint i = 0; i < tile.bundle_count; ++i) {
-        shade_bundle(&scene, light.place, light.size, tile.bundle + i, first, tile.bundle_end[i], &remaining);
+        shadow_bundle(&scene, light.place, light.size, tile.bundle + i, first, tile.bundle_end[i],
+                      &remaining);
         first = tile.bundle_end[i];
       }
       write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit + entry * kPairWords);
@@ -367,8 +368,8 @@ KERNEL void beam_shadows(uint plane_stride, __global const float* position, __gl
                          __global const HoleTriangle* hole_triangles,
                          __global const uint* first_hole_triangle, int root, float4 tree_most, uint tiles,
                          __global uint* lit, __global uint* unsure, __global uint* receivers) {
-  Memory memory;
-  for (uint i = 0; i < kLightsRemembered; ++i) memory.light[i] = NO_TRIANGLE;
+  BlockerCache cache;
+  for (uint i = 0; i < kCachedLights; ++i) cache.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.
   Candidates candidates;
   for (uint i = 0; i < sizeof(Candidates) / sizeof(uint); ++i) ((uint*)&candidates)[i] = 0;
@@ -380,12 +381,12 @@ KERNEL void beam_shadows(uint plane_stride, __global const float* position, __gl
                  root,
                  {tree_most.x, tree_most.y, tree_most.z},
                  0,
-                 &memory,
+                 &cache,
                  &candidates,
                  0};
   ToTree to_tree = {to_tree_x, to_tree_y, to_tree_z, to_tree_x.w};
   uint first = get_global_id(0) * kBeamRun;
   for (uint tile = first; tile < tiles && tile < first + kBeamRun; ++tile)
-    shade_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts,
-               list, lit, unsure, receivers);
+    shadow_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts,
+                list, lit, unsure, receivers);
 }

@@ -197,19 +197,19 @@ INLINE void add_listed_lights(const ClusterWalk* walk, const ClusterTree* tree, 
                               RowSums* sums) {
   for (uint from = 0; from < walk->lights; from += kSumTerms) {
     uint end = min(from + kSumTerms, walk->lights);
-    vec3L some = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
-    vec3L some_weight = some;
+    vec3L block = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
+    vec3L block_weight = block;
     for (uint i = from; i < end; ++i) {
       ClusteredLight light = clustered_light_of(tree, walk->light[i]);
       vec3L u = to_clustered_light(&light, position);
       floatL inverse_d = rsqrt_lanes(dot3(u, u));
       floatL cosine = max_lanes(dot3(normal, u) * inverse_d, (floatL)(0.0f));
       floatL falloff = min_lanes(inverse_d * inverse_d, (floatL)(light.falloff));
-      add_scaled(&some, light.color, cosine * falloff);
-      add_scaled(&some_weight, light.color, falloff);
+      add_scaled(&block, light.color, cosine * falloff);
+      add_scaled(&block_weight, light.color, falloff);
     }
-    add_block(&sums->lights, some);
-    add_vectors(&sums->weight, some_weight);
+    add_block(&sums->lights, block);
+    add_vectors(&sums->weight, block_weight);
   }
 }
 
@@ -217,15 +217,15 @@ INLINE void add_listed(const ClusterWalk* walk, const GroupPixels* pixels, const
                        RowSums* sums) {
   for (uint i = 0; i < pixels->count; i += LANES) {
     vec3L position = pixel_vector(pixels, 0, i), normal = pixel_vector(pixels, 3, i);
-    RowSums some = sums[i / LANES];
-    add_listed_lights(walk, tree, position, normal, &some);
+    RowSums row = sums[i / LANES];
+    add_listed_lights(walk, tree, position, normal, &row);
     for (uint k = 0; k < walk->clusters; ++k) {
       uint cluster = walk->cluster[k];
       add_cut_cluster(tree->rows + (size_t)(cluster / kClusterSlots) * (kClusterFields * kClusterSlots) +
                           cluster % kClusterSlots,
-                      position, normal, &some.cut);
+                      position, normal, &row.cut);
     }
-    sums[i / LANES] = some;
+    sums[i / LANES] = row;
   }
 }
 
@@ -248,12 +248,12 @@ INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const Pixe
           color = pixel_vector(pixels, kDiffuse, i);
     vec3L h = {position.x - group->middle[0], position.y - group->middle[1], position.z - group->middle[2]};
     FieldFactors factors = field_factors(normal, h);
-    const RowSums* had = row_sums + i / LANES;
-    vec3L of_row = sum_of_blocks(&had->lights);
+    const RowSums* row = row_sums + i / LANES;
+    vec3L of_row = sum_of_blocks(&row->lights);
     floatL lights[3] = {of_row.x, of_row.y, of_row.z},
-           weight[3] = {had->weight.x, had->weight.y, had->weight.z}, albedo[3] = {color.x, color.y, color.z};
-    floatL cut[3] = {had->cut.light.x, had->cut.light.y, had->cut.light.z};
-    floatL cut_bound[3] = {had->cut.bound.x, had->cut.bound.y, had->cut.bound.z};
+           weight[3] = {row->weight.x, row->weight.y, row->weight.z}, albedo[3] = {color.x, color.y, color.z};
+    floatL cut[3] = {row->cut.light.x, row->cut.light.y, row->cut.light.z};
+    floatL cut_bound[3] = {row->cut.bound.x, row->cut.bound.y, row->cut.bound.z};
     floatL light[3], bound[3];
     for (uint c = 0; c < 3; ++c) {
       light[c] = albedo[c] * (field_value(field.term + c * kFieldTerms, &factors) + cut[c] + lights[c]);
@@ -374,7 +374,7 @@ INLINE HighlightGroup bound_highlights(const GroupPixels* pixels, uint first, ui
 // the error that is allowed.
 INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, const ShadeFrame* frame,
                                LobeSums* sums, const HighlightGroup* group, const HighlightSums* row_sums,
-                               float light_error, float had[6][kTilePixels],
+                               float light_error, float diffuse_light[6][kTilePixels],
                                float result[6][kHighlightPixels]) {
   Lobes lobes;
   finish_lobes(sums, group->exponent, &lobes);
@@ -400,8 +400,8 @@ INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, 
         uint place = pixels->place[i + lane];
         float of_light = ((const float*)&light)[lane], of_bound = ((const float*)&bound)[lane];
         // Their sum is rounded, too.
-        float all = had[c][place] + of_light,
-              bound_of_all = 1.00001f * (had[3 + c][place] + of_bound + 0x1p-24f * all);
+        float all = diffuse_light[c][place] + of_light,
+              bound_of_all = 1.00001f * (diffuse_light[3 + c][place] + of_bound + 0x1p-24f * all);
         result[c][i + lane - first] = all;
         result[3 + c][i + lane - first] = bound_of_all;
         float share = quotient(bound_of_all, light_error * greater(all, 1.0f));
@@ -434,9 +434,9 @@ INLINE void highlight_group(const GroupPixels* pixels, uint first, uint end, con
       done = walk_highlights(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
       for (uint i = first; i < end; i += LANES) {
         HighlightPixels row = highlight_pixels(pixels, i, frame);
-        HighlightSums some = row_sums[(i - first) / LANES];
-        add_listed_highlights(&walk, tree, &row, group.exponent, group.model, &some);
-        row_sums[(i - first) / LANES] = some;
+        HighlightSums lit = row_sums[(i - first) / LANES];
+        add_listed_highlights(&walk, tree, &row, group.exponent, group.model, &lit);
+        row_sums[(i - first) / LANES] = lit;
       }
       counts->lights += walk.lights * (end - first);
       walk.lights = 0;

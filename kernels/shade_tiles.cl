@@ -254,11 +254,11 @@ WORK void shade_block(ShadeFrame frame, Planes planes, __global const float* tre
 KERNEL void shade_tiles(ShadeFrame frame, __global const float* position, __global const float* normal,
                         __global const float* diffuse, __global const float* specular,
                         __global const float* ambient, __global const float* emission,
-                        __global const uint* geometric_normal, __global const uint* model,
+                        __global const uint* surface_normal, __global const uint* model,
                         __global const float* tree, uint tree_stride, __global const ShadeLight* lights,
                         uint tiles_x, uint tiles_y, uint width, uint height, uint stride,
                         __global float* image, __global uint* counts) {
-  Planes planes = {position, normal, diffuse, specular, ambient, emission, geometric_normal, 0, model};
+  Planes planes = {position, normal, diffuse, specular, ambient, emission, surface_normal, 0, model};
   uint blocks_x = (tiles_x + width - 1) / width, blocks_y = (tiles_y + height - 1) / height;
   uint blocks = blocks_x * blocks_y, runs = (blocks + kBlockRun - 1) / kBlockRun, item = get_global_id(0);
   uint block = (uint)((ulong)(item / kBlockRun) * stride % runs) * kBlockRun + item % kBlockRun;

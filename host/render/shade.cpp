@@ -33,7 +33,7 @@ void shade(Device& device, const std::string& defines, const ShadeArguments& arg
           {"specular", gbuffer.specular},
           {"ambient", gbuffer.ambient},
           {"emission", gbuffer.emission},
-          {"geometric_normal", gbuffer.geometric_normal},
+          {"surface_normal", gbuffer.geometric_normal},
           {"lift", gbuffer.lift},
           {"model", gbuffer.model},
           {"lights", arguments.lights},

@@ -53,7 +53,7 @@ TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTil
           {"specular", gbuffer.specular},
           {"ambient", gbuffer.ambient},
           {"emission", gbuffer.emission},
-          {"geometric_normal", gbuffer.geometric_normal},
+          {"surface_normal", gbuffer.geometric_normal},
           {"model", gbuffer.model},
           {"tree", arguments.tree},
           {"tree_stride", uint(arguments.tree_stride)},
