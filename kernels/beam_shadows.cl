@@ -35,7 +35,7 @@ typedef struct {
 } BeamWalk;
 
 // Adds what may hide points of the beam to the candidates. Returns true if a triangle covers the beam.
-// hollow: bits of those with holes.
+// holed: bits of those with holes.
 INLINE bool take_blockers(const Scene* scene, const LightView* view, const Beam* beam,
                           const Blockers* blockers, uint holed, Candidates* candidates) {
   Triangles triangles;
@@ -76,7 +76,8 @@ SHARED_WORK bool find_candidates(const Scene* scene, const LightView* view, cons
   return covered;
 }
 
-// Those triangles that hid much from this light lately. Returns true if one covers the beam.
+// Finds candidates among the triangles in the cache, which hid much from this light in the tiles before.
+// Returns true if one covers the beam.
 INLINE bool test_remembered(const Scene* scene, const LightView* view, const Beam* beam,
                             Candidates* candidates) {
   candidates->count = 0;
@@ -107,7 +108,7 @@ INLINE Target target_of(const Scene* scene, const LightView* view, const Cluster
                      bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
 }
 
-// Goes to the end of a walk for one cluster.
+// Goes on with a walk to its end, for the points of one cluster alone.
 SHARED_WORK void finish_cluster(const Scene* scene, const LightView* view, const Cluster* cluster,
                                 BeamWalk* walk, Candidates* candidates, Remaining* remaining) {
   Beam beam;
@@ -129,7 +130,7 @@ SHARED_WORK void finish_cluster(const Scene* scene, const LightView* view, const
   }
 }
 
-// The clusters of a bundle that have points left, each with its target.
+// The clusters of a bundle that have points left, each with what a triangle has to cover to hide all of them.
 typedef struct {
   uint count;
   const Cluster* cluster[kMaxClusters];
@@ -159,8 +160,8 @@ INLINE bool test_all(const Scene* scene, const LightView* view, const Candidates
   return count > 0;
 }
 
-// Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns
-// false and does nothing if the light is amid the points or near them.
+// Removes from `remaining` those points of a cluster that a light doesn't reach. Returns false and does
+// nothing if the light is amid the points or too near them (see view_light()).
 SHARED_WORK bool shadow_cluster(const Scene* scene, float4 place, float size, const Cluster* points,
                                 Remaining* remaining) {
   LightView view;
@@ -174,8 +175,7 @@ SHARED_WORK bool shadow_cluster(const Scene* scene, float4 place, float size, co
   return true;
 }
 
-// Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't
-// reach.
+// The same for a light that is amid the points: one point after another.
 SHARED_WORK void shadow_points(const Scene* scene, float4 place, float size, const Cluster* cluster,
                                Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
@@ -186,8 +186,8 @@ SHARED_WORK void shadow_points(const Scene* scene, float4 place, float size, con
       for (uint axis = 0; axis < 3; ++axis) box.low[axis] = box.high[axis] = scene->tile->place[axis][point];
       Cluster alone = {row, row + 1, false, bounds_of(&box)};
       remaining->left[row] = (ushort)(points & (0 - points));
-      // Nothing hides a point from a light where it is itself, and rays decide about one amid a light of a
-      // size.
+      // Nothing hides a point from a light at the same place. About a point inside a light of a size rays
+      // decide.
       if (!shadow_cluster(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f)
         remaining->unsure[row] |= remaining->left[row];
       lit |= remaining->left[row];
@@ -196,9 +196,11 @@ SHARED_WORK void shadow_points(const Scene* scene, float4 place, float size, con
   }
 }
 
-// Takes from what is left of a bundle's points those that a light doesn't reach.
+// Removes from `remaining` those points of clusters [first, end), a bundle, that a light doesn't reach.
+// bounds: of the bundle.
 SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, const PointBounds* bounds,
                                uint first, uint end, Remaining* remaining) {
+  // Find the clusters that have points left.
   TilePoints* tile = scene->tile;
   Active active;
   active.count = 0;
@@ -208,6 +210,7 @@ SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, con
     active.cluster[active.count++] = cluster;
   }
   if (!active.count) return;
+  // View the light from the bundle. If it is amid the points, take the clusters one by one.
   LightView view;
   for (uint axis = 0; axis < 3; ++axis) view.most[axis] = scene->most[axis];
   Candidates* candidates = scene->candidates;
@@ -218,6 +221,7 @@ SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, con
         shadow_points(scene, place, size, active.cluster[i], remaining);
     return;
   }
+  // Project the points, and make the bundle's beam.
   for (uint i = 0; i < active.count; ++i) {
     const Cluster* cluster = active.cluster[i];
     project_rows(tile, &view, cluster->first_row, cluster->end_row, remaining->left);
@@ -225,12 +229,14 @@ SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, con
   }
   Beam beam;
   beam_to_all(&view, bounds, &active, &beam);
+  // Test what hid much from this light in the tiles before.
   bool covered = test_remembered(scene, &view, &beam, candidates);
   if (!covered && candidates->count) {
     uint before = active.count;
     if (!test_all(scene, &view, candidates, &active, remaining)) return;
     if (active.count < before) beam_to_all(&view, bounds, &active, &beam);
   }
+  // Walk the tree until enough candidates are found.
   if (!covered) {
     walk.height = 1;
     walk.stack[0] = scene->root;
@@ -240,6 +246,7 @@ SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, con
     for (uint i = 0; i < active.count; ++i) hide_all(active.cluster[i], remaining);
     return;
   }
+  // Test them, and finish the walk for each cluster that has points left.
   if (candidates->count && !test_all(scene, &view, candidates, &active, remaining)) return;
   for (uint i = 0; i < active.count && walk.height; ++i) {
     BeamWalk rest;
@@ -283,7 +290,8 @@ INLINE uint find_receivers(const TilePoints* tile, const BeamLight* light, Remai
   return count;
 }
 
-// Writes bits of points to those of their pixels.
+// Writes bits of points to a tile's words, each to the bit of its pixel: of the points that are `left`, with
+// keep = 0xffff those that are not in `masked`, with keep = 0 those that are.
 INLINE void write_pixels(const TilePoints* tile, const ushort* left, const ushort* masked, uint keep,
                          __global uint* words) {
   for (uint i = 0; i < kPairWords; ++i) words[i] = 0;
@@ -304,7 +312,7 @@ INLINE void write_pixels(const TilePoints* tile, const ushort* left, const ushor
   }
 }
 
-// Finds the light's place in the memory.
+// Selects the light's slot of the cache, and clears it if another light had it.
 INLINE void select_cache_slot(Scene* scene, uint light) {
   BlockerCache* cache = scene->cache;
   scene->cache_slot = light % kCachedLights;
@@ -314,22 +322,31 @@ INLINE void select_cache_slot(Scene* scene, uint light) {
   for (uint i = 0; i < kTreeWidth; ++i) cache->reference[scene->cache_slot][i] = NO_TRIANGLE;
 }
 
-// Decides the pairs of a tile. All but `number`: see beam_shadows().
-WORK void shadow_tile(uint number, Scene scene, ToTree to_tree, __global const float* position,
-                      __global const float* normal, __global const float* lift, uint plane_stride,
-                      __global const BeamLight* lights, uint light_count, __global const uint* list_starts,
-                      __global const ListEntry* list, __global uint* lit, __global uint* unsure,
-                      __global uint* receivers) {
-  uint entry = LIGHT_LISTS ? list_starts[number] : number * light_count;
-  uint end = LIGHT_LISTS ? list_starts[number + 1] : entry + light_count;
+// The buffers of a G-buffer, its lights and its pairs: see beam_shadows().
+typedef struct {
+  __global const float *position, *normal, *lift;
+  __global const BeamLight* lights;
+  __global const uint* list_starts;
+  __global const ListEntry* list;
+  __global uint *lit, *unsure, *receivers;
+} PairBuffers;
+
+// Decides the pairs of a tile.
+WORK void shadow_tile(uint number, const BeamFrame* frame, Scene scene, PairBuffers buffers) {
+  uint entry = LIGHT_LISTS ? buffers.list_starts[number] : number * frame->light_count;
+  uint end = LIGHT_LISTS ? buffers.list_starts[number + 1] : entry + frame->light_count;
   if (entry == end) return;
+  // Load the tile's points.
   TilePoints tile;
   scene.tile = &tile;
-  load_points(&tile, &to_tree, position, normal, lift, plane_stride, number * kTilePixels);
+  load_points(&tile, frame, buffers.position, buffers.normal, buffers.lift, number * kTilePixels);
   make_bundles(&tile);
   for (; entry < end; ++entry) {
-    uint index = LIGHT_LISTS ? list[entry].light : entry - number * light_count;
-    BeamLight light = lights[index];
+    uint index = LIGHT_LISTS ? buffers.list[entry].light : entry - number * frame->light_count;
+    __global uint* lit = buffers.lit + entry * kPairWords;
+    __global uint* unsure = buffers.unsure + entry * kPairWords;
+    // Find the points that the light may shine on, and remove those that it doesn't reach.
+    BeamLight light = buffers.lights[index];
     Remaining remaining;
     uint received = light.casts ? find_receivers(&tile, &light, &remaining) : 0;
     if (received) {
@@ -340,53 +357,43 @@ WORK void shadow_tile(uint number, Scene scene, ToTree to_tree, __global const f
                       &remaining);
         first = tile.bundle_end[i];
       }
-      write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit + entry * kPairWords);
-      if (UNSURE_PAIRS) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure + entry * kPairWords);
-      if (SOFT_EXACT) receivers[entry] = light.size > 0.0f ? received : 0;
+      write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit);
+      if (UNSURE_PAIRS) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure);
+      if (SOFT_EXACT) buffers.receivers[entry] = light.size > 0.0f ? received : 0;
     } else {
-      for (uint i = 0; i < kPairWords; ++i) lit[entry * kPairWords + i] = 0;
-      for (uint i = 0; UNSURE_PAIRS && i < kPairWords; ++i) unsure[entry * kPairWords + i] = 0;
-      if (SOFT_EXACT) receivers[entry] = 0;
+      for (uint i = 0; i < kPairWords; ++i) lit[i] = 0;
+      for (uint i = 0; UNSURE_PAIRS && i < kPairWords; ++i) unsure[i] = 0;
+      if (SOFT_EXACT) buffers.receivers[entry] = 0;
     }
   }
 }
 
-// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only.
-// nodes, children, blocks, block_bits, root: see TriangleTree; with HOLES block_bits, hole_texels,
-// hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the rotation from view
-// space to the tree's axes; w of the first: the tree's scale. tree_most: the largest |x|, |y|, |z| in the
-// tree. tiles: of the G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a
-// bit for each pixel of the tile; 0 for lights that cast no shadow. unsure: as many, with HOLES or SOFT_EXACT
-// only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT only: of
-// pixels that a light of a size may reach; 0 for other lights.
-KERNEL void beam_shadows(uint plane_stride, __global const float* position, __global const float* normal,
-                         __global const float* lift, float4 to_tree_x, float4 to_tree_y, float4 to_tree_z,
-                         __global const BeamLight* lights, uint light_count, __global const uint* list_starts,
-                         __global const ListEntry* list, __global const float* nodes,
-                         __global const int* children, __global const float* blocks,
-                         __global const uint* block_bits, __global const uchar* hole_texels,
-                         __global const HoleTriangle* hole_triangles,
-                         __global const uint* first_hole_triangle, int root, float4 tree_most, uint tiles,
-                         __global uint* lit, __global uint* unsure, __global uint* receivers) {
+// position, normal: planes x y z; lift: a plane, metres, read with LIFT only. nodes, children, blocks,
+// block_bits: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see
+// HoleMasks. A work-item takes kBeamRun tiles.
+// - lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no shadow.
+// - unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide.
+// - receivers: a number for each entry, with SOFT_EXACT only: of pixels that a light of a size may reach; 0
+//   for other lights.
+KERNEL void beam_shadows(BeamFrame frame, __global const float* position, __global const float* normal,
+                         __global const float* lift, __global const BeamLight* lights,
+                         __global const uint* list_starts, __global const ListEntry* list,
+                         __global const float* nodes, __global const int* children,
+                         __global const float* blocks, __global const uint* block_bits,
+                         __global const uchar* hole_texels, __global const HoleTriangle* hole_triangles,
+                         __global const uint* first_hole_triangle, __global uint* lit, __global uint* unsure,
+                         __global uint* receivers) {
   BlockerCache cache;
   for (uint i = 0; i < kCachedLights; ++i) cache.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.
   Candidates candidates;
   for (uint i = 0; i < sizeof(Candidates) / sizeof(uint); ++i) ((uint*)&candidates)[i] = 0;
-  Scene scene = {nodes,
-                 children,
-                 blocks,
-                 block_bits,
-                 {hole_texels, hole_triangles, first_hole_triangle},
-                 root,
-                 {tree_most.x, tree_most.y, tree_most.z},
-                 0,
-                 &cache,
-                 &candidates,
-                 0};
-  ToTree to_tree = {to_tree_x, to_tree_y, to_tree_z, to_tree_x.w};
+  HoleMasks masks = {hole_texels, hole_triangles, first_hole_triangle};
+  float4 most = frame.tree_most;
+  Scene scene = {nodes, children, blocks,      block_bits, masks, frame.tree_root, {most.x, most.y, most.z},
+                 0,     &cache,   &candidates, 0};
+  PairBuffers buffers = {position, normal, lift, lights, list_starts, list, lit, unsure, receivers};
   uint first = get_global_id(0) * kBeamRun;
-  for (uint tile = first; tile < tiles && tile < first + kBeamRun; ++tile)
-    shadow_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts,
-                list, lit, unsure, receivers);
+  for (uint tile = first; tile < frame.tiles && tile < first + kBeamRun; ++tile)
+    shadow_tile(tile, &frame, scene, buffers);
 }

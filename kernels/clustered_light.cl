@@ -1,5 +1,5 @@
-// The light of lights without range, of which clusters stand for those far enough, with a bound of its error
-// at each pixel.
+// The light of point lights without range. Clusters stand for lights that are far enough away. With each
+// pixel's light comes a bound of its error.
 //
 // A work-item takes a run of tiles. The pixels of a tile that are near each other and face about the same way
 // are a group:
@@ -41,12 +41,12 @@ enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
 #define GROUP_SPREAD 0.12f
 // So many pixels of a group, which follow each other in Z order, share the series of highlights.
 enum { kHighlightPixels = 64 };
-// What a bound that no float holds is given as.
+// Stands for a bound that no float holds.
 #define LARGEST_BOUND 3e38f
-// Of the allowed error what is accepted of one cluster at most.
+// The largest share of the allowed error that is accepted of one cluster.
 #define MOST_SHARE 0.0625f
-// Of the allowed error what the diffuse light of pixels with highlights may take. The highlights may take the
-// rest.
+// The share of the allowed error that the diffuse light of pixels with highlights may take. The highlights
+// may take the rest.
 #define DIFFUSE_SHARE 0.5f
 
 // The planes of a G-buffer that are read, x y z or r g b each, from a tile's first pixel on. specular: r g b
@@ -56,19 +56,19 @@ typedef struct {
   uint stride;
 } Tile;
 
-// What is the same for all tiles.
+// What all tiles share.
 typedef struct {
   ShadeFrame frame;
   ClusterTree diffuse, specular;
   float light_error;
 } Scene;
 
-// Of the allowed error what is accepted of a cluster.
+// The share of the allowed error that is accepted of a cluster.
 typedef struct {
   float diffuse, specular;
 } Shares;
 
-// For a tile.
+// What a tile's statistics count, see ClusteredLightCounts.
 typedef struct {
   uint far_clusters, clusters, lights, redone;
 } Counts;
@@ -87,7 +87,7 @@ typedef struct {
   uint place[kTilePixels];  // in the tile
   float exponent;
   bool redone;  // whether all were lit again
-  float value[kPixelValues][kTilePixels] __attribute__((aligned(64)));
+  float value[kPixelValues][kTilePixels] ALIGNED;
 } GroupPixels;
 
 INLINE floatL pixel_values(const GroupPixels* pixels, uint value, uint first) {
@@ -99,8 +99,9 @@ INLINE vec3L pixel_vector(const GroupPixels* pixels, uint value, uint first) {
   return v;
 }
 
-// Takes a group off the pixels that are left of a tile, which are not none.
+// Takes a group from the pixels of a tile that are left, at least one.
 INLINE void take_pixels(const Tile* tile, intL* left, GroupPixels* pixels) {
+  // Choose the first pixel that is left as the group's seed.
   uint seed = 0;
   while (!any_lane(left[seed])) ++seed;
   seed = seed * LANES + lowest_bit(lane_bits(left[seed]));
@@ -108,6 +109,7 @@ INLINE void take_pixels(const Tile* tile, intL* left, GroupPixels* pixels) {
   float4 place = {p[0], p[tile->stride], p[2 * tile->stride], 0.0f},
          facing = {n[0], n[tile->stride], n[2 * tile->stride], 0.0f};
   float reach2 = GROUP_RADIUS * GROUP_RADIUS * (place.x * place.x + place.y * place.y + place.z * place.z);
+  // Collect those near it that face about the same way and have the same exponent.
   pixels->count = 0;
   pixels->redone = false;
   pixels->exponent = CLUSTERED_HIGHLIGHTS ? tile->specular[seed + 3 * tile->stride] : 0.0f;
@@ -137,6 +139,7 @@ INLINE void take_pixels(const Tile* tile, intL* left, GroupPixels* pixels) {
       ++pixels->count;
     }
   }
+  // Fill up the last row.
   for (uint i = pixels->count; i % LANES > 0; ++i)
     for (uint value = 0; value < kPixelValues; ++value)
       pixels->value[value][i] = pixels->value[value][i / LANES * LANES];
@@ -145,6 +148,7 @@ INLINE void take_pixels(const Tile* tile, intL* left, GroupPixels* pixels) {
 // What bounds the pixels from `first` to `end` of a group. colors: kDiffuse or kSpecular.
 INLINE PixelGroup bound_group(const GroupPixels* pixels, uint first, uint end, uint colors,
                               float light_error) {
+  // Find the middle of the boxes around places and normals.
   PixelGroup group;
   for (uint axis = 0; axis < 6; ++axis) {
     float low = INFINITY, high = -INFINITY;
@@ -158,6 +162,7 @@ INLINE PixelGroup bound_group(const GroupPixels* pixels, uint first, uint end, u
     else
       group.normal[axis - 3] = middle;
   }
+  // Find how far places and normals are from there.
   float radius2 = 0.0f, spread2 = 0.0f, thickness = 0.0f, brightest = 0.0f;
   for (uint i = first; i < end; i += LANES) {
     vec3L position = pixel_vector(pixels, kPosition, i), normal = pixel_vector(pixels, kNormal, i),
@@ -185,7 +190,7 @@ INLINE bool any_specular(const GroupPixels* pixels) {
   return greatest_lane(most) > 0.0f;
 }
 
-// What a row of pixels is lit by one by one.
+// The light that a row of pixels gets from what it sums one by one.
 typedef struct {
   Certified cut;
   LongSum lights;
@@ -238,6 +243,7 @@ INLINE floatL share_of(floatL light, floatL bound, float light_error) {
 // clusters were summed. Returns the largest share that a bound has of the error that is allowed.
 INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const PixelGroup* group,
                           const RowSums* row_sums, uint cuts, float light_error, float out[6][kTilePixels]) {
+  // Add up the series, and count the rounding of lights and of cut clusters.
   Field field;
   finish_field(sums, &field);
   float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4),
@@ -247,6 +253,7 @@ INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const Pixe
     vec3L position = pixel_vector(pixels, kPosition, i), normal = pixel_vector(pixels, kNormal, i),
           color = pixel_vector(pixels, kDiffuse, i);
     vec3L h = {position.x - group->middle[0], position.y - group->middle[1], position.z - group->middle[2]};
+    // Sum series, cut clusters and lights, and their bounds, for each channel.
     FieldFactors factors = field_factors(normal, h);
     const RowSums* row = row_sums + i / LANES;
     vec3L of_row = sum_of_blocks(&row->lights);
@@ -273,8 +280,9 @@ INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const Pixe
   return worst;
 }
 
-// Errors grow somewhat slower than what is accepted. However little groups ask for that are nearly dark, the
-// next one must not need all its tries to come back from there.
+// The share for the next try or group. worst: the largest share that a bound had of the allowed error. Bounds
+// grow somewhat slower than the share. A step is ⅛ at least and 4 at most, so that a group that needs a tiny
+// share, being nearly dark, doesn't cost the next one all its tries.
 INLINE float next_share(float share, float worst) {
   return lesser(share * lesser(greater(quotient(0.7f, worst), 0.125f), 4.0f), MOST_SHARE);
 }
@@ -295,6 +303,7 @@ INLINE void light_group(GroupPixels* pixels, const ClusterTree* tree, float ligh
       row_sums[row].weight = dark;
     }
     start_field(&sums);
+    // Walk the tree, and sum what the walk lists whenever its lists are full.
     start_cluster_walk(tree, &walk);
     uint cuts = 0;
     for (bool done = false; !done;) {
@@ -306,6 +315,7 @@ INLINE void light_group(GroupPixels* pixels, const ClusterTree* tree, float ligh
       walk.lights = walk.clusters = 0;
     }
     counts->far_clusters += walk.far_clusters;
+    // Accept the light, or try again with a smaller share.
     float worst = finish_group(pixels, &sums, &group, row_sums, cuts, light_error, out);
     *share = next_share(*share, worst);
     if (worst <= 1.0f || tries == kMostTries) return;
@@ -332,10 +342,12 @@ INLINE vec3L lobe_axis(const HighlightPixels* row, uint model) {
 // What bounds the highlights of the pixels from `first` to `end` of a group.
 INLINE HighlightGroup bound_highlights(const GroupPixels* pixels, uint first, uint end,
                                        const ShadeFrame* frame, float light_error) {
+  // Bound places and normals.
   HighlightGroup group;
   group.place = bound_group(pixels, first, end, kSpecular, light_error);
   group.exponent = pixels->exponent;
   group.model = frame->model;
+  // Find the middle of the axes.
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (uint i = first; i < end; i += LANES) {
     HighlightPixels row = highlight_pixels(pixels, i, frame);
@@ -357,6 +369,7 @@ INLINE HighlightGroup bound_highlights(const GroupPixels* pixels, uint first, ui
     group.axis[c] = ((const float*)&axis[c])[0];
     group.normal[c] = ((const float*)&facing[c])[0];
   }
+  // Find how far axes turn from there.
   float turn2 = 0.0f;
   for (uint i = first; i < end; i += LANES) {
     HighlightPixels row = highlight_pixels(pixels, i, frame);
@@ -376,6 +389,7 @@ INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, 
                                LobeSums* sums, const HighlightGroup* group, const HighlightSums* row_sums,
                                float light_error, float diffuse_light[6][kTilePixels],
                                float result[6][kHighlightPixels]) {
+  // Add up the series, and count the rounding of lights.
   Lobes lobes;
   finish_lobes(sums, group->exponent, &lobes);
   float of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4);
@@ -387,6 +401,7 @@ INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, 
                row.position.z - group->place.middle[2]};
     vec3L w = {row.mirrored_eye.x - group->axis[0], row.mirrored_eye.y - group->axis[1],
                row.mirrored_eye.z - group->axis[2]};
+    // Sum series and lights, and their bounds, and add both to the diffuse light's.
     LobeFactors factors = lobe_factors(h, w);
     const HighlightSums* of_row = row_sums + (i - first) / LANES;
     vec3L listed = sum_of_blocks(&of_row->light);
@@ -429,6 +444,7 @@ INLINE void highlight_group(const GroupPixels* pixels, uint first, uint end, con
       row_sums[row].unsure = row_sums[row].rounding = 0.0f;
     }
     start_lobes(&sums);
+    // Walk the tree, and sum what the walk lists whenever its lists are full.
     start_cluster_walk(tree, &walk);
     for (bool done = false; !done;) {
       done = walk_highlights(tree, &group, tries == kMostTries ? 0.0f : *share, &walk, &sums);
@@ -442,6 +458,7 @@ INLINE void highlight_group(const GroupPixels* pixels, uint first, uint end, con
       walk.lights = 0;
     }
     counts->far_clusters += walk.far_clusters;
+    // Accept the light, or try again with a smaller share.
     float worst =
         finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, light_error, out, result);
     *share = next_share(*share, worst);
@@ -455,7 +472,8 @@ INLINE void highlight_group(const GroupPixels* pixels, uint first, uint end, con
 // Lights a tile. shares: updated by what was accepted.
 INLINE void light_tile(const Tile* tile, const Scene* scene, Shares* shares, __global float* light,
                        __global float* bound, __global uint* counts) {
-  float out[6][kTilePixels] __attribute__((aligned(64)));
+  // Find the pixels that reflect anything, and set their light to 0.
+  float out[6][kTilePixels] ALIGNED;
   intL left[kTileRows], any_left = 0;
   for (uint row = 0; row < kTileRows; ++row) {
     // Black pixels stay as they are.
@@ -469,6 +487,7 @@ INLINE void light_tile(const Tile* tile, const Scene* scene, Shares* shares, __g
     any_left |= left[row];
     for (uint i = 0; i < 6; ++i) *(floatL*)(out[i] + row * LANES) = 0.0f;
   }
+  // Light them group by group.
   Counts counted = {0, 0, 0, 0};
   while (any_lane(any_left)) {
     GroupPixels pixels;
@@ -484,6 +503,7 @@ INLINE void light_tile(const Tile* tile, const Scene* scene, Shares* shares, __g
     any_left = 0;
     for (uint row = 0; row < kTileRows; ++row) any_left |= left[row];
   }
+  // Write the light, and the bound as it is seen through fog.
   for (uint row = 0; row < kTileRows; ++row) {
     vec3L position = load_vec3(tile->position + row * LANES, tile->stride);
     intL covered = position.z > -INFINITY;
@@ -520,19 +540,20 @@ WORK void light_run(Tile tile, const Scene* scene, uint tiles, __global float* l
 }
 
 // rows, light_rows: of the tree of diffuse light; highlight_rows, highlight_light_rows: of that of specular
-// light, which has the same places.
-KERNEL void clustered_light(ShadeFrame frame, __global const float* position, __global const float* normal,
+// light, which has the same places. A work-item takes kClusterRun tiles side by side.
+KERNEL void clustered_light(ClusterFrame frame, __global const float* position, __global const float* normal,
                             __global const float* diffuse, __global const float* specular,
                             __global const float* rows, __global const float* light_rows,
                             __global const float* highlight_rows, __global const float* highlight_light_rows,
-                            uint light_count, uint levels, float light_error, uint tiles_x, uint run,
                             __global float* light, __global float* bound, __global uint* counts) {
-  Scene scene = {frame,
-                 {rows, light_rows, light_count, levels},
-                 {highlight_rows, highlight_light_rows, light_count, levels},
-                 light_error};
-  uint runs = (tiles_x + run - 1) / run, item = get_global_id(0), column = item % runs * run;
-  uint first_tile = item / runs * tiles_x + column, first = first_tile * kTilePixels;
-  Tile tile = {position + first, normal + first, diffuse + first, specular + first, frame.plane_stride};
-  light_run(tile, &scene, min(run, tiles_x - column), light + first, bound + first, counts + 4 * first_tile);
+  Scene scene = {frame.shade,
+                 {rows, light_rows, frame.light_count, frame.levels},
+                 {highlight_rows, highlight_light_rows, frame.light_count, frame.levels},
+                 frame.light_error};
+  uint runs = (frame.tiles_x + kClusterRun - 1) / kClusterRun, item = get_global_id(0);
+  uint column = item % runs * kClusterRun, first_tile = item / runs * frame.tiles_x + column;
+  uint first = first_tile * kTilePixels;
+  Tile tile = {position + first, normal + first, diffuse + first, specular + first, frame.shade.plane_stride};
+  light_run(tile, &scene, min((uint)kClusterRun, frame.tiles_x - column), light + first, bound + first,
+            counts + 4 * first_tile);
 }

@@ -18,7 +18,7 @@
 #include "light_tree.clh"
 #include "shared.h"
 
-// What the groups of a tile face, one a lane, as their boxes are (light_tree.clh).
+// Where the surfaces of a tile's groups face: one group a lane, in the order of Tiles.boxes.
 typedef struct {
   vec3L low, high;  // corners of the box around the normals
   floatL plane;     // the least of normal · (point − middle of the group's box)
@@ -41,14 +41,8 @@ INLINE void bound_normals(const Tiles* tiles, Facing* facing) {
       floatL along = dot3(n, (vec3L){p.x - middle.x, p.y - middle.y, p.z - middle.z});
       plane = min_lanes(plane, covered ? along : (floatL)(INFINITY));
     }
-    Box box = box_around(&normals);
     float* out = (float*)(facing + group / LANES) + group % LANES;
-    out[0 * LANES] = box.low.x;
-    out[1 * LANES] = box.low.y;
-    out[2 * LANES] = box.low.z;
-    out[3 * LANES] = box.high.x;
-    out[4 * LANES] = box.high.y;
-    out[5 * LANES] = box.high.z;
+    store_box(out, box_around(&normals));
     out[6 * LANES] = least_lane(plane);
   }
 }
@@ -75,11 +69,7 @@ INLINE uint groups_lit(const Boxes* boxes, const Facing* facing, __global const 
   vec3L to_light = all_lanes(light->position), extent = all_lanes((float4)(0.0f));
   floatL plane = 0.0f;
   if (light->kind != kDirectionalLight) {
-    vec3L middle;
-    find_middle(boxes->low, boxes->high, &middle, &extent);
-    to_light.x -= middle.x;
-    to_light.y -= middle.y;
-    to_light.z -= middle.z;
+    to_light = from_boxes(boxes, light, &extent);
     plane = facing->plane;
   }
   intL lit = (intL)(1) != (intL)(0);
@@ -88,7 +78,7 @@ INLINE uint groups_lit(const Boxes* boxes, const Facing* facing, __global const 
   return lane_bits(lit);
 }
 
-// Whether a light adds anything to a group of pixels, found from its very points.
+// Whether a light adds anything to any point of a group.
 INLINE bool lights_group(const Tiles* tiles, uint group, const TestedLight* light, uint tests) {
   uint first = first_of_group(tiles, group);
   for (uint pixel = first; pixel < first + tiles->group_pixels; pixel += LANES)
@@ -99,13 +89,12 @@ INLINE bool lights_group(const Tiles* tiles, uint group, const TestedLight* ligh
 }
 
 // Writes the list of a tile, or its first `room` entries, and returns how long the list is.
-// squares_per_group: 1, 4 or 16.
-WORK uint list_lights(Tiles tile, uint squares_per_group, __global const float* tree, uint tree_stride,
-                      __global const ShadeLight* lights, uint light_count, uint tests,
-                      __global ListEntry* list, uint room) {
+WORK uint list_lights(Tiles tile, const CullFrame* frame, __global const float* tree,
+                      __global const ShadeLight* lights, __global ListEntry* list, uint room) {
+  uint tests = frame->tests, squares_per_group = (kSquaresPerTile << frame->group_log2) / kTilePixels;
   Walk walk;
   walk.tiles = tile;
-  start_walk(&walk, tree, tree_stride, light_count);
+  start_walk(&walk, tree, frame->tree_stride, frame->light_count);
   Facing facing[BOXES];
   bound_normals(&walk.tiles, facing);
   uint first_squares = (1u << squares_per_group) - 1;  // those of the first group
@@ -138,19 +127,17 @@ WORK uint list_lights(Tiles tile, uint squares_per_group, __global const float* 
   return count;
 }
 
-// The lists, in two runs. group_log2: 4, 6 or 8, for 1, 4 or 16 squares that share their lights. tests:
-// kByRange …
-// - fill 0: sets starts[tile] to how many lights the list of each tile holds, and writes the first of them to
-//   `found`, which has kFoundPerTile entries for each tile.
-// - fill 1: writes the lists to the places that `starts` tells: copied from `found` where that holds all of a
-//   list, otherwise found again.
-KERNEL void find_lights(__global const float* position, __global const float* normal, uint plane_stride,
-                        uint group_log2, __global const float* tree, uint tree_stride,
-                        __global const ShadeLight* lights, uint light_count, uint tests, uint fill,
+// The lists, in two runs:
+// - frame.fill 0: sets starts[tile] to how many lights the list of each tile holds, and writes the first of
+//   them to `found`, which has kFoundPerTile entries for each tile.
+// - frame.fill 1: writes the lists to the places that `starts` tells: copied from `found` where that holds
+//   all of a list, otherwise found again.
+KERNEL void find_lights(CullFrame frame, __global const float* position, __global const float* normal,
+                        __global const float* tree, __global const ShadeLight* lights,
                         __global ListEntry* found, __global uint* starts, __global ListEntry* all_lists) {
   uint tile = get_global_id(0), room = kFoundPerTile;
   __global ListEntry* list = found + tile * kFoundPerTile;
-  if (fill) {
+  if (frame.fill) {
     __global const ListEntry* first_found = list;
     list = all_lists + starts[tile];
     room = starts[tile + 1] - starts[tile];
@@ -163,16 +150,15 @@ KERNEL void find_lights(__global const float* position, __global const float* no
   Tiles own;
   own.position = position;
   own.normal = normal;
-  own.plane_stride = plane_stride;
+  own.plane_stride = frame.plane_stride;
   own.first_pixel = &first;
-  own.group_pixels = 1u << group_log2;
-  own.group_count = kTilePixels >> group_log2;
-  uint count = list_lights(own, (kSquaresPerTile << group_log2) / kTilePixels, tree, tree_stride, lights,
-                           light_count, tests, list, room);
-  if (!fill) starts[tile] = count;
+  own.group_pixels = 1u << frame.group_log2;
+  own.group_count = kTilePixels >> frame.group_log2;
+  uint count = list_lights(own, &frame, tree, lights, list, room);
+  if (!frame.fill) starts[tile] = count;
   // Both runs find the same lights. Should a compiler ever round them differently, the rest are entries
   // without squares.
-  for (ListEntry none = {0, 0}; fill && count < room; ++count) list[count] = none;
+  for (ListEntry none = {0, 0}; frame.fill && count < room; ++count) list[count] = none;
 }
 
 // Exclusive prefix sum in place, by one work-item. starts: tiles + 1; in: the counts; out: where each list

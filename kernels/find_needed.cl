@@ -61,7 +61,7 @@ WORK void note_tile(uint tile, uint plane_stride, __global const float* position
       vec3L p = load_vec3(position + first, plane_stride), n = load_vec3(normal + first, plane_stride);
       intL receives = may_light(light, &p, n);
       if (!any_lane(receives)) continue;
-      // Where a lookup goes does not depend on the geometric normal, so n takes its place.
+      // The place of a lookup doesn't depend on the surface normal, so n stands in for it.
       MapPoint point =
           receiver_point(map, shadow_faces, p, n, n, LIFT ? load_lanes(lift + first) : (floatL)(0.0f));
       receives &= point.inside;

@@ -33,9 +33,10 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight*
   uint end = LIGHT_LISTS ? list_starts[tile + 1] : frame.light_count;
   // With fewer lights than that, one block takes them all.
   bool long_sums = LONG_SUMS && end - entry > kSumBlock;
+  // Load the rows, and prefetch the next ones.
   Pixels rows[ROWS];
   uint square[ROWS];  // of each row, as a bit; none for background
-  EACH_ROW (row) {
+  EACH_ROW(row) {
     uint pixel = first + row * LANES;
     start_row(rows + row, &frame, pixel, &planes, LIT, long_sums);
     square[row] = any_lane(rows[row].covered) ? 1u << SQUARE_OF_PIXEL(pixel) : 0;
@@ -44,22 +45,24 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight*
 
   uint light_of[QUEUE], row_of[QUEUE], entry_of[QUEUE];
   while (LIT && entry < end) {
+    // Fill the queue with pairs of a light and a row that it may light.
     uint pairs = 0;
     for (; entry < end && pairs + ROWS <= QUEUE; ++entry) {
       uint light = LIGHT_LISTS ? list[entry].light : entry;
       uint squares = LIGHT_LISTS ? list[entry].squares : 0xffffffff;
-      EACH_ROW (row) {
+      EACH_ROW(row) {
         light_of[pairs] = light;
         row_of[pairs] = row;
         if (EXACT) entry_of[pairs] = LIGHT_LISTS ? entry : tile * frame.light_count + entry;
         pairs += (squares & square[row]) ? 1 : 0;
       }
     }
+    // Light them ABREAST at a time.
     for (uint pair = 0; pair < pairs; pair += ABREAST) {
       Pixels* pixels[ABREAST];
       __global const ShadeLight* light[ABREAST];
       uint met_by[ABREAST];
-      EACH_ABREAST (k, ABREAST) {
+      EACH_ABREAST(k, ABREAST) {
         uint at = min(pair + k, pairs - 1);
         pixels[k] = rows + (ROWS == 1 ? 0 : row_of[at]);
         light[k] = lights + light_of[at];
@@ -69,7 +72,7 @@ WORK void shade_rows(ShadeFrame frame, Planes planes, __global const ShadeLight*
     }
   }
 
-  EACH_ROW (row)
+  EACH_ROW(row)
     finish_row(rows + row, &frame, first + row * LANES, &planes, LIT, long_sums, square[row] != 0, image);
 }
 

@@ -26,9 +26,6 @@ enum { kCandidates = 256 };
 
 enum { kGroupPixels = 64, kTileGroups = kTilePixels / kGroupPixels };
 
-// Read LANES elements at a time.
-#define ALIGNED __attribute__((aligned(64)))
-
 // Lights that reach some group, in the order of their indices.
 typedef struct {
   uint count;
@@ -40,14 +37,11 @@ typedef struct {
 // Without LIGHT_AMBIENT a light adds nothing where a surface faces away from it.
 #define TESTS (LIGHT_AMBIENT ? kByCone : kByCone | kByFacing)
 
-// Those of some groups that a spot's cone may touch.
+// Which of `groups` a spot's cone may touch.
 INLINE GroupMask groups_in_cone(const Tiles* tiles, __global const ShadeLight* light, GroupMask groups) {
   GroupMask touched = 0;
   for (uint i = 0; i < tiles->box_count; ++i) {
-    vec3L middle, extent;
-    find_middle(tiles->boxes[i].low, tiles->boxes[i].high, &middle, &extent);
-    vec3L to_light = {light->position.x - middle.x, light->position.y - middle.y,
-                      light->position.z - middle.z};
+    vec3L extent, to_light = from_boxes(tiles->boxes + i, light, &extent);
     touched |= (GroupMask)lane_bits(may_touch_cone(to_light, extent, light)) << i * LANES;
   }
   return touched & groups;
@@ -111,18 +105,18 @@ typedef struct {
 // Finds the lights of ROWS rows, of `count` candidates. near: the candidates' numbers.
 INLINE void find_row_lights(const Task* task, uint first, const Candidates* candidates, const uint* near,
                             uint count, RowLights* rows) {
-  EACH_ABREAST (row, ROWS) rows[row].count = 0;
+  EACH_ABREAST(row, ROWS) rows[row].count = 0;
   if (count == 0) return;
   uint stride = task->frame->plane_stride;
   vec3L position[ROWS], normal[ROWS];
-  EACH_ABREAST (row, ROWS) {
+  EACH_ABREAST(row, ROWS) {
     position[row] = load_vec3(task->planes->position + first + row * LANES, stride);
     normal[row] = load_vec3(task->planes->normal + first + row * LANES, stride);
   }
   for (uint i = 0; i < count; ++i) {
     const TestedLight* tested = candidates->tested + near[i];
     uint light = candidates->light[near[i]];
-    EACH_ABREAST (row, ROWS) {
+    EACH_ABREAST(row, ROWS) {
       // Written even if it adds nothing: the next light then overwrites it. That saves a branch.
       rows[row].light[rows[row].count] = light;
       rows[row].count += any_lane(adds_light(position[row], normal[row], tested, TESTS)) ? 1 : 0;
@@ -136,7 +130,7 @@ INLINE void add_to_row(const uint abreast, const Task* task, Pixels* row, const 
   Pixels* rows[ABREAST];
   __global const ShadeLight* lights[ABREAST];
   uint entry[ABREAST];
-  EACH_ABREAST (k, abreast) {
+  EACH_ABREAST(k, abreast) {
     rows[k] = row;
     lights[k] = task->lights + light[k];
     entry[k] = 0;
@@ -206,23 +200,24 @@ INLINE void shade_tile(const Task* task, uint first, uint next, uint later, uint
 }
 
 // Lights a block of tiles. first_pixel: of each of them. The rest: see shade_tiles().
-WORK void shade_block(ShadeFrame frame, Planes planes, __global const float* tree, uint tree_stride,
-                      __global const ShadeLight* lights, const uint* first_pixel, uint tiles, uint width,
+WORK void shade_block(ShadeTilesFrame frame, Planes planes, __global const float* tree,
+                      __global const ShadeLight* lights, const uint* first_pixel, uint tiles,
                       __global float* image, __global uint* counts) {
+  uint width = frame.block_width;
   Walk walk;
   walk.tiles.position = planes.position;
   walk.tiles.normal = planes.normal;
-  walk.tiles.plane_stride = frame.plane_stride;
+  walk.tiles.plane_stride = frame.shade.plane_stride;
   walk.tiles.group_pixels = kGroupPixels;
   LightSums kept[kTilePixels / LANES];
   Candidates candidates;
-  Task task = {&frame, &planes, lights, image, false, false};
-  uint step = tiles;                             // tiles that share a walk
-  uint last = frame.plane_stride - kTilePixels;  // the picture's last tile
+  Task task = {&frame.shade, &planes, lights, image, false, false};
+  uint step = tiles;                                   // tiles that share a walk
+  uint last = frame.shade.plane_stride - kTilePixels;  // the picture's last tile
   for (uint from = 0; from < tiles;) {
     walk.tiles.first_pixel = first_pixel + from;
     walk.tiles.group_count = step * kTileGroups;
-    start_walk(&walk, tree, tree_stride, LIT ? frame.light_count : 0);
+    start_walk(&walk, tree, frame.tree_stride, LIT ? frame.shade.light_count : 0);
     find_lights(&walk, lights, &candidates);
     if (step > 1 && candidates.count == kCandidates) {
       step = 1;
@@ -246,27 +241,27 @@ WORK void shade_block(ShadeFrame frame, Planes planes, __global const float* tre
   }
 }
 
-// Planes and image: see shade(). tiles_x, tiles_y: of the G-buffer; width, height: of a block, in tiles,
-// kBlockTiles together or fewer. There is a work-item for each block, up to a multiple of kBlockRun. Blocks
-// side by side follow each other in runs, whose planes lie together; stride, which has no factor in common
-// with their number, spreads the runs over the picture, because a device may share them out many at a time.
-// counts: two for each tile, see shade_tile().
-KERNEL void shade_tiles(ShadeFrame frame, __global const float* position, __global const float* normal,
+// Planes and image: see shade(). There is a work-item for each block, up to a multiple of kBlockRun. Blocks
+// side by side follow each other in runs, whose planes lie together. frame.run_stride, which has no factor in
+// common with the number of runs, spreads these over the picture, because a device may share work-items out
+// many at a time. counts: two for each tile, see shade_tile().
+KERNEL void shade_tiles(ShadeTilesFrame frame, __global const float* position, __global const float* normal,
                         __global const float* diffuse, __global const float* specular,
                         __global const float* ambient, __global const float* emission,
                         __global const uint* surface_normal, __global const uint* model,
-                        __global const float* tree, uint tree_stride, __global const ShadeLight* lights,
-                        uint tiles_x, uint tiles_y, uint width, uint height, uint stride,
-                        __global float* image, __global uint* counts) {
+                        __global const float* tree, __global const ShadeLight* lights, __global float* image,
+                        __global uint* counts) {
   Planes planes = {position, normal, diffuse, specular, ambient, emission, surface_normal, 0, model};
-  uint blocks_x = (tiles_x + width - 1) / width, blocks_y = (tiles_y + height - 1) / height;
+  uint width = frame.block_width, height = frame.block_height;
+  uint blocks_x = (frame.tiles_x + width - 1) / width, blocks_y = (frame.tiles_y + height - 1) / height;
   uint blocks = blocks_x * blocks_y, runs = (blocks + kBlockRun - 1) / kBlockRun, item = get_global_id(0);
-  uint block = (uint)((ulong)(item / kBlockRun) * stride % runs) * kBlockRun + item % kBlockRun;
+  uint run = (uint)((ulong)(item / kBlockRun) * frame.run_stride % runs);
+  uint block = run * kBlockRun + item % kBlockRun;
   if (block >= blocks) return;
   uint block_x = block % blocks_x * width, block_y = block / blocks_x * height;
-  uint columns = min(width, tiles_x - block_x), tiles = columns * min(height, tiles_y - block_y);
+  uint columns = min(width, frame.tiles_x - block_x), tiles = columns * min(height, frame.tiles_y - block_y);
   uint first_pixel[kBlockTiles];
   for (uint tile = 0; tile < tiles; ++tile)
-    first_pixel[tile] = ((block_y + tile / columns) * tiles_x + block_x + tile % columns) * kTilePixels;
-  shade_block(frame, planes, tree, tree_stride, lights, first_pixel, tiles, width, image, counts);
+    first_pixel[tile] = ((block_y + tile / columns) * frame.tiles_x + block_x + tile % columns) * kTilePixels;
+  shade_block(frame, planes, tree, lights, first_pixel, tiles, image, counts);
 }

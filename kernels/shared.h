@@ -80,6 +80,9 @@ enum { kMaxTreeDepth = 40 };
 // Tiles that a work-item of beam_shadows.cl takes, one after another.
 enum { kBeamRun = 8 };
 
+// Tiles side by side that a work-item of clustered_light.cl takes, one after another.
+enum { kClusterRun = 8 };
+
 // A light whose rays the tree's triangles may block, in the tree's space.
 typedef struct {
   float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
@@ -272,6 +275,53 @@ typedef struct {
   uint texel_count;   // of the shadow maps, at least 1
 } ShadeFrame;
 SHARED_SIZE(ShadeFrame, 112);
+
+// What follows are the kernels' arguments that aren't buffers.
+
+// Of find_lights() in cull.cl.
+typedef struct {
+  uint plane_stride;  // floats from a plane of the G-buffer to the next
+  uint tree_stride;   // floats from a plane of the tree over the lights to the next
+  uint light_count;
+  uint group_log2;  // 4, 6 or 8, for 1, 4 or 16 squares that share their lights
+  uint tests;       // kByRange …
+  uint fill;        // 0: count and keep; 1: write the lists
+} CullFrame;
+SHARED_SIZE(CullFrame, 24);
+
+// Of beam_shadows.cl.
+typedef struct {
+  float4 to_tree_x, to_tree_y, to_tree_z;  // xyz: the rows of the rotation from view space to the tree's axes
+  float4 tree_most;                        // xyz: the largest |x|, |y|, |z| in the tree
+  float tree_scale;                        // the tree's units a metre, a power of two
+  int tree_root;                           // TriangleTree::root
+  uint tiles;                              // of the G-buffer
+  uint plane_stride;                       // floats from a plane of the G-buffer to the next
+  uint light_count;
+  uint pad0, pad1, pad2;
+} BeamFrame;
+SHARED_SIZE(BeamFrame, 96);
+
+// Of shade_tiles.cl. A block is what a work-item takes: kBlockTiles together or fewer.
+typedef struct {
+  ShadeFrame shade;
+  uint tree_stride;                // floats from a plane of the tree over the lights to the next
+  uint tiles_x, tiles_y;           // of the G-buffer
+  uint block_width, block_height;  // tiles
+  uint run_stride;                 // see shade_tiles()
+  uint pad0, pad1;
+} ShadeTilesFrame;
+SHARED_SIZE(ShadeTilesFrame, 144);
+
+// Of clustered_light.cl.
+typedef struct {
+  ShadeFrame shade;
+  uint light_count;   // of the tree of clusters
+  uint levels;        // of that tree
+  float light_error;  // E > 0: a channel's bound shall be E·max(1, its light) at most
+  uint tiles_x;       // of the G-buffer
+} ClusterFrame;
+SHARED_SIZE(ClusterFrame, 128);
 
 #undef SHARED_SIZE
 #ifdef __cplusplus

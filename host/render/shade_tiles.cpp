@@ -45,8 +45,17 @@ TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTil
   const std::size_t runs = (blocks + kBlockRun - 1) / kBlockRun;
   std::vector<uint> counts(2 * (arguments.frame.plane_stride / kTilePixels));
   const Buffer<uint> counts_buffer = borrowedForOutput(device, counts);
+  const ShadeTilesFrame frame{.shade = arguments.frame,
+                              .tree_stride = uint(arguments.tree_stride),
+                              .tiles_x = uint(arguments.tiles_x),
+                              .tiles_y = uint(arguments.tiles_y),
+                              .block_width = uint(arguments.block.width),
+                              .block_height = uint(arguments.block.height),
+                              .run_stride = uint(spreadingStride(runs)),
+                              .pad0 = 0,
+                              .pad1 = 0};
   launch(device, kernel,
-         {{"frame", arguments.frame},
+         {{"frame", frame},
           {"position", gbuffer.position},
           {"normal", gbuffer.normal},
           {"diffuse", gbuffer.diffuse},
@@ -56,13 +65,7 @@ TileCounts shadeTiles(Device& device, const std::string& defines, const ShadeTil
           {"surface_normal", gbuffer.geometric_normal},
           {"model", gbuffer.model},
           {"tree", arguments.tree},
-          {"tree_stride", uint(arguments.tree_stride)},
           {"lights", arguments.lights},
-          {"tiles_x", uint(arguments.tiles_x)},
-          {"tiles_y", uint(arguments.tiles_y)},
-          {"width", uint(arguments.block.width)},
-          {"height", uint(arguments.block.height)},
-          {"stride", uint(spreadingStride(runs))},
           {"image", arguments.image},
           {"counts", counts_buffer}},
          {.items = runs * kBlockRun});

@@ -115,6 +115,58 @@ __kernel void report_shade_frame(__global uint* out) {
   *out++ = OFFSET(texel_count);
 }
 
+__kernel void report_cull_frame(__global uint* out) {
+  CullFrame value;
+  *out++ = sizeof(CullFrame);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(tree_stride);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(group_log2);
+  *out++ = OFFSET(tests);
+  *out++ = OFFSET(fill);
+}
+
+__kernel void report_beam_frame(__global uint* out) {
+  BeamFrame value;
+  *out++ = sizeof(BeamFrame);
+  *out++ = OFFSET(to_tree_x);
+  *out++ = OFFSET(to_tree_y);
+  *out++ = OFFSET(to_tree_z);
+  *out++ = OFFSET(tree_most);
+  *out++ = OFFSET(tree_scale);
+  *out++ = OFFSET(tree_root);
+  *out++ = OFFSET(tiles);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+  *out++ = OFFSET(pad2);
+}
+
+__kernel void report_shade_tiles_frame(__global uint* out) {
+  ShadeTilesFrame value;
+  *out++ = sizeof(ShadeTilesFrame);
+  *out++ = OFFSET(shade);
+  *out++ = OFFSET(tree_stride);
+  *out++ = OFFSET(tiles_x);
+  *out++ = OFFSET(tiles_y);
+  *out++ = OFFSET(block_width);
+  *out++ = OFFSET(block_height);
+  *out++ = OFFSET(run_stride);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+}
+
+__kernel void report_cluster_frame(__global uint* out) {
+  ClusterFrame value;
+  *out++ = sizeof(ClusterFrame);
+  *out++ = OFFSET(shade);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(levels);
+  *out++ = OFFSET(light_error);
+  *out++ = OFFSET(tiles_x);
+}
+
 // The members of a frame that came by value, as shade() gets it: a wrong layout of arguments shows here only.
 __kernel void report_frame_argument(__global uint* out, ShadeFrame frame) {
   out[0] = as_uint(frame.ambient.x);

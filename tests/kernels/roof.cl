@@ -23,20 +23,20 @@ __kernel void roof(ShadeFrame frame, __global const ShadeLight* lights, uint lig
   intL mask = (intL)((int)lights[0].kind - 1), step = (intL)((int)lights[0].khr_window + 1);
   floatL x[CHAINS];
   intL n[CHAINS / 2];
-  EACH_CHAIN (c) x[c] = (floatL)((float)(first + c) * 1e-9f);
+  EACH_CHAIN(c) x[c] = (floatL)((float)(first + c) * 1e-9f);
   SOME_CHAINS(c, CHAINS / 2) n[c] = (intL)((int)(first + c));
   for (uint pair = 0; pair < light_count; pair += 2) {
-    _Pragma("unroll") for (int turn = 0; turn < 5; ++turn) EACH_CHAIN (c) x[c] = x[c] * factor + term;
-    EACH_CHAIN (c) x[c] = x[c] * factor;
+    _Pragma("unroll") for (int turn = 0; turn < 5; ++turn) EACH_CHAIN(c) x[c] = x[c] * factor + term;
+    EACH_CHAIN(c) x[c] = x[c] * factor;
     SOME_CHAINS(c, CHAINS / 2) n[c] = (n[c] & mask) + step;
-    EACH_CHAIN (c) x[c] = x[c] + term;
+    EACH_CHAIN(c) x[c] = x[c] + term;
     SOME_CHAINS(c, 10) x[c] = x[c] < limit ? x[c] : term;
-    EACH_CHAIN (c) x[c] = x[c] * factor;
+    EACH_CHAIN(c) x[c] = x[c] * factor;
     SOME_CHAINS(c, 4) x[c + 10] = max_lanes(x[c + 10], term);
     SOME_CHAINS(c, 2) x[c + 14] = convert_floatL(n[c]);
   }
   floatL sum = 0.0f;
-  EACH_CHAIN (c) sum += x[c];
+  EACH_CHAIN(c) sum += x[c];
   SOME_CHAINS(c, CHAINS / 2) sum += convert_floatL(n[c]);
   store_lanes(image + first, sum);
 }
