@@ -1,20 +1,23 @@
 // Which pixels each light's shadows leave lit: exactly, by rays that go together.
 //
-// All rays between a tile's points and a light share an end. So instead of a ray for each pair, a walk through a tree over the scene's triangles
-// finds what lies in the beam between them: most beams hold nothing, or a triangle that hides all of the points.
+// All rays between a tile's points and a light share an end. So instead of a ray for each pair, a walk
+// through a tree over the scene's triangles finds what lies in the beam between them: most beams hold
+// nothing, or a triangle that hides all of the points.
 //
-// In: planes of a G-buffer, light lists, lights and the tree. Out: for each entry of the lists kPairWords words, a bit for each pixel of the tile: the
-// light reaches it. Where the scene has materials with holes, or lights of a size, also as many words of the pixels for which rays decide: those
-// from which a texture is between, and those for which no single triangle, or the absence of any, decides about all of a light.
+// In: planes of a G-buffer, light lists, lights and the tree. Out: for each entry of the lists kPairWords
+// words, a bit for each pixel of the tile: the light reaches it. Where the scene has materials with holes, or
+// lights of a size, also as many words of the pixels for which rays decide: those from which a texture is
+// between, and those for which no single triangle, or the absence of any, decides about all of a light.
 //
 //   the tile's points in clusters, clusters in bundles (beam_points.clh)
 //   └─ for each light of the tile's list, for each bundle
 //        the last triangles that hid much from this light; then
-//        a walk with the beam of the bundle (beam.clh) until kBatch candidates are found
+//        a walk with the beam of the bundle (beam.clh) until kCandidateBatch candidates are found
 //        └─ for each cluster: its candidates (blockers.clh, candidates.clh), and alone the rest of the walk
 //
-// A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a walk of some 10 nodes and blocks of 16
-// triangles for each bundle and light; 15 instructions for each candidate and row of points.
+// A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a
+// walk of some 10 nodes and blocks of 16 triangles for each bundle and light; 15 instructions for each
+// candidate and row of points.
 #include "beam.clh"
 #include "beam_points.clh"
 #include "blockers.clh"
@@ -31,114 +34,125 @@ typedef struct {
   uint height;
 } BeamWalk;
 
-// Adds what may hide points of the beam to the candidates. Returns true if a triangle covers the beam. hollow: bits of those with holes.
-INLINE bool take_blockers(const Scene *scene, const Outlook *outlook, const Beam *beam, const Blockers *blockers, uint hollow,
-                          Candidates *candidates) {
+// Adds what may hide points of the beam to the candidates. Returns true if a triangle covers the beam.
+// holed: bits of those with holes.
+INLINE bool take_blockers(const Scene* scene, const LightView* view, const Beam* beam,
+                          const Blockers* blockers, uint holed, Candidates* candidates) {
   Triangles triangles;
-  if (!meet(beam, outlook, scene->blocks, blockers, &triangles)) return false;
-  uint covers = triangles.covers & ~hollow;
+  if (!test_triangles(beam, view, scene->blocks, blockers, &triangles)) return false;
+  uint covers = triangles.covers & ~holed;
   if (covers) {
-    remember(scene, reference_of(blockers, lowest_bit(covers)));
+    remember_blocker(scene, reference_of(blockers, lowest_bit(covers)));
     return true;
   }
-  append(candidates, &triangles, blockers, hollow);
+  append_candidates(candidates, &triangles, blockers, holed);
   return false;
 }
 
-// Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the beam.
-SHARED_WORK bool find_candidates(const Scene *scene, const Outlook *outlook, const Beam *beam, BeamWalk *walk, Candidates *candidates, uint batch) {
+// Goes on with a walk, until `batch` candidates are found or it ends. Returns true if a triangle covers the
+// beam.
+SHARED_WORK bool find_candidates(const Scene* scene, const LightView* view, const Beam* beam, BeamWalk* walk,
+                                 Candidates* candidates, uint batch) {
   candidates->count = 0;
-  int *stack = walk->stack;
+  int* stack = walk->stack;
   uint height = walk->height;
   bool covered = false;
   while (height && !covered && candidates->count < batch) {
     int reference = stack[--height];
     if (reference >= 0) {
       uint touched = touched_children(beam, scene->nodes + reference * (kNodeRows * kTreeWidth));
-      for (; touched; touched &= touched - 1) stack[height++] = scene->children[reference * kTreeWidth + lowest_bit(touched)];
+      for (; touched; touched &= touched - 1)
+        stack[height++] = scene->children[reference * kTreeWidth + lowest_bit(touched)];
       continue;
     }
     uint block = ~reference, bits = scene->block_bits[block];
     for (uint i = 0; i < kTreeWidth && !covered; i += LANES) {
       Blockers blockers;
-      load_blockers(outlook, scene->blocks, block, i, bits >> i, &blockers);
-      covered = take_blockers(scene, outlook, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
+      load_blockers(view, scene->blocks, block, i, bits >> i, &blockers);
+      covered = take_blockers(scene, view, beam, &blockers, HOLES ? bits >> (kTreeWidth + i) : 0, candidates);
     }
   }
   walk->height = height;
   return covered;
 }
 
-// Those triangles that hid much from this light lately. Returns true if one covers the beam.
-INLINE bool recall(const Scene *scene, const Outlook *outlook, const Beam *beam, Candidates *candidates) {
+// Finds candidates among the triangles in the cache, which hid much from this light in the tiles before.
+// Returns true if one covers the beam.
+INLINE bool test_remembered(const Scene* scene, const LightView* view, const Beam* beam,
+                            Candidates* candidates) {
   candidates->count = 0;
   for (uint i = 0; i < kTreeWidth; i += LANES) {
     uint references[LANES], used = 0;
     for (uint lane = 0; lane < LANES; ++lane) {
-      uint reference = scene->memory->reference[scene->place][i + lane];
+      uint reference = scene->cache->reference[scene->cache_slot][i + lane];
       bool is_one = reference != NO_TRIANGLE;
       used |= is_one ? 1u << lane : 0;
       references[lane] = is_one ? reference : 0;
     }
     if (!used) continue;
     Blockers blockers;
-    gather_blockers(outlook, scene->blocks, references, used, &blockers);
+    gather_blockers(view, scene->blocks, references, used, &blockers);
     // None of them has holes.
-    if (take_blockers(scene, outlook, beam, &blockers, 0, candidates)) return true;
+    if (take_blockers(scene, view, beam, &blockers, 0, candidates)) return true;
   }
   return false;
 }
 
-INLINE void hide_all(const Cluster *cluster, Remaining *remaining) {
+INLINE void hide_all(const Cluster* cluster, Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) remaining->left[row] = 0;
 }
 
-INLINE Target target_of(const Scene *scene, const Outlook *outlook, const Cluster *cluster, const Remaining *remaining) {
-  return make_target(outlook, &cluster->bounds, bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
+INLINE Target target_of(const Scene* scene, const LightView* view, const Cluster* cluster,
+                        const Remaining* remaining) {
+  return make_target(view, &cluster->bounds,
+                     bound_rows(scene->tile, cluster->first_row, cluster->end_row, remaining->left));
 }
 
-// Goes to the end of a walk for one cluster.
-SHARED_WORK void finish_cluster(const Scene *scene, const Outlook *outlook, const Cluster *cluster, BeamWalk *walk, Candidates *candidates,
-                         Remaining *remaining) {
+// Goes on with a walk to its end, for the points of one cluster alone.
+SHARED_WORK void finish_cluster(const Scene* scene, const LightView* view, const Cluster* cluster,
+                                BeamWalk* walk, Candidates* candidates, Remaining* remaining) {
   Beam beam;
   uint left = 0;
   while (walk->height) {
-    if (has_size(outlook) && rays_decide(cluster, remaining)) return;
+    if (has_size(view) && rays_decide(cluster, remaining)) return;
     // A beam to half of the points meets less.
     uint now = count_points(remaining->left, cluster->first_row, cluster->end_row);
     if (left == 0 || 2 * now <= left) {
-      Target target = target_of(scene, outlook, cluster, remaining);
-      make_beam(&beam, outlook, &target);
+      Target target = target_of(scene, view, cluster, remaining);
+      make_beam(&beam, view, &target);
       left = now;
     }
-    if (find_candidates(scene, outlook, &beam, walk, candidates, 1)) {
+    if (find_candidates(scene, view, &beam, walk, candidates, 1)) {
       hide_all(cluster, remaining);
       return;
     }
-    if (candidates->count && !test_candidates(scene, outlook, 0, candidates, cluster, remaining)) return;
+    if (candidates->count && !test_candidates(scene, view, 0, candidates, cluster, remaining)) return;
   }
 }
 
-// The clusters of a bundle that have points left, each with its target.
+// The clusters of a bundle that have points left, each with what a triangle has to cover to hide all of them.
 typedef struct {
   uint count;
-  const Cluster *cluster[kMaxClusters];
+  const Cluster* cluster[kMaxClusters];
   Target target[kMaxClusters];
 } Active;
 
 // The beam to all of them, which are of a bundle with these bounds.
-INLINE void beam_to_all(const Outlook *outlook, const PointBounds *bounds, const Active *active, Beam *beam) {
+INLINE void beam_to_all(const LightView* view, const PointBounds* bounds, const Active* active, Beam* beam) {
   Rectangle rectangle = no_rectangle();
   for (uint i = 0; i < active->count; ++i) grow_rectangle(&rectangle, &active->target[i].rectangle);
   Target target = {rectangle, *bounds};
-  make_beam(beam, outlook, &target);
+  make_beam(beam, view, &target);
 }
 
-// Tests candidates against all clusters, and leaves those active that have points left. Returns whether any are.
-INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidates *candidates, Active *active, Remaining *remaining) {
+// Tests candidates against all clusters, and leaves those active that have points left. Returns whether any
+// are.
+INLINE bool test_all(const Scene* scene, const LightView* view, const Candidates* candidates, Active* active,
+                     Remaining* remaining) {
   uint count = 0;
   for (uint i = 0; i < active->count; ++i) {
-    if (!test_candidates(scene, outlook, active->target + i, candidates, active->cluster[i], remaining)) continue;
+    if (!test_candidates(scene, view, active->target + i, candidates, active->cluster[i], remaining))
+      continue;
     active->cluster[count] = active->cluster[i];
     active->target[count++] = active->target[i];
   }
@@ -146,22 +160,24 @@ INLINE bool test_all(const Scene *scene, const Outlook *outlook, const Candidate
   return count > 0;
 }
 
-// Takes from what is left of some points, which have these bounds, those that a light doesn't reach. Returns false and does nothing if the light is
-// amid the points or near them.
-SHARED_WORK bool shade_alone(const Scene *scene, float4 place, float size, const Cluster *points, Remaining *remaining) {
-  Outlook outlook;
-  for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
-  if (!look(place, size, &points->bounds.box, &outlook)) return false;
-  see_rows(scene->tile, &outlook, points->first_row, points->end_row, remaining->left);
+// Removes from `remaining` those points of a cluster that a light doesn't reach. Returns false and does
+// nothing if the light is amid the points or too near them (see view_light()).
+SHARED_WORK bool shadow_cluster(const Scene* scene, float4 place, float size, const Cluster* points,
+                                Remaining* remaining) {
+  LightView view;
+  for (uint axis = 0; axis < 3; ++axis) view.most[axis] = scene->most[axis];
+  if (!view_light(place, size, &points->bounds.box, &view)) return false;
+  project_rows(scene->tile, &view, points->first_row, points->end_row, remaining->left);
   BeamWalk walk;
   walk.height = 1;
   walk.stack[0] = scene->root;
-  finish_cluster(scene, &outlook, points, &walk, scene->candidates, remaining);
+  finish_cluster(scene, &view, points, &walk, scene->candidates, remaining);
   return true;
 }
 
-// Takes from what is left of a cluster's points, amid which a light is or near which, those that it doesn't reach.
-SHARED_WORK void shade_points(const Scene *scene, float4 place, float size, const Cluster *cluster, Remaining *remaining) {
+// The same for a light that is amid the points: one point after another.
+SHARED_WORK void shadow_points(const Scene* scene, float4 place, float size, const Cluster* cluster,
+                               Remaining* remaining) {
   for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
     uint lit = 0;
     for (uint points = remaining->left[row]; points; points &= points - 1) {
@@ -170,68 +186,79 @@ SHARED_WORK void shade_points(const Scene *scene, float4 place, float size, cons
       for (uint axis = 0; axis < 3; ++axis) box.low[axis] = box.high[axis] = scene->tile->place[axis][point];
       Cluster alone = {row, row + 1, false, bounds_of(&box)};
       remaining->left[row] = (ushort)(points & (0 - points));
-      // Nothing hides a point from a light where it is itself, and rays decide about one amid a light of a size.
-      if (!shade_alone(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f) remaining->unsure[row] |= remaining->left[row];
+      // Nothing hides a point from a light at the same place. About a point inside a light of a size rays
+      // decide.
+      if (!shadow_cluster(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f)
+        remaining->unsure[row] |= remaining->left[row];
       lit |= remaining->left[row];
     }
     remaining->left[row] = (ushort)lit;
   }
 }
 
-// Takes from what is left of a bundle's points those that a light doesn't reach.
-SHARED_WORK void shade_bundle(const Scene *scene, float4 place, float size, const PointBounds *bounds, uint first, uint end, Remaining *remaining) {
-  TilePoints *tile = scene->tile;
+// Removes from `remaining` those points of clusters [first, end), a bundle, that a light doesn't reach.
+// bounds: of the bundle.
+SHARED_WORK void shadow_bundle(const Scene* scene, float4 place, float size, const PointBounds* bounds,
+                               uint first, uint end, Remaining* remaining) {
+  // Find the clusters that have points left.
+  TilePoints* tile = scene->tile;
   Active active;
   active.count = 0;
   for (uint i = first; i < end; ++i) {
-    const Cluster *cluster = tile->cluster + i;
+    const Cluster* cluster = tile->cluster + i;
     if (!count_points(remaining->left, cluster->first_row, cluster->end_row)) continue;
     active.cluster[active.count++] = cluster;
   }
   if (!active.count) return;
-  Outlook outlook;
-  for (uint axis = 0; axis < 3; ++axis) outlook.most[axis] = scene->most[axis];
-  Candidates *candidates = scene->candidates;
+  // View the light from the bundle. If it is amid the points, take the clusters one by one.
+  LightView view;
+  for (uint axis = 0; axis < 3; ++axis) view.most[axis] = scene->most[axis];
+  Candidates* candidates = scene->candidates;
   BeamWalk walk;
-  if (!look(place, size, &bounds->box, &outlook)) {
+  if (!view_light(place, size, &bounds->box, &view)) {
     for (uint i = 0; i < active.count; ++i)
-      if (!shade_alone(scene, place, size, active.cluster[i], remaining)) shade_points(scene, place, size, active.cluster[i], remaining);
+      if (!shadow_cluster(scene, place, size, active.cluster[i], remaining))
+        shadow_points(scene, place, size, active.cluster[i], remaining);
     return;
   }
+  // Project the points, and make the bundle's beam.
   for (uint i = 0; i < active.count; ++i) {
-    const Cluster *cluster = active.cluster[i];
-    see_rows(tile, &outlook, cluster->first_row, cluster->end_row, remaining->left);
-    active.target[i] = target_of(scene, &outlook, cluster, remaining);
+    const Cluster* cluster = active.cluster[i];
+    project_rows(tile, &view, cluster->first_row, cluster->end_row, remaining->left);
+    active.target[i] = target_of(scene, &view, cluster, remaining);
   }
   Beam beam;
-  beam_to_all(&outlook, bounds, &active, &beam);
-  bool covered = recall(scene, &outlook, &beam, candidates);
+  beam_to_all(&view, bounds, &active, &beam);
+  // Test what hid much from this light in the tiles before.
+  bool covered = test_remembered(scene, &view, &beam, candidates);
   if (!covered && candidates->count) {
     uint before = active.count;
-    if (!test_all(scene, &outlook, candidates, &active, remaining)) return;
-    if (active.count < before) beam_to_all(&outlook, bounds, &active, &beam);
+    if (!test_all(scene, &view, candidates, &active, remaining)) return;
+    if (active.count < before) beam_to_all(&view, bounds, &active, &beam);
   }
+  // Walk the tree until enough candidates are found.
   if (!covered) {
     walk.height = 1;
     walk.stack[0] = scene->root;
-    covered = find_candidates(scene, &outlook, &beam, &walk, candidates, kBatch);
+    covered = find_candidates(scene, &view, &beam, &walk, candidates, kCandidateBatch);
   }
   if (covered) {
     for (uint i = 0; i < active.count; ++i) hide_all(active.cluster[i], remaining);
     return;
   }
-  if (candidates->count && !test_all(scene, &outlook, candidates, &active, remaining)) return;
+  // Test them, and finish the walk for each cluster that has points left.
+  if (candidates->count && !test_all(scene, &view, candidates, &active, remaining)) return;
   for (uint i = 0; i < active.count && walk.height; ++i) {
     BeamWalk rest;
     rest.height = walk.height;
     for (uint j = 0; j < walk.height; ++j) rest.stack[j] = walk.stack[j];
-    finish_cluster(scene, &outlook, active.cluster[i], &rest, candidates, remaining);
+    finish_cluster(scene, &view, active.cluster[i], &rest, candidates, remaining);
   }
 }
 
-// Sets `remaining` to the points that a light may shine on: those in its range that face it. Margins make up for rounding and for the lift, so that
-// this misses none that shading lights. Returns how many there are.
-INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remaining *remaining) {
+// Sets `remaining` to the points that a light may shine on: those in its range that face it. Margins make up
+// for rounding and for the lift, so that this misses none that shading lights. Returns how many there are.
+INLINE uint find_receivers(const TilePoints* tile, const BeamLight* light, Remaining* remaining) {
   uint rows = tile->cluster_count ? tile->cluster[0].end_row : 0, count = 0;
   for (uint i = 1; i < tile->cluster_count; ++i) rows = max(rows, tile->cluster[i].end_row);
   bool parallel = light->place.w == 0.0f;
@@ -240,16 +267,18 @@ INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remai
     uint receives = 0;
     for (uint i = 0; i < kTreeWidth; i += LANES) {
       uint point = row * kTreeWidth + i;
-      vec3L n = {part_of(tile->normal[0], point), part_of(tile->normal[1], point), part_of(tile->normal[2], point)};
+      vec3L n = {lanes_at(tile->normal[0], point), lanes_at(tile->normal[1], point),
+                 lanes_at(tile->normal[2], point)};
       intL faces;
       if (parallel) {
         faces = dot3s(n, light->place) > -1e-5f;
       } else {
-        vec3L way = {light->place.x - part_of(tile->place[0], point), light->place.y - part_of(tile->place[1], point),
-                     light->place.z - part_of(tile->place[2], point)};
-        floatL length = abs_lanes(way.x) + abs_lanes(way.y) + abs_lanes(way.z);
-        faces = dot3(n, way) > -1e-5f * length - tile->most_lift;
-        faces &= !(dot3(way, way) > reach2);
+        vec3L to_light = {light->place.x - lanes_at(tile->place[0], point),
+                          light->place.y - lanes_at(tile->place[1], point),
+                          light->place.z - lanes_at(tile->place[2], point)};
+        floatL length = abs_lanes(to_light.x) + abs_lanes(to_light.y) + abs_lanes(to_light.z);
+        faces = dot3(n, to_light) > -1e-5f * length - tile->most_lift;
+        faces &= !(dot3(to_light, to_light) > reach2);
       }
       receives |= lane_bits(faces) << i;
     }
@@ -261,11 +290,13 @@ INLINE uint find_receivers(const TilePoints *tile, const BeamLight *light, Remai
   return count;
 }
 
-// Writes bits of points to those of their pixels.
-INLINE void write_pixels(const TilePoints *tile, const ushort *left, const ushort *masked, uint keep, __global uint *words) {
+// Writes bits of points to a tile's words, each to the bit of its pixel: of the points that are `left`, with
+// keep = 0xffff those that are not in `masked`, with keep = 0 those that are.
+INLINE void write_pixels(const TilePoints* tile, const ushort* left, const ushort* masked, uint keep,
+                         __global uint* words) {
   for (uint i = 0; i < kPairWords; ++i) words[i] = 0;
   for (uint i = 0; i < tile->cluster_count; ++i) {
-    const Cluster *cluster = tile->cluster + i;
+    const Cluster* cluster = tile->cluster + i;
     for (uint row = cluster->first_row; row < cluster->end_row; ++row) {
       uint bits = left[row] & (masked[row] ^ keep);
       if (cluster->whole) {
@@ -281,70 +312,88 @@ INLINE void write_pixels(const TilePoints *tile, const ushort *left, const ushor
   }
 }
 
-// Finds the light's place in the memory.
-INLINE void recall_light(Scene *scene, uint light) {
-  Memory *memory = scene->memory;
-  scene->place = light % kLightsRemembered;
-  if (memory->light[scene->place] == light) return;
-  memory->light[scene->place] = light;
-  memory->next[scene->place] = 0;
-  for (uint i = 0; i < kTreeWidth; ++i) memory->reference[scene->place][i] = NO_TRIANGLE;
+// Selects the light's slot of the cache, and clears it if another light had it.
+INLINE void select_cache_slot(Scene* scene, uint light) {
+  BlockerCache* cache = scene->cache;
+  scene->cache_slot = light % kCachedLights;
+  if (cache->light[scene->cache_slot] == light) return;
+  cache->light[scene->cache_slot] = light;
+  cache->next[scene->cache_slot] = 0;
+  for (uint i = 0; i < kTreeWidth; ++i) cache->reference[scene->cache_slot][i] = NO_TRIANGLE;
 }
 
-// Decides the pairs of a tile. All but `number`: see beam_shadows().
-WORK void shade_tile(uint number, Scene scene, ToTree to_tree, __global const float *position, __global const float *normal, __global const float *lift,
-                     uint plane_stride, __global const BeamLight *lights, uint light_count, __global const uint *list_starts,
-                     __global const ListEntry *list, __global uint *lit, __global uint *unsure, __global uint *receivers) {
-  uint entry = LIGHT_LISTS ? list_starts[number] : number * light_count;
-  uint end = LIGHT_LISTS ? list_starts[number + 1] : entry + light_count;
+// The buffers of a G-buffer, its lights and its pairs: see beam_shadows().
+typedef struct {
+  __global const float *position, *normal, *lift;
+  __global const BeamLight* lights;
+  __global const uint* list_starts;
+  __global const ListEntry* list;
+  __global uint *lit, *unsure, *receivers;
+} PairBuffers;
+
+// Decides the pairs of a tile.
+WORK void shadow_tile(uint number, const BeamFrame* frame, Scene scene, PairBuffers buffers) {
+  uint entry = LIGHT_LISTS ? buffers.list_starts[number] : number * frame->light_count;
+  uint end = LIGHT_LISTS ? buffers.list_starts[number + 1] : entry + frame->light_count;
   if (entry == end) return;
+  // Load the tile's points.
   TilePoints tile;
   scene.tile = &tile;
-  load_points(&tile, &to_tree, position, normal, lift, plane_stride, number * kTilePixels);
+  load_points(&tile, frame, buffers.position, buffers.normal, buffers.lift, number * kTilePixels);
   make_bundles(&tile);
   for (; entry < end; ++entry) {
-    uint index = LIGHT_LISTS ? list[entry].light : entry - number * light_count;
-    BeamLight light = lights[index];
+    uint index = LIGHT_LISTS ? buffers.list[entry].light : entry - number * frame->light_count;
+    __global uint* lit = buffers.lit + entry * kPairWords;
+    __global uint* unsure = buffers.unsure + entry * kPairWords;
+    // Find the points that the light may shine on, and remove those that it doesn't reach.
+    BeamLight light = buffers.lights[index];
     Remaining remaining;
     uint received = light.casts ? find_receivers(&tile, &light, &remaining) : 0;
     if (received) {
-      recall_light(&scene, index);
+      select_cache_slot(&scene, index);
       uint first = 0;
       for (uint i = 0; i < tile.bundle_count; ++i) {
-        shade_bundle(&scene, light.place, light.size, tile.bundle + i, first, tile.bundle_end[i], &remaining);
+        shadow_bundle(&scene, light.place, light.size, tile.bundle + i, first, tile.bundle_end[i],
+                      &remaining);
         first = tile.bundle_end[i];
       }
-      write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit + entry * kPairWords);
-      if (UNSURE_PAIRS) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure + entry * kPairWords);
-      if (SOFT_EXACT) receivers[entry] = light.size > 0.0f ? received : 0;
+      write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit);
+      if (UNSURE_PAIRS) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure);
+      if (SOFT_EXACT) buffers.receivers[entry] = light.size > 0.0f ? received : 0;
     } else {
-      for (uint i = 0; i < kPairWords; ++i) lit[entry * kPairWords + i] = 0;
-      for (uint i = 0; UNSURE_PAIRS && i < kPairWords; ++i) unsure[entry * kPairWords + i] = 0;
-      if (SOFT_EXACT) receivers[entry] = 0;
+      for (uint i = 0; i < kPairWords; ++i) lit[i] = 0;
+      for (uint i = 0; UNSURE_PAIRS && i < kPairWords; ++i) unsure[i] = 0;
+      if (SOFT_EXACT) buffers.receivers[entry] = 0;
     }
   }
 }
 
-// position, normal: planes x y z, `plane_stride` floats each; lift: a plane, metres, read with LIFT only. nodes, children, blocks, block_bits,
-// root: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see HoleMasks. to_tree_x, y, z: the rows of the
-// rotation from view space to the tree's axes; w of the first: the tree's scale. tree_most: the largest |x|, |y|, |z| in the tree. tiles: of the
-// G-buffer; a work-item takes kBeamRun of them. lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no
-// shadow. unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide. receivers: a number for each entry, with SOFT_EXACT
-// only: of pixels that a light of a size may reach; 0 for other lights.
-KERNEL void beam_shadows(uint plane_stride, __global const float *position, __global const float *normal, __global const float *lift,
-                         float4 to_tree_x, float4 to_tree_y, float4 to_tree_z, __global const BeamLight *lights, uint light_count,
-                         __global const uint *list_starts, __global const ListEntry *list, __global const float *nodes,
-                         __global const int *children, __global const float *blocks, __global const uint *block_bits, __global const uchar *hole_texels,
-                         __global const HoleTriangle *hole_triangles, __global const uint *first_hole_triangle, int root, float4 tree_most, uint tiles, __global uint *lit, __global uint *unsure,
-                         __global uint *receivers) {
-  Memory memory;
-  for (uint i = 0; i < kLightsRemembered; ++i) memory.light[i] = NO_TRIANGLE;
+// position, normal: planes x y z; lift: a plane, metres, read with LIFT only. nodes, children, blocks,
+// block_bits: see TriangleTree; with HOLES block_bits, hole_texels, hole_triangles, first_hole_triangle: see
+// HoleMasks. A work-item takes kBeamRun tiles.
+// - lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no shadow.
+// - unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide.
+// - receivers: a number for each entry, with SOFT_EXACT only: of pixels that a light of a size may reach; 0
+//   for other lights.
+KERNEL void beam_shadows(BeamFrame frame, __global const float* position, __global const float* normal,
+                         __global const float* lift, __global const BeamLight* lights,
+                         __global const uint* list_starts, __global const ListEntry* list,
+                         __global const float* nodes, __global const int* children,
+                         __global const float* blocks, __global const uint* block_bits,
+                         __global const uchar* hole_texels, __global const HoleTriangle* hole_triangles,
+                         __global const uint* first_hole_triangle, __global uint* lit, __global uint* unsure,
+                         __global uint* receivers) {
+  BlockerCache cache;
+  for (uint i = 0; i < kCachedLights; ++i) cache.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.
   Candidates candidates;
-  for (uint i = 0; i < sizeof(Candidates) / sizeof(uint); ++i) ((uint *)&candidates)[i] = 0;
-  Scene scene = {nodes, children, blocks, block_bits, {hole_texels, hole_triangles, first_hole_triangle}, root, {tree_most.x, tree_most.y, tree_most.z}, 0, &memory, &candidates, 0};
-  ToTree to_tree = {to_tree_x, to_tree_y, to_tree_z, to_tree_x.w};
+  for (uint i = 0; i < sizeof(Candidates) / sizeof(uint); ++i) ((uint*)&candidates)[i] = 0;
+  HoleMasks masks = {hole_texels, hole_triangles, first_hole_triangle};
+  float4 most = frame.tree_most;
+  Scene scene = {nodes, children, blocks,      block_bits, masks, frame.tree_root, {most.x, most.y, most.z},
+                 0,     &cache,   &candidates, 0};
+  PairBuffers buffers = {position, normal, lift, lights, list_starts, list, lit, unsure, receivers};
   uint first = get_global_id(0) * kBeamRun;
-  for (uint tile = first; tile < tiles && tile < first + kBeamRun; ++tile)
-    shade_tile(tile, scene, to_tree, position, normal, lift, plane_stride, lights, light_count, list_starts, list, lit, unsure, receivers);
+  for (uint tile = first; tile < frame.tiles && tile < first + kBeamRun; ++tile)
+    shadow_tile(tile, &frame, scene, buffers);
 }

@@ -1,5 +1,6 @@
-// On which side of a plane a point lies: the signs of determinants of floats as of real numbers, without any rounding. Right for all finite floats,
-// and so the same on the host and on every device, with or without doubles, and whether or not it takes denormals for 0.
+// On which side of a plane a point lies: the signs of determinants of floats as of real numbers, without any
+// rounding. Right for all finite floats, and so the same on the host and on every device, with or without
+// doubles, and whether or not it takes denormals for 0.
 #ifndef LUCIOLE_EXACT_SIGN_H
 #define LUCIOLE_EXACT_SIGN_H
 
@@ -16,8 +17,8 @@ namespace luciole {
 #define DOUBLES
 #endif
 
-// Bits of the floats' magnitudes above their common unit: from 2⁻¹⁴⁹ to below 2¹²⁸. A difference has one more, a determinant is a sum of
-// 6 < 2³ products of three, and two's complement takes one for the sign.
+// Bits of the floats' magnitudes above their common unit: from 2⁻¹⁴⁹ to below 2¹²⁸. A difference has one
+// more, a determinant is a sum of 6 < 2³ products of three, and two's complement takes one for the sign.
 #define DETERMINANT_BITS(bits) (3 * ((bits) + 1) + 3 + 1)
 #define WORDS_OF_BITS(bits) (((bits) + 31) / 32)
 enum { kMostDeterminantWords = WORDS_OF_BITS(DETERMINANT_BITS(277)) };
@@ -66,12 +67,13 @@ INLINE double magnitude(double x) { return x > -x ? x : -x; }
 // The sign of det(a − l, b − l, c − m).
 INLINE int determinant_sign(float4 a, float4 b, float4 l, float4 c, float4 m) {
 #ifdef DOUBLES
-  // u = 2⁻⁵³. A difference d is rounded once, and a device that takes denormals for 0 is wrong by less than 2⁻¹²⁶ in each of its floats: d is within
-  // u·|d| + 2⁻¹²⁵ = u·m of the real one, m = |d| + 2⁻⁷². Each of the determinant's six products of three has 3 such errors and up to 5 roundings:
-  // those of two products, of the difference of two of them, and of two sums. So the error is at most ((1 + u)⁸ − 1)·P < 8u·(1 + 4u)·P, P being
-  // the sum of the six products of m. P and its product with the constant are rounded up to 9 times themselves, and 1 + 2⁻¹⁶ makes up for that.
-  // Where a compiler contracts a product and a sum there is less rounding. Nothing overflows, being below 6·2³⁸⁷; nothing underflows, being
-  // multiples of 2⁻⁴⁴⁷.
+  // u = 2⁻⁵³. A difference d is rounded once, and a device that takes denormals for 0 is wrong by less than
+  // 2⁻¹²⁶ in each of its floats: d is within u·|d| + 2⁻¹²⁵ = u·m of the real one, m = |d| + 2⁻⁷². Each of the
+  // determinant's six products of three has 3 such errors and up to 5 roundings: those of two products, of
+  // the difference of two of them, and of two sums. So the error is at most ((1 + u)⁸ − 1)·P < 8u·(1 + 4u)·P,
+  // P being the sum of the six products of m. P and its product with the constant are rounded up to 9 times
+  // themselves, and 1 + 2⁻¹⁶ makes up for that. Where a compiler contracts a product and a sum there is less
+  // rounding. Nothing overflows, being below 6·2³⁸⁷; nothing underflows, being multiples of 2⁻⁴⁴⁷.
   double ax = (double)a.x - l.x, ay = (double)a.y - l.y, az = (double)a.z - l.z;
   double bx = (double)b.x - l.x, by = (double)b.y - l.y, bz = (double)b.z - l.z;
   double cx = (double)c.x - m.x, cy = (double)c.y - m.y, cz = (double)c.z - m.z;
@@ -80,7 +82,8 @@ INLINE int determinant_sign(float4 a, float4 b, float4 l, float4 c, float4 m) {
   double Ax = magnitude(ax) + flushed, Ay = magnitude(ay) + flushed, Az = magnitude(az) + flushed;
   double Bx = magnitude(bx) + flushed, By = magnitude(by) + flushed, Bz = magnitude(bz) + flushed;
   double Cx = magnitude(cx) + flushed, Cy = magnitude(cy) + flushed, Cz = magnitude(cz) + flushed;
-  double bound = 0x1.0001p-50 * (Ax * (By * Cz + Bz * Cy) + Ay * (Bz * Cx + Bx * Cz) + Az * (Bx * Cy + By * Cx));
+  double bound =
+      0x1.0001p-50 * (Ax * (By * Cz + Bz * Cy) + Ay * (Bz * Cx + Bx * Cz) + Az * (Bx * Cy + By * Cx));
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
 #endif

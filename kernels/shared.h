@@ -1,5 +1,6 @@
-// Constants and structs that host and device share: both compile this file. Structs hold only float, int, uint and 4-vectors,
-// because OpenCL's float3 has 16 bytes and GLM's vec3 has 12. tests/cl/struct_layout_test.cpp compares every offset.
+// Constants and structs that host and device share: both compile this file. Structs hold only float, int,
+// uint and 4-vectors, because OpenCL's float3 has 16 bytes and GLM's vec3 has 12.
+// tests/cl/struct_layout_test.cpp compares every offset.
 #ifndef LUCIOLE_SHARED_H
 #define LUCIOLE_SHARED_H
 
@@ -17,16 +18,18 @@ struct alignas(16) float4 {
 #endif
 
 enum {
-  kTileSize = 16,                        // pixels a side of the squares that a G-buffer is stored in
-  kTilePixels = kTileSize * kTileSize,   // in Z order
-  kSquaresPerTile = 16,                  // of 4×4 pixels
+  kTileSize = 16,                       // pixels a side of the squares that a G-buffer is stored in
+  kTilePixels = kTileSize * kTileSize,  // in Z order
+  kSquaresPerTile = 16,                 // of 4×4 pixels
 };
 
-// Rows of pixels that a work-item of shade.cl takes. Several rows of one tile keep all ABREAST places filled even if each meets few
-// lights. Without lists a row meets all lights and fills them alone, and the sums of a single row stay in registers.
+// Rows of pixels that a work-item of shade.cl takes. Several rows of one tile keep all ABREAST places filled
+// even if each meets few lights. Without lists a row meets all lights and fills them alone, and the sums of a
+// single row stay in registers.
 #define ROWS_PER_ITEM(lanes, lists) ((lanes) == 1 || !(lists) ? 1 : 4)
 
-// The square of its tile, 0 to kSquaresPerTile − 1, that a pixel belongs to. place: its index in a plane, or in its tile.
+// The square of its tile, 0 to kSquaresPerTile − 1, that a pixel belongs to. place: its index in a plane, or
+// in its tile.
 #define SQUARE_OF_PIXEL(place) ((place) / (kTilePixels / kSquaresPerTile) % kSquaresPerTile)
 
 // Tiles that a work-item of shade_tiles.cl takes at most.
@@ -42,10 +45,12 @@ typedef struct {
 } ListEntry;
 SHARED_SIZE(ListEntry, 8);
 
-// How many entries of a tile counting keeps: a list that isn't longer need not be found again when lists are written.
+// How many entries of a tile counting keeps: a list that isn't longer need not be found again when lists are
+// written.
 enum { kFoundPerTile = 128 };
 
-// The tests by which culling leaves a light out of a list, as bits. Range is always tested: kByRange asks for no other.
+// The tests by which culling leaves a light out of a list, as bits. Range is always tested: kByRange asks for
+// no other.
 // - kByCone: no point lies in a spot's cone.
 // - kByFacing: every point faces away from the light. Only right where no light gives ambient light.
 enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
@@ -53,37 +58,44 @@ enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
 // Children of a node in the tree over the lights.
 enum { kTreeArity = 16 };
 
-// The tree over a scene's triangles (host/shadow/exact/triangle_tree.hpp): children of a node, and triangles of a block, which is a leaf.
+// The tree over a scene's triangles (host/shadow/exact/triangle_tree.hpp): children of a node, and triangles of a
+// block, which is a leaf.
 enum { kTreeWidth = 16 };
 
-// Rows of kTreeWidth floats of a node: low x, high x, low y, high y, low z, high z of each child's box. A child that isn't there has
-// low = +∞ and high = −∞.
+// Rows of kTreeWidth floats of a node: low x, high x, low y, high y, low z, high z of each child's box. A
+// child that isn't there has low = +∞ and high = −∞.
 enum { kNodeRows = 6 };
 
-// Rows of kTreeWidth floats of a block: coordinate a of corner v of its triangles is row kCornerRows + 3·v + a. Of the planes there are
-// unit normal x y z and the offset n·p of their points p; all 0 for a triangle without area. Then CORNER_ROUNDING·(|x| + |y| + |z|) of the
-// corner for which that is largest: what is nearer to the plane may be on either side of it.
+// Rows of kTreeWidth floats of a block: coordinate a of corner v of its triangles is row kCornerRows + 3·v +
+// a. Of the planes there are unit normal x y z and the offset n·p of their points p; all 0 for a triangle
+// without area. Then CORNER_ROUNDING·(|x| + |y| + |z|) of the corner for which that is largest: what is
+// nearer to the plane may be on either side of it.
 enum { kCornerRows = 0, kPlaneRows = 9, kRoundingRow = 13, kBlockRows = 14 };
 #define CORNER_ROUNDING 0x1p-21f
 
-// Nodes on any way from that tree's root, at most. A walk that takes a reference from its stack and puts up to kTreeWidth there needs
-// kMaxTreeDepth·(kTreeWidth − 1) + 1 places.
+// Nodes on any way from that tree's root, at most. A walk that takes a reference from its stack and puts up
+// to kTreeWidth there needs kMaxTreeDepth·(kTreeWidth − 1) + 1 places.
 enum { kMaxTreeDepth = 40 };
 
 // Tiles that a work-item of beam_shadows.cl takes, one after another.
 enum { kBeamRun = 8 };
+
+// Tiles side by side that a work-item of clustered_light.cl takes, one after another.
+enum { kClusterRun = 8 };
 
 // A light whose rays the tree's triangles may block, in the tree's space.
 typedef struct {
   float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
   float reach;   // its range; +∞: everywhere
   uint casts;    // 1: it casts shadows
-  float size;    // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards them are off; 0: it has none
+  float size;  // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards
+               // them are off; 0: it has none
   uint pad;
 } BeamLight;
 SHARED_SIZE(BeamLight, 32);
 
-// What a texture says where a ray meets a triangle with holes (hole_masks.clh): that it must be looked up, that the surface is there, or that it isn't.
+// What a texture says where a ray meets a triangle with holes (hole_masks.clh): that it must be looked up,
+// that the surface is there, or that it isn't.
 enum { kMixed = 0, kSolid = 1, kHole = 2 };
 
 enum { kWrapRepeat = 0, kWrapMirrored = 1, kWrapClamped = 2 };
@@ -106,7 +118,8 @@ SHARED_SIZE(HoleTriangle, 64);
 
 enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
-// Values of ShadeLight.shadow that aren't a map's index: the light casts no shadow, or beam_shadows.cl decides its shadows.
+// Values of ShadeLight.shadow that aren't a map's index: the light casts no shadow, or beam_shadows.cl
+// decides its shadows.
 #define kNoShadow 0xffffffffu
 #define kExactShadow 0xfffffffeu
 
@@ -115,7 +128,8 @@ enum { kSumBlock = 128 };
 
 // A light as kernels see it. View space, metres, linear colours with the intensity multiplied in.
 typedef struct {
-  float4 position;     // xyz place; w: 1 / range², 0 where the light reaches everywhere. Directional: xyz unit, towards the light
+  float4 position;  // xyz place; w: 1 / range², 0 where the light reaches everywhere. Directional: xyz unit,
+                    // towards the light
   float4 direction;    // xyz unit, the way a spot shines; w: cosine of its cutoff
   float4 diffuse;      // rgb; w: spot exponent
   float4 specular;     // rgb; w: scale of the cone ramp, 1 / (cos inner − cos cutoff)
@@ -128,47 +142,57 @@ typedef struct {
 } ShadeLight;
 SHARED_SIZE(ShadeLight, 112);
 
-// Lights that clusters may stand for: point lights without range whose attenuation is quadratic·d² alone (light_clusters.hpp). They
-// lie in the leaves of a balanced binary tree whose inner nodes are clusters.
+// Lights that clusters may stand for: point lights without range whose attenuation is quadratic·d² alone
+// (light_clusters.hpp). They lie in the leaves of a balanced binary tree whose inner nodes are clusters.
 //
-// A cluster is a column of a row of kClusterSlots: the two children of a node, their four and their eight children come in this order,
-// from slots 0, 2 and 6 on. So one vector tests three levels. Row 0 is the root's, and has CLUSTER_TOP_LEVELS levels; all others, of which a
-// walk meets most at the tree's bottom, have three. The rows of a level follow each other, after those of the levels above: the nodes of
-// a row's last level have their own rows in the same order, or are leaves.
+// A cluster is a column of a row of kClusterSlots: the two children of a node, their four and their eight
+// children come in this order, from slots 0, 2 and 6 on. So one vector tests three levels. Row 0 is the
+// root's, and has CLUSTER_TOP_LEVELS levels; all others, of which a walk meets most at the tree's bottom,
+// have three. The rows of a level follow each other, after those of the levels above: the nodes of a row's
+// last level have their own rows in the same order, or are leaves.
 enum { kClusterSlots = 16, kRowClusters = 14, kLeafLights = 8 };
 
 // Levels in row 0 of a tree that has so many, 1 or more, below its root.
 #define CLUSTER_TOP_LEVELS(levels) (((levels) + 2) % 3 + 1)
 
-// Fields of a cluster, kClusterSlots floats each; view space, metres. The lights are at δ from the centre, and q is a channel of a light's
-// diffuse colour over its quadratic attenuation. Bounds hold for every channel.
+// Fields of a cluster, kClusterSlots floats each; view space, metres. The lights are at δ from the centre,
+// and q is a channel of a light's diffuse colour over its quadratic attenuation. Bounds hold for every
+// channel.
 enum {
-  kClusterCentre = 0,     // 3: xyz
-  kClusterExtent = 3,     // 3: |xyz| of any δ, at most
-  kClusterRadius = 6,     // |δ| of any light, at most
-  kClusterAbsolute = 7,   // 4: bounds of Σ q·|δ|ʲ, j = 0 … 3
-  kClusterHarmonic = 11,  // 4: bounds of |Σ q·Yⱼ(δ)|, j = 1 … 4: Y₁ to Y₄ are the solid harmonics of a degree, |Yⱼ(δ)| = |δ|ʲ
-  kClusterMoments = 15,   // of each channel
+  kClusterCentre = 0,    // 3: xyz
+  kClusterExtent = 3,    // 3: |xyz| of any δ, at most
+  kClusterRadius = 6,    // |δ| of any light, at most
+  kClusterAbsolute = 7,  // 4: bounds of Σ q·|δ|ʲ, j = 0 … 3
+  kClusterHarmonic = 11,  // 4: bounds of |Σ q·Yⱼ(δ)|, j = 1 … 4: Y₁ to Y₄ are the solid harmonics of a
+                          // degree, |Yⱼ(δ)| = |δ|ʲ
+  kClusterMoments = 15,  // of each channel
 };
 
 // Moments of a channel: Σ q, Σ q·δ, Σ q·δδ (xx xy xz yy yz zz).
-enum { kMoment0 = 0, kMoment1 = 1, kMoment2 = 4, kMoments = 10, kClusterFields = kClusterMoments + 3 * kMoments };
-
-// Fields of a light of the leaves, kClusterSlots floats each. A row of lights is two leaves side by side: lights 0 to 7 and 8 to 15. Slots without
-// a light are 0.
 enum {
-  kLightPlace = 0,   // 3: xyz
-  kLightRest = 3,    // 3: what rounding took from it
-  kLightFalloff = 6, // what 1/d² is held below, as attenuation is below 2¹⁰⁰
-  kLightColor = 7,   // 3: rgb over quadratic attenuation
-  kLightMost = 10,   // the largest of them
+  kMoment0 = 0,
+  kMoment1 = 1,
+  kMoment2 = 4,
+  kMoments = 10,
+  kClusterFields = kClusterMoments + 3 * kMoments
+};
+
+// Fields of a light of the leaves, kClusterSlots floats each. A row of lights is two leaves side by side:
+// lights 0 to 7 and 8 to 15. Slots without a light are 0.
+enum {
+  kLightPlace = 0,    // 3: xyz
+  kLightRest = 3,     // 3: what rounding took from it
+  kLightFalloff = 6,  // what 1/d² is held below, as attenuation is below 2¹⁰⁰
+  kLightColor = 7,    // 3: rgb over quadratic attenuation
+  kLightMost = 10,    // the largest of them
   kLightFields
 };
 
-// Where a light's shadow map is looked up. (u, v) are tangents from the light, right and up of the face's axis, or for a
-// parallel map metres; depths are reversed and grow towards the light, 0 where nothing was drawn.
-// - Cube: rows x, y, z give the vector from the light to the view-space position p, in world axes; the faces are those of
-//   +x −x +y −y +z −z.
+// Where a light's shadow map is looked up. (u, v) are tangents from the light, right and up of the face's
+// axis, or for a parallel map metres; depths are reversed and grow towards the light, 0 where nothing was
+// drawn.
+// - Cube: rows x, y, z give the vector from the light to the view-space position p, in world axes; the faces
+//   are those of +x −x +y −y +z −z.
 // - Perspective: rows x, y, z give the same right, up and ahead of the light; one face.
 // - Parallel: rows x, y give metres right and up, row z the depth; the faces are cascades, the finest first.
 typedef struct {
@@ -180,26 +204,27 @@ typedef struct {
   uint kind;           // kParallelMap …
   uint first_face;     // index of its first ShadowFace
   uint face_count;
-  float penumbra_scale;        // by the light's size: a blocker nearer by a depth of d has a penumbra of penumbra_scale·d in u and v
-  float filter_radius;         // texels around a lookup that it may read
+  float penumbra_scale;  // by the light's size: a blocker nearer by a depth of d has a penumbra of
+                         // penumbra_scale·d in u and v
+  float filter_radius;   // texels around a lookup that it may read
   uint pad;
 } ShadowMap;
 SHARED_SIZE(ShadowMap, 80);
 
 enum { kParallelMap = 0, kPerspectiveMap = 1, kCubeMap = 2 };
 
-// One square picture from a light. (u, v) lies at texel (middle_x + scale·u, middle_y − scale·v), counted from its top left
-// corner; a texel's centre is at .5. Memory holds a rectangle of the picture, row by row. Of that rectangle only those bins of
-// kShadowBin × kShadowBin texels are drawn that a lookup may read.
+// One square picture from a light. (u, v) lies at texel (middle_x + scale·u, middle_y − scale·v), counted
+// from its top left corner; a texel's centre is at .5. Memory holds a rectangle of the picture, row by row.
+// Of that rectangle only those bins of kShadowBin × kShadowBin texels are drawn that a lookup may read.
 typedef struct {
-  float scale;     // texels per unit of u and v
+  float scale;  // texels per unit of u and v
   float middle_x;
   float middle_y;
-  float low, high; // texels: lookups from low to high, in x and y, find all the texels they need
-  uint first;      // where in the shadow buffer texel (0, 0) would be, modulo 2³²
-  uint width;      // texels in a row of the rectangle; 0: nothing was drawn
-  uint first_bin;  // of its bins among those of all faces
-  uint bins;       // a side
+  float low, high;  // texels: lookups from low to high, in x and y, find all the texels they need
+  uint first;       // where in the shadow buffer texel (0, 0) would be, modulo 2³²
+  uint width;       // texels in a row of the rectangle; 0: nothing was drawn
+  uint first_bin;   // of its bins among those of all faces
+  uint bins;        // a side
   uint pad0, pad1, pad2;
 } ShadowFace;
 SHARED_SIZE(ShadowFace, 48);
@@ -216,12 +241,14 @@ SHARED_SIZE(ShadowTexel, 8);
 // Words of beam_shadows.cl's result for an entry of a light list: a bit for each pixel of the tile.
 enum { kPairWords = kTilePixels / 32 };
 
-// How far a point may lie off its surface, as a share of its distance from the eye. A float position is rounded in view space, and
-// again relative to the eye, by 2⁻²⁴ each. Thirty-two times that leaves room for G-buffers of other programs, which have rounded
-// in world space, and for turning it to the axes of the tree over the triangles.
+// How far a point may lie off its surface, as a share of its distance from the eye. A float position is
+// rounded in view space, and again relative to the eye, by 2⁻²⁴ each. Thirty-two times that leaves room for
+// G-buffers of other programs, which have rounded in world space, and for turning it to the axes of the tree
+// over the triangles.
 #define POINT_ERROR 0x1p-18f
 
-// find_needed.cl's result for a bin that no lookup reads. As a float's bits it would be NaN, so no depth has it.
+// find_needed.cl's result for a bin that no lookup reads. As a float's bits it would be NaN, so no depth has
+// it.
 #define kNotNeeded 0xffffffffu
 
 // kPhongModel …
@@ -243,11 +270,58 @@ typedef struct {
   uint fog_mode;       // kNoFog …
   uint model;          // kPhongModel …
   uint light_count;
-  uint plane_stride;   // floats from a plane to the next of its group
-  uint fog_radial;     // 1: fog by distance from the eye, 0: by depth along the view axis
-  uint texel_count;    // of the shadow maps, at least 1
+  uint plane_stride;  // floats from a plane to the next of its group
+  uint fog_radial;    // 1: fog by distance from the eye, 0: by depth along the view axis
+  uint texel_count;   // of the shadow maps, at least 1
 } ShadeFrame;
 SHARED_SIZE(ShadeFrame, 112);
+
+// What follows are the kernels' arguments that aren't buffers.
+
+// Of find_lights() in cull.cl.
+typedef struct {
+  uint plane_stride;  // floats from a plane of the G-buffer to the next
+  uint tree_stride;   // floats from a plane of the tree over the lights to the next
+  uint light_count;
+  uint group_log2;  // 4, 6 or 8, for 1, 4 or 16 squares that share their lights
+  uint tests;       // kByRange …
+  uint fill;        // 0: count and keep; 1: write the lists
+} CullFrame;
+SHARED_SIZE(CullFrame, 24);
+
+// Of beam_shadows.cl.
+typedef struct {
+  float4 to_tree_x, to_tree_y, to_tree_z;  // xyz: the rows of the rotation from view space to the tree's axes
+  float4 tree_most;                        // xyz: the largest |x|, |y|, |z| in the tree
+  float tree_scale;                        // the tree's units a metre, a power of two
+  int tree_root;                           // TriangleTree::root
+  uint tiles;                              // of the G-buffer
+  uint plane_stride;                       // floats from a plane of the G-buffer to the next
+  uint light_count;
+  uint pad0, pad1, pad2;
+} BeamFrame;
+SHARED_SIZE(BeamFrame, 96);
+
+// Of shade_tiles.cl. A block is what a work-item takes: kBlockTiles together or fewer.
+typedef struct {
+  ShadeFrame shade;
+  uint tree_stride;                // floats from a plane of the tree over the lights to the next
+  uint tiles_x, tiles_y;           // of the G-buffer
+  uint block_width, block_height;  // tiles
+  uint run_stride;                 // see shade_tiles()
+  uint pad0, pad1;
+} ShadeTilesFrame;
+SHARED_SIZE(ShadeTilesFrame, 144);
+
+// Of clustered_light.cl.
+typedef struct {
+  ShadeFrame shade;
+  uint light_count;   // of the tree of clusters
+  uint levels;        // of that tree
+  float light_error;  // E > 0: a channel's bound shall be E·max(1, its light) at most
+  uint tiles_x;       // of the G-buffer
+} ClusterFrame;
+SHARED_SIZE(ClusterFrame, 128);
 
 #undef SHARED_SIZE
 #ifdef __cplusplus

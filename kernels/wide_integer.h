@@ -1,7 +1,8 @@
-// Integers of many words, for host and devices: what exact signs need where numbers of the machine are too short.
+// Integers of many words, for host and devices: what exact signs need where numbers of the machine are too
+// short.
 //
-// An integer is `words` words of 32 bits, the lowest first, in two's complement: sums and products are those of the integers modulo 2^(32·words),
-// whatever their signs, and right where the result fits.
+// An integer is `words` words of 32 bits, the lowest first, in two's complement: sums and products are those
+// of the integers modulo 2^(32·words), whatever their signs, and right where the result fits.
 #ifndef LUCIOLE_WIDE_INTEGER_H
 #define LUCIOLE_WIDE_INTEGER_H
 
@@ -18,14 +19,16 @@ INLINE uint float_bits(float value) { return std::bit_cast<uint>(value); }
 INLINE uint float_bits(float value) { return as_uint(value); }
 #endif
 
-// A finite float, by its bits, is an integer times 2^(float_exponent(bits) − 150). Arithmetic of floats would not do: it may take denormals for 0.
+// A finite float, by its bits, is an integer times 2^(float_exponent(bits) − 150). Arithmetic of floats would
+// not do: it may take denormals for 0.
 INLINE uint float_exponent(uint bits) {
   uint exponent = bits >> 23 & 0xff;
   return exponent != 0 ? exponent : 1;
 }
 
-// sum += the float of these bits, in units of 2^(unit − 150); unit: float_exponent(bits) or less, unless the float is 0.
-SHARED_WORK void add_float(uint *sum, uint words, uint bits, uint unit) {
+// sum += the float of these bits, in units of 2^(unit − 150); unit: float_exponent(bits) or less, unless the
+// float is 0.
+SHARED_WORK void add_float(uint* sum, uint words, uint bits, uint unit) {
   ulong digits = (bits & 0x7fffff) | ((bits & 0x7f800000) != 0 ? 0x800000 : 0);
   if (digits == 0) return;
   uint shift = float_exponent(bits) - unit;
@@ -42,7 +45,7 @@ SHARED_WORK void add_float(uint *sum, uint words, uint bits, uint unit) {
 }
 
 // sum += a·b
-SHARED_WORK void add_product(uint *sum, uint words, const uint *a, const uint *b) {
+SHARED_WORK void add_product(uint* sum, uint words, const uint* a, const uint* b) {
   for (uint i = 0; i < words; ++i) {
     ulong carry = 0;
     for (uint j = 0; i + j < words; ++j) {
@@ -53,12 +56,12 @@ SHARED_WORK void add_product(uint *sum, uint words, const uint *a, const uint *b
   }
 }
 
-INLINE void clear_words(uint *integer, uint words) {
+INLINE void clear_words(uint* integer, uint words) {
   for (uint i = 0; i < words; ++i) integer[i] = 0;
 }
 
 // −1, 0 or 1
-INLINE int integer_sign(const uint *integer, uint words) {
+INLINE int integer_sign(const uint* integer, uint words) {
   if (integer[words - 1] >> 31 != 0) return -1;
   uint any = 0;
   for (uint i = 0; i < words; ++i) any |= integer[i];

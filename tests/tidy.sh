@@ -2,8 +2,8 @@
 # tidy.sh [BASE]: clang-format and clang-tidy, by .clang-format and .clang-tidy, over the C++ files that differ from commit BASE;
 # over all without one. A header is looked at through the source file of its name, or else through the first that includes it.
 # A file takes clang-tidy some 20 s.
-# Kernels, all of them if any differs, get the house's warnings at every width, with all features and with none that are shadows of a
-# size. clang-format leaves them alone: their longest lines and their tables are by hand.
+# Kernels, all of them if any differs, are formatted in the same way, and get the house's warnings at every width, with all features and
+# with none that are shadows of a size.
 #
 # Exit status: 1 for findings, which it shows; 77 where a tool is not installed, which it says.
 set -euo pipefail
@@ -19,12 +19,13 @@ fi
 
 kernels_status=0
 if ! (($#)) || [[ -n $(git diff --name-only "$1" -- kernels tests/kernels/*.cl tests/cl/*.cl) ]]; then
+  mapfile -t kernels < <(git ls-files 'kernels/*.cl' 'kernels/*.clh' 'kernels/*.h' 'tests/kernels/*.cl' 'tests/cl/*.cl')
+  "$format" --dry-run --Werror "${kernels[@]}" || kernels_status=1
   for lanes in 1 4 8 16; do
     for features in "" -DSOFT_EXACT=0 "-DHOLES=0 -DSOFT_EXACT=0"; do
       # shellcheck disable=SC2086  # several words, or none
-      git ls-files 'kernels/*.cl' 'kernels/*.clh' 'kernels/*.h' 'tests/kernels/*.cl' 'tests/cl/*.cl' |
-        xargs clang-14 -x cl -cl-std=CL1.2 -I kernels -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only \
-          -Wall -Wextra -Wshadow -Werror -Wno-unused-parameter -Wno-unused-function -DLANES=$lanes $features || kernels_status=1
+      clang-14 -x cl -cl-std=CL1.2 -I kernels -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only \
+        -Wall -Wextra -Wshadow -Werror -Wno-unused-parameter -Wno-unused-function -DLANES=$lanes $features "${kernels[@]}" || kernels_status=1
     done
   done
 fi

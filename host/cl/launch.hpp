@@ -69,6 +69,22 @@ template <>
 constexpr std::string_view kernelTypeName<ShadeFrame>() {
   return "ShadeFrame";
 }
+template <>
+constexpr std::string_view kernelTypeName<CullFrame>() {
+  return "CullFrame";
+}
+template <>
+constexpr std::string_view kernelTypeName<BeamFrame>() {
+  return "BeamFrame";
+}
+template <>
+constexpr std::string_view kernelTypeName<ShadeTilesFrame>() {
+  return "ShadeTilesFrame";
+}
+template <>
+constexpr std::string_view kernelTypeName<ClusterFrame>() {
+  return "ClusterFrame";
+}
 
 /// An argument for launch(): the name that it has in the kernel's source, and its value.
 struct KernelArgument {

@@ -12,17 +12,18 @@ constexpr const char* kFile = "cull.cl";
 /// The lists' lengths, or then the lists themselves: see kernels/cull.cl.
 void findLights(OpenedDevice& device, const CullArguments& arguments, bool fill, const LightLists& lists) {
   Kernel find_lights = makeKernel(device, kFile, "find_lights", "");
+  const CullFrame frame{.plane_stride = uint(arguments.plane_stride),
+                        .tree_stride = uint(arguments.tree_stride),
+                        .light_count = uint(arguments.light_count),
+                        .group_log2 = uint(arguments.group_log2),
+                        .tests = uint(arguments.tests),
+                        .fill = uint(fill)};
   launch(device, find_lights,
-         {{"position", arguments.position},
+         {{"frame", frame},
+          {"position", arguments.position},
           {"normal", arguments.normal},
-          {"plane_stride", uint(arguments.plane_stride)},
-          {"group_log2", uint(arguments.group_log2)},
           {"tree", arguments.tree},
-          {"tree_stride", uint(arguments.tree_stride)},
           {"lights", arguments.lights},
-          {"light_count", uint(arguments.light_count)},
-          {"tests", uint(arguments.tests)},
-          {"fill", uint(fill)},
           {"found", lists.found},
           {"starts", lists.starts},
           {"all_lists", lists.list}},

@@ -11,9 +11,6 @@
 namespace luciole {
 namespace {
 
-/// Tiles side by side that a work-item takes.
-constexpr int kRun = 8;
-
 /// GROUP_RADIUS of kernels/clustered_light.cl: how far a group reaches from its first pixel, which mostly is
 /// a corner of it, as a share of the distance.
 constexpr double kGroupWidth = 0.03;
@@ -43,8 +40,14 @@ ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& def
   const Buffer<const float> highlight_rows = shared ? rows : borrowed(device, arguments.highlights.rows);
   const Buffer<const float> highlight_light_rows =
       shared ? light_rows : borrowed(device, arguments.highlights.light_rows);
+  const ClusterFrame frame{.shade = arguments.frame,
+                           .light_count = uint(clusters.lights),
+                           .levels = uint(clusters.levels),
+                           .light_error = arguments.light_error,
+                           .tiles_x = uint(arguments.tiles_x)};
+  const std::size_t runs = std::size_t((arguments.tiles_x + kClusterRun - 1) / kClusterRun);
   launch(device, kernel,
-         {{"frame", arguments.frame},
+         {{"frame", frame},
           {"position", gbuffer.position},
           {"normal", gbuffer.normal},
           {"diffuse", gbuffer.diffuse},
@@ -53,15 +56,10 @@ ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& def
           {"light_rows", light_rows},
           {"highlight_rows", highlight_rows},
           {"highlight_light_rows", highlight_light_rows},
-          {"light_count", uint(clusters.lights)},
-          {"levels", uint(clusters.levels)},
-          {"light_error", arguments.light_error},
-          {"tiles_x", uint(arguments.tiles_x)},
-          {"run", uint(kRun)},
           {"light", arguments.light},
           {"bound", arguments.bound},
           {"counts", counts_buffer}},
-         {.items = std::size_t((arguments.tiles_x + kRun - 1) / kRun) * std::size_t(arguments.tiles_y)});
+         {.items = runs * std::size_t(arguments.tiles_y)});
   download(device, counts_buffer, counts);
   ClusteredLightCounts sums;
   for (std::size_t tile = 0; tile < tiles; ++tile) {

@@ -107,35 +107,68 @@ bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surface
   return clustersPay({lights, settings.light_error, surfaces.specular}, view);
 }
 
+namespace {
+
+void addFog(const Fog& fog, FeatureSet& features) {
+  if (fog.mode == FogMode::kNone) return;
+  features.set(fog.mode == FogMode::kLinear ? Feature::kFogLinear
+               : fog.mode == FogMode::kExp  ? Feature::kFogExp
+                                            : Feature::kFogExp2);
+  const glm::vec3 density = fog.density;
+  features.set(Feature::kFogRadial, fog.radial);
+  features.set(Feature::kFogPerChannel,
+               fog.mode != FogMode::kLinear && (density.x != density.y || density.x != density.z));
+}
+
+/// What the kernels need to sum this light, but for its shadow and its specular colour.
+void addLight(const Light& light, FeatureSet& features) {
+  features.set(light.kind == LightKind::kPoint         ? Feature::kPointLights
+               : light.kind == LightKind::kDirectional ? Feature::kDirectionalLights
+                                                       : Feature::kSpotLights);
+  if (light.kind == LightKind::kSpot) {
+    if (light.falloff == SpotFalloff::kCone) features.set(Feature::kSpotCone);
+    if (light.exponent != 0) features.set(Feature::kSpotExponent);
+  }
+  if (light.kind != LightKind::kDirectional) {
+    if (light.attenuation != glm::vec3(1, 0, 0)) features.set(Feature::kAttenuation);
+    if (std::isfinite(light.range))
+      features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);
+  }
+  if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
+}
+
+void addShadow(const Light& light, ShadowWay way, const ShadeSettings& settings, FeatureSet& features) {
+  if (way == ShadowWay::kNone) return;
+  features.set(way == ShadowWay::kBeams                ? Feature::kExact
+               : usesCubeMap(light)                    ? Feature::kCubeShadows
+               : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
+                                                       : Feature::kPerspectiveShadows);
+  features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
+  features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
+  const double size = light.kind == LightKind::kDirectional ? light.half_angle : light.radius;
+  if (settings.shadows == ShadowMethod::kSoftExact && size > 0) features.set(Feature::kSoftExact);
+  features.set(Feature::kOutputShadow, settings.shadow_layer);
+}
+
+bool anyHoles(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.alpha_cutoff > 0; });
+}
+
+}  // namespace
+
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings, bool clustered) {
   FeatureSet features;
   features.set(Feature::kEmission, surfaces.emission);
   features.set(Feature::kParallelView, camera.orthographic);
-  switch (scene.fog.mode) {
-    case FogMode::kNone:
-      break;
-    case FogMode::kLinear:
-      features.set(Feature::kFogLinear);
-      break;
-    case FogMode::kExp:
-      features.set(Feature::kFogExp);
-      break;
-    case FogMode::kExp2:
-      features.set(Feature::kFogExp2);
-      break;
-  }
-  if (scene.fog.mode != FogMode::kNone) {
-    const glm::vec3 density = scene.fog.density;
-    features.set(Feature::kFogRadial, scene.fog.radial);
-    features.set(Feature::kFogPerChannel,
-                 scene.fog.mode != FogMode::kLinear && (density.x != density.y || density.x != density.z));
-  }
+  addFog(scene.fog, features);
   if (!scene.lighting) {
     features.set(Feature::kAmbient);  // unlit: diffuse colour under an ambient light of 1
     return features;
   }
-  bool any_specular = false, clusters_specular = false, any_cone = false, any_exponent = false;
+
+  bool any_specular = false, clusters_specular = false, any_exponent = false;
   std::size_t summed = 0;  // lights that are summed by themselves
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -143,52 +176,29 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     (in_clusters ? clusters_specular : any_specular) |= light.specular != glm::vec3(0.0f);
     if (in_clusters) continue;
     ++summed;
-    features.set(light.kind == LightKind::kPoint         ? Feature::kPointLights
-                 : light.kind == LightKind::kDirectional ? Feature::kDirectionalLights
-                                                         : Feature::kSpotLights);
-    if (light.kind == LightKind::kSpot) {
-      (light.falloff == SpotFalloff::kCone ? any_cone : any_exponent) = true;
-      if (light.exponent != 0) features.set(Feature::kSpotExponent);
-    }
-    if (light.kind != LightKind::kDirectional) {
-      if (light.attenuation != glm::vec3(1, 0, 0)) features.set(Feature::kAttenuation);
-      if (std::isfinite(light.range))
-        features.set(light.window == RangeWindow::kSmooth ? Feature::kSmoothWindow : Feature::kKhrWindow);
-    }
-    if (light.ambient != glm::vec3(0.0f)) features.set(Feature::kLightAmbient);
-    const ShadowWay way = shadowWay(scene, i, settings);
-    if (way == ShadowWay::kNone) continue;
-    features.set(way == ShadowWay::kBeams                ? Feature::kExact
-                 : usesCubeMap(light)                    ? Feature::kCubeShadows
-                 : light.kind == LightKind::kDirectional ? Feature::kParallelShadows
-                                                         : Feature::kPerspectiveShadows);
-    features.set(Feature::kPcf, settings.shadows == ShadowMethod::kPcf);
-    features.set(Feature::kSoft, settings.shadows == ShadowMethod::kSoft);
-    if (settings.shadows == ShadowMethod::kSoftExact &&
-        (light.kind == LightKind::kDirectional ? light.half_angle : light.radius) > 0)
-      features.set(Feature::kSoftExact);
-    features.set(Feature::kOutputShadow, settings.shadow_layer);
+    addLight(light, features);
+    addShadow(light, shadowWay(scene, i, settings), settings, features);
+    any_exponent |= light.kind == LightKind::kSpot && light.falloff != SpotFalloff::kCone;
   }
-  features.set(Feature::kLift, surfaces.smooth && features.shadows());
-  features.set(Feature::kNormalMaps, surfaces.normal_maps && !scene.lights.empty());
-  features.set(Feature::kHoles,
-               features.has(Feature::kExact) &&
-                   std::any_of(scene.materials.begin(), scene.materials.end(),
-                               [](const Material& material) { return material.alpha_cutoff > 0; }));
-  features.set(Feature::kSpotCone, any_cone);
   // A spot with an exponent of 0 needs no code of its own, unless cones are compiled: then the kernel has to
   // tell it from a cone at run time.
-  if (any_cone && any_exponent) features.set(Feature::kSpotExponent);
+  if (features.has(Feature::kSpotCone) && any_exponent) features.set(Feature::kSpotExponent);
+  features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
+  features.set(Feature::kLongSums, summed > kSumBlock);
+
+  features.set(Feature::kLift, surfaces.smooth && features.shadows());
+  features.set(Feature::kNormalMaps, surfaces.normal_maps && !scene.lights.empty());
+  features.set(Feature::kHoles, features.has(Feature::kExact) && anyHoles(scene));
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
   features.set(Feature::kSpecular, surfaces.specular && any_specular);
+
   const bool lit = !scene.lights.empty();
   if (!settings.material_models || surfaces.models[0]) features.set(featureOf(settings.model), lit);
   if (settings.material_models)
     for (const Model model : kAllModels)
       if (surfaces.models[modelNumber(model)]) features.set(featureOf(model), lit);
   features.set(Feature::kMaterialModels, settings.material_models && lit);
-  features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
-  features.set(Feature::kLongSums, summed > kSumBlock);
+
   // What clusters give a pixel reaches the shading kernels as light that the surface emits.
   features.set(Feature::kClusteredLights, clustered);
   features.set(Feature::kClusteredHighlights, surfaces.specular && clusters_specular);

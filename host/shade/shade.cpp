@@ -35,7 +35,7 @@ void shade(OpenedDevice& device, const std::string& defines, const ShadeArgument
           {"specular", gbuffer.specular},
           {"ambient", gbuffer.ambient},
           {"emission", gbuffer.emission},
-          {"geometric_normal", gbuffer.geometric_normal},
+          {"surface_normal", gbuffer.geometric_normal},
           {"lift", gbuffer.lift},
           {"model", gbuffer.model},
           {"lights", arguments.lights},

@@ -1,10 +1,10 @@
-// Where this device's compiler puts every member of the shared structs: per struct its size, then the offsets, in the order
-// of their declaration.
+// Where this device's compiler puts every member of the shared structs: per struct its size, then the
+// offsets, in the order of their declaration.
 #include "shared.h"
 
-#define OFFSET(member) (uint)((__private char *)&value.member - (__private char *)&value)
+#define OFFSET(member) (uint)((__private char*)&value.member - (__private char*)&value)
 
-__kernel void report_shade_light(__global uint *out) {
+__kernel void report_shade_light(__global uint* out) {
   ShadeLight value;
   *out++ = sizeof(ShadeLight);
   *out++ = OFFSET(position);
@@ -19,14 +19,14 @@ __kernel void report_shade_light(__global uint *out) {
   *out++ = OFFSET(shadow);
 }
 
-__kernel void report_list_entry(__global uint *out) {
+__kernel void report_list_entry(__global uint* out) {
   ListEntry value;
   *out++ = sizeof(ListEntry);
   *out++ = OFFSET(light);
   *out++ = OFFSET(squares);
 }
 
-__kernel void report_shadow_map(__global uint *out) {
+__kernel void report_shadow_map(__global uint* out) {
   ShadowMap value;
   *out++ = sizeof(ShadowMap);
   *out++ = OFFSET(to_map_x);
@@ -42,7 +42,7 @@ __kernel void report_shadow_map(__global uint *out) {
   *out++ = OFFSET(pad);
 }
 
-__kernel void report_shadow_face(__global uint *out) {
+__kernel void report_shadow_face(__global uint* out) {
   ShadowFace value;
   *out++ = sizeof(ShadowFace);
   *out++ = OFFSET(scale);
@@ -59,14 +59,14 @@ __kernel void report_shadow_face(__global uint *out) {
   *out++ = OFFSET(pad2);
 }
 
-__kernel void report_shadow_texel(__global uint *out) {
+__kernel void report_shadow_texel(__global uint* out) {
   ShadowTexel value;
   *out++ = sizeof(ShadowTexel);
   *out++ = OFFSET(depth);
   *out++ = OFFSET(slopes);
 }
 
-__kernel void report_beam_light(__global uint *out) {
+__kernel void report_beam_light(__global uint* out) {
   BeamLight value;
   *out++ = sizeof(BeamLight);
   *out++ = OFFSET(place);
@@ -76,7 +76,7 @@ __kernel void report_beam_light(__global uint *out) {
   *out++ = OFFSET(pad);
 }
 
-__kernel void report_hole_triangle(__global uint *out) {
+__kernel void report_hole_triangle(__global uint* out) {
   HoleTriangle value;
   *out++ = sizeof(HoleTriangle);
   *out++ = OFFSET(a_x);
@@ -97,7 +97,7 @@ __kernel void report_hole_triangle(__global uint *out) {
   *out++ = OFFSET(pad);
 }
 
-__kernel void report_shade_frame(__global uint *out) {
+__kernel void report_shade_frame(__global uint* out) {
   ShadeFrame value;
   *out++ = sizeof(ShadeFrame);
   *out++ = OFFSET(ambient);
@@ -115,8 +115,60 @@ __kernel void report_shade_frame(__global uint *out) {
   *out++ = OFFSET(texel_count);
 }
 
+__kernel void report_cull_frame(__global uint* out) {
+  CullFrame value;
+  *out++ = sizeof(CullFrame);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(tree_stride);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(group_log2);
+  *out++ = OFFSET(tests);
+  *out++ = OFFSET(fill);
+}
+
+__kernel void report_beam_frame(__global uint* out) {
+  BeamFrame value;
+  *out++ = sizeof(BeamFrame);
+  *out++ = OFFSET(to_tree_x);
+  *out++ = OFFSET(to_tree_y);
+  *out++ = OFFSET(to_tree_z);
+  *out++ = OFFSET(tree_most);
+  *out++ = OFFSET(tree_scale);
+  *out++ = OFFSET(tree_root);
+  *out++ = OFFSET(tiles);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+  *out++ = OFFSET(pad2);
+}
+
+__kernel void report_shade_tiles_frame(__global uint* out) {
+  ShadeTilesFrame value;
+  *out++ = sizeof(ShadeTilesFrame);
+  *out++ = OFFSET(shade);
+  *out++ = OFFSET(tree_stride);
+  *out++ = OFFSET(tiles_x);
+  *out++ = OFFSET(tiles_y);
+  *out++ = OFFSET(block_width);
+  *out++ = OFFSET(block_height);
+  *out++ = OFFSET(run_stride);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+}
+
+__kernel void report_cluster_frame(__global uint* out) {
+  ClusterFrame value;
+  *out++ = sizeof(ClusterFrame);
+  *out++ = OFFSET(shade);
+  *out++ = OFFSET(light_count);
+  *out++ = OFFSET(levels);
+  *out++ = OFFSET(light_error);
+  *out++ = OFFSET(tiles_x);
+}
+
 // The members of a frame that came by value, as shade() gets it: a wrong layout of arguments shows here only.
-__kernel void report_frame_argument(__global uint *out, ShadeFrame frame) {
+__kernel void report_frame_argument(__global uint* out, ShadeFrame frame) {
   out[0] = as_uint(frame.ambient.x);
   out[1] = as_uint(frame.eye.w);
   out[2] = as_uint(frame.fog_end);

@@ -99,6 +99,38 @@ TEST(StructLayout, ShadeFrame) {
        offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, texel_count)});
 }
 
+TEST(StructLayout, CullFrame) {
+  expectLayout("report_cull_frame",
+               {sizeof(CullFrame), offsetof(CullFrame, plane_stride), offsetof(CullFrame, tree_stride),
+                offsetof(CullFrame, light_count), offsetof(CullFrame, group_log2), offsetof(CullFrame, tests),
+                offsetof(CullFrame, fill)});
+}
+
+TEST(StructLayout, BeamFrame) {
+  expectLayout("report_beam_frame",
+               {sizeof(BeamFrame), offsetof(BeamFrame, to_tree_x), offsetof(BeamFrame, to_tree_y),
+                offsetof(BeamFrame, to_tree_z), offsetof(BeamFrame, tree_most),
+                offsetof(BeamFrame, tree_scale), offsetof(BeamFrame, tree_root), offsetof(BeamFrame, tiles),
+                offsetof(BeamFrame, plane_stride), offsetof(BeamFrame, light_count),
+                offsetof(BeamFrame, pad0), offsetof(BeamFrame, pad1), offsetof(BeamFrame, pad2)});
+}
+
+TEST(StructLayout, ShadeTilesFrame) {
+  expectLayout("report_shade_tiles_frame",
+               {sizeof(ShadeTilesFrame), offsetof(ShadeTilesFrame, shade),
+                offsetof(ShadeTilesFrame, tree_stride), offsetof(ShadeTilesFrame, tiles_x),
+                offsetof(ShadeTilesFrame, tiles_y), offsetof(ShadeTilesFrame, block_width),
+                offsetof(ShadeTilesFrame, block_height), offsetof(ShadeTilesFrame, run_stride),
+                offsetof(ShadeTilesFrame, pad0), offsetof(ShadeTilesFrame, pad1)});
+}
+
+TEST(StructLayout, ClusterFrame) {
+  expectLayout(
+      "report_cluster_frame",
+      {sizeof(ClusterFrame), offsetof(ClusterFrame, shade), offsetof(ClusterFrame, light_count),
+       offsetof(ClusterFrame, levels), offsetof(ClusterFrame, light_error), offsetof(ClusterFrame, tiles_x)});
+}
+
 TEST(StructLayout, FrameArrivesByValue) {
   ShadeFrame frame{};
   frame.ambient.x = 1.5f;

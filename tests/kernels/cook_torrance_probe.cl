@@ -1,8 +1,9 @@
-// in: unit normal, to_light, to_eye, then shininess and a channel of the specular colour; out: what is reflected.
+// in: unit normal, to_light, to_eye, then shininess and a channel of the specular colour; out: what is
+// reflected.
 #include "cook_torrance.clh"
 #include "lanes.clh"
 
-__kernel void probe_cook_torrance(__global const float *in, __global float *out, uint stride) {
+__kernel void probe_cook_torrance(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   vec3L normal = load_vec3(in + first, stride);
   vec3L to_light = load_vec3(in + 3 * stride + first, stride);

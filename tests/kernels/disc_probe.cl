@@ -1,8 +1,9 @@
-// in: numbers of points; out: x and y of even_disc's point of that number, then of dense_disc's, which has fewer and starts anew.
+// in: numbers of points; out: x and y of even_disc's point of that number, then of dense_disc's, which has
+// fewer and starts anew.
 #include "disc.clh"
 #include "lanes.clh"
 
-__kernel void probe_disc(__global const float *in, __global float *out, uint stride) {
+__kernel void probe_disc(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   for (uint i = first; i < first + LANES; ++i) {
     float2 even = even_disc[(uint)in[i] % EVEN_POINTS], dense = dense_disc[(uint)in[i] % DENSE_POINTS];

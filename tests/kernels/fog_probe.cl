@@ -3,7 +3,8 @@
 #include "lanes.clh"
 #include "shared.h"
 
-__kernel void probe_fog(__global const float *in, __global float *out, uint stride, __global const ShadeFrame *frame) {
+__kernel void probe_fog(__global const float* in, __global float* out, uint stride,
+                        __global const ShadeFrame* frame) {
   uint first = get_global_id(0) * LANES;
   vec3L seen = apply_fog(*frame, load_vec3(in + first, stride), load_vec3(in + 3 * stride + first, stride));
   store_lanes(out + first, seen.x);

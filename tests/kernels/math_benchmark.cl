@@ -1,13 +1,13 @@
-// What the functions of math.clh cost: each work-item sums one over a block of values that stays in the first-level cache.
-// Arguments are (block of `stride` values for each argument, sums, stride).
+// What the functions of math.clh cost: each work-item sums one over a block of values that stays in the
+// first-level cache. Arguments are (block of `stride` values for each argument, sums, stride).
 #include "lanes.clh"
 #include "math.clh"
 
-#define TIMED(name, expression)                                                        \
-  __kernel void name(__global const float *in, __global float *out, uint stride) {     \
-    floatL sum = 0.0f;                                                                 \
-    for (uint i = 0; i < stride; i += LANES) sum += expression;                        \
-    store_lanes(out + get_global_id(0) * LANES, sum);                                  \
+#define TIMED(name, expression)                                                    \
+  __kernel void name(__global const float* in, __global float* out, uint stride) { \
+    floatL sum = 0.0f;                                                             \
+    for (uint i = 0; i < stride; i += LANES) sum += expression;                    \
+    store_lanes(out + get_global_id(0) * LANES, sum);                              \
   }
 #define X load_lanes(in + i)
 #define Y load_lanes(in + stride + i)

@@ -2,7 +2,7 @@
 #include "lanes.clh"
 #include "phong.clh"
 
-__kernel void probe_lobes(__global const float *in, __global float *out, uint stride) {
+__kernel void probe_lobes(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   vec3L normal = load_vec3(in + first, stride);
   vec3L to_light = load_vec3(in + 3 * stride + first, stride);

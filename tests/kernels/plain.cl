@@ -1,11 +1,13 @@
-// The plain way to shade, which the benchmark holds shade.cl against: one pixel a work-item, vectors of three, built-in
-// functions. Point lights with a smooth range window, Phong's highlights, all lights on all pixels.
+// The plain way to shade, which the benchmark holds shade.cl against: one pixel a work-item, vectors of
+// three, built-in functions. Point lights with a smooth range window, Phong's highlights, all lights on all
+// pixels.
 #include "shared.h"
 
-// A pixel's values lie in one float4 each: position and normal in view space; diffuse rgb; specular rgb and the exponent.
-__kernel void plain(__global const float4 *position, __global const float4 *normal, __global const float4 *diffuse,
-                    __global const float4 *specular, __global const ShadeLight *lights, uint light_count,
-                    __global float4 *image) {
+// A pixel's values lie in one float4 each: position and normal in view space; diffuse rgb; specular rgb and
+// the exponent.
+__kernel void plain(__global const float4* position, __global const float4* normal,
+                    __global const float4* diffuse, __global const float4* specular,
+                    __global const ShadeLight* lights, uint light_count, __global float4* image) {
   size_t pixel = get_global_id(0);
   float3 p = position[pixel].xyz;
   float3 n = normal[pixel].xyz;

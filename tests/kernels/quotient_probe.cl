@@ -1,6 +1,6 @@
 #include "quotient.clh"
 
-__kernel void probe_quotient(__global const float *in, __global float *out, uint stride) {
+__kernel void probe_quotient(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   store_lanes(out + first, quotient_lanes(load_lanes(in + first), load_lanes(in + first + stride)));
   for (uint i = 0; i < LANES; ++i) {

@@ -1,9 +1,12 @@
-// How many pixel-light pairs a second the vector units could do: the instructions that shade.cl's machine code has for a pair
-// (point light, range window, Phong's lobe; AVX-512), with nothing to load and nothing to wait for. Those of two pairs go
-// round sixteen values, so that none is needed again before it is ready.
+// How many pixel-light pairs a second the vector units could do: the instructions that shade.cl's machine
+// code has for a pair (point light, range window, Phong's lobe; AVX-512), with nothing to load and nothing to
+// wait for. Those of two pairs go round sixteen values, so that none is needed again before it is ready.
 //
-//   a pair in shade.cl      39 fused multiply-adds, 18 products, 7 sums, 8 integer, 5 compared and chosen, 2 extremes, 1 converted
-//   half of a round here    40                      16           8       8          5                      2            1
+//   a pair in shade.cl      39 fused multiply-adds, 18 products, 7 sums, 8 integer,
+//                           5 compared and chosen, 2 extremes, 1 converted
+//   half of a round here    40 fused multiply-adds, 16 products, 8 sums, 8 integer,
+//                           5 compared and chosen, 2 extremes, 1 converted
+//   1
 #include "lanes.clh"
 #include "shared.h"
 
@@ -11,8 +14,10 @@
 #define EACH_CHAIN(c) _Pragma("unroll") for (uint c = 0; c < CHAINS; ++c)
 #define SOME_CHAINS(c, count) _Pragma("unroll") for (uint c = 0; c < (count); ++c)
 
-// lights[0]: where the factors come from, so that the compiler cannot know them. image: r, of frame.plane_stride floats.
-__kernel void roof(ShadeFrame frame, __global const ShadeLight *lights, uint light_count, __global float *image) {
+// lights[0]: where the factors come from, so that the compiler cannot know them. image: r, of
+// frame.plane_stride floats.
+__kernel void roof(ShadeFrame frame, __global const ShadeLight* lights, uint light_count,
+                   __global float* image) {
   uint first = get_global_id(0) * LANES;
   floatL factor = lights[0].attenuation.x, term = lights[0].position.w, limit = lights[0].diffuse.x;
   intL mask = (intL)((int)lights[0].kind - 1), step = (intL)((int)lights[0].khr_window + 1);

@@ -2,7 +2,7 @@
 #include "lanes.clh"
 #include "toon.clh"
 
-__kernel void probe_toon(__global const float *in, __global float *out, uint stride) {
+__kernel void probe_toon(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   floatL x = load_lanes(in + first);
   store_lanes(out + first, toon(x));

@@ -28,8 +28,36 @@ float4 mostOf(const TriangleTree& tree) {
   return {most[0], most[1], most[2], 0};
 }
 
-float4 rowOf(const glm::mat3& matrix, int row, float w) {
-  return {matrix[0][row], matrix[1][row], matrix[2][row], w};
+float4 rowOf(const glm::mat3& matrix, int row) { return {matrix[0][row], matrix[1][row], matrix[2][row], 0}; }
+
+BeamFrame frameOf(const BeamArguments& arguments) {
+  const BeamScene& beams = arguments.beams;
+  BeamFrame frame{};
+  frame.to_tree_x = rowOf(beams.view_to_tree, 0);
+  frame.to_tree_y = rowOf(beams.view_to_tree, 1);
+  frame.to_tree_z = rowOf(beams.view_to_tree, 2);
+  frame.tree_most = beams.tree_most;
+  frame.tree_scale = beams.tree->scale;
+  frame.tree_root = beams.tree->root;
+  frame.tiles = uint(arguments.plane_stride / kTilePixels);
+  frame.plane_stride = uint(arguments.plane_stride);
+  frame.light_count = uint(arguments.lights.count);
+  return frame;
+}
+
+/// Counts the pairs of pixels and lights of a size that no ray decides. receivers: of each entry, how many of
+/// its pixels the light may reach.
+void countDecided(const PairBits& receivers, std::size_t entries, PairShadows& pairs) {
+  for (std::size_t entry = 0; entry < entries; ++entry) {
+    if (receivers[entry] == 0) continue;
+    std::uint64_t bits = 0, by_rays = 0;
+    for (std::size_t i = entry * kPairWords; i < (entry + 1) * kPairWords; ++i) {
+      bits += std::uint64_t(std::popcount(pairs.lit[i]));
+      by_rays += std::uint64_t(std::popcount(pairs.unsure[i]));
+    }
+    pairs.soft_lit += bits;
+    pairs.soft_dark += receivers[entry] - bits - by_rays;
+  }
 }
 
 }  // namespace
@@ -95,15 +123,11 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
                      received = borrowedForOutput(device, receivers);
   Kernel kernel = makeKernel(device, "beam_shadows.cl", "beam_shadows", defines);
   launch(device, kernel,
-         {{"plane_stride", uint(arguments.plane_stride)},
+         {{"frame", frameOf(arguments)},
           {"position", arguments.position},
           {"normal", arguments.normal},
           {"lift", arguments.lift},
-          {"to_tree_x", rowOf(beams.view_to_tree, 0, beams.tree->scale)},
-          {"to_tree_y", rowOf(beams.view_to_tree, 1, 0)},
-          {"to_tree_z", rowOf(beams.view_to_tree, 2, 0)},
           {"lights", arguments.lights},
-          {"light_count", uint(arguments.lights.count)},
           {"list_starts", arguments.lists.starts},
           {"list", arguments.lists.list},
           {"nodes", beams.nodes},
@@ -113,9 +137,6 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
           {"hole_texels", beams.hole_texels},
           {"hole_triangles", beams.hole_triangles},
           {"first_hole_triangle", beams.first_hole_triangle},
-          {"root", beams.tree->root},
-          {"tree_most", beams.tree_most},
-          {"tiles", uint(tiles)},
           {"lit", lit},
           {"unsure", unsure},
           {"receivers", received}},
@@ -124,16 +145,7 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
   if (unsure_pairs) download(device, unsure, result.unsure);
   if (!soft) return result;
   download(device, received, receivers);
-  for (std::size_t entry = 0; entry < entries; ++entry) {
-    if (receivers[entry] == 0) continue;
-    std::uint64_t bits = 0, by_rays = 0;
-    for (std::size_t i = entry * kPairWords; i < (entry + 1) * kPairWords; ++i) {
-      bits += std::uint64_t(std::popcount(result.lit[i]));
-      by_rays += std::uint64_t(std::popcount(result.unsure[i]));
-    }
-    result.soft_lit += bits;
-    result.soft_dark += receivers[entry] - bits - by_rays;
-  }
+  countDecided(receivers, entries, result);
   return result;
 }
 

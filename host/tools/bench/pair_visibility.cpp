@@ -41,7 +41,7 @@ std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defin
          {{"stride", uint(slots)},
           {"position", borrowed(device, points)},
           {"normal", borrowed(device, normals)},
-          {"geometric_normal", borrowed(device, geometric_normals)},
+          {"surface_normal", borrowed(device, geometric_normals)},
           {"lift", borrowed(device, lifts)},
           {"map_of_row", borrowed(device, map_of_row)},
           {"maps", borrowed(device, shadows.maps)},
