@@ -1,9 +1,9 @@
-# cmake -DOUTPUT=x.cpp -DFILES=a;b -DTABLE=name -P embed.cmake: writes a C++ file that holds the files' bytes and the
-# function `name` that gives a table of them, declared in host/base/embedded_files.hpp.
+# cmake -DOUTPUT=x.cpp -DFILES=a;b -DBASE=folder -DTABLE=name -P embed.cmake: writes a C++ file that holds the files' bytes and the
+# function `name` that gives a table of them by their paths in the folder, declared in host/base/embedded_files.hpp.
 set(arrays "")
 set(table "")
 foreach(file ${FILES})
-  get_filename_component(name ${file} NAME)
+  file(RELATIVE_PATH name ${BASE} ${file})
   string(MAKE_C_IDENTIFIER ${name} identifier)
   file(READ ${file} hex HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")

@@ -58,8 +58,8 @@ enum { kByRange = 0, kByCone = 1, kByFacing = 2 };
 // Children of a node in the tree over the lights.
 enum { kTreeArity = 16 };
 
-// The tree over a scene's triangles (host/shadow/exact/triangle_tree.hpp): children of a node, and triangles of a
-// block, which is a leaf.
+// The tree over a scene's triangles (host/shadow/exact/triangle_tree.hpp): children of a node, and triangles
+// of a block, which is a leaf.
 enum { kTreeWidth = 16 };
 
 // Rows of kTreeWidth floats of a node: low x, high x, low y, high y, low z, high z of each child's box. A

@@ -67,41 +67,41 @@ AFTER_DARK = ("render", "LightError.PixelsAfter*")
 TERMINATOR = ("pictures", "*Terminator*")
 
 TESTS = {
-    "beam.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
-    "beam_points.clh": [BEAMS, EXACT_SHADOWS, TERMINATOR],
-    "beam_shadows.cl": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
-    "candidates.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
-    "blockers.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
-    "clustered_light.cl": [SHINY, CLUSTERED, AFTER_DARK],
-    "cook_torrance.clh": [COOK_TORRANCE, PICTURES],
-    "count_in_range.cl": [PICTURES, EXACT],
-    "cull.cl": [CULL, EXACT, PICTURES],
-    "cut_clusters.clh": [CUT_CLUSTERS, CLUSTERED],
-    "disc.clh": [DISC],
-    "exact_sign.h": [EXACT_SIGN],
-    "falloff.clh": [FALLOFF, HARD_SPOTS, CLOSED_FORM, SHADE],
-    "far_field.clh": [FAR_FIELD, CLUSTERED],
-    "find_needed.cl": [NEEDED, MAPS],
-    "fog.clh": [FOG, CLOSED_FORM, PICTURES],
-    "highlights.clh": [HIGHLIGHTS, SHINY],
-    "hole_masks.clh": [("pictures", "HoleMasks.*")],
+    "exact/beam.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
+    "exact/beam_points.clh": [BEAMS, EXACT_SHADOWS, TERMINATOR],
+    "exact/beam_shadows.cl": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
+    "exact/candidates.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
+    "exact/blockers.clh": [BEAMS, SOFT_BEAMS, EXACT_SHADOWS],
+    "clusters/clustered_light.cl": [SHINY, CLUSTERED, AFTER_DARK],
+    "shade/cook_torrance.clh": [COOK_TORRANCE, PICTURES],
+    "lights/count_in_range.cl": [PICTURES, EXACT],
+    "lights/cull.cl": [CULL, EXACT, PICTURES],
+    "clusters/cut_clusters.clh": [CUT_CLUSTERS, CLUSTERED],
+    "maps/disc.clh": [DISC],
+    "exact/exact_sign.h": [EXACT_SIGN],
+    "shade/falloff.clh": [FALLOFF, HARD_SPOTS, CLOSED_FORM, SHADE],
+    "clusters/far_field.clh": [FAR_FIELD, CLUSTERED],
+    "maps/find_needed.cl": [NEEDED, MAPS],
+    "shade/fog.clh": [FOG, CLOSED_FORM, PICTURES],
+    "clusters/highlights.clh": [HIGHLIGHTS, SHINY],
+    "exact/hole_masks.clh": [("pictures", "HoleMasks.*")],
     "lanes.clh": [MATH, FALLOFF, PHONG, SHADE, NEEDED],
-    "light_clusters.clh": [HORIZON, FAR_FIELD, CLUSTERED],
-    "light_tree.clh": [CULL, EXACT, PICTURES, SHADE_TILES],
-    "listed_highlights.clh": [HIGHLIGHTS, SHINY],
-    "lobe_series.clh": [HIGHLIGHTS, SHINY],
-    "lobes.clh": [HIGHLIGHTS, SHINY],
+    "clusters/light_clusters.clh": [HORIZON, FAR_FIELD, CLUSTERED],
+    "lights/light_tree.clh": [CULL, EXACT, PICTURES, SHADE_TILES],
+    "clusters/listed_highlights.clh": [HIGHLIGHTS, SHINY],
+    "clusters/lobe_series.clh": [HIGHLIGHTS, SHINY],
+    "clusters/lobes.clh": [HIGHLIGHTS, SHINY],
     "long_sum.clh": [SUMS, EXACT],
     "math.clh": [MATH, SHADOW, PICTURES, TERMINATOR],
-    "pair_visibility.cl": [("bench", "*HardShadows*:ShadowErrors.DontDepend*")],
-    "phong.clh": [PHONG, CLOSED_FORM, NUMBERS],
-    "shade.cl": [CLOSED_FORM, SHADE, PICTURES, SUMS, EXACT, EXACT_SHADOWS],
-    "shade_tiles.cl": [SHADE_TILES, SHADE, EXACT],
-    "shading.clh": [CLOSED_FORM, SHADE, PICTURES, MODELS, SUMS, EXACT, EXACT_SHADOWS, SOFT_PICTURES],
-    "shadow.clh": [SHADOW, NEEDED, MAPS, SOFT, TERMINATOR],
-    "oren_nayar.clh": [OREN_NAYAR],
-    "toon.clh": [TOON],
-    "wide_integer.h": [EXACT_SIGN],
+    "maps/pair_visibility.cl": [("bench", "*HardShadows*:ShadowErrors.DontDepend*")],
+    "shade/phong.clh": [PHONG, CLOSED_FORM, NUMBERS],
+    "shade/shade.cl": [CLOSED_FORM, SHADE, PICTURES, SUMS, EXACT, EXACT_SHADOWS],
+    "shade/shade_tiles.cl": [SHADE_TILES, SHADE, EXACT],
+    "shade/shading.clh": [CLOSED_FORM, SHADE, PICTURES, MODELS, SUMS, EXACT, EXACT_SHADOWS, SOFT_PICTURES],
+    "maps/shadow.clh": [SHADOW, NEEDED, MAPS, SOFT, TERMINATOR],
+    "shade/oren_nayar.clh": [OREN_NAYAR],
+    "shade/toon.clh": [TOON],
+    "exact/wide_integer.h": [EXACT_SIGN],
 }
 
 
@@ -142,7 +142,7 @@ MUTANTS = {
         Mutant("y < 0.0f ? y - fold : y + fold", "y < 0.0f ? y + fold : y - fold"),
         Mutant("packed << 16 >> 16", "packed & 0xffff"),
     ],
-    "exact_sign.h": [
+    "exact/exact_sign.h": [
         Mutant("0x1.0001p-50 *", "0x1.0001p-51 *"),
         Mutant("0x1.0001p-50 *", "0.0 *"),
         Mutant("flushed = 0x1p-72", "flushed = 0.0"),
@@ -163,7 +163,7 @@ MUTANTS = {
         Mutant("determinant_sign(a, b, l, c, l)", "determinant_sign(a, b, l, l, c)"),
         Mutant("return -determinant_sign(p, q, r, d, none)", "return determinant_sign(p, q, r, d, none)"),
     ],
-    "falloff.clh": [
+    "shade/falloff.clh": [
         Mutant("fma_lanes(dz, dz, fma_lanes(dx, dx, (dy) * (dy)))", "fma_lanes(dx, dx, (dy) * (dy))"),
         Mutant("fma_lanes(-ratio2, ratio2, 1.0f)", "1.0f - ratio2"),
         Mutant("!light->khr_window", "light->khr_window"),
@@ -176,7 +176,7 @@ MUTANTS = {
         Mutant("-clamp01(1.0f - cosine)", "-0.5f * clamp01(1.0f - cosine)"),
         Mutant("cosine = -(dot3s", "cosine = (dot3s"),
     ],
-    "fog.clh": [
+    "shade/fog.clh": [
         Mutant("fog_end - distance", "fog_end + distance"),
         Mutant("exp_lanes(-(depth * depth))", "exp_lanes(-depth)"),
         Mutant("exp_lanes(-(density * distance))", "exp_lanes(density * distance)"),
@@ -185,7 +185,7 @@ MUTANTS = {
         Mutant("fog_color.z", "fog_color.y"),
         Mutant("if (FOG_RADIAL && ", "if (FOG_RADIAL && !"),
     ],
-    "phong.clh": [
+    "shade/phong.clh": [
         Mutant("2.0f * dot3(v, normal)", "dot3(v, normal)"),
         Mutant("normal.y, -v.y", "normal.y, v.y"),
         Mutant("position.y, frame->eye.y", "position.y, -frame->eye.y", same="the eye's y is 0 in every view"),
@@ -197,7 +197,7 @@ MUTANTS = {
         Mutant("n_dot_l + n_dot_v, (floatL)(0.0f)", "n_dot_l + n_dot_v, (floatL)(-2.0f)"),
         Mutant("-0.5f * dot3(chord, chord)", "-0.4f * dot3(chord, chord)"),
     ],
-    "cook_torrance.clh": [
+    "shade/cook_torrance.clh": [
         Mutant("50.0f * f0", "40.0f * f0"),
         Mutant("fma_lanes(-0.25f,", "fma_lanes(-0.5f,"),
         Mutant("glance2 * glance2 * glance", "glance2 * glance2"),
@@ -208,7 +208,7 @@ MUTANTS = {
         Mutant("smith(max_lanes(n_dot_v, (floatL)(0.0f)), alpha2)", "smith(n_dot_v, alpha2)"),
         Mutant("fma_lanes(-0.5f, length2 * inverse, 1.0f)", "fma_lanes(-1.0f, length2 * inverse, 1.0f)"),
     ],
-    "oren_nayar.clh": [
+    "shade/oren_nayar.clh": [
         Mutant("fma_lanes(0.33f, shininess, 1.66f)", "fma_lanes(0.33f, shininess, 1.33f)"),
         Mutant("(floatL)(0.45f), fma", "(floatL)(0.9f), fma"),
         Mutant("fma_lanes(0.09f, shininess, 1.18f)", "fma_lanes(0.09f, shininess, 1.09f)"),
@@ -216,7 +216,7 @@ MUTANTS = {
         Mutant("fma_lanes(-n_dot_l, n_dot_v,", "fma_lanes(-n_dot_l, n_dot_l,"),
         Mutant("roughness.retro * together * quotient_lanes(n_dot_l, larger)", "roughness.retro * together * n_dot_l"),
     ],
-    "toon.clh": [
+    "shade/toon.clh": [
         Mutant("32.0f * (x - edge)", "31.0f * (x - edge)"),
         Mutant("(lobe, 0.5f)", "(lobe, 0.49f)"),
         Mutant("(n_dot_l, 0.625f)", "(n_dot_l, 0.6f)"),
@@ -228,19 +228,19 @@ MUTANTS = {
         Mutant("block->z = full ? zero : block->z", "block->z = block->z"),
         Mutant("full ? block->x : zero", "block->x"),
     ],
-    "disc.clh": [
+    "maps/disc.clh": [
         Mutant("{-0.159645f, 0.1462479f}", "{0.159645f, 0.1462479f}"),
         Mutant("{0.5365958f, -0.8345298f}", "{0.5365958f, 0.8345298f}"),
         Mutant("{0.2149088f, -0.9552913f}", "{0.2149088f, 0.9552913f}"),
     ],
-    "shade.cl": [
+    "shade/shade.cl": [
         Mutant("end - entry > kSumBlock", "end - entry >= kSumBlock",
                same="a single block of kSumBlock terms, moved to a total of 0, is that total to the bit"),
         Mutant("tile * frame.light_count + entry", "entry"),
         Mutant("squares & square[row]", "squares | square[row]",
                same="a light that a list leaves out adds nothing; this costs time alone"),
     ],
-    "shade_tiles.cl": [
+    "shade/shade_tiles.cl": [
         Mutant("extent, light)) << i * LANES", "extent, light)) << i"),
         Mutant("kByCone : kByCone | kByFacing", "kByCone | kByFacing : kByCone"),
         Mutant("1u << group % 32); bits", "2u << group % 32); bits"),
@@ -256,7 +256,7 @@ MUTANTS = {
         Mutant("task.last = candidates.count < kCandidates", "task.last = true"),
         Mutant("in_reach + (task->begun ? counts[0] : 0)", "in_reach"),
     ],
-    "shading.clh": [
+    "shade/shading.clh": [
         Mutant("n_dot_l > 0.0f ?", "n_dot_l > -1.0f ?"),
         Mutant("n_dot_l < 2.0f ? n_dot_l : (floatL)(0.0f)", "n_dot_l"),
         Mutant("MODEL_IS(kBlinnPhongModel) ? halved : shininess", "shininess"),
@@ -281,7 +281,7 @@ MUTANTS = {
         Mutant("(uint)((1ul << LANES) - 1)", "(uint)((1ul << LANES) - 2)"),
         Mutant("finish_sum(sums->closed[part]", "finish_sum(sums->closed[kDiffusePart]"),
     ],
-    "shadow.clh": [
+    "maps/shadow.clh": [
         Mutant("fma_lanes(-face.scale, v", "fma_lanes(face.scale, v"),
         Mutant("!point.inside & (x > face.low)", "(x > face.low)"),
         Mutant("to_point.x = negative ? -to_point.x : to_point.x", "to_point.x = to_point.x"),
@@ -308,7 +308,7 @@ MUTANTS = {
         Mutant("left = point.x - 0.5f * (PCF_WIDTH - 1)", "left = point.x - 0.5f * PCF_WIDTH"),
         Mutant("off ? (floatL)(0.0f) : lift", "lift"),
     ],
-    "cull.cl": [
+    "lights/cull.cl": [
         Mutant("p.z - middle.z}", "p.z}"),
         Mutant("-SLACK * sizes", "SLACK * sizes"),
         Mutant("SLACK 4e-6f", "SLACK 0.0f"),
@@ -318,7 +318,7 @@ MUTANTS = {
         Mutant("lit &= ~(1u << group)", "lit &= 1u << group"),
         Mutant("(1u << squares_per_group) - 1", "1u"),
     ],
-    "light_tree.clh": [
+    "lights/light_tree.clh": [
         Mutant("light->position.x - middle.x, light->position.y", "light->position.x + middle.x, light->position.y"),
         Mutant("node + 3 * stride", "node + 2 * stride"),
         Mutant("* inverse_range2 >= 1.0f", "* inverse_range2 >= 0.9f"),
@@ -344,7 +344,7 @@ MUTANTS = {
         Mutant("&& cosine > 0.0f)", "&& cosine > -1.0f)"),
         Mutant("tested.placed = 0.0f", "tested.placed = 1.0f"),
     ],
-    "beam_points.clh": [
+    "exact/beam_points.clh": [
         Mutant("cluster->whole = whole", "cluster->whole = true"),
         Mutant("tile->pixel[to] = (uchar)(first_pixel + next)", "tile->pixel[to] = (uchar)(first_pixel + spare)"),
         Mutant("s = scale3(turned(frame, p), (floatL)(frame->tree_scale))", "s = turned(frame, p)"),
@@ -354,7 +354,7 @@ MUTANTS = {
         Mutant("POINT_ERROR * (1.0f + 0x1p-20f) * most", "0.0f"),
         Mutant("return lower & points;", "return lower;"),
     ],
-    "beam.clh": [
+    "exact/beam.clh": [
         Mutant("over > under ? 1.0f : -1.0f", "1.0f"),
         Mutant("beside = best * STEEPEST > largest", "beside = true"),
         Mutant("low < 0.0f ? -FARTHER : box->low[axis]", "box->low[axis]"),
@@ -378,7 +378,7 @@ MUTANTS = {
         Mutant("view->axis[i])) : beam->across[i];", "view->axis[i])) : 0.0f;"),
         Mutant("beam->across[i] + beam->far : 0.0f", "0.0f : 0.0f"),
     ],
-    "blockers.clh": [
+    "exact/blockers.clh": [
         Mutant("EDGE_ROUNDING (32.0f * 0x1p-24f)", "EDGE_ROUNDING 0.0f"),
         Mutant("SIDE_ROUNDING (18.0f * 0x1p-24f)", "SIDE_ROUNDING 0.0f"),
         Mutant("#define CLEAR 0x1p-21f", "#define CLEAR -1.0f"),
@@ -405,7 +405,7 @@ MUTANTS = {
         Mutant("meets &= in | straddles", "meets &= in"),
         Mutant("- 1.00001f * view->size", "- 0.0f * view->size"),
     ],
-    "beam_shadows.cl": [
+    "exact/beam_shadows.cl": [
         Mutant("light->reach + tile->most_lift", "0.9f * light->reach"),
         Mutant("-1e-5f * length - tile->most_lift", "1e-2f * length"),
         Mutant("receives &= tile->used[row]", "receives &= 0xffff",
@@ -416,7 +416,7 @@ MUTANTS = {
         Mutant("remaining->unsure[row] |= remaining->left[row];", "remaining->unsure[row] |= 0;"),
         Mutant("lit |= remaining->left[row];", "lit |= 1u << lowest_bit(points);"),
     ],
-    "candidates.clh": [
+    "exact/candidates.clh": [
         Mutant("lane_bits(least_edge(tile, c, at, point) > (floatL)(c->rounding[at]))", "lane_bits(least_edge(tile, c, at, point) >= (floatL)(-c->rounding[at]))"),
         Mutant(">= (floatL)(-c->rounding[at])", "> (floatL)(c->rounding[at])"),
         Mutant("lane_bits(least > rounding));", "lane_bits(least >= -rounding));"),
@@ -439,7 +439,7 @@ MUTANTS = {
         Mutant("beyond |= straddles", "beyond |= 0"),
         Mutant("all_beyond &= ~straddles", "all_beyond &= 1"),
     ],
-    "find_needed.cl": [
+    "maps/find_needed.cl": [
         Mutant("smallest_lane(mask ? y : none)", "smallest_lane(mask ? x : none)"),
         Mutant("row * (last + 1) + column", "row * last + column"),
         Mutant("depth >= last_noted->depth", "depth <= last_noted->depth"),
@@ -447,16 +447,16 @@ MUTANTS = {
         Mutant("receives &= point.inside", "receives |= point.inside",
                same="more texels are drawn than anybody looks at; this costs time alone"),
     ],
-    "count_in_range.cl": [
+    "lights/count_in_range.cl": [
         Mutant("light->position.z - p.z", "light->position.z"),
         Mutant("light->kind != kDirectionalLight", "light->kind == kDirectionalLight"),
         Mutant("!(ratio2 >= 1.0f)", "!(ratio2 <= 1.0f)"),
     ],
-    "pair_visibility.cl": [
+    "maps/pair_visibility.cl": [
         Mutant("map_lookup(maps + map_of_row[row]", "map_lookup(maps"),
         Mutant("load_vec3(normal + first", "load_vec3(position + first"),
     ],
-    "clustered_light.cl": [
+    "clusters/clustered_light.cl": [
         Mutant("COSINE_ROUNDING 5", "COSINE_ROUNDING 0"),
         Mutant("MOST_SHARE 0.0625f", "MOST_SHARE 1e30f"),
         Mutant("of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + kSumTerms + 4),", "of_lights = 0x1p-24f * (float)(LIGHT_ROUNDING + 4),"),
@@ -483,7 +483,7 @@ MUTANTS = {
         Mutant("== (floatL)(pixels->exponent)", ">= (floatL)(0.0f)"),
         Mutant("walk.lights = walk.clusters = 0;", "walk.lights = 0;"),
     ],
-    "cut_clusters.clh": [
+    "clusters/cut_clusters.clh": [
         Mutant("largest = abs_lanes(z0) + width", "largest = abs_lanes(z0) + 0.5f * width"),
         Mutant("largest = abs_lanes(z0) + width", "largest = width"),
         Mutant("coarse = quotient_lanes((floatL)(0x1p-19f)", "coarse = quotient_lanes((floatL)(0x1p-40f)"),
@@ -510,7 +510,7 @@ MUTANTS = {
         Mutant("value[c] = least + most", "value[c] = 2.0f * least"),
         Mutant("quarter, error[2], sum->bound.z", "quarter, error[1], sum->bound.z"),
     ],
-    "far_field.clh": [
+    "clusters/far_field.clh": [
         Mutant("fma_lanes(at, q, 3.0f * h1), 3.0f * h2), h3)", "fma_lanes(at, q, 1.5f * h1), 3.0f * h2), h3)"),
         Mutant("fma_lanes(at, q, 3.0f * h1), 3.0f * h2), h3)", "fma_lanes(at, q, 3.0f * h1), 1.5f * h2), h3)"),
         Mutant("fma_lanes(at, q, 3.0f * h1), 3.0f * h2), h3)", "fma_lanes(at, q, 3.0f * h1), 3.0f * h2), 0.5f * h3)"),
@@ -561,7 +561,7 @@ MUTANTS = {
         Mutant("term[kFieldBound] += error", "term[kFieldBound] += 0.5f * error"),
         Mutant("term[kFieldWeight] += weight", "term[kFieldWeight] += 0.0f * weight"),
     ],
-    "hole_masks.clh": [
+    "exact/hole_masks.clh": [
         Mutant("float b = quotient(edges[2], sum), c", "float b = quotient(edges[1], sum), c"),
         Mutant("popcount(holes & ((1u << slot) - 1))", "popcount(holes & ((2u << slot) - 1))"),
         Mutant("if (wrap == kWrapClamped) return (uint)(texel < 0 ? 0 : last);", "if (wrap == kWrapClamped) return (uint)(texel < 0 ? last : 0);"),
@@ -572,7 +572,7 @@ MUTANTS = {
                "return high >= t->solid_from ? kSolid : low <= t->hole_to ? kHole : kMixed;"),
         Mutant("if (texel < 0) texel += period;", "if (texel < 0) texel = 0;"),
     ],
-    "lobes.clh": [
+    "clusters/lobes.clh": [
         Mutant("swing = view->k + group->turn;", "swing = view->k;"),
         Mutant("swing = view->k + group->turn;", "swing = group->turn;"),
         Mutant("fma_lanes(chord + group->turn, inverse, (floatL)(group->place.spread))", "(chord + group->turn) * inverse"),
@@ -587,7 +587,7 @@ MUTANTS = {
         Mutant("room = (floatL)(1.0f) - view->k, scale", "room = (floatL)(1.0f), scale"),
         Mutant("return power * scale * scale;", "return 0.9f * power * scale * scale;"),
     ],
-    "lobe_series.clh": [
+    "clusters/lobe_series.clh": [
         Mutant("fma_lanes(group->turn * view->distance, (floatL)(1.0f) + view->k, (floatL)(group->place.radius))", "group->place.radius"),
         Mutant("fma_lanes(group->turn * view->distance, (floatL)(1.0f) + view->k, (floatL)(group->place.radius))", "group->turn * view->distance"),
         Mutant("fma_lanes(at, extent.q, 3.0f * extent.a1)", "fma_lanes(at, 0.0f * extent.q, 3.0f * extent.a1)"),
@@ -619,7 +619,7 @@ MUTANTS = {
         Mutant("term[kLobeBound] += mask ? error : none", "term[kLobeBound] += mask ? 0.5f * error : none"),
         Mutant("32.0f * exponent + (float)(128 + kFieldBlock + sums->closed)", "0.0f"),
     ],
-    "highlights.clh": [
+    "clusters/highlights.clh": [
         Mutant("half_of_it = mask ? 0.5f * brightest", "half_of_it = mask ? brightest",
                same="value and bound are both as large as the light can be: right, and looser"),
         Mutant("kClusterAbsolute), half_of_it, term[kLobeBound])", "kClusterAbsolute), 0.5f * half_of_it, term[kLobeBound])"),
@@ -627,7 +627,7 @@ MUTANTS = {
         Mutant("(view->height > view->margin) &", "(view->height > -view->margin) &"),
         Mutant("group->exponent >= 3.0f", "group->exponent >= 0.0f"),
     ],
-    "listed_highlights.clh": [
+    "clusters/listed_highlights.clh": [
         Mutant("block_unsure = fma_lanes((floatL)(light.color.w)", "block_unsure = fma_lanes((floatL)(0.0f)"),
         Mutant("HORIZON_SLACK 0x1p-19f", "HORIZON_SLACK 0x1p-26f"),
         Mutant("40.0f * root + 0x1p-24f", "20.0f * root + 0x1p-24f"),
@@ -648,7 +648,7 @@ MUTANTS = {
         Mutant("sums->rounding += block_rounding", "sums->rounding = block_rounding"),
         Mutant("sums->unsure += block_unsure", "sums->unsure = block_unsure"),
     ],
-    "light_clusters.clh": [
+    "clusters/light_clusters.clh": [
         Mutant("k = (radius + group->radius) *", "k = radius *"),
         Mutant("k = (radius + group->radius) *", "k = group->radius *"),
         Mutant("view.width + group->thickness +", "0.5f * view.width + group->thickness +"),
@@ -683,7 +683,7 @@ MUTANTS = {
         Mutant("far &= slots;", ""),
         Mutant("slots & ~far, walk)", "slots, walk)"),
     ],
-    "wide_integer.h": [
+    "exact/wide_integer.h": [
         Mutant("exponent != 0 ? exponent : 1", "exponent"),
         Mutant("? 0x800000 : 0", "? 0x800000 : 0x800000"),
         Mutant("digits <<= shift % 32", "digits <<= shift % 31"),

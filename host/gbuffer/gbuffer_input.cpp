@@ -32,7 +32,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 bool isFar(float depth) { return std::abs(depth) == 1e10f || !(std::abs(depth) < 1e20f); }
 
 /// How far from 1 a normal's length may be. The raster's are rounded once, and off by 2⁻²⁴ at most; what
-/// bounds a picture's error allows for this (LIGHT_ROUNDING in kernels/clustered_light.cl).
+/// bounds a picture's error allows for this (LIGHT_ROUNDING in kernels/clusters/clustered_light.cl).
 constexpr double kUnitError = 3 * 0x1p-24;
 
 /// Why pixels show nothing, counted by all threads.

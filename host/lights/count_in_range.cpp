@@ -6,7 +6,7 @@
 namespace luciole {
 
 void countInRange(OpenedDevice& device, const CountInRangeArguments& arguments) {
-  Kernel kernel = makeKernel(device, "count_in_range.cl", "count_in_range", "");
+  Kernel kernel = makeKernel(device, "lights/count_in_range.cl", "count_in_range", "");
   const auto lanes = std::size_t(device.description.lanes);
   launch(device, kernel,
          {{"position", arguments.position},

@@ -13,7 +13,7 @@ struct CountInRangeArguments {
   Buffer<float> counts;     ///< out: plane_stride
 };
 
-/// Launches kernels/count_in_range.cl: counts for each pixel the lights in whose range it lies. Doesn't wait.
+/// Launches kernels/lights/count_in_range.cl: counts for each pixel the lights in whose range it lies. Doesn't wait.
 /// Throws MachineError.
 void countInRange(OpenedDevice& device, const CountInRangeArguments& arguments);
 

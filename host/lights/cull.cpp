@@ -7,9 +7,9 @@
 namespace luciole {
 namespace {
 
-constexpr const char* kFile = "cull.cl";
+constexpr const char* kFile = "lights/cull.cl";
 
-/// The lists' lengths, or then the lists themselves: see kernels/cull.cl.
+/// The lists' lengths, or then the lists themselves: see kernels/lights/cull.cl.
 void findLights(OpenedDevice& device, const CullArguments& arguments, bool fill, const LightLists& lists) {
   Kernel find_lights = makeKernel(device, kFile, "find_lights", "");
   const CullFrame frame{.plane_stride = uint(arguments.plane_stride),

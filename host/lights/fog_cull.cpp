@@ -96,7 +96,7 @@ double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
   const glm::dvec3 attenuation(light.attenuation);
   const double strength = (light.window == RangeWindow::kSmooth ? window * window : window) /
                           (attenuation.x + distance * (attenuation.y + distance * attenuation.z));
-  return std::min(strength, 0x1p100);  // the kernels' own cap, see kernels/falloff.clh
+  return std::min(strength, 0x1p100);  // the kernels' own cap, see kernels/shade/falloff.clh
 }
 
 /// Upper bound of the colour of surfaces with this response in this light, without exposure.

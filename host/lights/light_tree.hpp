@@ -15,7 +15,7 @@ namespace luciole {
 /// them. It doesn't depend on the camera. O(n), on all cores.
 std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights);
 
-/// The tree over the lights that kernels/cull.cl walks; a drawing of it is there.
+/// The tree over the lights that kernels/lights/cull.cl walks; a drawing of it is there.
 struct LightTree {
   /// Low x y z, high x y z, 1 / range²: 7 planes of `stride` floats each.
   std::vector<float, RawArrayAllocator<float>> planes;

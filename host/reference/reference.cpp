@@ -143,7 +143,7 @@ glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ive
 }  // namespace
 
 /// The sine of the angle by which a packed normal may be off, with some to spare: a light that is so little
-/// behind a surface counts as before it, as in kernels/shading.clh.
+/// behind a surface counts as before it, as in kernels/shade/shading.clh.
 static constexpr double kPackedNormalMargin = 0x1p-13;
 
 /// Calls take(LightTerm) for each light that reaches the point, in the scene's order.

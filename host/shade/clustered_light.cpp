@@ -11,7 +11,7 @@
 namespace luciole {
 namespace {
 
-/// GROUP_RADIUS of kernels/clustered_light.cl: how far a group reaches from its first pixel, which mostly is
+/// GROUP_RADIUS of kernels/clusters/clustered_light.cl: how far a group reaches from its first pixel, which mostly is
 /// a corner of it, as a share of the distance.
 constexpr double kGroupWidth = 0.03;
 /// The angle of a pixel of 1280 × 720, where a picture is 60° high.
@@ -28,7 +28,7 @@ double pixelAngle(const View& view) {
 
 ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments) {
-  Kernel kernel = makeKernel(device, "clustered_light.cl", "clustered_light", defines);
+  Kernel kernel = makeKernel(device, "clusters/clustered_light.cl", "clustered_light", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const LightClusters& clusters = arguments.clusters;
   const std::size_t tiles = arguments.frame.plane_stride / kTilePixels;

@@ -120,11 +120,11 @@ LightUse lightUse(const ShadeSettings& settings);
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings, bool clustered = false);
 
-/// The features that decide where shadow maps are looked up. kernels/find_needed.cl depends on no others, so
+/// The features that decide where shadow maps are looked up. kernels/maps/find_needed.cl depends on no others, so
 /// scenes that differ only in others share these programs.
 FeatureSet lookupFeatures(const FeatureSet& features);
 
-/// The features that kernels/beam_shadows.cl depends on.
+/// The features that kernels/exact/beam_shadows.cl depends on.
 FeatureSet beamFeatures(const FeatureSet& features);
 
 /// What of a program's features kernels need that light pixels by clusters.

@@ -48,7 +48,7 @@ double exponentialShareError(double depth, double relative_depth_error) {
   return depth > 86 ? share : 1.001 * error * share;
 }
 
-/// How far the kernels' share (kernels/fog.clh) of a surface's light that reaches the eye may be off.
+/// How far the kernels' share (kernels/shade/fog.clh) of a surface's light that reaches the eye may be off.
 /// position: view space, metres.
 double fogShareError(const ShadeFrame& frame, int channel, const glm::dvec3& position) {
   // A distance is √(dot product) by way of x·rsqrt_lanes(x): 1.5 + 3 + 1 roundings. A depth is a float

@@ -22,7 +22,7 @@ GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
 }
 
 void shade(OpenedDevice& device, const std::string& defines, const ShadeArguments& arguments) {
-  Kernel kernel = makeKernel(device, "shade.cl", "shade", defines);
+  Kernel kernel = makeKernel(device, "shade/shade.cl", "shade", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const auto lanes = std::size_t(device.description.lanes);
   const std::size_t pixels_per_item = lanes * ROWS_PER_ITEM(lanes, arguments.lists.tiles > 0);

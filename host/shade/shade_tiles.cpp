@@ -41,7 +41,7 @@ static_assert(kBlockTiles == 4 * 4);
 
 TileCounts shadeTiles(OpenedDevice& device, const std::string& defines,
                       const ShadeTilesArguments& arguments) {
-  Kernel kernel = makeKernel(device, "shade_tiles.cl", "shade_tiles", defines);
+  Kernel kernel = makeKernel(device, "shade/shade_tiles.cl", "shade_tiles", defines);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const std::size_t blocks = blockCount(arguments.block, arguments.tiles_x, arguments.tiles_y);
   const std::size_t runs = (blocks + kBlockRun - 1) / kBlockRun;

@@ -46,7 +46,7 @@ TEST_F(MakeKernel, ErrorInAnIncludedFileNamesThatFile) {
   const std::string text = "#define distance_falloff 1\n#include \"falloff.clh\"\n";
   EXPECT_THAT(messageOf<MachineError>(
                   [&] { makeKernelFromSource(device, expandKernelSource("broken.cl", text), "probe", ""); }),
-              HasSubstr("kernels/falloff.clh:"));
+              HasSubstr("kernels/shade/falloff.clh:"));
 }
 
 TEST_F(MakeKernel, TheCompilersWarningsAreNotPrinted) {

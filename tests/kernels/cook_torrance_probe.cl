@@ -1,6 +1,6 @@
 // in: unit normal, to_light, to_eye, then shininess and a channel of the specular colour; out: what is
 // reflected.
-#include "cook_torrance.clh"
+#include "shade/cook_torrance.clh"
 #include "lanes.clh"
 
 __kernel void probe_cook_torrance(__global const float* in, __global float* out, uint stride) {

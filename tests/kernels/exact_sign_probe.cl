@@ -1,5 +1,5 @@
 // in: x, y and z of four points; out: orientation() of them, then orientation_along().
-#include "exact_sign.h"
+#include "exact/exact_sign.h"
 #include "lanes.clh"
 
 __kernel void probe_exact_sign(__global const float* in, __global float* out, uint stride) {

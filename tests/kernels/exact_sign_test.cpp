@@ -1,4 +1,4 @@
-#include "kernels/exact_sign.h"
+#include "kernels/exact/exact_sign.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

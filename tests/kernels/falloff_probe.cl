@@ -1,5 +1,5 @@
 // Falloff of one light. in: to_light (not unit) for probe_falloff; out: distance_falloff and spot_falloff.
-#include "falloff.clh"
+#include "shade/falloff.clh"
 #include "lanes.clh"
 #include "math.clh"
 #include "shared.h"

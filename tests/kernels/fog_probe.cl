@@ -1,5 +1,5 @@
 // in: colour, position; out: the colour through the fog.
-#include "fog.clh"
+#include "shade/fog.clh"
 #include "lanes.clh"
 #include "shared.h"
 

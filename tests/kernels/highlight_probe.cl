@@ -1,10 +1,10 @@
-#include "highlights.clh"
+#include "clusters/highlights.clh"
 #include "lanes.clh"
-#include "light_clusters.clh"
-#include "listed_highlights.clh"
-#include "lobe_series.clh"
-#include "lobes.clh"
-#include "phong.clh"
+#include "clusters/light_clusters.clh"
+#include "clusters/listed_highlights.clh"
+#include "clusters/lobe_series.clh"
+#include "clusters/lobes.clh"
+#include "shade/phong.clh"
 #include "shared.h"
 
 INLINE vec3L vector_of(__global const float* in, uint stride, uint i) {

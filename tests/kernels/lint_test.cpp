@@ -40,7 +40,7 @@ std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'
 std::string filesIn(const char* folder, const std::vector<std::string>& extensions) {
   std::vector<std::string> files;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / folder))
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / folder))
     if (std::count(extensions.begin(), extensions.end(), entry.path().extension()) != 0)
       files.push_back(quoted(entry.path()));
   std::sort(files.begin(), files.end());
@@ -235,7 +235,7 @@ TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
     for (const char* machine :
          {"", "-march=x86-64-v3", "-march=x86-64-v4", "-DOWN_QUOTIENTS", "-DSTANDARD_ONLY"}) {
       for (const auto& entry :
-           std::filesystem::directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
+           std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
         if (entry.path().extension() != ".cl") continue;
         const std::string options = fmt::format("-DLANES={} {} {}", lanes, machine, quoted(entry.path()));
         const Compiled program = programOf(clang, options);
@@ -243,6 +243,21 @@ TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
         EXPECT_EQ(joined(looseArithmetic(program.output)), "") << options;
       }
     }
+}
+
+// NVIDIA's compiler refuses a prefetch from an address space of its own.
+TEST(KernelLint, GpusAreNotAskedForWhatProcessorsHave) {
+  const std::string clang = findClang();
+  if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
+  const std::string shade =
+      quoted(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels" / "shade" / "shade.cl");
+  const auto prefetches = [&](const std::string& target) {
+    const Compiled program = programOf(clang, "-DLANES=4 " + target + " " + shade);
+    EXPECT_TRUE(program.succeeded) << program.output;
+    return program.output.find("llvm.prefetch") != std::string::npos;
+  };
+  EXPECT_TRUE(prefetches("-target x86_64-linux-gnu"));
+  EXPECT_FALSE(prefetches("-target nvptx64-nvidia-nvcl"));
 }
 
 /// A function in LLVM's text: its instructions, those that it calls, and whether it is always inlined.
@@ -300,7 +315,7 @@ TEST(KernelLint, NoProgramGrowsManyfoldByWhatIsInlined) {
   const std::string clang = findClang();
   if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
     if (entry.path().extension() != ".cl") continue;
     for (const int lanes : {1, 4}) {
       const Compiled program = programOf(clang, fmt::format("-DLANES={} {}", lanes, quoted(entry.path())));

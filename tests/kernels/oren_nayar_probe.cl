@@ -1,6 +1,6 @@
 // in: unit normal, to_light, to_eye, then the shininess; out: what is reflected of diffuse light.
 #include "lanes.clh"
-#include "oren_nayar.clh"
+#include "shade/oren_nayar.clh"
 
 __kernel void probe_oren_nayar(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;

@@ -1,6 +1,6 @@
 // Both lobes. in: normal, to_light (not unit), to_eye, exponent; out: Phong's and Blinn's factor.
 #include "lanes.clh"
-#include "phong.clh"
+#include "shade/phong.clh"
 
 __kernel void probe_lobes(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;

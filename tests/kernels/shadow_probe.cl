@@ -1,6 +1,6 @@
 // in: position, normal; out: the share of the light that one map lets through.
 #include "lanes.clh"
-#include "shadow.clh"
+#include "maps/shadow.clh"
 #include "shared.h"
 
 __kernel void probe_shadow(__global const float* in, __global float* out, uint stride,

@@ -18,7 +18,7 @@ namespace {
 constexpr float kCloser = 1e30f;           // a depth that hides everything
 constexpr double kSlopeRounding = 0x1p-8;  // see packSlopes()
 
-/// What kernels/shadow.clh may at most add to a plane's depth beyond what is lost by rounding, in texels
+/// What kernels/maps/shadow.clh may at most add to a plane's depth beyond what is lost by rounding, in texels
 /// along the plane's normal as the map's slopes have it: FACET_ROUNDING there.
 constexpr double kMostSlack = 0x1p-13;
 

@@ -1,6 +1,6 @@
 // in: a cosine, or a lobe; out: the tone of the one and the highlight of the other.
 #include "lanes.clh"
-#include "toon.clh"
+#include "shade/toon.clh"
 
 __kernel void probe_toon(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;

@@ -17,7 +17,7 @@ namespace {
 constexpr glm::ivec2 kBallSize(160, 120);
 
 /// Cosine of the angle to the light below which nothing is promised: a shadow
-/// map takes no plane for steeper (LEAST_COSINE in kernels/shadow.clh), and by
+/// map takes no plane for steeper (LEAST_COSINE in kernels/maps/shadow.clh), and by
 /// rays what rounding moves, 2⁻¹⁸ of 6 m, is less than that over the 0.02 m
 /// that a pixel shows.
 constexpr double kGrazing = 0.002;

@@ -33,7 +33,7 @@ enum class ShadowMethod : std::uint8_t {
 enum class ShadowWay : std::uint8_t {
   kNone,   ///< nobody: it casts none
   kMap,    ///< its shadow map
-  kBeams,  ///< kernels/beam_shadows.cl: exact
+  kBeams,  ///< kernels/exact/beam_shadows.cl: exact
 };
 
 /// How much shadow maps may take.

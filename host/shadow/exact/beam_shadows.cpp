@@ -121,7 +121,7 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
   const Buffer<uint> lit = borrowedForOutput(device, result.lit),
                      unsure = borrowedForOutput(device, result.unsure),
                      received = borrowedForOutput(device, receivers);
-  Kernel kernel = makeKernel(device, "beam_shadows.cl", "beam_shadows", defines);
+  Kernel kernel = makeKernel(device, "exact/beam_shadows.cl", "beam_shadows", defines);
   launch(device, kernel,
          {{"frame", frameOf(arguments)},
           {"position", arguments.position},

@@ -15,7 +15,7 @@
 
 namespace luciole {
 
-/// Words of kernels/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel of
+/// Words of kernels/exact/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel of
 /// its tile.
 using PairBits = std::vector<uint, ArrayAllocator<uint>>;
 
@@ -73,7 +73,7 @@ struct PairShadows {
   std::uint64_t soft_lit = 0, soft_dark = 0;
 };
 
-/// Launches kernels/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
+/// Launches kernels/exact/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
 /// if the words don't fit into memory or there are 2²⁹ entries or more.
 PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const BeamArguments& arguments);
 

@@ -21,7 +21,7 @@ using HoleTest = std::function<bool(std::uint32_t triangle, const glm::dvec3& we
 /// all have a place, or none has. They are asked about together, so it is fast where they are close to each
 /// other. A triangle blocks a light if and only if
 /// - it isn't edge-on, and the start lies in the cone from the light through it, rim included: decided
-///   exactly (kernels/exact_sign.h) from the corners as the tree has them;
+///   exactly (kernels/exact/exact_sign.h) from the corners as the tree has them;
 /// - the start lies behind its plane by more than POINT_ERROR times |x| + |y| + |z| of the start and
 ///   CORNER_ROUNDING times that of its farthest corner, evaluated in float;
 /// - the start isn't in front of its corners, decided exactly. Planes aren't rounded as corners are, so along

@@ -18,7 +18,7 @@ namespace {
 
 /// What masks can address.
 constexpr std::size_t kMostTexels = std::size_t(1) << 31;
-/// Limits, in texels, of what kernels/hole_masks.clh may compute a place from.
+/// Limits, in texels, of what kernels/exact/hole_masks.clh may compute a place from.
 constexpr double kMostPlace = 0x1p16, kMostCoordinate = 0x1p20;
 
 /// How much opacities may be off. A lookup mixes texels twice, with three roundings each: it exceeds them by

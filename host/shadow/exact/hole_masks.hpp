@@ -9,7 +9,7 @@
 namespace luciole {
 
 /// Where triangles with holes are solid and where they aren't, as far as that is known without a lookup: see
-/// kernels/hole_masks.clh.
+/// kernels/exact/hole_masks.clh.
 struct HoleMasks {
   /// Of each mask its rows: 255 times each texel's alpha, or linear red where a grey map's code is the
   /// opacity.

@@ -10,7 +10,7 @@ std::vector<std::uint32_t> findNeeded(OpenedDevice& device, const std::string& d
   std::vector<std::uint32_t> result(bin_count);
   const Buffer<uint> needed = borrowedForOutput(device, result);
   fill(device, needed, kNotNeeded);
-  Kernel kernel = makeKernel(device, "find_needed.cl", "find_needed", defines);
+  Kernel kernel = makeKernel(device, "maps/find_needed.cl", "find_needed", defines);
   std::vector<KernelArgument> arguments = lookupArguments(lookups);
   arguments.push_back({"needed", needed});
   launch(device, kernel, arguments, {.items = lookups.plane_stride / kTilePixels});

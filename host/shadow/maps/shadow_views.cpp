@@ -136,7 +136,7 @@ PlannedMap planCube(const Light& light, const PlanInput& input, int size) {
   PlannedMap planned;
   planned.lookup.kind = kCubeMap;
   for (int face = 0; face < 6; ++face) {
-    // Right, up and backward axes as cube_point() in kernels/shadow.clh has them.
+    // Right, up and backward axes as cube_point() in kernels/maps/shadow.clh has them.
     const int axis = face / 2;
     const double sign = face % 2 ? -1.0 : 1.0;
     glm::dvec3 right(0), up(0), backward(0);

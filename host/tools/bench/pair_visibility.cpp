@@ -36,7 +36,7 @@ std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defin
     }
   }
   const Buffer<float> visible = borrowedForOutput(device, seen);
-  Kernel kernel = makeKernel(device, "pair_visibility.cl", "pair_visibility", defines);
+  Kernel kernel = makeKernel(device, "maps/pair_visibility.cl", "pair_visibility", defines);
   launch(device, kernel,
          {{"stride", uint(slots)},
           {"position", borrowed(device, points)},

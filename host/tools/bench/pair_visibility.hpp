@@ -16,7 +16,7 @@ struct MapPair {
   std::uint32_t map;    ///< index into ShadowMaps::maps
 };
 
-/// Launches kernels/pair_visibility.cl and waits for it. Returns for each pair the share of the map's light,
+/// Launches kernels/maps/pair_visibility.cl and waits for it. Returns for each pair the share of the map's light,
 /// in [0, 1], that reaches the point, as shading computes it. The G-buffer needs geometric normals. Sort
 /// pairs by map, because a row of lanes shares its map. defines: the program's features (featureDefines).
 /// Throws MachineError.

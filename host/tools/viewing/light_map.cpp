@@ -13,7 +13,7 @@
 namespace luciole {
 namespace {
 
-/// The distance of a reversed depth above 0: the inverse of the lookups' (kernels/shadow.clh).
+/// The distance of a reversed depth above 0: the inverse of the lookups' (kernels/maps/shadow.clh).
 double metresOf(const ShadowMap& map, float depth) {
   if (map.kind == kParallelMap) return (1 - double(depth)) / double(map.depth_offset);
   return double(map.depth_scale) / (double(depth) - double(map.depth_offset));

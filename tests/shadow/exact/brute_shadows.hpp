@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "kernels/exact_sign.h"
+#include "kernels/exact/exact_sign.h"
 #include "kernels/shared.h"
 #include "lighting/lighting.hpp"
 #include "luciole/gbuffer.hpp"
@@ -113,7 +113,7 @@ inline float shareOf(const PairShadows& pairs, std::size_t entry, std::size_t pi
   return pairs.shares[pairs.first_share[word] + uint(std::popcount(pairs.unsure[word] & (bit - 1)))];
 }
 
-/// A pixel's start point in the tree's space, by the operations of kernels/beam_points.clh.
+/// A pixel's start point in the tree's space, by the operations of kernels/exact/beam_points.clh.
 inline glm::vec3 startInTree(const BeamScene& beams, const GBuffer& gbuffer, std::size_t place) {
   const std::size_t stride = gbuffer.pixels();
   std::array<float, 3> p;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-#include "kernels/exact_sign.h"
+#include "kernels/exact/exact_sign.h"
 #include "shadow/exact/loose_triangles.hpp"
 
 namespace luciole::test {

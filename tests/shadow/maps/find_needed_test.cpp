@@ -178,7 +178,7 @@ TEST(FindNeeded, ScenesThatCastAlikeShareItsProgram) {
   OpenedDevice& device = deviceWithLanes(4);
   const auto programs = [&] {
     return std::count_if(device.programs.begin(), device.programs.end(),
-                         [](const auto& program) { return program.first.ends_with("find_needed.cl"); });
+                         [](const auto& program) { return program.first.ends_with("maps/find_needed.cl"); });
   };
   Prepared(device, scene, shadeSettings(Culling::kTiles, ShadowMethod::kHard)).light(device);
   const auto before = programs();

@@ -4,8 +4,8 @@
 // In: position planes x y z (view space, metres), lights, and light lists that were culled by range alone
 // (kByRange). Out: `counts`, a float for each pixel; 0 for background. A work-item takes a row of LANES
 // pixels. It costs a squared distance for each light of the row's square.
-#include "falloff.clh"
 #include "lanes.clh"
+#include "shade/falloff.clh"
 #include "shared.h"
 
 // list_starts, list: see cull.cl.

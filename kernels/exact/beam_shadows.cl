@@ -18,12 +18,12 @@
 // A work-item takes a run of tiles, and remembers from one to the next what hid much from a light. Cost: a
 // walk of some 10 nodes and blocks of 16 triangles for each bundle and light; 15 instructions for each
 // candidate and row of points.
-#include "beam.clh"
-#include "beam_points.clh"
-#include "blockers.clh"
-#include "candidates.clh"
+#include "exact/beam.clh"
+#include "exact/beam_points.clh"
+#include "exact/blockers.clh"
+#include "exact/candidates.clh"
+#include "exact/hole_masks.clh"
 #include "features.clh"
-#include "hole_masks.clh"
 #include "lanes.clh"
 #include "math.clh"
 #include "shared.h"

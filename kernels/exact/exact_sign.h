@@ -4,8 +4,8 @@
 #ifndef LUCIOLE_EXACT_SIGN_H
 #define LUCIOLE_EXACT_SIGN_H
 
+#include "exact/wide_integer.h"
 #include "shared.h"
-#include "wide_integer.h"
 #ifdef __cplusplus
 #define INLINE static inline
 #define SHARED_WORK [[gnu::noinline]] static inline

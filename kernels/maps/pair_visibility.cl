@@ -6,8 +6,8 @@
 // lookup: see shadow.clh.
 #include "features.clh"
 #include "lanes.clh"
+#include "maps/shadow.clh"
 #include "math.clh"
-#include "shadow.clh"
 #include "shared.h"
 
 // position, normal: planes x y z of `stride` floats. surface_normal, lift: see shading.clh. map_of_row: an

@@ -7,8 +7,8 @@
 // each pixel and each light with a shadow that may light it.
 #include "features.clh"
 #include "lanes.clh"
+#include "maps/shadow.clh"
 #include "math.clh"
-#include "shadow.clh"
 #include "shared.h"
 
 // The bin that was noted last. The rows of a tile mostly fall into the same one, and then need no atomic

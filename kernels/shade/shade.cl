@@ -14,7 +14,7 @@
 // lookup in a shadow map costs about as much again for each texel that it reads. A light that culling may
 // leave out adds exactly zero: the picture does not depend on whether a list holds it.
 #include "lanes.clh"
-#include "shading.clh"
+#include "shade/shading.clh"
 #include "shared.h"
 
 #define ROWS ROWS_PER_ITEM(LANES, LIGHT_LISTS)

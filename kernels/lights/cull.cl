@@ -15,7 +15,7 @@
 // of its squares for each such light, and where a square is wide for the light one of its very points. The
 // second run pays that again only for lists of more than kFoundPerTile entries.
 #include "lanes.clh"
-#include "light_tree.clh"
+#include "lights/light_tree.clh"
 #include "shared.h"
 
 // Where the surfaces of a tile's groups face: one group a lane, in the order of Tiles.boxes.

@@ -17,8 +17,8 @@
 // a row and a light in reach of its group, and 100 for those that light the row.
 #define GROUPS 64  // kBlockTiles · kTileGroups
 #include "lanes.clh"
-#include "light_tree.clh"
-#include "shading.clh"
+#include "lights/light_tree.clh"
+#include "shade/shading.clh"
 #include "shared.h"
 
 // How many lights are found before rows are lit by them.

@@ -12,19 +12,19 @@
 // A group whose bound is above what is allowed, light_error·max(1, colour), is lit again with smaller errors
 // of each cluster. What was accepted steers the groups after it in the run. So a pixel's light is a function
 // of its run alone.
-#include "cut_clusters.clh"
-#include "far_field.clh"
+#include "clusters/cut_clusters.clh"
+#include "clusters/far_field.clh"
+#include "clusters/highlights.clh"
+#include "clusters/light_clusters.clh"
+#include "clusters/listed_highlights.clh"
+#include "clusters/lobe_series.clh"
+#include "clusters/lobes.clh"
 #include "features.clh"
-#include "fog.clh"
-#include "highlights.clh"
 #include "lanes.clh"
-#include "light_clusters.clh"
-#include "listed_highlights.clh"
-#include "lobe_series.clh"
-#include "lobes.clh"
 #include "long_sum.clh"
 #include "math.clh"
 #include "quotient.clh"
+#include "shade/fog.clh"
 #include "shared.h"
 
 enum { kTileRows = kTilePixels / LANES, kMostTries = 12 };
