@@ -73,7 +73,7 @@ struct PairShadows {
   std::uint64_t soft_lit = 0, soft_dark = 0;
 };
 
-/// Launches kernels/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
+/// Launches kernels/beam_shadows.cl and waits for it. defines: of featuresFor(kForBeams). Throws MachineError, also
 /// if the words don't fit into memory or there are 2²⁹ entries or more.
 PairShadows beamShadows(Device& device, const std::string& defines, const BeamArguments& arguments);
 
