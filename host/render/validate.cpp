@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/picture_size.hpp"
 #include "image/exposure.hpp"
+#include "render/aov_table.hpp"
 #include "render/light_layers.hpp"
 #include "scene/validate_scene.hpp"
 #include "shadow/light_samples.hpp"
@@ -67,7 +68,7 @@ void validate(const Scene& scene, const RenderSettings& settings, const KeptShad
   checkEnum("settings.sample_shading", settings.sample_shading, SampleShading::kAll);
   checkEnum("settings.shading", settings.shading, Shading::kPhong);
   validateShading(settings.shade, scene.lights.size());
-  for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov::kCryptoMaterial);
+  for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov(kAovCount - 1));
   if (settings.shading == Shading::kGouraud && wantsLightLayers(settings))
     throw InputError(
         "settings.shading: layers of light go with each light summed in each pixel, not kGouraud");
