@@ -22,10 +22,10 @@ if ! (($#)) || [[ -n $(git diff --name-only "$1" -- kernels tests/kernels/*.cl t
   mapfile -t kernels < <(git ls-files 'kernels/*.cl' 'kernels/*.clh' 'kernels/*.h' 'tests/kernels/*.cl' 'tests/cl/*.cl')
   "$format" --dry-run --Werror "${kernels[@]}" || kernels_status=1
   for lanes in 1 4 8 16; do
-    for features in "" -DSOFT_EXACT=0 "-DHOLES=0 -DSOFT_EXACT=0"; do
-      # shellcheck disable=SC2086  # several words, or none
+    for without in 0 'FEATURE(SOFT_EXACT)' 'FEATURE(HOLES)+FEATURE(SOFT_EXACT)'; do
       clang-14 -x cl -cl-std=CL1.2 -I kernels -Xclang -finclude-default-header -Xclang -fdeclare-opencl-builtins -fsyntax-only \
-        -Wall -Wextra -Wshadow -Werror -Wno-unused-parameter -Wno-unused-function -DLANES=$lanes $features "${kernels[@]}" || kernels_status=1
+        -Wall -Wextra -Wshadow -Werror -Wno-unused-parameter -Wno-unused-function -DLANES=$lanes "-DFEATURES=ALL_FEATURES-($without)" \
+        "${kernels[@]}" || kernels_status=1
     done
   done
 fi

@@ -4,7 +4,6 @@
 #include <cstdio>  // jpeglib.h needs its FILE
 #include <jpeglib.h>
 // clang-format on
-#include <png.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +18,7 @@
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "image/build_mips.hpp"
+#include "image/png_rows.hpp"
 #include "image/spread_texels.hpp"
 
 namespace luciole {
@@ -32,93 +32,23 @@ bool canHold(std::size_t file_bytes, std::uint64_t width, std::uint64_t height, 
          row_bytes * height / most_compression <= file_bytes;
 }
 
-/// Gives the rows of a PNG file in memory, from the top down. An error of the library jumps back into call(),
-/// over no object that has a destructor. Its warnings are left to the reader that tells what is wrong.
-class PngRows {
- public:
-  PngRows(std::span<const std::byte> file, bool knows_space)
-      : file_(file),
-        rest_(file),
-        knows_space_(knows_space),
-        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, onError,
-                                    [](png_structp, png_const_charp) {})),
-        info_(png_ ? png_create_info_struct(png_) : nullptr) {}
-  ~PngRows() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  PngRows(const PngRows&) = delete;
-  PngRows& operator=(const PngRows&) = delete;
-
-  static bool isOne(std::span<const std::byte> file) {
-    constexpr std::size_t kSignatureBytes = 8;
-    return file.size() >= kSignatureBytes &&
-           png_sig_cmp(reinterpret_cast<png_const_bytep>(file.data()), 0, kSignatureBytes) == 0;
-  }
-
-  /// Reads up to the first row; false where this isn't a file for here.
-  bool begin() {
-    bool is_plain = false;
-    const bool read = info_ && call([&] {
-                        png_set_read_fn(png_, this, readBytes);
-                        png_read_info(png_, info_);
-                        is_plain = isPlain();
-                        if (!is_plain) return;
-                        png_set_expand(png_);  // palettes, bits and transparent colours to bytes and alpha
-                        png_read_update_info(png_, info_);
-                      });
-    return read && is_plain;
-  }
-
-  std::size_t width() const { return png_get_image_width(png_, info_); }
-  std::size_t height() const { return png_get_image_height(png_, info_); }
-  int channels() const { return png_get_channels(png_, info_); }
-
-  bool next(std::uint8_t* row) {
-    return call([&] { png_read_row(png_, row, nullptr); });
-  }
-
-  /// Whether the file goes on to its end.
-  bool end() {
-    return call([&] { png_read_end(png_, nullptr); });
-  }
-
- private:
-  /// Of at most 8 bits, not interlaced, and not said to be linear, where that counts.
-  bool isPlain() const {
-    constexpr std::uint64_t kMostCompression = 1040;  // deflate reaches 1 : 1032
-    double gamma = 0;
-    const bool may_be_linear =
-        knows_space_ && png_get_gAMA(png_, info_, &gamma) && gamma > 0.98 && gamma < 1.02;
-    return png_get_bit_depth(png_, info_) <= 8 && png_get_interlace_type(png_, info_) == PNG_INTERLACE_NONE &&
-           !may_be_linear &&
-           canHold(file_.size(), width(), height(), png_get_rowbytes(png_, info_), kMostCompression);
-  }
-
-  template <class Use>
-  bool call(const Use& use) {
-    if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    use();
-    return true;
-  }
-
-  [[noreturn]] static void onError(png_structp png, png_const_charp) { png_longjmp(png, 1); }
-
-  static void readBytes(png_structp png, png_bytep bytes, std::size_t count) {
-    PngRows* self = static_cast<PngRows*>(png_get_io_ptr(png));
-    if (count > self->rest_.size()) png_error(png, "the file ends early");
-    std::memcpy(bytes, self->rest_.data(), count);
-    self->rest_ = self->rest_.subspan(count);
-  }
-
-  std::span<const std::byte> file_, rest_;
-  bool knows_space_;
-  png_structp png_;
-  png_infop info_;
-};
+/// Whether a PNG is of at most 8 bits, not interlaced, and not said to be linear, where that counts.
+bool isPlain(const PngRows& rows, std::size_t file_bytes, bool knows_space) {
+  constexpr std::uint64_t kMostCompression = 1040;  // deflate reaches 1 : 1032
+  png_structp png = rows.png();
+  png_infop info = rows.info();
+  double gamma = 0;
+  const bool may_be_linear = knows_space && png_get_gAMA(png, info, &gamma) && gamma > 0.98 && gamma < 1.02;
+  return png_get_bit_depth(png, info) <= 8 && png_get_interlace_type(png, info) == PNG_INTERLACE_NONE &&
+         !may_be_linear &&
+         canHold(file_bytes, rows.width(), rows.height(), png_get_rowbytes(png, info), kMostCompression);
+}
 
 /// Gives the rows of a JPEG file in memory, from the top down. An error of the library jumps back into
 /// call(), over no object that has a destructor.
 class JpegRows {
  public:
-  JpegRows(std::span<const std::byte> file, bool) : file_(file) {
+  explicit JpegRows(std::span<const std::byte> file) : file_(file) {
     jpeg_.err = jpeg_std_error(&errors_);
     errors_.error_exit = onError;
     errors_.output_message = [](j_common_ptr) {};
@@ -193,10 +123,7 @@ class JpegRows {
 };
 
 template <class Rows>
-std::optional<MipLevel> readLevel(std::span<const std::byte> file, const std::string& name,
-                                  bool knows_space) {
-  Rows rows(file, knows_space);
-  if (!rows.begin()) return std::nullopt;
+std::optional<MipLevel> readLevel(Rows& rows, const std::string& name) {
   const std::size_t pixels = rows.width() * rows.height();
   // The texels, and a third more for the mip chain.
   requireMemory(double(pixels * 4 * sizeof(std::uint16_t)) * 4 / 3, name);
@@ -210,13 +137,31 @@ std::optional<MipLevel> readLevel(std::span<const std::byte> file, const std::st
   return level;
 }
 
+std::optional<MipLevel> readPng(std::span<const std::byte> file, const std::string& name, bool knows_space) {
+  std::span<const std::byte> rest = file;
+  PngRows rows([&rest](png_bytep bytes, std::size_t count) {
+    if (count > rest.size()) return false;
+    std::memcpy(bytes, rest.data(), count);
+    rest = rest.subspan(count);
+    return true;
+  });
+  if (!rows.readHeader() || !isPlain(rows, file.size(), knows_space) || !rows.begin()) return std::nullopt;
+  return readLevel(rows, name);
+}
+
+std::optional<MipLevel> readJpeg(std::span<const std::byte> file, const std::string& name) {
+  JpegRows rows(file);
+  if (!rows.begin()) return std::nullopt;
+  return readLevel(rows, name);
+}
+
 }  // namespace
 
 std::optional<Texture> readQuickly(std::span<const std::byte> file, const std::string& name,
                                    bool knows_space) {
   std::optional<MipLevel> level;
-  if (PngRows::isOne(file)) level = readLevel<PngRows>(file, name, knows_space);
-  if (JpegRows::isOne(file)) level = readLevel<JpegRows>(file, name, knows_space);
+  if (PngRows::isOne(file)) level = readPng(file, name, knows_space);
+  if (JpegRows::isOne(file)) level = readJpeg(file, name);
   if (!level) return std::nullopt;
   Texture texture{name, {}};
   texture.levels.push_back(std::move(*level));

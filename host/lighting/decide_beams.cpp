@@ -5,7 +5,7 @@ namespace luciole {
 PairShadows decideBeams(const StageInput& input) {
   const FeatureSet& features = input.pass.features;
   const GBufferBuffers& planes = input.points.buffers;
-  return beamShadows(input.device, featureDefines(beamFeatures(features)),
+  return beamShadows(input.device, featureDefines(featuresFor(kForBeams, features)),
                      {.plane_stride = input.points.stride,
                       .position = planes.position,
                       .normal = planes.normal,

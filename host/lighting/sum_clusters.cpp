@@ -15,17 +15,17 @@ ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
   {
     const Buffer<float> light = borrowedForOutput(input.device, result.light),
                         bound = borrowedForOutput(input.device, result.bound);
-    result.counts =
-        clusteredLight(input.device, featureDefines(clusterFeatures(features)) + input.lighting.math_defines,
-                       {.frame = frame,
-                        .gbuffer = input.points.buffers,
-                        .tiles_x = gbuffer.tiles_x,
-                        .tiles_y = gbuffer.tiles_y,
-                        .clusters = clusters.diffuse,
-                        .highlights = clusters.specular.rows.empty() ? clusters.diffuse : clusters.specular,
-                        .light_error = clusteredError(clusters.light_error, frame, features),
-                        .light = light,
-                        .bound = bound});
+    result.counts = clusteredLight(
+        input.device, featureDefines(featuresFor(kForClusters, features)) + input.lighting.math_defines,
+        {.frame = frame,
+         .gbuffer = input.points.buffers,
+         .tiles_x = gbuffer.tiles_x,
+         .tiles_y = gbuffer.tiles_y,
+         .clusters = clusters.diffuse,
+         .highlights = clusters.specular.rows.empty() ? clusters.diffuse : clusters.specular,
+         .light_error = clusteredError(clusters.light_error, frame, features),
+         .light = light,
+         .bound = bound});
     download(input.device, light, result.light);
     download(input.device, bound, result.bound);
   }

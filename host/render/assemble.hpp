@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "lighting/light_gbuffer.hpp"
 #include "luciole/gbuffer.hpp"
 #include "luciole/image.hpp"
@@ -10,6 +12,12 @@ namespace luciole {
 
 /// Whether the settings ask for this layer.
 bool wants(const RenderSettings& settings, Aov aov);
+
+/// Whether they ask for one that is in world space.
+bool wantsInWorld(const RenderSettings& settings);
+
+/// Which of the picture's channels is the layer's first; nothing where the settings don't ask for it.
+std::optional<std::size_t> channelOf(const Image& image, const RenderSettings& settings, Aov aov);
 
 /// Number of channels of a picture whose G-buffer has these groups: R G B, A and the layers asked for,
 /// without those of lightLayers().

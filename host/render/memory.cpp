@@ -28,16 +28,14 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
   const std::size_t light_layers = 3 * plan.layers.size();
   const std::size_t channels = channelCount(settings, planes) + light_layers;
-  const bool world =
-      wants(settings, Aov::kPosition) || wants(settings, Aov::kNormal) || wants(settings, Aov::kDepth);
   // Colours and counts are counted twice: on the device and on the host. The picture of the band before is
   // there, too, and from the second sample on the sum.
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
   const std::size_t sums = settings.samples > 1 ? lit + covered + light_layers : 0;
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
-  const std::size_t assembling = gbuffer + lit + counted + channels + covered + (world ? 7 : 0) +
-                                 (wants(settings, Aov::kListLength) ? 1 : 0) +
-                                 (wants(settings, Aov::kShadow) ? 1 : 0);
+  const std::size_t assembling =
+      gbuffer + lit + counted + channels + covered + (wantsInWorld(settings) ? 7 : 0) +
+      (wants(settings, Aov::kListLength) ? 1 : 0) + (wants(settings, Aov::kShadow) ? 1 : 0);
   const LightUse use = lightUse(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {

@@ -10,23 +10,19 @@
 namespace luciole {
 namespace {
 
-constexpr Feature kFogFeatures[] = {Feature::kFogLinear, Feature::kFogExp, Feature::kFogExp2,
-                                    Feature::kFogPerChannel, Feature::kFogRadial};
-
 /// Features of the pass that lights vertices for Gouraud shading: without fog, which is applied to pixels.
-FeatureSet vertexFeatures(FeatureSet features) {
-  for (const Feature fog : kFogFeatures) features.set(fog, false);
-  features.set(Feature::kOutputShadow, false);
+FeatureSet vertexFeatures(const FeatureSet& features) {
+  FeatureSet kept = features.without(featuresFor(kForFog, features));
+  kept.set(Feature::kOutputShadow, false);
   // A vertex lies on the smooth surface already.
-  features.set(Feature::kLift, false);
-  return features;
+  kept.set(Feature::kLift, false);
+  return kept;
 }
 
 /// Features of the pass that only applies fog, to lit colours in the emission planes.
 FeatureSet fogOnly(const FeatureSet& features) {
-  FeatureSet kept;
+  FeatureSet kept = featuresFor(kForFog, features);
   kept.set(Feature::kEmission);
-  for (const Feature fog : kFogFeatures) kept.set(fog, features.has(fog));
   return kept;
 }
 

@@ -52,14 +52,6 @@ void storeRanks(Tally& tally, int samples, float* out) {
   }
 }
 
-/// Where a layer's channels begin; nothing where the settings don't ask for it.
-std::optional<std::size_t> placeOf(const Image& picture, const RenderSettings& settings, Aov aov,
-                                   const std::string& first_channel) {
-  if (!wants(settings, aov)) return std::nullopt;
-  return std::find(picture.channels.begin(), picture.channels.end(), first_channel) -
-         picture.channels.begin();
-}
-
 }  // namespace
 
 bool wantsSurfaceIds(const RenderSettings& settings) {
@@ -109,11 +101,10 @@ MatteIds matteIds(const Scene& scene, const RenderSettings& settings) {
 
 void setSurfaceIds(const Scene& scene, const View& view, const RenderSettings& settings, const MatteIds& ids,
                    Image& picture) {
-  const auto object = placeOf(picture, settings, Aov::kObjectId, "object_id"),
-             material = placeOf(picture, settings, Aov::kMaterialId, "material_id"),
-             objects = placeOf(picture, settings, Aov::kCryptoObject, cryptomatteChannels(kCryptoObject)[0]),
-             materials =
-                 placeOf(picture, settings, Aov::kCryptoMaterial, cryptomatteChannels(kCryptoMaterial)[0]);
+  const auto object = channelOf(picture, settings, Aov::kObjectId),
+             material = channelOf(picture, settings, Aov::kMaterialId),
+             objects = channelOf(picture, settings, Aov::kCryptoObject),
+             materials = channelOf(picture, settings, Aov::kCryptoMaterial);
   const SampledView sampled = setupSamples(scene, allObjects(scene), view, Margin::kPixel, settings.samples,
                                            settings.shading, {}, {});
   const std::size_t channels = picture.channels.size();

@@ -10,6 +10,7 @@
 #include "image/exposure.hpp"
 #include "luciole/error.hpp"
 #include "luciole/validate_scene.hpp"
+#include "render/aov_table.hpp"
 #include "render/light_layers.hpp"
 #include "scene/models.hpp"
 #include "shadow/exact/light_samples.hpp"
@@ -68,7 +69,7 @@ void validate(const Scene& scene, const RenderSettings& settings, const KeptShad
   checkEnum("settings.sample_shading", settings.sample_shading, SampleShading::kAll);
   checkEnum("settings.shading", settings.shading, Shading::kPhong);
   validateShading(settings.shade, scene.lights.size());
-  for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov::kCryptoMaterial);
+  for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov(kAovCount - 1));
   if (settings.shading == Shading::kGouraud && wantsLightLayers(settings))
     throw InputError(
         "settings.shading: layers of light go with each light summed in each pixel, not kGouraud");

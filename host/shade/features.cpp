@@ -14,45 +14,13 @@
 
 namespace luciole {
 
-const std::array<FeatureRow, kFeatureCount> kFeatureTable{{
-    {"POINT_LIGHTS", "point lights", "lights with a place"},
-    {"DIRECTIONAL_LIGHTS", "directional lights", "lights with a direction only"},
-    {"SPOT_LIGHTS", "spot lights", "lights with a place and a cone"},
-    {"SPOT_EXPONENT", "spot exponent", "OpenGL's cosine power inside a spot"},
-    {"SPOT_CONE", "spot cone", "glTF's ramp between two cones"},
-    {"ATTENUATION", "attenuation", "constant, linear and quadratic attenuation"},
-    {"SMOOTH_WINDOW", "smooth window", "ranges that fade as (1 - (d/r)^4)^2"},
-    {"KHR_WINDOW", "KHR window", "ranges that fade as 1 - (d/r)^4"},
-    {"SPECULAR", "specular", "highlights"},
-#define MODEL_ROW(name, typed, shown, meaning, diffuse, specular) {"k" #name "Model", shown, meaning},
-    EACH_MODEL(MODEL_ROW)
+#define FEATURE_ROW(name, define, shown, meaning, uses) FeatureRow{#define, shown, meaning, uses},
+#define MODEL_ROW(name, typed, shown, meaning, diffuse, specular) \
+  FeatureRow{"k" #name "Model", shown, meaning, kForClusters},
+const std::array<FeatureRow, kFeatureCount> kFeatureTable{{EACH_FEATURE(FEATURE_ROW, MODEL_ROW)}};
 #undef MODEL_ROW
-        {"AMBIENT", "ambient", "ambient reflection"},
-    {"LIGHT_AMBIENT", "light ambient", "ambient light of single lights"},
-    {"EMISSION", "emission", "surfaces that glow"},
-    {"PARALLEL_SHADOWS", "parallel shadows", "shadow maps of directional lights"},
-    {"PERSPECTIVE_SHADOWS", "perspective shadows", "shadow maps of narrow spots"},
-    {"CUBE_SHADOWS", "cube shadows", "shadow maps of point lights and wide spots"},
-    {"PCF", "PCF", "filtered shadow lookups"},
-    {"SOFT", "soft shadows", "shadow lookups as wide as the light's size makes them"},
-    {"EXACT", "exact shadows", "shadows known for each pixel and light beforehand"},
-    {"SOFT_EXACT", "soft exact shadows", "exact shadows of samples of lights of a size"},
-    {"HOLES", "holes", "textures with holes, through which light shines"},
-    {"LIFT", "lifted shadows", "shadow tests that start on the smooth surface above a facet"},
-    {"NORMAL_MAPS", "normal maps", "lights behind a surface, which a bent normal may face, are not seen"},
-    {"FOG_LINEAR", "linear fog", "(end - z) / (end - start)"},
-    {"FOG_EXP", "exp fog", "exp(-density z)"},
-    {"FOG_EXP2", "exp2 fog", "exp(-(density z)^2)"},
-    {"FOG_PER_CHANNEL", "fog per channel", "a density for each colour channel"},
-    {"FOG_RADIAL", "radial fog", "fog by distance instead of depth"},
-    {"PARALLEL_VIEW", "parallel view", "an orthographic camera's constant view vector"},
-    {"LIGHT_LISTS", "light lists", "lists of the lights that matter to a few pixels, instead of all lights"},
-    {"LONG_SUMS", "long sums", "more lights than float adds up one by one"},
-    {"OUTPUT_SHADOW", "shadow layer", "the visible share of shadowed lights as an output"},
-    {"CLUSTERED_LIGHTS", "clustered lights", "clusters that stand for lights, with a bound of the error"},
-    {"CLUSTERED_HIGHLIGHTS", "clustered highlights", "highlights of clusters that stand for lights"},
-    {"MATERIAL_MODELS", "material models", "surfaces with models of their own"},
-}};
+#undef FEATURE_ROW
+static_assert(kFeatureCount < 64, "FEATURES is a number of 64 bits");
 
 std::vector<std::string> featureNames(const FeatureSet& features) {
   std::vector<std::string> names;
@@ -206,31 +174,12 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   return features;
 }
 
-FeatureSet lookupFeatures(const FeatureSet& features) {
-  FeatureSet lookups;
-  for (const Feature feature : {Feature::kParallelShadows, Feature::kPerspectiveShadows,
-                                Feature::kCubeShadows, Feature::kLift, Feature::kLightLists})
-    lookups.set(feature, features.has(feature));
-  return lookups;
-}
-
-FeatureSet beamFeatures(const FeatureSet& features) {
-  FeatureSet beams;
-  for (const Feature feature :
-       {Feature::kExact, Feature::kSoftExact, Feature::kHoles, Feature::kLift, Feature::kLightLists})
-    beams.set(feature, features.has(feature));
-  return beams;
-}
-
-FeatureSet clusterFeatures(const FeatureSet& features) {
+FeatureSet featuresFor(FeatureUse use, const FeatureSet& features) {
   FeatureSet kept;
-  for (const Feature feature : {Feature::kParallelView, Feature::kFogLinear, Feature::kFogExp,
-                                Feature::kFogExp2, Feature::kFogPerChannel, Feature::kFogRadial,
-                                Feature::kClusteredLights, Feature::kClusteredHighlights})
-    kept.set(feature, features.has(feature));
-  for (const Model model : kAllModels) kept.set(featureOf(model), features.has(featureOf(model)));
-  kept.set(Feature::kPointLights);
-  kept.set(Feature::kAttenuation);
+  for (std::size_t i = 0; i < kFeatureCount; ++i)
+    kept.set(Feature(i), features.has(Feature(i)) && (kFeatureTable[i].uses & use) != 0);
+  if (use == kForClusters)
+    for (const Feature of_clusters : {Feature::kPointLights, Feature::kAttenuation}) kept.set(of_clusters);
   return kept;
 }
 
@@ -246,15 +195,7 @@ PlaneSet neededPlanes(const FeatureSet& features) {
 }
 
 std::string featureDefines(const FeatureSet& features) {
-  unsigned models = 0;
-  for (const Model model : kAllModels) models |= unsigned(features.has(featureOf(model))) << unsigned(model);
-  std::string options = fmt::format("-DMODELS={}u ", models);
-  for (std::size_t i = 0; i < kFeatureCount; ++i) {
-    const auto feature = static_cast<Feature>(i);
-    if (!isModel(feature))
-      options += fmt::format("-D{}={} ", kFeatureTable[i].define, int(features.has(feature)));
-  }
-  return options;
+  return fmt::format("-DFEATURES=0x{:x}ul ", features.bits());
 }
 
 std::string mathDefines(const ShadeSettings& settings) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/features.h"
 #include "lights/exact_reason.hpp"
 #include "luciole/scene.hpp"
 #include "luciole/settings.hpp"
@@ -15,53 +16,25 @@
 namespace luciole {
 
 /// What scenes may use. A program is compiled for a set of features and contains the code of no others.
-enum class Feature : unsigned {
-  kPointLights,
-  kDirectionalLights,
-  kSpotLights,
-  kSpotExponent,
-  kSpotCone,
-  kAttenuation,
-  kSmoothWindow,
-  kKhrWindow,
-  kSpecular,
-#define MODEL_FEATURE(name, typed, shown, meaning, diffuse, specular) k##name,
-  EACH_MODEL(MODEL_FEATURE)  // in the order of Model
-#undef MODEL_FEATURE
-  kAmbient,
-  kLightAmbient,
-  kEmission,
-  kParallelShadows,
-  kPerspectiveShadows,
-  kCubeShadows,
-  kPcf,
-  kSoft,
-  kExact,
-  kSoftExact,
-  kHoles,
-  kLift,
-  kNormalMaps,
-  kFogLinear,
-  kFogExp,
-  kFogExp2,
-  kFogPerChannel,
-  kFogRadial,
-  kParallelView,
-  kLightLists,
-  kLongSums,
-  kOutputShadow,
-  kClusteredLights,
-  kClusteredHighlights,
-  kMaterialModels,
-  kCount
-};
+#define FEATURE_ENUMERATOR(name, ...) k##name,
+enum class Feature : unsigned { EACH_FEATURE(FEATURE_ENUMERATOR, FEATURE_ENUMERATOR) kCount };
+#undef FEATURE_ENUMERATOR
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::kCount);
 
-/// The feature table: row i describes Feature i. kernels/features.clh has a fallback for each define.
+/// Which kernels depend on a feature, besides those that shade pixels and vertices.
+enum FeatureUse : unsigned {
+  kForLookups = 1,   ///< kernels/maps/find_needed.cl: where shadow maps are looked up
+  kForBeams = 2,     ///< kernels/exact/beam_shadows.cl
+  kForClusters = 4,  ///< kernels/clusters/clustered_light.cl
+  kForFog = 8,       ///< shading that gives lit pixels their fog
+};
+
+/// A row of kernels/features.h.
 struct FeatureRow {
-  const char* define;   ///< the kernels' macro, 0 or 1; for a model, the name of its number in the kernels
+  const char* define;   ///< its name in the kernels; for a model, that of its number
   const char* name;     ///< in --stats
   const char* meaning;  ///< what the compiled code does
+  unsigned uses;        ///< bits of FeatureUse
 };
 extern const std::array<FeatureRow, kFeatureCount> kFeatureTable;
 
@@ -69,11 +42,18 @@ class FeatureSet {
  public:
   bool has(Feature feature) const { return bits_[static_cast<std::size_t>(feature)]; }
   void set(Feature feature, bool on = true) { bits_[static_cast<std::size_t>(feature)] = on; }
+  FeatureSet without(const FeatureSet& others) const {
+    FeatureSet rest = *this;
+    rest.bits_ &= ~others.bits_;
+    return rest;
+  }
   bool operator==(const FeatureSet&) const = default;
   bool shadowMaps() const {
     return has(Feature::kParallelShadows) || has(Feature::kPerspectiveShadows) || has(Feature::kCubeShadows);
   }
   bool shadows() const { return shadowMaps() || has(Feature::kExact); }
+  /// Bit i is that of row i of the table.
+  std::uint64_t bits() const { return bits_.to_ullong(); }
 
  private:
   std::bitset<kFeatureCount> bits_;
@@ -120,20 +100,14 @@ LightUse lightUse(const ShadeSettings& settings);
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings, bool clustered = false);
 
-/// The features that decide where shadow maps are looked up. kernels/maps/find_needed.cl depends on no others, so
-/// scenes that differ only in others share these programs.
-FeatureSet lookupFeatures(const FeatureSet& features);
-
-/// The features that kernels/exact/beam_shadows.cl depends on.
-FeatureSet beamFeatures(const FeatureSet& features);
-
-/// What of a program's features kernels need that light pixels by clusters.
-FeatureSet clusterFeatures(const FeatureSet& features);
+/// Those of a program's features that kernels of this use depend on. Programs that differ only in others
+/// share these kernels.
+FeatureSet featuresFor(FeatureUse use, const FeatureSet& features);
 
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);
 
-/// The compiler's -D options for these features: one for each row of the table, and MODELS for all models.
+/// The compiler's -D option for these features.
 std::string featureDefines(const FeatureSet& features);
 
 /// The compiler's -D options for other settings: the degrees of polynomials and the width of PCF.

@@ -53,8 +53,10 @@ TEST(FalloffKernels, RangeWindowsEndExactlyAtZero) {
   const float range = 7.5f;
   light.position.w = 1.0f / (range * range);
   const auto to_light = vectorsOfLength(steps(0, 2 * range, 4000));
-  for (const WindowCase window :
-       {WindowCase{"", false}, {"", true}, {"-DKHR_WINDOW=0", false}, {"-DSMOOTH_WINDOW=0", true}}) {
+  for (const WindowCase window : {WindowCase{"", false},
+                                  {"", true},
+                                  {"-DFEATURES=ALL_FEATURES-FEATURE(KHR_WINDOW)", false},
+                                  {"-DFEATURES=ALL_FEATURES-FEATURE(SMOOTH_WINDOW)", true}}) {
     light.khr_window = window.khr;
     for (const int lanes : lanesFor(window.defines)) {
       const Column strength = falloffs(lanes, light, to_light, window.defines)[0];
@@ -78,7 +80,8 @@ TEST(FalloffKernels, WithoutARangeNothingFades) {
   const auto to_light = vectorsOfLength({0, 1e-18f, 1e-3f, 1, 1e6f, 1e18f});
   for (const int lanes : {1, 16})
     for (const char* defines :
-         {"", "-DKHR_WINDOW=0 -DATTENUATION=0", "-DSMOOTH_WINDOW=0 -DKHR_WINDOW=0 -DATTENUATION=0"})
+         {"", "-DFEATURES=ALL_FEATURES-FEATURE(KHR_WINDOW)-FEATURE(ATTENUATION)",
+          "-DFEATURES=ALL_FEATURES-FEATURE(SMOOTH_WINDOW)-FEATURE(KHR_WINDOW)-FEATURE(ATTENUATION)"})
       EXPECT_EQ(falloffs(lanes, light, to_light, defines)[0], Column(6, 1.0f))
           << lanes << " lanes " << defines;
 }
@@ -170,14 +173,14 @@ void expectSpot(const SpotCase& spot, const std::string& defines) {
 }
 
 TEST(FalloffKernels, SpotExponent) {
-  for (const char* defines : {"", "-DSPOT_CONE=0"})
+  for (const char* defines : {"", "-DFEATURES=ALL_FEATURES-FEATURE(SPOT_CONE)"})
     for (const double cutoff : {1.0, 30.0, 90.0})
       for (const float exponent : {0.0f, 1.0f, 8.0f, 128.0f})
         expectSpot(SpotCase::exponent(cutoff, exponent), defines);
 }
 
 TEST(FalloffKernels, SpotCone) {
-  for (const char* defines : {"", "-DSPOT_EXPONENT=0"}) {
+  for (const char* defines : {"", "-DFEATURES=ALL_FEATURES-FEATURE(SPOT_EXPONENT)"}) {
     expectSpot(SpotCase::cone(0, 45), defines);
     expectSpot(SpotCase::cone(20, 21), defines);
     expectSpot(SpotCase::cone(80, 90), defines);
@@ -185,7 +188,7 @@ TEST(FalloffKernels, SpotCone) {
 }
 
 TEST(FalloffKernels, PlainSpotIsOneInsideItsCutoff) {
-  expectSpot(SpotCase::exponent(25, 0), "-DSPOT_CONE=0 -DSPOT_EXPONENT=0");
+  expectSpot(SpotCase::exponent(25, 0), "-DFEATURES=ALL_FEATURES-FEATURE(SPOT_CONE)-FEATURE(SPOT_EXPONENT)");
 }
 
 TEST(FalloffKernels, CutoffItselfIsInside) {
@@ -194,7 +197,9 @@ TEST(FalloffKernels, CutoffItselfIsInside) {
   light.direction = {0, 0, -1, 0};
   const std::vector<Column> across{{2, 0, 1}, {0, -3, 1}, {0, 0, 0}};
   for (const int lanes : kAllLanes)
-    EXPECT_EQ(falloffs(lanes, light, across, "-DSPOT_CONE=0 -DSPOT_EXPONENT=0")[1], Column(3, 1.0f))
+    EXPECT_EQ(falloffs(lanes, light, across,
+                       "-DFEATURES=ALL_FEATURES-FEATURE(SPOT_CONE)-FEATURE(SPOT_EXPONENT)")[1],
+              Column(3, 1.0f))
         << lanes << " lanes";
 }
 

@@ -337,16 +337,5 @@ TEST(Features, RealScenesLookAsWithAll) {
   }
 }
 
-TEST(Features, EveryRowHasADefineOfTheKernels) {
-  std::string fallbacks;
-  for (const EmbeddedFile& file : embeddedKernels())
-    if (file.name == "features.clh") fallbacks = file.text;
-  for (std::size_t i = 0; i < kFeatureCount; ++i) {
-    if (isModel(static_cast<Feature>(i))) continue;  // they have numbers
-    const std::string define = kFeatureTable[i].define;
-    EXPECT_NE(fallbacks.find("#define " + define + " 1\n"), std::string::npos) << define;
-  }
-}
-
 }  // namespace
 }  // namespace luciole::test

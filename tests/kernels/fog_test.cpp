@@ -89,9 +89,9 @@ void expectFog(const ShadeFrame& frame, const char* defines) {
 }
 
 TEST(FogKernels, EachModeAloneAndChosenAtRunTime) {
-  const FogCase cases[] = {{kFogLinear, "-DFOG_EXP=0 -DFOG_EXP2=0"},
-                           {kFogExp, "-DFOG_LINEAR=0 -DFOG_EXP2=0"},
-                           {kFogExp2, "-DFOG_LINEAR=0 -DFOG_EXP=0"}};
+  const FogCase cases[] = {{kFogLinear, "-DFEATURES=ALL_FEATURES-FEATURE(FOG_EXP)-FEATURE(FOG_EXP2)"},
+                           {kFogExp, "-DFEATURES=ALL_FEATURES-FEATURE(FOG_LINEAR)-FEATURE(FOG_EXP2)"},
+                           {kFogExp2, "-DFEATURES=ALL_FEATURES-FEATURE(FOG_LINEAR)-FEATURE(FOG_EXP)"}};
   for (const FogCase& fog : cases) {
     for (const uint radial : {0u, 1u}) {
       ShadeFrame frame = foggyFrame();
@@ -107,7 +107,9 @@ TEST(FogKernels, OneDensityServesAllChannels) {
   ShadeFrame frame = foggyFrame();
   frame.fog_density = {0.05f, 0.05f, 0.05f, 0};
   frame.fog_mode = kFogExp;
-  expectFog(frame, "-DFOG_PER_CHANNEL=0 -DFOG_RADIAL=0 -DFOG_LINEAR=0 -DFOG_EXP2=0");
+  expectFog(frame,
+            "-DFEATURES=ALL_FEATURES-FEATURE(FOG_PER_CHANNEL)-FEATURE(FOG_RADIAL)-FEATURE(FOG_LINEAR)-"
+            "FEATURE(FOG_EXP2)");
 }
 
 TEST(FogKernels, OutsideTheFogColoursStayAsTheyAre) {

@@ -234,8 +234,8 @@ TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
   for (const int lanes : kAllLanes)
     for (const char* machine :
          {"", "-march=x86-64-v3", "-march=x86-64-v4", "-DOWN_QUOTIENTS", "-DSTANDARD_ONLY"}) {
-      for (const auto& entry :
-           std::filesystem::recursive_directory_iterator(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(
+               std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels")) {
         if (entry.path().extension() != ".cl") continue;
         const std::string options = fmt::format("-DLANES={} {} {}", lanes, machine, quoted(entry.path()));
         const Compiled program = programOf(clang, options);
@@ -250,7 +250,7 @@ TEST(KernelLint, GpusAreNotAskedForWhatProcessorsHave) {
   const std::string clang = findClang();
   if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
   const std::string shade =
-      quoted(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels" / "shade" / "shade.cl");
+      quoted(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels" / "shade" / "shade/shade.cl");
   const auto prefetches = [&](const std::string& target) {
     const Compiled program = programOf(clang, "-DLANES=4 " + target + " " + shade);
     EXPECT_TRUE(program.succeeded) << program.output;

@@ -28,8 +28,9 @@ struct Method {
   int side;
   double reach;  ///< farthest texel centre that it asks, along x and along y, in texels
 };
-constexpr Method kHard{"-DSOFT=0 -DPCF=0", 0, 0.5}, kFiltered{"-DSOFT=0", 1, 1},
-    kWide{"-DSOFT=0 -DPCF_WIDTH=4", 3, 2};
+constexpr Method kHard{"-DFEATURES=ALL_FEATURES-FEATURE(SOFT)-FEATURE(PCF)", 0, 0.5},
+    kFiltered{"-DFEATURES=ALL_FEATURES-FEATURE(SOFT)", 1, 1},
+    kWide{"-DFEATURES=ALL_FEATURES-FEATURE(SOFT) -DPCF_WIDTH=4", 3, 2};
 constexpr Method kMethods[] = {kHard, kFiltered, kWide};
 
 struct Receiver {
@@ -583,7 +584,7 @@ TEST(ShadowKernels, SoftLookupsSeeAPlaneAboveATiltedFloorOnItsUpperSide) {
       points.push_back({{x, y, at.z - 0.5 * kReach * std::tan(glm::radians(degrees))}, geometricNormal(at)});
     }
     for (const int lanes : kAllLanes)
-      for (const float lit : visibility(lanes, map, points, "-DSOFT=1 -DPCF=0"))
+      for (const float lit : visibility(lanes, map, points, "-DFEATURES=ALL_FEATURES-FEATURE(PCF)"))
         // A texel's centre is up to 1/√2 texel beside the point that asks, over the line's √3·kReach texels
         // that is 0.065 of the disc: 2 of 32 points.
         ASSERT_NEAR(lit, 0.196, 2.0 / 32) << degrees << " degrees, " << lanes << " lanes";

@@ -81,22 +81,13 @@ struct Crop {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Extra layers of an EXR.
+/// Extra layers of an EXR. aovTable() has a row for each, in this order.
 enum class Aov : std::uint8_t {
   kPosition,
   kNormal,
   kDepth,
   kDiffuse,
   kMaterial,
-  kLightCount,  ///< lights in range of the pixel
-  kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
-                ///< counted from the band's first pixel, so it depends on the band and the crop
-  kShadow,
-  /// Bounds of the error, r g b, in the units of R G B, that lights that clusters stand for may make
-  /// (ShadeSettings::light_error): the mean over the samples. With Shading::kGouraud the largest of any
-  /// vertex.
-  kLightError,
-  kShadingCount,  ///< points that were shaded for all samples of the pixel
   // The parts of the picture's light, whose sum is the picture, as light_layers.hpp tells.
   kAmbient,  ///< ambient light: the scene's, and the lights' own
   kDiffuseLight,
@@ -108,6 +99,16 @@ enum class Aov : std::uint8_t {
   kMaterialId,      ///< likewise
   kCryptoObject,    ///< Cryptomatte: which objects cover how much of the pixel's samples
   kCryptoMaterial,  ///< the same of materials
+  kLightCount,      ///< lights in range of the pixel
+  kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
+                ///< counted from the band's first pixel, so it depends on the band and the crop
+  kShadow,
+  /// Bounds of the error, r g b, in the units of R G B, that lights that clusters stand for may make
+  /// (ShadeSettings::light_error): the mean over the samples. With Shading::kGouraud the largest of any
+  /// vertex.
+  kLightError,
+  kShadingCount,  ///< points that were shaded for all samples of the pixel
+  kCount
 };
 
 /// What of a pixel's samples is shaded.

@@ -15,8 +15,8 @@
 
 namespace luciole {
 
-/// Words of kernels/exact/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel of
-/// its tile.
+/// Words of kernels/exact/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel
+/// of its tile.
 using PairBits = std::vector<uint, ArrayAllocator<uint>>;
 
 /// What exact shadows need of a picture's scene, on the host and on the device. Buffers are borrowed from the
@@ -73,7 +73,8 @@ struct PairShadows {
   std::uint64_t soft_lit = 0, soft_dark = 0;
 };
 
-/// Launches kernels/exact/beam_shadows.cl and waits for it. defines: of beamFeatures(). Throws MachineError, also
+/// Launches kernels/exact/beam_shadows.cl and waits for it. defines: of featuresFor(kForBeams). Throws
+/// MachineError, also
 /// if the words don't fit into memory or there are 2²⁹ entries or more.
 PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const BeamArguments& arguments);
 

@@ -52,7 +52,8 @@ const CLI::App& findCommand(CLI::App& app, const std::string& name) {
       std::find_if(all.begin(), all.end(), [&](const CLI::App* one) { return one->get_name() == name; });
   if (named != all.end()) return **named;
   std::vector<std::string> names{"test"};  // the launcher's
-  for (const CLI::App* command : all) names.push_back(command->get_name());
+  for (const CLI::App* command : all)
+    if (!command->get_group().empty()) names.push_back(command->get_name());  // which help shows
   const std::string suggestion = didYouMean(name, names);
   throw InputError(
       fmt::format("no command {}{}", name, suggestion.empty() ? " (see luciole help)" : suggestion));

@@ -17,6 +17,7 @@
 #include "luciole/load_scene.hpp"
 #include "raster/blend.hpp"
 #include "raster/coarse_triangles.hpp"
+#include "render/aov_table.hpp"
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/models.hpp"
@@ -33,32 +34,21 @@ namespace luciole {
 namespace {
 
 /// What --aov names, in the order of its help; a name may stand for several layers.
-const std::vector<std::pair<std::string, Aov>> kAovs{{"position", Aov::kPosition},
-                                                     {"normal", Aov::kNormal},
-                                                     {"depth", Aov::kDepth},
-                                                     {"diffuse", Aov::kDiffuse},
-                                                     {"material", Aov::kMaterial},
-                                                     {"ambient", Aov::kAmbient},
-                                                     {"diffuse_light", Aov::kDiffuseLight},
-                                                     {"specular_light", Aov::kSpecularLight},
-                                                     {"emission", Aov::kEmission},
-                                                     {"fog", Aov::kFog},
-                                                     {"object_id", Aov::kObjectId},
-                                                     {"material_id", Aov::kMaterialId},
-                                                     {"cryptomatte", Aov::kCryptoObject},
-                                                     {"cryptomatte", Aov::kCryptoMaterial},
-                                                     {"cryptomatte_object", Aov::kCryptoObject},
-                                                     {"cryptomatte_material", Aov::kCryptoMaterial},
-                                                     {"light_count", Aov::kLightCount},
-                                                     {"list_length", Aov::kListLength},
-                                                     {"shadow", Aov::kShadow},
-                                                     {"light_error", Aov::kLightError},
-                                                     {"shading_count", Aov::kShadingCount}};
+std::vector<std::pair<std::string, Aov>> namedAovs() {
+  std::vector<std::pair<std::string, Aov>> named;
+  for (const AovRow& row : aovTable()) {
+    if (row.aov == Aov::kCryptoObject)
+      for (const Aov matte : {Aov::kCryptoObject, Aov::kCryptoMaterial})
+        named.emplace_back("cryptomatte", matte);
+    named.emplace_back(row.name, row.aov);
+  }
+  return named;
+}
 
-/// All names of kAovs, with this between them.
+/// All names of namedAovs(), with this between them.
 std::string aovNames(const char* separator) {
   std::vector<std::string> names;
-  for (const auto& [name, aov] : kAovs)
+  for (const auto& [name, aov] : namedAovs())
     if (names.empty() || names.back() != name) names.push_back(name);
   return fmt::format("{}", fmt::join(names, separator));
 }
@@ -464,14 +454,14 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
   if (options.aovs.empty()) return aovs;
   for (const std::string& name : split(options.aovs, ',')) {
     bool is_known = false;
-    for (const auto& [known, aov] : kAovs) {
+    for (const auto& [known, aov] : namedAovs()) {
       if (known != name) continue;
       is_known = true;
       if (std::find(aovs.begin(), aovs.end(), aov) == aovs.end()) aovs.push_back(aov);
     }
     if (is_known) continue;
     std::vector<std::string> names;
-    for (const auto& [known, aov] : kAovs) names.push_back(known);
+    for (const auto& [known, aov] : namedAovs()) names.push_back(known);
     throw InputError(
         fmt::format("--aov: '{}' is none of {}{}", name, aovNames(", "), didYouMean(name, names)));
   }
