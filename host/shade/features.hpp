@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/features.h"
+#include "kernels/feature_table.h"
 #include "lights/exact_reason.hpp"
 #include "luciole/scene.hpp"
 #include "luciole/settings.hpp"
@@ -29,7 +29,7 @@ enum FeatureUse : unsigned {
   kForFog = 8,       ///< shading that gives lit pixels their fog
 };
 
-/// A row of kernels/features.h.
+/// A row of kernels/feature_table.h.
 struct FeatureRow {
   const char* define;   ///< its name in the kernels; for a model, that of its number
   const char* name;     ///< in --stats
