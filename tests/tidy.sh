@@ -46,6 +46,7 @@ for file in "${files[@]}"; do
       file=${file%.hpp}.cpp
     else
       name=${file#host/}
+      name=${name#include/}
       file=$(git grep -lF "#include \"${name#tests/}\"" -- '*.cpp' | head -n 1 || true)  # head ends it early
     fi
   fi

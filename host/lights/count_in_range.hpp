@@ -13,8 +13,8 @@ struct CountInRangeArguments {
   Buffer<float> counts;     ///< out: plane_stride
 };
 
-/// Launches kernels/lights/count_in_range.cl: counts for each pixel the lights in whose range it lies. Doesn't wait.
-/// Throws MachineError.
+/// Launches kernels/lights/count_in_range.cl: counts for each pixel the lights in whose range it lies.
+/// Doesn't wait. Throws MachineError.
 void countInRange(OpenedDevice& device, const CountInRangeArguments& arguments);
 
 }  // namespace luciole

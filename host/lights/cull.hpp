@@ -31,8 +31,8 @@ struct CullArguments {
 /// CullArguments::group_log2 for squares of 4, 8 or 16 pixels a side.
 constexpr unsigned groupLog2(int tile_size) { return tile_size == 4 ? 4 : tile_size == 8 ? 6 : 8; }
 
-/// Launches kernels/lights/cull.cl and waits for it: lists for each tile the lights that may light a point in it. As
-/// long as no light gives ambient light or `tests` lacks kByFacing, it leaves out only lights to which
+/// Launches kernels/lights/cull.cl and waits for it: lists for each tile the lights that may light a point in
+/// it. As long as no light gives ambient light or `tests` lacks kByFacing, it leaves out only lights to which
 /// shading would add exactly zero. Reuses the buffers of `lists` that are large enough. Throws MachineError,
 /// also for lists of more than 2³² − 2 entries.
 void cull(OpenedDevice& device, const CullArguments& arguments, LightLists& lists);

@@ -34,7 +34,8 @@ struct ModelBounds {
 };
 
 /// The most of Cook and Torrance's highlight: α²/facets² · N·L/smith(N·L) / smith(N·V) · F with facets ≥ α²,
-/// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/shade/cook_torrance.clh), so 1/(2α³) times the larger of F0 and F90.
+/// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/shade/cook_torrance.clh), so 1/(2α³) times the larger of F0
+/// and F90.
 inline double mostCookTorrance(double f0, double n) {
   const double alpha2 = std::max(1 / (0.5 * n + 1), 0x1p-40);
   return std::max(f0, std::min(50 * f0, 1.0)) / (2 * alpha2 * std::sqrt(alpha2));

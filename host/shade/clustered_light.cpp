@@ -11,8 +11,8 @@
 namespace luciole {
 namespace {
 
-/// GROUP_RADIUS of kernels/clusters/clustered_light.cl: how far a group reaches from its first pixel, which mostly is
-/// a corner of it, as a share of the distance.
+/// GROUP_RADIUS of kernels/clusters/clustered_light.cl: how far a group reaches from its first pixel, which
+/// mostly is a corner of it, as a share of the distance.
 constexpr double kGroupWidth = 0.03;
 /// The angle of a pixel of 1280 × 720, where a picture is 60° high.
 constexpr double kUsualPixel = 0.0016;

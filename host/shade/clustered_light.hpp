@@ -28,8 +28,8 @@ struct ClusteredLightCounts {
   std::uint64_t redone = 0;    ///< pixels that were lit again with smaller errors of each cluster
 };
 
-/// Launches kernels/clusters/clustered_light.cl on every tile of the G-buffer and waits for it. defines: the program's
-/// features (featureDefines). Throws MachineError.
+/// Launches kernels/clusters/clustered_light.cl on every tile of the G-buffer and waits for it. defines: the
+/// program's features (featureDefines). Throws MachineError.
 ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& defines,
                                     const ClusteredLightArguments& arguments);
 

@@ -36,8 +36,8 @@ struct ShadeArguments {
   Buffer<float> image;  ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
 };
 
-/// Launches kernels/shade/shade.cl on every pixel of the G-buffer and waits for it. defines: the program's features
-/// (featureDefines) and mathDefines. Throws MachineError.
+/// Launches kernels/shade/shade.cl on every pixel of the G-buffer and waits for it. defines: the program's
+/// features (featureDefines) and mathDefines. Throws MachineError.
 void shade(OpenedDevice& device, const std::string& defines, const ShadeArguments& arguments);
 
 }  // namespace luciole

@@ -32,8 +32,8 @@ struct TileCounts {
   std::uint64_t pairs = 0;    ///< pixel-light pairs that were shaded
 };
 
-/// Launches kernels/shade/shade_tiles.cl on every pixel of the G-buffer and waits for it: the same picture as by
-/// cull() and shade(), without lists in memory. defines: the program's features (featureDefines), without
+/// Launches kernels/shade/shade_tiles.cl on every pixel of the G-buffer and waits for it: the same picture as
+/// by cull() and shade(), without lists in memory. defines: the program's features (featureDefines), without
 /// shadows, and mathDefines. Throws MachineError.
 TileCounts shadeTiles(OpenedDevice& device, const std::string& defines, const ShadeTilesArguments& arguments);
 

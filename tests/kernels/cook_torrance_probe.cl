@@ -1,7 +1,7 @@
 // in: unit normal, to_light, to_eye, then shininess and a channel of the specular colour; out: what is
 // reflected.
-#include "shade/cook_torrance.clh"
 #include "lanes.clh"
+#include "shade/cook_torrance.clh"
 
 __kernel void probe_cook_torrance(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;

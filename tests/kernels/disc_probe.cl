@@ -1,7 +1,7 @@
 // in: numbers of points; out: x and y of even_disc's point of that number, then of dense_disc's, which has
 // fewer and starts anew.
-#include "maps/disc.clh"
 #include "lanes.clh"
+#include "maps/disc.clh"
 
 __kernel void probe_disc(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;

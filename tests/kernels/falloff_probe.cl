@@ -1,7 +1,7 @@
 // Falloff of one light. in: to_light (not unit) for probe_falloff; out: distance_falloff and spot_falloff.
-#include "shade/falloff.clh"
 #include "lanes.clh"
 #include "math.clh"
+#include "shade/falloff.clh"
 #include "shared.h"
 
 __kernel void probe_falloff(__global const float* in, __global float* out, uint stride,

@@ -1,6 +1,6 @@
 // in: colour, position; out: the colour through the fog.
-#include "shade/fog.clh"
 #include "lanes.clh"
+#include "shade/fog.clh"
 #include "shared.h"
 
 __kernel void probe_fog(__global const float* in, __global float* out, uint stride,

@@ -1,9 +1,9 @@
 #include "clusters/highlights.clh"
-#include "lanes.clh"
 #include "clusters/light_clusters.clh"
 #include "clusters/listed_highlights.clh"
 #include "clusters/lobe_series.clh"
 #include "clusters/lobes.clh"
+#include "lanes.clh"
 #include "shade/phong.clh"
 #include "shared.h"
 

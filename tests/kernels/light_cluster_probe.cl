@@ -1,8 +1,8 @@
 // in: a group's middle, normal, radius, spread and thickness; a pixel's position and normal. rows: the
 // clusters of the cases, kClusterSlots a row.
 #include "clusters/cut_clusters.clh"
-#include "lanes.clh"
 #include "clusters/light_clusters.clh"
+#include "lanes.clh"
 #include "math.clh"
 #include "shared.h"
 

@@ -95,7 +95,8 @@ TEST(SpatialOrder, CamerasSeeTheSameOrder) {
   }
 }
 
-/// Places of the levels in a tree's planes, as kernels/lights/cull.cl has them: nodes, rounded up to whole rows.
+/// Places of the levels in a tree's planes, as kernels/lights/cull.cl has them: nodes, rounded up to whole
+/// rows.
 struct Level {
   std::size_t start, nodes, room;
 };

@@ -133,7 +133,8 @@ bool isInCone(const float4& light, bool at_infinity, const std::array<float4, 3>
 }
 
 /// The weights of the corners where the ray meets the triangle: each is the volume between light, start and
-/// the other two corners, as in kernels/exact/blockers.clh: without loss for a small triangle far from the light.
+/// the other two corners, as in kernels/exact/blockers.clh: without loss for a small triangle far from the
+/// light.
 glm::dvec3 weightsOf(const Lights& lights, const float4& light, const std::array<float4, 3>& corners) {
   const glm::dvec3 place(light.x, light.y, light.z), start(lights.start);
   const glm::dvec3 origin = lights.at_infinity ? start : place,
@@ -155,11 +156,11 @@ glm::dvec3 weightsOf(const Lights& lights, const float4& light, const std::array
 /// The signs of determinants, as functions of the way s to a light, with corners relative to the start and
 /// σ the side on which the start is: a triangle of that side blocks if
 ///   Mᵢ·s ≥ 0 of each edge xy, Mᵢ = −σ·x × y, and σ·V + ΣMᵢ·s > 0, V = det(a, b, c); without V at infinity.
-/// These are σ times the determinants of kernels/exact/exact_sign.h, expanded at the start. In double precision, u
-/// = 2⁻⁵³, each has products of three factors: of differences that round by u and are at most `most` in
-/// corners and `far` in s, with up to 10 roundings in all. Mᵢ·s has 6 products and the other sum 24. So they
-/// are off by less than 2⁻⁴⁷·most²·far and 2⁻⁴⁴·most²·(most + far). A float that a device takes for 0 is
-/// none here.
+/// These are σ times the determinants of kernels/exact/exact_sign.h, expanded at the start. In double
+/// precision, u = 2⁻⁵³, each has products of three factors: of differences that round by u and are at most
+/// `most` in corners and `far` in s, with up to 10 roundings in all. Mᵢ·s has 6 products and the other
+/// sum 24. So they are off by less than 2⁻⁴⁷·most²·far and 2⁻⁴⁴·most²·(most + far). A float that a device
+/// takes for 0 is none here.
 struct Volumes {
   glm::dvec3 edge[3], all;
   double start, edge_error, all_error;

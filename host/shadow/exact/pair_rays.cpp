@@ -19,7 +19,8 @@
 namespace luciole {
 namespace {
 
-/// A pixel's start point in the tree's space, by the operations of load_points() in kernels/exact/beam_points.clh.
+/// A pixel's start point in the tree's space, by the operations of load_points() in
+/// kernels/exact/beam_points.clh.
 glm::vec3 startPoint(const BeamScene& beams, const GBuffer& gbuffer, std::size_t place) {
   const std::size_t stride = gbuffer.pixels();
   glm::vec3 p(gbuffer.position[place], gbuffer.position[place + stride],

@@ -25,7 +25,8 @@ struct SeenPoint {
   double square = 0, tile = 0;  ///< radii around it of what a square and a tile of the picture show, metres
 };
 
-/// Whether a square or tile of this radius around a point keeps a light in its list. Follows kernels/lights/cull.cl.
+/// Whether a square or tile of this radius around a point keeps a light in its list. Follows
+/// kernels/lights/cull.cl.
 bool reaches(const Light& light, const SeenPoint& point, double radius, bool by_facing) {
   if (light.kind == LightKind::kDirectional) return !by_facing || glm::dot(point.normal, light.direction) < 0;
   const glm::dvec3 way = point.position - light.position;
