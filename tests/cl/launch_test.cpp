@@ -43,7 +43,7 @@ TEST_F(MakeKernel, CompileErrorNamesTheRealFileAndLine) {
 
 TEST_F(MakeKernel, ErrorInAnIncludedFileNamesThatFile) {
   // A number in place of the name of a function.
-  const std::string text = "#define distance_falloff 1\n#include \"falloff.clh\"\n";
+  const std::string text = "#define distance_falloff 1\n#include \"shade/falloff.clh\"\n";
   EXPECT_THAT(messageOf<MachineError>(
                   [&] { makeKernelFromSource(device, expandKernelSource("broken.cl", text), "probe", ""); }),
               HasSubstr("kernels/shade/falloff.clh:"));

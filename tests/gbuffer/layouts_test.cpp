@@ -144,7 +144,7 @@ TEST(Layouts, OfSeveralViewLayersThePositionsIsTaken) {
       for (const char* c : {"X", "Y", "Z"}) channels.push_back(std::string(view) + "." + layer + "." + c);
   EXPECT_THAT(
       [&] { found(channels); },
-      ThrowsMessage<InputError>(HasSubstr("position: is it A.Position or B.Position? luciole relight")));
+      ThrowsMessage<InputError>(HasSubstr("position: is it A.Position or B.Position? request.layers")));
   const FoundLayers layers = found(channels, {{Role::kPosition, "B.Position"}});
   EXPECT_EQ(layers[Role::kNormal].name, "B.Normal");
 }
