@@ -249,8 +249,7 @@ TEST(KernelLint, OnlyArithmeticThatTheStandardFixes) {
 TEST(KernelLint, GpusAreNotAskedForWhatProcessorsHave) {
   const std::string clang = findClang();
   if (clang == "clang") LUCIOLE_NEEDS_PROGRAM("clang", "clang");
-  const std::string shade =
-      quoted(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels" / "shade" / "shade/shade.cl");
+  const std::string shade = quoted(std::filesystem::path(LUCIOLE_SOURCE_DIR) / "kernels" / "shade/shade.cl");
   const auto prefetches = [&](const std::string& target) {
     const Compiled program = programOf(clang, "-DLANES=4 " + target + " " + shade);
     EXPECT_TRUE(program.succeeded) << program.output;
