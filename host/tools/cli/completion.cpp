@@ -40,7 +40,7 @@ complete -F _luciole luciole
 )bash";
 
 constexpr std::string_view kZsh = R"zsh(_luciole() {
-  local line files described
+  local line described files=-  # no files
   local -a whole valued
   for line in ${(f)"$(command ${~words[1]} complete -- "${(@Q)words[2,CURRENT]}" 2>/dev/null)"}; do
     described=${${line%%$'\t'*}//:/\\:}
@@ -53,7 +53,7 @@ constexpr std::string_view kZsh = R"zsh(_luciole() {
   done
   _describe -t words word whole
   _describe -t options option valued -S ''
-  (( ${+files} )) || return 0
+  [[ $files != - ]] || return 0
   [[ $PREFIX != --*=* ]] || compset -P '*='
   if [[ -n $files ]]; then _files -g "(#i)*.($files)(-.)"; else _files; fi
 }

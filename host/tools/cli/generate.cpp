@@ -221,7 +221,7 @@ void addLightsCommand(CLI::App& command) {
           "(scenes/FORMATS.md)")
       ->excludes(shape);
   lights->add_option("--count", options->count, "lights (default: 1000, or all of --csv)");
-  lights->add_option("--seed", options->seed)->capture_default_str();
+  lights->add_option("--seed", options->seed, "what the random numbers begin with")->capture_default_str();
   vectorOption("--min", options->low,
                "x,y,z of the box (default: what the camera sees; without SCENE -10,0,-10)")
       ->expected(3);
@@ -262,7 +262,9 @@ void addLightsCommand(CLI::App& command) {
       ->excludes(range)
       ->excludes(density)
       ->excludes(cutoff);
-  lights->add_option("--intensity", options->intensity)->check(not_negative)->capture_default_str();
+  lights->add_option("--intensity", options->intensity, "of each light")
+      ->check(not_negative)
+      ->capture_default_str();
   lights->add_option("--color", options->colors, "r,g,b; several: each light picks one")
       ->delimiter(',')
       ->allow_extra_args(false)

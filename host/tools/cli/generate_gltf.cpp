@@ -76,7 +76,7 @@ void addGltfLightsCommand(CLI::App& generate, CommandContext& context) {
   command->add_option("--count", options->count, "lights, 1 to 1000000")
       ->check(CLI::Range(std::uint64_t(1), kMostAssetLights))
       ->capture_default_str();
-  command->add_option("--seed", options->seed)->capture_default_str();
+  command->add_option("--seed", options->seed, "what the random numbers begin with")->capture_default_str();
   command
       ->add_option("-o,--output", options->output,
                    ".glb, or .gltf with a .bin beside it (- : .glb on standard output)")
