@@ -82,7 +82,7 @@ InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
 # Built it would take minutes: what Ninja would do makes each file that installing looks for first.
 LaunchersBuildHasAllThatIsInstalled() {
   local target file commands files
-  target=$(sed -n 's/^programIsCurrent || setUp //p' "$checkout/luciole")
+  target=$(sed -n 's/^ *programIsCurrent || setUp //p' "$checkout/luciole")
   commands=" $(ninja -C "$build" -t commands "$target" | tr '\n' ' ') "
   mapfile -t files < <(grep '^ *foreach(file "' "$build/cmake_install.cmake" | grep -oE '"[^"]+"' | tr -d '"')
   ((${#files[@]} >= 11)) || { echo "installing looks for ${files[*]}" && return 1; }
