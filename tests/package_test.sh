@@ -46,16 +46,12 @@ AddSubdirectoryGivesTheSameTarget() {
 EveryInstalledHeaderCompiles() {
   install
   [[ -z $(find "$folder/prefix/include" -name '*.h*' -not -path '*/include/luciole/*') ]] || { echo "others are installed" && return 1; }
-  local headers flags
+  local headers header
   mapfile -t headers < <(find "$folder/prefix/include/luciole" -name '*.hpp' -printf '%f\n')
   ((${#headers[@]} > 15 && ${#headers[@]} <= 25)) || { echo "${#headers[@]} headers" && return 1; }
-  for flags in "" "-DGLM_FORCE_CTOR_INIT -DGLM_FORCE_RADIANS"; do
-    for header in "${headers[@]}"; do
-      # shellcheck disable=SC2086
-      echo "#include <luciole/$header>" |
-        g++ -x c++ -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I "$folder/prefix/include" $flags -
-    done
-  done
+  local check=(g++ -x c++ -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I "$folder/prefix/include" -)
+  for header in "${headers[@]}"; do echo "#include <luciole/$header>" | "${check[@]}"; done
+  printf '#include <luciole/%s>\n' "${headers[@]}" | "${check[@]}" -DGLM_FORCE_CTOR_INIT -DGLM_FORCE_RADIANS
 }
 
 InstalledProgramNeedsNeitherCheckoutNorBuildFolder() {
