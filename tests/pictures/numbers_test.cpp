@@ -1,11 +1,18 @@
 // Numbers at the ends of what floats hold, on their way in and out.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <half.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
-#include "image/oiio.hpp"
 #include "kernels/random_scene.hpp"
 #include "luciole/error.hpp"
 #include "luciole/gbuffer_file.hpp"
@@ -122,15 +129,19 @@ TEST(HardNumbers, SamplesAndExposuresAddUpToFinitePictures) {
 void writeHalfFloats(const std::string& path, const std::string& channel, const std::vector<float>& values) {
   std::vector<std::string> names{"P.X", "P.Y",        "P.Z",        "N.X",       "N.Y",
                                  "N.Z", "emission.R", "emission.G", "emission.B"};
-  OIIO::ImageSpec spec(int(values.size()), 1, int(names.size()), OIIO::TypeDesc::HALF);
-  spec.channelnames = names;
-  std::vector<float> pixels;
-  for (const float value : values)
-    for (const std::string& name : names)
-      pixels.push_back(name == channel ? value : name == "P.Z" ? -4.0f : name == "N.Z" ? 1.0f : 0.0f);
-  const auto file = OIIO::ImageOutput::create(path);
-  ASSERT_TRUE(file && file->open(path, spec) && file->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&
-              file->close());
+  Imf::Header header(int(values.size()), 1);
+  Imf::FrameBuffer channels;
+  std::map<std::string, std::vector<half>> rows;
+  for (const std::string& name : names) {
+    std::vector<half>& row = rows[name];
+    for (const float value : values)
+      row.push_back(name == channel ? value : name == "P.Z" ? -4.0f : name == "N.Z" ? 1.0f : 0.0f);
+    header.channels().insert(name, Imf::Channel(Imf::HALF));
+    channels.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(row.data()), sizeof(half), 0));
+  }
+  Imf::OutputFile file(path.c_str(), header);
+  file.setFrameBuffer(channels);
+  file.writePixels(1);
 }
 
 TEST(HardNumbers, HalfFloatGBuffersThatOverflowedAreBackgroundOrAnError) {

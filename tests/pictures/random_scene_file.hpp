@@ -20,15 +20,17 @@ struct SceneKind {
   Model model;
   const char* fog;  ///< "" for none
   bool fog_per_channel, fog_radial;
+  bool long_sums;  ///< of more lights than the kernels sum in one go
 };
 
 /// Each kind is a kernel program of its own to compile, which takes a second; so the seeds that every run of
-/// the tests uses keep to a few, and each of their scenes has a light of every type.
-inline constexpr SceneKind kSceneKinds[] = {{false, Model::kPhong, "", false, false},
-                                            {true, Model::kBlinnPhong, "linear", false, true},
-                                            {false, Model::kToon, "exp2", true, false},
-                                            {false, Model::kCookTorrance, "", false, false},
-                                            {false, Model::kOrenNayar, "", false, false}};
+/// the tests uses keep to a few, and each of their scenes has a light of every type, all kinds of shadow
+/// maps, and something smooth.
+inline constexpr SceneKind kSceneKinds[] = {{false, Model::kPhong, "", false, false, false},
+                                            {true, Model::kBlinnPhong, "linear", false, true, true},
+                                            {false, Model::kToon, "exp2", true, false, false},
+                                            {false, Model::kCookTorrance, "", false, false, true},
+                                            {false, Model::kOrenNayar, "", false, false, false}};
 inline constexpr unsigned kFirstFreeSeed = 1'000'000;  ///< from here on anything goes
 
 namespace random_scene_file {
@@ -140,6 +142,8 @@ inline void addLightOfEveryType(SceneJson& lights, Random& random) {
   lights[0]["shadow"] = true;
   lights[1]["shadow"] = true;
   lights[2]["exponent"] = 3.5;
+  lights[2]["cutoff"] = 40;  // one map shows it
+  lights[2]["shadow"] = true;
 }
 
 }  // namespace random_scene_file
@@ -154,8 +158,12 @@ inline SceneJson randomSceneFile(unsigned seed) {
   SceneKind kind = kSceneKinds[seed % std::size(kSceneKinds)];
   const bool free = seed >= kFirstFreeSeed;
   if (free)
-    kind = {random.chance(0.3), kAllModels[random.below(int(std::size(kAllModels)))],
-            std::array{"", "linear", "exp", "exp2"}[random.below(4)], random.chance(0.5), random.chance(0.5)};
+    kind = {random.chance(0.3),
+            kAllModels[random.below(int(std::size(kAllModels)))],
+            std::array{"", "linear", "exp", "exp2"}[random.below(4)],
+            random.chance(0.5),
+            random.chance(0.5),
+            random.chance(0.2)};
   SceneJson scene;
   scene["camera"] = camera(kind.orthographic, random);
   constexpr int kModels = std::size(kAllModels);
@@ -181,10 +189,12 @@ inline SceneJson randomSceneFile(unsigned seed) {
   }
   scene["objects"] = SceneJson::array();
   for (int i = 2 + random.below(6); i > 0; --i) scene["objects"].push_back(object(kMaterials, random));
+  if (!free)
+    scene["objects"].push_back(
+        {{"primitive", "sphere"}, {"translate", {0.2, -0.3, 0.1}}, {"scale", 0.5}, {"material", "m0"}});
   scene["lights"] = SceneJson::array();
   if (!free) addLightOfEveryType(scene["lights"], random);
-  // Now and then more than the kernels sum in one go.
-  for (int i = random.chance(0.2) ? 200 : random.below(12); i > 0; --i)
+  for (int i = kind.long_sums ? 140 : random.below(12); i > 0; --i)
     scene["lights"].push_back(light(random.below(4), random));
   return scene;
 }
