@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""mutate_kernels.py [--build FOLDER] [--jobs N] [FILE…]: makes small mistakes in the kernels, one at a time, and tells which of
-them the tests find. FILE: only the mutants of that kernel file.
+"""mutate_kernels.py [--build FOLDER] [--jobs N] [--sample N] [FILE…]: makes small mistakes in the kernels, one at a time, and tells which of
+them the tests find. FILE: only the mutants of that kernel file. --sample N: only N of them, spread evenly over the files.
 
 No file is touched and nothing is built: a preloaded library (mutate_kernels.c) hands OpenCL the sources with one line changed.
 The tests must have been built from the kernels as they are (./luciole test, or ninja -C build).
@@ -803,11 +803,14 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--check", action="store_true", help="only whether the table fits the kernels")
     parser.add_argument("files", nargs="*", metavar="FILE", choices=[[], *MUTANTS], help="kernel files; default: all")
+    parser.add_argument("--sample", type=int, metavar="N", help="only N mutants, spread evenly over the files")
     options = parser.parse_args()
     files = options.files or list(MUTANTS)
     places = find_places(files)
     if options.check:
         return
+    if options.sample and options.sample < len(places):
+        places = [places[i * len(places) // options.sample] for i in range(options.sample)]
     counts = {}
     with tempfile.TemporaryDirectory() as temporary:
         runner = Runner(options.build.resolve(), pathlib.Path(temporary))

@@ -107,14 +107,19 @@ void pairPixels(GBuffer& gbuffer) {
 bool lightByClusters(int lanes) {
   OpenedDevice device;
   openChecked(lanes, device);
-  Random random(static_cast<unsigned>(lanes));
+  Random random(1);
   const Camera camera;
-  // With eight lanes few points, in groups, take every way that many do.
-  const bool few = lanes == 8;
-  GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, few ? 0.7 : 0.3, random);
-  if (few) pairPixels(gbuffer);
+  // A point takes up to a second.
+  GBuffer gbuffer = randomGBuffer(camera, kWidth, 9, 0.7, random);
+  pairPixels(gbuffer);  // lit in groups
+  // Half of the highlights are wide: series stand for those of lights and of clusters.
+  const auto exponents = gbuffer.specular.end() - std::ptrdiff_t(gbuffer.pixels());
+  std::fill(exponents, exponents + std::ptrdiff_t(gbuffer.pixels() / 2), 4.0f);
   std::vector<UnboundedLight> lights;
   for (int i = 0; i < 150; ++i) lights.push_back({10.0 * random.direction(), 0.1 * random.color(), 1});
+  // So near each other that a series stands for the highlights of a cluster.
+  for (int i = 0; i < 50; ++i)
+    lights.push_back({20.0 * (glm::dvec3(0, 0, 1) + 0.005 * random.direction()), 20.0 * random.color(), 1});
   const LightClusters clusters = buildLightClusters(lights);
   ShadeFrame frame{};
   frame.plane_stride = uint(gbuffer.pixels());

@@ -49,13 +49,28 @@ END
 standIn sudo <<'END'
 exec "$@"
 END
-# Tells three tests, of which two were skipped, as ctest does.
+# Tells three tests, of which two were skipped, and a suite with two more skipped ones, as ctest does.
 standIn ctest <<'END'
 while (($#)) && [[ $1 != --output-junit ]]; do shift; done
 cat >"$2" <<'XML'
 <testsuite>
 	<testcase name="A.Runs" status="run">
 		<system-out>all is well</system-out>
+	</testcase>
+	<testcase name="SuiteOfThree" status="run">
+		<system-out>[ RUN      ] SuiteOfThree.First
+a_test.cpp:8: Skipped
+needs ffmpeg
+
+[  SKIPPED ] SuiteOfThree.First (0 ms)
+[ RUN      ] SuiteOfThree.Second
+[       OK ] SuiteOfThree.Second (0 ms)
+[ RUN      ] SuiteOfThree.Third
+a_test.cpp:9: Skipped
+needs ffmpeg
+
+[  SKIPPED ] SuiteOfThree.Third (0 ms)
+</system-out>
 	</testcase>
 	<testcase name="A.IsSkippedByGoogleTest" status="notrun">
 		<skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
@@ -166,7 +181,8 @@ TestPackagesThatTheArchiveLacksAreLeftOutAndTold() {
 SkippedTestsAreToldWithTheirReasonsAboveCtestsLastLines() {
   launch test
   expect output "$(<"$folder/output")" "1/3 Test A
-Skipped tests: 2
+Skipped tests: 4
+  2 × needs ffmpeg
   1 × needs munged
   1 × needs oclgrind, which this system's archive lacks
 50% tests passed, 1 tests failed out of 2
