@@ -325,7 +325,7 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
                               interpolate(seen.normal, 2, weights)};
   normalize(normal, seen.facing_normal, values.normal);
   setLift(seen, weights, normal, values.lift);
-  if (input.unbent) {
+  if (input.planes.unbent) {
     for (int i = 0; i < kSquarePixels; ++i)
       values.geometric_normal[i] =
           packNormal({values.normal[0][i], values.normal[1][i], values.normal[2][i]});
@@ -333,8 +333,8 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
     values.geometric_normal.fill(seen.geometric_normal);
   }
   if (seen.bends) bendNormals(input, seen, place, crossing, weights, sees_it, values);
-  values.has_models = input.models;
-  if (input.models) values.model.fill(modelNumber(surface.material->model));
+  values.has_models = input.planes.model;
+  if (values.has_models) values.model.fill(modelNumber(surface.material->model));
   setMaterial(input, seen, weights, values);
   if (seen.mapped) setMaps(input, seen, crossing, weights, sees_it, values);
   return values;

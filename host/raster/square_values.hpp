@@ -18,7 +18,7 @@ struct SquareValues {
   Lanes3<float> emission;
   Lanes<std::uint32_t> geometric_normal;
   Lanes<float> lift;
-  bool has_models = false;     ///< as ResolveInput::models
+  bool has_models = false;     ///< as ResolveInput::planes.model
   Lanes<std::uint32_t> model;  ///< a ModelPlane's, where has_models
   /// The maps that applyMaps() multiplies in.
   bool mapped = false;                        ///< any pixel has one, or else all below means nothing
