@@ -40,7 +40,8 @@ std::vector<std::string> channelNames(const GBuffer& gbuffer) {
   }
   if (!gbuffer.ambient.empty()) addChannels(names, "ambient", "RGB");
   if (!gbuffer.emission.empty()) addChannels(names, "emission", "RGB");
-  if (!gbuffer.geometric_normal.empty()) addChannels(names, gbuffer.knows_unbent ? "Nunbent" : "Ng", "XYZ");
+  if (!gbuffer.geometric_normal.empty()) addChannels(names, "Ng", "XYZ");
+  if (!gbuffer.unbent_normal.empty()) addChannels(names, "Nunbent", "XYZ");
   if (!gbuffer.lift.empty()) names.push_back("lift");
   if (!gbuffer.model.empty()) names.push_back("model");
   return names;
@@ -67,10 +68,10 @@ void addRow(const GBuffer& gbuffer, int y, std::vector<float>& values) {
     }
     if (!gbuffer.ambient.empty()) add(load(gbuffer.ambient, at, stride));
     if (!gbuffer.emission.empty()) add(load(gbuffer.emission, at, stride));
-    if (!gbuffer.geometric_normal.empty()) {
+    for (const PackedNormals* group : {&gbuffer.geometric_normal, &gbuffer.unbent_normal}) {
+      if (group->empty()) continue;
       const bool shows = normal != glm::vec3(0.0f);
-      add(shows ? glm::vec3(glm::dmat3(to_world) * unpackNormal(gbuffer.geometric_normal[at]))
-                : glm::vec3(0.0f));
+      add(shows ? glm::vec3(glm::dmat3(to_world) * unpackNormal((*group)[at])) : glm::vec3(0.0f));
     }
     if (!gbuffer.lift.empty()) values.push_back(gbuffer.lift[at]);
     if (!gbuffer.model.empty()) values.push_back(float(gbuffer.model[at]));

@@ -199,13 +199,9 @@ class Conversion {
                       .has_view_space = own_view_});
   }
 
-  /// The layer of GBuffer::geometric_normal.
-  Role facetRole() const {
-    return found_[Role::kUnbentNormal].isThere() ? Role::kUnbentNormal : Role::kGeometricNormal;
-  }
-
   /// A G-buffer of the file's size that shows nothing, with the groups that it will have.
   void makeEmpty(GBuffer& gbuffer) const {
+    const bool knows_unbent = found_[Role::kUnbentNormal].isThere();
     constexpr int kGroupChannels = 3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1;
     requireMemory(double(pixels()) * kGroupChannels * sizeof(float), path_);
     gbuffer.width = part_.size.x;
@@ -220,9 +216,9 @@ class Conversion {
     allocatePlanes({.specular = true,
                     .ambient = true,
                     .emission = found_[Role::kEmission].isThere(),
-                    .geometric_normal = found_[facetRole()].isThere(),
+                    .geometric_normal = found_[Role::kGeometricNormal].isThere() && !knows_unbent,
+                    .unbent_normal = knows_unbent,
                     .lift = found_[Role::kLift].isThere(),
-                    .unbent = facetRole() == Role::kUnbentNormal,
                     .model = found_[Role::kModel].isThere()},
                    gbuffer);
   }
@@ -290,7 +286,8 @@ class Conversion {
     const LayerPlanes diffuse = planes(Role::kDiffuse), ambient = planes(Role::kAmbient),
                       emission = planes(Role::kEmission), shininess = planes(Role::kShininess),
                       specular = shines() ? planes(Role::kSpecular) : LayerPlanes{},
-                      facet = planes(facetRole()), lift = planes(Role::kLift), model = planes(Role::kModel);
+                      facet = planes(Role::kGeometricNormal), unbent = planes(Role::kUnbentNormal),
+                      lift = planes(Role::kLift), model = planes(Role::kModel);
     const std::size_t stride = gbuffer.pixels();
     const float kd = request_.albedo ? float(1 / std::numbers::pi) : 1.0f;
     const auto color = [&](const LayerPlanes& layer, std::size_t pixel, glm::vec3 missing) {
@@ -311,7 +308,10 @@ class Conversion {
         gbuffer.specular[place + 3 * stride] = exponent;
         storePixel(color(ambient, pixel, reflectance), place, stride, gbuffer.ambient);
         if (emission) storePixel(color(emission, pixel, {}), place, stride, gbuffer.emission);
-        if (facet) gbuffer.geometric_normal[place] = facetAt(facet, pixel, gbuffer, place);
+        if (unbent)
+          gbuffer.unbent_normal[place] = packedAt(unbent, pixel, gbuffer, place);
+        else if (facet)
+          gbuffer.geometric_normal[place] = packedAt(facet, pixel, gbuffer, place);
         if (lift) gbuffer.lift[place] = coefficient(lift, pixel, 0, part_, path_);
         if (model) gbuffer.model[place] = modelAt(model, pixel);
       }
@@ -327,11 +327,11 @@ class Conversion {
     return std::uint32_t(number);
   }
 
-  /// The packed geometric normal of a pixel, view space. What writeGBuffer() wrote is restored to the bit,
+  /// The packed normal of a pixel in a layer, view space. What writeGBuffer() wrote is restored to the bit,
   /// although it went through world space and float (see packNormal).
-  std::uint32_t facetAt(const LayerPlanes& facet, std::size_t pixel, const GBuffer& gbuffer,
-                        std::size_t place) const {
-    const glm::vec3 normal = facet.three(pixel);
+  std::uint32_t packedAt(const LayerPlanes& layer, std::size_t pixel, const GBuffer& gbuffer,
+                         std::size_t place) const {
+    const glm::vec3 normal = layer.three(pixel);
     const std::size_t stride = gbuffer.pixels();
     if (!isFinite(normal) || normal == glm::vec3(0.0f))
       return packNormal(glm::vec3(gbuffer.normal[place], gbuffer.normal[place + stride],

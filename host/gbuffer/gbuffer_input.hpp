@@ -40,9 +40,9 @@ struct GBufferInput {
 /// from positions (see rebuildNormals()). Normals are normalized. Coefficients below 0 become 0. Missing
 /// layers read as: diffuse 0.8, specular 0, shininess 0, ambient = diffuse. Specular is left out where
 /// another program's file doesn't tell how sharp highlights are. Without emission, geometric normals or lift
-/// these groups stay empty; without lift shadow tests start at the position. Where a geometric normal is zero
-/// or not finite, the normal takes its place. This program's own planes in view space are used with its own
-/// camera attributes only.
+/// these groups stay empty; without lift shadow tests start at the position. Geometric normals are left out
+/// beside unbent ones; where one of either is zero or not finite, the normal takes its place. This program's
+/// own planes in view space are used with its own camera attributes only.
 ///
 /// Throws InputError, a line that names the file and the channel, also where a coefficient of a surface isn't
 /// finite; MachineError where the picture doesn't fit into memory.

@@ -24,7 +24,7 @@ enum class Role : std::uint8_t {
   kAmbient,
   kEmission,
   kGeometricNormal,  ///< the triangle's own
-  kUnbentNormal,     ///< see GBuffer::knows_unbent
+  kUnbentNormal,     ///< see GBuffer::unbent_normal
   kLift,             ///< see raster/lift.hpp
   kModel,            ///< modelNumber() of what surfaces choose
   kViewPosition,     ///< in this program's view space

@@ -24,7 +24,6 @@ void clear(std::size_t count, Group& group) {
 
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
   const std::size_t pixels = gbuffer.pixels();
-  gbuffer.knows_unbent = planes.unbent;
   // In parallel, since most of the time goes into the system's clearing of fresh memory.
   tbb::parallel_invoke(
       [&] {
@@ -37,6 +36,7 @@ void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
       [&] { clear(planes.ambient ? 3 * pixels : 0, gbuffer.ambient); },
       [&] { clear(planes.emission ? 3 * pixels : 0, gbuffer.emission); },
       [&] { clear(planes.geometric_normal ? pixels : 0, gbuffer.geometric_normal); },
+      [&] { clear(planes.unbent_normal ? pixels : 0, gbuffer.unbent_normal); },
       [&] { clear(planes.lift ? pixels : 0, gbuffer.lift); },
       [&] { clear(planes.model ? pixels : 0, gbuffer.model); });
 }
@@ -45,8 +45,7 @@ void freePlanes(GBuffer& gbuffer) {
   for (Plane* group : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular,
                        &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift})
     *group = {};
-  gbuffer.geometric_normal = {};
-  gbuffer.model = {};
+  for (auto* group : {&gbuffer.geometric_normal, &gbuffer.unbent_normal, &gbuffer.model}) *group = {};
 }
 
 }  // namespace luciole

@@ -38,7 +38,10 @@ void validateGBuffer(const GBuffer& gbuffer) {
   check("specular", gbuffer.specular.size(), 4);
   check("ambient", gbuffer.ambient.size(), 3);
   check("emission", gbuffer.emission.size(), 3);
-  check("geometric_normal", gbuffer.geometric_normal.size(), 1, !gbuffer.knows_unbent);
+  check("geometric_normal", gbuffer.geometric_normal.size(), 1);
+  check("unbent_normal", gbuffer.unbent_normal.size(), 1);
+  if (!gbuffer.geometric_normal.empty() && !gbuffer.unbent_normal.empty())
+    throw InputError("gbuffer.unbent_normal: beside geometric_normal, expected one of them");
   check("lift", gbuffer.lift.size(), 1);
   check("model", gbuffer.model.size(), 1);
   if (std::any_of(gbuffer.model.begin(), gbuffer.model.end(),

@@ -29,8 +29,7 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   GBuffer gbuffer = emptyGBuffer(view, planes, std::move(used));
   const ViewPlane plane = viewPlane(view);
   const HoleTest holes{scene, geometry.objects, plane, view.number};
-  const ResolveInput input{scene,         geometry.objects, plane,         shading,
-                           vertex_colors, planes.lift,      planes.unbent, planes.model};
+  const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors, planes};
   RasterCounts own_counts;
   if (!counts) counts = &own_counts;
   counts->covering.resize(geometry.triangle_count);

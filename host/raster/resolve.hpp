@@ -16,9 +16,7 @@ struct ResolveInput {
   const ViewPlane& plane;
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
-  bool lifts;                                ///< fill in GBuffer::lift
-  bool unbent;                               ///< GBuffer::knows_unbent
-  bool models;                               ///< fill in GBuffer::model
+  const PlaneSet& planes;                    ///< of the G-buffer
   /// Not null: the plane sees these instead, which have the same triangles, laid out elsewhere, and shows the
   /// fronts of `objects` there.
   const std::vector<PlacedObject>* laid_out = nullptr;

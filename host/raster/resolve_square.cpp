@@ -78,7 +78,9 @@ void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, st
   store(values.ambient, place, drawn, whole, gbuffer.ambient);
   store(values.emission, place, drawn, whole, gbuffer.emission);
   if (!gbuffer.geometric_normal.empty())
-    store(values.geometric_normal, drawn, whole, gbuffer.geometric_normal.data() + place);
+    store(values.surface_normal, drawn, whole, gbuffer.geometric_normal.data() + place);
+  if (!gbuffer.unbent_normal.empty())
+    store(values.surface_normal, drawn, whole, gbuffer.unbent_normal.data() + place);
   if (!gbuffer.lift.empty()) store(values.lift, drawn, whole, gbuffer.lift.data() + place);
   if (!gbuffer.model.empty()) store(values.model, drawn, whole, gbuffer.model.data() + place);
 }
@@ -104,6 +106,7 @@ void resolveSquare(const ResolveInput& input, const SquarePlace& place, const La
   prefetch(gbuffer.ambient, 3, at);
   prefetch(gbuffer.emission, 3, at);
   if (!gbuffer.geometric_normal.empty()) __builtin_prefetch(gbuffer.geometric_normal.data() + at, 1);
+  if (!gbuffer.unbent_normal.empty()) __builtin_prefetch(gbuffer.unbent_normal.data() + at, 1);
   prefetch(gbuffer.lift, 1, at);
   store(valuesSeen(input, place, triangles, surfaces), triangles, at, gbuffer);
 }

@@ -43,7 +43,7 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
   seen.facing_normal = surface.front_facing ? surface.normal : -surface.normal;
   seen.geometric_normal = packNormal(seen.facing_normal);
   seen.normal = normals(surface, seen.facing_normal, input.shading);
-  if (input.lifts && input.shading != Shading::kFlat) seen.lift = liftOf(surface, seen.normal);
+  if (input.planes.lift && input.shading != Shading::kFlat) seen.lift = liftOf(surface, seen.normal);
   const bool any_map =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   seen.mapped = any_map && !mesh.uvs.empty();

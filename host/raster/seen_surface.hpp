@@ -24,7 +24,7 @@ struct SeenSurface {
   glm::dvec3 facing_normal{0.0};       ///< the triangle's normal, unit, on the viewer's side
   std::uint32_t geometric_normal = 0;  ///< facing_normal, by packNormal()
   Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
-  Lift lift;                           ///< for ResolveInput::lifts
+  Lift lift;                           ///< where ResolveInput::planes has it
   bool mapped = false;                 ///< its material has maps that colour it, and its mesh coordinates:
   Interpolant<glm::dvec2> uv;          ///< zero where not
   bool bends = false;                  ///< a normal map bends its normal

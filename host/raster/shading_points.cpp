@@ -210,8 +210,8 @@ void toPlane(const ViewPlane& plane, SquarePlace& place) {
 }
 
 ResolveInput resolveInput(const SampledView& sampled) {
-  return {sampled.scene,         sampled.objects,     sampled.plane,         sampled.shading,
-          sampled.vertex_colors, sampled.planes.lift, sampled.planes.unbent, sampled.planes.model};
+  return {sampled.scene,   sampled.objects,       sampled.plane,
+          sampled.shading, sampled.vertex_colors, sampled.planes};
 }
 
 /// Groups the samples of a part of a strip, resolves the pixels' first points, and appends the others to

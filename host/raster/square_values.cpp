@@ -325,16 +325,15 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
                               interpolate(seen.normal, 2, weights)};
   normalize(normal, seen.facing_normal, values.normal);
   setLift(seen, weights, normal, values.lift);
-  if (input.unbent) {
+  if (input.planes.unbent_normal) {
     for (int i = 0; i < kSquarePixels; ++i)
-      values.geometric_normal[i] =
-          packNormal({values.normal[0][i], values.normal[1][i], values.normal[2][i]});
+      values.surface_normal[i] = packNormal({values.normal[0][i], values.normal[1][i], values.normal[2][i]});
   } else {
-    values.geometric_normal.fill(seen.geometric_normal);
+    values.surface_normal.fill(seen.geometric_normal);
   }
   if (seen.bends) bendNormals(input, seen, place, crossing, weights, sees_it, values);
-  values.has_models = input.models;
-  if (input.models) values.model.fill(modelNumber(surface.material->model));
+  values.has_models = input.planes.model;
+  if (values.has_models) values.model.fill(modelNumber(surface.material->model));
   setMaterial(input, seen, weights, values);
   if (seen.mapped) setMaps(input, seen, crossing, weights, sees_it, values);
   return values;
@@ -347,7 +346,7 @@ void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out)
   put(values.specular, sees_it, out.specular);
   put(values.ambient, sees_it, out.ambient);
   put(values.emission, sees_it, out.emission);
-  blend(values.geometric_normal, sees_it, out.geometric_normal);
+  blend(values.surface_normal, sees_it, out.surface_normal);
   blend(values.lift, sees_it, out.lift);
   if (values.has_models) blend(values.model, sees_it, out.model);
   if (!values.mapped && !out.mapped) return;

@@ -16,9 +16,9 @@ struct SquareValues {
   std::array<Lanes<float>, 4> specular;
   Lanes3<float> ambient;
   Lanes3<float> emission;
-  Lanes<std::uint32_t> geometric_normal;
+  Lanes<std::uint32_t> surface_normal;  ///< unbent_normal where that is wanted, else geometric_normal
   Lanes<float> lift;
-  bool has_models = false;     ///< as ResolveInput::models
+  bool has_models = false;     ///< as ResolveInput::planes.model
   Lanes<std::uint32_t> model;  ///< a ModelPlane's, where has_models
   /// The maps that applyMaps() multiplies in.
   bool mapped = false;                        ///< any pixel has one, or else all below means nothing

@@ -98,7 +98,6 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
   GBuffer& gbuffer = result.gbuffer;
   gbuffer.camera = camera;
   gbuffer.knows_camera = false;
-  gbuffer.knows_unbent = planes.unbent;
 
   const double aspect = double(size.x) / size.y;
   const Scene flat = laidOut(mesh, uvs, aspect, false);
@@ -123,8 +122,7 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
       placeObjects(scene, drawn, cameraView(camera, size).world_to_view);
   const std::vector<PlacedObject> spread = placeObjects(flat, allObjects(flat), view.world_to_view);
   const ViewPlane plane = viewPlane(view);
-  const ResolveInput input{scene,       objects,       plane,        Shading::kPhong, {},
-                           planes.lift, planes.unbent, planes.model, &spread};
+  const ResolveInput input{scene, objects, plane, Shading::kPhong, {}, planes, &spread};
   tbb::parallel_for(0, (size.y + kSquareSize - 1) / kSquareSize, [&](int row) {
     SurfaceCache surfaces(input);
     for (int x = 0; x < size.x; x += kSquareSize) {

@@ -112,8 +112,8 @@ std::optional<ShownPoint> shownPoint(const GBuffer& gbuffer, const glm::ivec2& p
   SurfacePoint& point = shown.point;
   point.position = glm::dvec3(to_world * glm::dvec4(view_position, 1));
   point.normal = glm::dmat3(to_world) * triple(gbuffer.normal, stride, place);
-  if (gbuffer.knows_unbent)
-    point.unbent = glm::dmat3(to_world) * unpackNormal(gbuffer.geometric_normal[place]);
+  if (!gbuffer.unbent_normal.empty())
+    point.unbent_normal = glm::dmat3(to_world) * unpackNormal(gbuffer.unbent_normal[place]);
   point.diffuse = triple(gbuffer.diffuse, stride, place);
   point.specular = triple(gbuffer.specular, stride, place);
   point.ambient = triple(gbuffer.ambient, stride, place);
@@ -165,7 +165,7 @@ static void eachLightTerm(const Scene& scene, const Camera& camera, const Surfac
     term.falloff = incoming.share;
     term.ambient = glm::dvec3(light.ambient) * point.ambient;
     term.n_dot_l = glm::dot(normal, incoming.to_light);
-    const bool behind = glm::dot(point.unbent, incoming.to_light) <= -kPackedNormalMargin;
+    const bool behind = glm::dot(point.unbent_normal, incoming.to_light) <= -kPackedNormalMargin;
     term.visibility = term.n_dot_l <= 0 || behind  ? 0.0
                       : light.shadow && visibility ? visibility(light)
                                                    : 1.0;

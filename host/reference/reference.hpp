@@ -20,8 +20,8 @@ namespace luciole {
 struct SurfacePoint {
   glm::dvec3 position{0.0};  ///< world, metres
   glm::dvec3 normal{0.0};    ///< unit, world
-  glm::dvec3 unbent{
-      0.0};  ///< the normal before a map bent it, unit: what stands behind it lights nothing; or 0
+  /// The normal before a map bent it, unit: what stands behind it lights nothing; or 0.
+  glm::dvec3 unbent_normal{0.0};
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0}, emission{0.0};
   double shininess = 0.0;
 };

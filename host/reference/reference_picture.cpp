@@ -39,13 +39,11 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
     takeSample(sample_view, {sample, samples});
-    const bool bent = shading == Shading::kPhong && hasNormalMaps(scene);
     const PlaneSet planes{.specular = true,
                           .ambient = true,
                           .emission = true,
-                          .geometric_normal = bent,
+                          .unbent_normal = shading == Shading::kPhong && hasNormalMaps(scene),
                           .lift = settings.shadow_rays != nullptr,
-                          .unbent = bent,
                           .model = true};
     const GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
     ReferenceSettings of_sample = settings;

@@ -23,7 +23,7 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   const bool clustered = features.has(Feature::kClusteredLights);
   const std::size_t gbuffer = 9 + (clustered ? 9 : 0) + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
-                              (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
+                              (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
   const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
   const std::size_t light_layers = 3 * plan.layers.size();

@@ -50,8 +50,8 @@ bool anyShines(const GBuffer& gbuffer) {
 }
 
 SurfaceTraits shownTraits(const GBuffer& gbuffer) {
-  return {anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(), gbuffer.knows_unbent,
-          modelsOf(gbuffer)};
+  return {anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
+          !gbuffer.unbent_normal.empty(), modelsOf(gbuffer)};
 }
 
 /// What doesn't depend on where the G-buffer comes from. view: of the whole picture. points_a_pixel: see

@@ -85,13 +85,14 @@ GBuffer rasterizeScene(OpenedDevice* device, const Scene& scene, const RenderSet
   GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
     const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
     const SurfaceTraits surfaces = materialTraits(scene);
+    const bool bent = settings.shading == Shading::kPhong && surfaces.normal_maps;
     return rasterize(scene, objects, plan.view, settings.shading,
                      {.specular = true,
                       .ambient = true,
                       .emission = true,
-                      .geometric_normal = true,
+                      .geometric_normal = !bent,
+                      .unbent_normal = bent,
                       .lift = smooth,
-                      .unbent = settings.shading == Shading::kPhong && surfaces.normal_maps,
                       .model = surfaces.models.to_ulong() > 1},
                      vertex_colors, &triangles);
   });

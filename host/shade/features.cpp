@@ -188,9 +188,9 @@ PlaneSet neededPlanes(const FeatureSet& features) {
                       features.has(Feature::kOrenNayar),  // for the shininess
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
-          .geometric_normal = features.shadowMaps() || features.has(Feature::kNormalMaps),
+          .geometric_normal = features.shadowMaps() && !features.has(Feature::kNormalMaps),
+          .unbent_normal = features.has(Feature::kNormalMaps),
           .lift = features.has(Feature::kLift),
-          .unbent = features.has(Feature::kNormalMaps),
           .model = features.has(Feature::kMaterialModels)};
 }
 

@@ -23,18 +23,18 @@ PackedNormals packNormals(const GBuffer& gbuffer) {
 
 Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit) {
   const std::size_t stride = gbuffer.pixels();
-  const bool asks_facets = features.shadowMaps() || features.has(Feature::kNormalMaps);
+  const bool asks_surfaces = features.shadowMaps() || features.has(Feature::kNormalMaps);
   PackedNormals packed;
-  if (asks_facets && gbuffer.geometric_normal.empty()) packed = packNormals(gbuffer);
+  if (asks_surfaces && surfaceNormals(gbuffer).empty()) packed = packNormals(gbuffer);
   Plane no_lift(features.has(Feature::kLift) && gbuffer.lift.empty() ? stride : 0);
   ModelPlane no_model(features.has(Feature::kMaterialModels) && gbuffer.model.empty() ? stride : 0);
-  const PackedNormals& geometric_normal = packed.empty() ? gbuffer.geometric_normal : packed;
+  const PackedNormals& surface_normal = packed.empty() ? surfaceNormals(gbuffer) : packed;
   const Plane& lift = no_lift.empty() ? gbuffer.lift : no_lift;
   const ModelPlane& model = no_model.empty() ? gbuffer.model : no_model;
-  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, geometric_normal, lift, model, unlit);
+  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, surface_normal, lift, model, unlit);
   const std::size_t floats = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             geometric_normal.size() + lift.size() + model.size();
+                             surface_normal.size() + lift.size() + model.size();
   return {gbuffer, std::move(packed),     std::move(no_lift), std::move(no_model), buffers,
           stride,  floats * sizeof(float)};
 }

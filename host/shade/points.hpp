@@ -13,7 +13,7 @@ namespace luciole {
 /// members before them: not to be copied.
 struct Points {
   const GBuffer& gbuffer;
-  PackedNormals normal_packed;  ///< in the place of geometric normals that the G-buffer lacks
+  PackedNormals normal_packed;  ///< in the place of surfaceNormals() that the G-buffer lacks
   Plane no_lift;                ///< likewise: zeros
   ModelPlane no_model;          ///< likewise: the picture's model
   GBufferBuffers buffers;

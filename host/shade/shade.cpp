@@ -6,7 +6,7 @@
 namespace luciole {
 
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
-                               const PackedNormals& geometric_normal, const Plane& lift,
+                               const PackedNormals& surface_normal, const Plane& lift,
                                const ModelPlane& model, bool unlit) {
   // A single buffer for both: OpenCL leaves two buffers in the same host memory undefined.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
@@ -16,7 +16,7 @@ GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
           .specular = borrowed(device, gbuffer.specular),
           .ambient = unlit ? diffuse : borrowed(device, gbuffer.ambient),
           .emission = borrowed(device, gbuffer.emission),
-          .geometric_normal = borrowed(device, geometric_normal),
+          .surface_normal = borrowed(device, surface_normal),
           .model = borrowed(device, model),
           .lift = borrowed(device, lift)};
 }
@@ -35,7 +35,7 @@ void shade(OpenedDevice& device, const std::string& defines, const ShadeArgument
           {"specular", gbuffer.specular},
           {"ambient", gbuffer.ambient},
           {"emission", gbuffer.emission},
-          {"surface_normal", gbuffer.geometric_normal},
+          {"surface_normal", gbuffer.surface_normal},
           {"lift", gbuffer.lift},
           {"model", gbuffer.model},
           {"lights", arguments.lights},

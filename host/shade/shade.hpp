@@ -11,14 +11,19 @@ namespace luciole {
 /// A G-buffer's groups on the device. A group that the G-buffer lacks is a buffer of 16 bytes.
 struct GBufferBuffers {
   Buffer<const float> position, normal, diffuse, specular, ambient, emission;
-  Buffer<const uint> geometric_normal, model;
+  Buffer<const uint> surface_normal, model;
   Buffer<const float> lift;
 };
 
-/// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals and the lift given instead of
-/// its own. unlit: the diffuse colour takes the place of ambient.
+/// What kernels take as surface_normal: the unbent normals where the G-buffer has them, else the geometric.
+inline const PackedNormals& surfaceNormals(const GBuffer& gbuffer) {
+  return gbuffer.unbent_normal.empty() ? gbuffer.geometric_normal : gbuffer.unbent_normal;
+}
+
+/// The planes of a G-buffer, borrowed (see Buffer), with the surface normals, the lift and the models given
+/// instead of its own. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
-                               const PackedNormals& geometric_normal, const Plane& lift,
+                               const PackedNormals& surface_normal, const Plane& lift,
                                const ModelPlane& model, bool unlit);
 
 struct ShadeArguments {

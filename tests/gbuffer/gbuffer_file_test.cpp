@@ -196,6 +196,20 @@ TEST(GBufferFile, FacetsAreOptional) {
   EXPECT_EQ(unpackNormal(g.geometric_normal[g.index(2, 0)]), glm::dvec3(0, 0, 1));
 }
 
+TEST(GBufferFile, UnbentNormalsAreReadInsteadOfFacets) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> channels{"P.X",  "P.Y",  "P.Z",  "N.X",       "N.Y",       "N.Z",
+                                          "Ng.X", "Ng.Y", "Ng.Z", "Nunbent.X", "Nunbent.Y", "Nunbent.Z"};
+  writeForeign(folder / "g.exr", 1, 1, channels, [](int, int, int c) {
+    const float values[] = {0, 0, -4, 0, 0, 2, 0, 3, 0, 5, 0, 0};
+    return values[c];
+  });
+  const GBuffer g = readGBuffer(folder / "g.exr");
+  EXPECT_TRUE(g.geometric_normal.empty());
+  ASSERT_EQ(g.unbent_normal.size(), g.pixels());
+  EXPECT_EQ(unpackNormal(g.unbent_normal[0]), glm::dvec3(1, 0, 0));
+}
+
 TEST(GBufferFile, LiftsAreOptionalAndNeverNegative) {
   const TemporaryFolder folder;
   GBuffer without = somePicture(3, 2, someCamera());

@@ -20,7 +20,7 @@ namespace luciole::test {
 inline constexpr Feature kShadowMethods[] = {Feature::kPcf, Feature::kSoft, Feature::kExact};
 
 /// Every feature, and of `needed` the shadow method, which is a choice that no scene makes, and whether there
-/// are normal maps: with them geometric normals mean something else.
+/// are normal maps: with them lights behind surface_normal are not seen.
 inline FeatureSet everyFeature(const FeatureSet& needed = {}) {
   FeatureSet features;
   for (std::size_t i = 0; i < kFeatureCount; ++i) features.set(static_cast<Feature>(i));

@@ -289,7 +289,8 @@ TEST(ShadingPoints, EverySampleOfAChosenPixelIsAPointWhereItIsAsked) {
 using Facts = std::map<std::tuple<int, int, std::uint32_t>, std::vector<float>>;
 
 Facts factsOf(const Scene& scene, const View& view, int samples, Margin margin = Margin::kPixel) {
-  const PlaneSet all{true, true, true, true, true};
+  const PlaneSet all{
+      .specular = true, .ambient = true, .emission = true, .geometric_normal = true, .lift = true};
   const std::vector<std::uint32_t> objects = allObjects(scene);
   const SampledView sampled = setupSamples(scene, objects, view, margin, samples, Shading::kPhong, all, {});
   RasterCounts counts;

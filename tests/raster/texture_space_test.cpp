@@ -16,13 +16,8 @@
 namespace luciole::test {
 namespace {
 
-constexpr PlaneSet kAll{.specular = true,
-                        .ambient = true,
-                        .emission = true,
-                        .geometric_normal = true,
-                        .lift = true,
-                        .unbent = true,
-                        .model = true};
+constexpr PlaneSet kAll{
+    .specular = true, .ambient = true, .emission = true, .unbent_normal = true, .lift = true, .model = true};
 
 /// A bumpy sheet from −1 to 1 that faces +z, of random normals and colours, with a diffuse map and a normal
 /// map, all laid out as one sees it.

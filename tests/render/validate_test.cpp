@@ -280,6 +280,8 @@ TEST(Validate, AGBufferWhosePlanesDontFitIsRefused) {
       {"gbuffer: 9x1 tiles, expected 1x1", [](GBuffer& g) { g.tiles_x = 9; }},
       {"gbuffer.normal: has 0 numbers, expected 768", [](GBuffer& g) { g.normal.clear(); }},
       {"gbuffer.specular: has 1 numbers, expected 1024", [](GBuffer& g) { g.specular.resize(1); }},
+      {"gbuffer.unbent_normal: has 1 numbers, expected 256", [](GBuffer& g) { g.unbent_normal.resize(1); }},
+      {"gbuffer.unbent_normal: beside geometric_normal", [](GBuffer& g) { g.unbent_normal.resize(256); }},
       {"gbuffer.model: has a number above", [](GBuffer& g) { g.model[3] = 99; }},
       {"gbuffer.camera.near: -1", [](GBuffer& g) { g.camera.near = -1; }},
       {"gbuffer.picture_size: 0x0", [](GBuffer& g) {

@@ -113,7 +113,8 @@ TEST(Features, TableNamesEveryFeatureOnce) {
 
 TEST(Features, GBufferGroupsFollowTheFeatures) {
   const PlaneSet none = neededPlanes(FeatureSet());
-  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.geometric_normal || none.lift);
+  EXPECT_FALSE(none.specular || none.ambient || none.emission || none.geometric_normal ||
+               none.unbent_normal || none.lift);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kSpecular})).specular);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kAmbient})).ambient);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kEmission})).emission);
@@ -121,9 +122,9 @@ TEST(Features, GBufferGroupsFollowTheFeatures) {
        {Feature::kParallelShadows, Feature::kPerspectiveShadows, Feature::kCubeShadows})
     EXPECT_TRUE(neededPlanes(setOf({shadows})).geometric_normal);
   EXPECT_TRUE(neededPlanes(setOf({Feature::kLift})).lift);
-  EXPECT_FALSE(neededPlanes(setOf({Feature::kCubeShadows})).unbent);
-  const PlaneSet bent = neededPlanes(setOf({Feature::kNormalMaps}));
-  EXPECT_TRUE(bent.geometric_normal && bent.unbent);
+  EXPECT_FALSE(neededPlanes(setOf({Feature::kCubeShadows})).unbent_normal);
+  const PlaneSet bent = neededPlanes(setOf({Feature::kCubeShadows, Feature::kNormalMaps}));
+  EXPECT_TRUE(bent.unbent_normal && !bent.geometric_normal);
 }
 
 }  // namespace

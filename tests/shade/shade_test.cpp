@@ -33,14 +33,14 @@ TEST(BorrowedGBuffer, NoTwoBuffersShareHostMemory) {
        {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.ambient, &gbuffer.emission})
     group->assign(3 * kTilePixels, 1.0f);
   gbuffer.specular.assign(4 * kTilePixels, 1.0f);
-  const PackedNormals geometric_normal(kTilePixels);
+  const PackedNormals surface_normal(kTilePixels);
   const Plane lift(kTilePixels);
   for (const bool unlit : {false, true}) {
-    const GBufferBuffers buffers = borrowedGBuffer(testDevice(), gbuffer, geometric_normal, lift, {}, unlit);
-    const std::array<DeviceMemory, 8> all{buffers.position.memory,         buffers.normal.memory,
-                                          buffers.diffuse.memory,          buffers.specular.memory,
-                                          buffers.ambient.memory,          buffers.emission.memory,
-                                          buffers.geometric_normal.memory, buffers.lift.memory};
+    const GBufferBuffers buffers = borrowedGBuffer(testDevice(), gbuffer, surface_normal, lift, {}, unlit);
+    const std::array<DeviceMemory, 8> all{buffers.position.memory,       buffers.normal.memory,
+                                          buffers.diffuse.memory,        buffers.specular.memory,
+                                          buffers.ambient.memory,        buffers.emission.memory,
+                                          buffers.surface_normal.memory, buffers.lift.memory};
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) EXPECT_TRUE(areApart(all[i], all[k])) << k << " and " << i;
     EXPECT_EQ(buffers.ambient.memory.handle() == buffers.diffuse.memory.handle(), unlit);

@@ -50,11 +50,11 @@ struct GBuffer {
   Plane specular = {};  ///< r g b and shininess; optional
   Plane ambient = {};   ///< r g b; optional
   Plane emission = {};  ///< r g b; optional
-  PackedNormals geometric_normal =
-      {};  ///< the triangle's own, on the side that `normal` was turned to; optional
-  /// Whether geometric_normal is instead the interpolated normal that a normal map may have bent. Lights that
-  /// stand behind it are not seen, even by a bent normal that faces them.
-  bool knows_unbent = false;
+  /// The triangle's own, on the side that `normal` was turned to; optional.
+  PackedNormals geometric_normal = {};
+  /// Instead of geometric_normal, never beside it: the interpolated normal that normal maps bent to `normal`.
+  /// Lights that stand behind it are not seen, even by a bent normal that faces them.
+  PackedNormals unbent_normal = {};
   Plane lift = {};        ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
   ModelPlane model = {};  ///< optional
   Camera camera = {};     ///< whose view space this is
@@ -81,8 +81,8 @@ struct PlaneSet {
   bool ambient = false;
   bool emission = false;
   bool geometric_normal = false;
+  bool unbent_normal = false;  ///< instead of geometric_normal
   bool lift = false;
-  bool unbent = false;  ///< sets GBuffer::knows_unbent; with geometric_normal only
   bool model = false;
 };
 

@@ -18,7 +18,7 @@ namespace luciole {
 ///     diffuse.R/G/B              and specular, ambient, emission alike; linear
 ///     shininess                  exponent
 ///     Ng.X/Y/Z                   the triangle's own normal, unit, world space; 0 where nothing was hit
-///     Nunbent.X/Y/Z              instead, with GBuffer::knows_unbent
+///     Nunbent.X/Y/Z              instead, where there are normal maps: N before a map bent it
 ///     lift                       metres along N to where shadow tests start (see raster/lift.hpp)
 ///     model                      modelNumber() of what surfaces choose, where any does: 0 none, 1 phong,
 ///                                2 blinn-phong, 3 toon, 4 cook-torrance, 5 oren-nayar

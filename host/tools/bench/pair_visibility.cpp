@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cl/launch.hpp"
+#include "shade/shade.hpp"
 
 namespace luciole {
 
@@ -20,7 +21,7 @@ std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defin
   }
   const std::size_t slots = first_of_row.size() * lanes, stride = gbuffer.pixels();
   Plane points(3 * slots), normals(3 * slots), lifts(slots), seen(slots);
-  PackedNormals geometric_normals(slots);
+  PackedNormals surface_normals(slots);
   std::vector<uint> map_of_row;
   for (std::size_t row = 0; row < first_of_row.size(); ++row) {
     map_of_row.push_back(pairs[first_of_row[row]].map);
@@ -31,7 +32,7 @@ std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defin
         points[c * slots + slot] = gbuffer.position[c * stride + pixel];
         normals[c * slots + slot] = gbuffer.normal[c * stride + pixel];
       }
-      geometric_normals[slot] = gbuffer.geometric_normal[pixel];
+      surface_normals[slot] = surfaceNormals(gbuffer)[pixel];
       if (!gbuffer.lift.empty()) lifts[slot] = gbuffer.lift[pixel];
     }
   }
@@ -41,7 +42,7 @@ std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defin
          {{"stride", uint(slots)},
           {"position", borrowed(device, points)},
           {"normal", borrowed(device, normals)},
-          {"surface_normal", borrowed(device, geometric_normals)},
+          {"surface_normal", borrowed(device, surface_normals)},
           {"lift", borrowed(device, lifts)},
           {"map_of_row", borrowed(device, map_of_row)},
           {"maps", borrowed(device, shadows.maps)},

@@ -17,7 +17,7 @@ struct MapPair {
 };
 
 /// Launches kernels/maps/pair_visibility.cl and waits for it. Returns for each pair the share of the map's
-/// light, in [0, 1], that reaches the point, as shading computes it. The G-buffer needs geometric normals.
+/// light, in [0, 1], that reaches the point, as shading computes it. The G-buffer needs surfaceNormals().
 /// Sort pairs by map, because a row of lanes shares its map. defines: the program's features
 /// (featureDefines). Throws MachineError.
 std::vector<float> pairVisibility(OpenedDevice& device, const std::string& defines, const GBuffer& gbuffer,

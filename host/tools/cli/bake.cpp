@@ -161,9 +161,9 @@ void bake(CommandContext& context, BakeOptions& options) {
                                  {.specular = true,
                                   .ambient = true,
                                   .emission = true,
-                                  .geometric_normal = true,
+                                  .geometric_normal = !traits.normal_maps,
+                                  .unbent_normal = traits.normal_maps,
                                   .lift = hasBentCorners(scene),
-                                  .unbent = traits.normal_maps,
                                   .model = traits.models.to_ulong() > 1});
   });
   judgeOverlap(options, space);
