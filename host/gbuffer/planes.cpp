@@ -15,7 +15,7 @@ static_assert(GBuffer::kTileSide == kTileSize && GBuffer::kTileSide * GBuffer::k
 /// Makes a group of `count` zeros, in the memory that it has where that is enough.
 template <class Group>
 void clear(std::size_t count, Group& group) {
-  if (group.capacity() < count) group = {};  // freed first, so that memory need not hold both
+  if (group.capacity() < count) group = Group();  // freed first, so that memory need not hold both
   group.clear();
   group.resize(count);
 }
@@ -44,8 +44,9 @@ void allocatePlanes(PlaneSet planes, GBuffer& gbuffer) {
 void freePlanes(GBuffer& gbuffer) {
   for (Plane* group : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular,
                        &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift})
-    *group = {};
-  for (auto* group : {&gbuffer.geometric_normal, &gbuffer.unbent_normal, &gbuffer.model}) *group = {};
+    *group = Plane();  // unlike an empty list, which leaves the memory
+  for (PackedNormals* group : {&gbuffer.geometric_normal, &gbuffer.unbent_normal}) *group = PackedNormals();
+  gbuffer.model = ModelPlane();
 }
 
 }  // namespace luciole

@@ -33,7 +33,7 @@ void castByBeams(const StageInput& input, LitPlanes& lit, Stats& stats) {
   if (!lit.pairs.unsure.empty())
     lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsure(input, lit.pairs); });
   // But for lights of a size rays have set the bits of those that were unsure.
-  if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = {};
+  if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = PairBits();
 }
 
 /// The bytes that this G-buffer took on the device.

@@ -402,7 +402,7 @@ std::vector<Warning> repairsOf(const std::string& path, const std::vector<Reader
 template <class T>
 void append(std::vector<T>& list, std::vector<T>& whole) {
   whole.insert(whole.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
-  list = {};
+  list = std::vector<T>();  // frees it
 }
 
 /// Puts the parts one after the other.
