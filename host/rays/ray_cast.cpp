@@ -16,15 +16,10 @@
 #include <limits>
 
 #include "luciole/error.hpp"
+#include "scene/count_triangles.hpp"
 
 namespace luciole {
 namespace {
-
-std::size_t countTriangles(const Scene& scene) {
-  std::size_t count = 0;
-  for (const Object& object : scene.objects) count += scene.meshes[object.mesh].triangles.size();
-  return count;
-}
 
 /// Embree's filter callback: asks the HitFilter about each hit of a packet.
 void filterHits(const RTCFilterFunctionNArguments* arguments) {

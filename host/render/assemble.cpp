@@ -86,12 +86,8 @@ float scaleOf(const RenderSettings& settings) {
 
 }  // namespace
 
-bool wants(const RenderSettings& settings, Aov aov) {
-  return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
-}
-
 bool countsCovered(const RenderSettings& settings) {
-  return settings.alpha || wants(settings, Aov::kShadingCount);
+  return settings.alpha || settings.wants(Aov::kShadingCount);
 }
 
 bool wantsInWorld(const RenderSettings& settings) {
@@ -100,7 +96,7 @@ bool wantsInWorld(const RenderSettings& settings) {
 }
 
 std::optional<std::size_t> channelOf(const Image& image, const RenderSettings& settings, Aov aov) {
-  if (!wants(settings, aov)) return std::nullopt;
+  if (!settings.wants(aov)) return std::nullopt;
   return std::find(image.channels.begin(), image.channels.end(), aovRow(aov).channels.front()) -
          image.channels.begin();
 }
@@ -117,7 +113,7 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
                    const std::vector<std::string>& light_layers, Image used) {
   FirstSample sample{gbuffer, first, {},
-                     {},      {},    Plane(wants(settings, Aov::kShadow) ? gbuffer.pixels() : 0, 1.0f)};
+                     {},      {},    Plane(settings.wants(Aov::kShadow) ? gbuffer.pixels() : 0, 1.0f)};
   if (wantsInWorld(settings)) fillWorldPlanes(sample);
   const std::vector<Layer> layers = layersOf(sample, settings);
   Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, std::move(used.pixels)};

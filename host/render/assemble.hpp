@@ -10,9 +10,6 @@
 
 namespace luciole {
 
-/// Whether the settings ask for this layer.
-bool wants(const RenderSettings& settings, Aov aov);
-
 /// Whether they ask for one that is in world space.
 bool wantsInWorld(const RenderSettings& settings);
 

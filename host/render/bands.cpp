@@ -8,12 +8,13 @@
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
 #include "cl/device_error.hpp"
+#include "lighting/compile_kernels.hpp"
+#include "lighting/count_picture.hpp"
 #include "lights/fog_cull.hpp"
 #include "raster/bins.hpp"
-#include "render/compile_kernels.hpp"
-#include "render/count_picture.hpp"
+#include "raster/surface_ids.hpp"
+#include "render/assemble.hpp"
 #include "render/light_points.hpp"
-#include "render/surface_ids.hpp"
 
 namespace luciole {
 namespace {
@@ -44,9 +45,13 @@ struct BandMaker {
     } else {
       image = lightAllSamples(picture, band, triangles, [&] { step(rows.height); });
     }
-    if (wantsSurfaceIds(picture.settings))
+    if (wantsSurfaceIds(picture.settings)) {
+      const auto channel = [&](Aov aov) { return channelOf(image, picture.settings, aov); };
+      const SurfaceIdChannels channels{channel(Aov::kObjectId), channel(Aov::kMaterialId),
+                                       channel(Aov::kCryptoObject), channel(Aov::kCryptoMaterial)};
       timed(picture.stats, Stage::kRasterize,
-            [&] { setSurfaceIds(picture.scene, band, picture.settings, matte_ids, image); });
+            [&] { setSurfaceIds(picture.scene, band, picture.settings, matte_ids, channels, image); });
+    }
     return image;
   }
 
@@ -103,7 +108,7 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
                                    {"objects", std::int64_t(scene.objects.size())},
                                    {"lights", std::int64_t(scene.lights.size())}});
   ReadyPicture picture{device, scene, settings, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan);
+  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade);
   picture.objects = settings.alpha
                         ? allObjects(scene)
                         : objectsInSight(scene, plan.view, settings.exposure, settings.shade.model);
@@ -125,7 +130,7 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
     }
   }
   countLighting(picture);
-  countTriangles(maker.triangles, stats);
+  addRasterCounts(maker.triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - picture.objects.size());
   if (kept) keepMaps(scene, takeMaps(picture.lighting.maps), *kept);
 }

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "base/trace.hpp"
+#include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {

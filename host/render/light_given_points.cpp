@@ -1,7 +1,7 @@
 #include <utility>
 
+#include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {

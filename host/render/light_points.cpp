@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "render/assemble.hpp"
-
 namespace luciole {
 
 void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister) {
@@ -21,8 +19,8 @@ void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister&
 
 PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
   return {.evaluated = settings.count_lights,
-          .in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
-          .list_length = sample == 0 && wants(settings, Aov::kListLength)};
+          .in_range = settings.count_lights || (sample == 0 && settings.wants(Aov::kLightCount)),
+          .list_length = sample == 0 && settings.wants(Aov::kListLength)};
 }
 
 std::vector<std::string> layerNames(const ReadyPicture& picture) {

@@ -3,14 +3,14 @@
 #include <utility>
 
 #include "kernels/shared.h"
+#include "lighting/count_picture.hpp"
 #include "luciole/planes.hpp"
 #include "raster/shading_points.hpp"
+#include "raster/uneven_pixels.hpp"
 #include "render/assemble.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
-#include "render/uneven_pixels.hpp"
 
 namespace luciole {
 namespace {

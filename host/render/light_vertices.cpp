@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "lighting/count_picture.hpp"
 #include "raster/rasterize.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {

@@ -25,7 +25,7 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
                               (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
-  const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
+  const std::size_t counted = settings.count_lights || settings.wants(Aov::kLightCount) ? 1 : 0;
   const std::size_t light_layers = 3 * plan.layers.size();
   const std::size_t channels = channelCount(settings, planes) + light_layers;
   // Colours and counts are counted twice: on the device and on the host. The picture of the band before is
@@ -35,7 +35,7 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
   const std::size_t assembling =
       gbuffer + lit + counted + channels + covered + (wantsInWorld(settings) ? 7 : 0) +
-      (wants(settings, Aov::kListLength) ? 1 : 0) + (wants(settings, Aov::kShadow) ? 1 : 0);
+      (settings.wants(Aov::kListLength) ? 1 : 0) + (settings.wants(Aov::kShadow) ? 1 : 0);
   const LightUse use = lightUse(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {

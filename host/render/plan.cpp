@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/assemble.hpp"
 #include "render/memory.hpp"
-#include "render/shadow_ways.hpp"
+#include "shade/shadow_ways.hpp"
 
 namespace luciole {
 namespace {
@@ -60,7 +59,7 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
                       const Camera& camera, const View& view, double points_a_pixel) {
   PicturePlan plan;
   plan.shade = settings.shade;
-  plan.shade.shadow_layer = wants(settings, Aov::kShadow);
+  plan.shade.shadow_layer = settings.wants(Aov::kShadow);
   chooseModel(surfaces.models, plan.shade);
   plan.layers = lightLayers(scene, settings);
   if (!plan.layers.empty()) plan.shade.light_error = 0;
@@ -98,7 +97,7 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   // The light of clusters has planes of its own.
   if (plan.pixels.has(Feature::kClusteredLights)) plan.planes.emission = surfaces.emission;
   if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
-  if (wants(settings, Aov::kMaterial))
+  if (settings.wants(Aov::kMaterial))
     plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;
   addProgram(plan.pixels, plan.programs);
   if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);

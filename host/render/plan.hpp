@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "lighting/light_layers.hpp"
 #include "luciole/gbuffer.hpp"
 #include "luciole/scene.hpp"
 #include "raster/view.hpp"
-#include "render/light_layers.hpp"
 #include "render/render.hpp"
 #include "shade/features.hpp"
 

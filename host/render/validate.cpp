@@ -8,10 +8,10 @@
 
 #include "base/picture_size.hpp"
 #include "image/exposure.hpp"
+#include "lighting/light_layers.hpp"
 #include "luciole/error.hpp"
 #include "luciole/validate_scene.hpp"
 #include "render/aov_table.hpp"
-#include "render/light_layers.hpp"
 #include "scene/models.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"

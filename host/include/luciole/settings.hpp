@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -146,6 +147,8 @@ struct RenderSettings {
   std::function<void(int done, int rows)> on_pass = {};
   /// Called once if set and a picture has waited a second for its kernels to be compiled.
   std::function<void()> on_long_compile = {};
+
+  bool wants(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
 };
 
 }  // namespace luciole

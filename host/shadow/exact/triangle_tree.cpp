@@ -9,6 +9,7 @@
 
 #include "base/machine_memory.hpp"
 #include "luciole/error.hpp"
+#include "scene/count_triangles.hpp"
 #include "shadow/exact/placed_triangles.hpp"
 #include "shadow/exact/triangle_topology.hpp"
 

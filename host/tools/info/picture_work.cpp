@@ -9,8 +9,8 @@
 
 #include "kernels/shared.h"
 #include "render/memory.hpp"
-#include "render/shadow_ways.hpp"
 #include "shade/clustered_light.hpp"
+#include "shade/shadow_ways.hpp"
 #include "tools/info/scene_info.hpp"
 
 namespace luciole {

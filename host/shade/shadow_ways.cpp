@@ -1,10 +1,11 @@
-#include "render/shadow_ways.hpp"
+#include "shade/shadow_ways.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "scene/bounds.hpp"
+#include "scene/count_triangles.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "shadow/maps/shadow_views.hpp"
 
@@ -46,19 +47,13 @@ double shareReached(const Bounds& bounds, const glm::dvec3& middle, double radiu
   return share;
 }
 
-double triangleCount(const Scene& scene) {
-  double triangles = 0;
-  for (const Object& object : scene.objects) triangles += double(scene.meshes[object.mesh].triangles.size());
-  return triangles;
-}
-
 }  // namespace
 
 double shadedPoints(const Scene& scene, glm::ivec2 size, int samples, bool shared) {
   if (!shared) return samples;
   // Of samples that share points there are more a pixel the more triangles it sees, and uneven pixels take
   // all.
-  return std::min(double(samples), 1.3 + 4 * triangleCount(scene) / (double(size.x) * size.y));
+  return std::min(double(samples), 1.3 + 4 * double(countTriangles(scene)) / (double(size.x) * size.y));
 }
 
 std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double points_a_pixel,
@@ -69,7 +64,8 @@ std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double 
   ShadowLimits unbounded = limits;
   unbounded.bytes = std::numeric_limits<std::size_t>::max();
   const ShadowSizes sizes = chooseSizes(scene, input, unbounded);
-  const double points = points_a_pixel * view.size.x * view.size.y, triangles = triangleCount(scene);
+  const double points = points_a_pixel * view.size.x * view.size.y;
+  const auto triangles = double(countTriangles(scene));
   double texels = 0;
   for (std::size_t i = 0; i < work.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -130,7 +126,7 @@ std::vector<ShadowWay> shadowWays(const Scene& scene, const View& view, double p
   const std::vector<ShadowWork> work = shadowWork(scene, view, points_a_pixel, limits);
   const bool holes = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& material) { return material.alpha_cutoff > 0; });
-  std::vector<ShadowWay> ways = cheapestWays(shadowCosts(triangleCount(scene), holes, work), casts);
+  std::vector<ShadowWay> ways = cheapestWays(shadowCosts(double(countTriangles(scene)), holes, work), casts);
   // Beams take no memory a light.
   double bytes = 0;
   for (std::size_t i = 0; i < ways.size(); ++i)

@@ -1,4 +1,4 @@
-#include "render/uneven_pixels.hpp"
+#include "raster/uneven_pixels.hpp"
 #include "kernels/shared.h"
 
 #include <tbb/parallel_for.h>

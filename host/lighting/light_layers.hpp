@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "lights/light_set.hpp"
-#include "render/render.hpp"
+#include "luciole/scene.hpp"
+#include "luciole/settings.hpp"
+#include "shade/features.hpp"
 
 // Layers that hold a part of a picture's light each, so that their sum is the picture: one for each group of
 // lights and one for what no light gives, or one for each of Phong's terms. The picture's G-buffer is lit

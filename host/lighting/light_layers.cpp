@@ -1,4 +1,4 @@
-#include "render/light_layers.hpp"
+#include "lighting/light_layers.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 
 #include "image/light_names.hpp"
 #include "luciole/error.hpp"
-#include "render/assemble.hpp"
 #include "scene/light_groups.hpp"
 
 namespace luciole {
@@ -60,7 +59,7 @@ LightSet layerLights(OpenedDevice& device, const LightSet& lights, std::span<con
 bool wantsLightLayers(const RenderSettings& settings) {
   const std::vector<LightPart> parts = lightParts();
   return settings.light_groups || std::any_of(parts.begin(), parts.end(), [&](const LightPart& part) {
-           return wants(settings, part.aov);
+           return settings.wants(part.aov);
          });
 }
 
@@ -84,7 +83,7 @@ std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& se
                       .background = true});
   }
   for (LightPart& part : lightParts())
-    if (wants(settings, part.aov)) layers.push_back(std::move(part.layer));
+    if (settings.wants(part.aov)) layers.push_back(std::move(part.layer));
   return layers;
 }
 
