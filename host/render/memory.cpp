@@ -7,6 +7,7 @@
 #include "kernels/shared.h"
 #include "lights/exact_reason.hpp"
 #include "raster/bins.hpp"
+#include "render/aov_table.hpp"
 #include "render/assemble.hpp"
 
 namespace luciole {
@@ -33,9 +34,9 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
   const std::size_t sums = settings.samples > 1 ? lit + covered + light_layers : 0;
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
-  const std::size_t assembling =
-      gbuffer + lit + counted + channels + covered + (wantsInWorld(settings) ? 7 : 0) +
-      (settings.wants(Aov::kListLength) ? 1 : 0) + (settings.wants(Aov::kShadow) ? 1 : 0);
+  std::size_t assembling = gbuffer + lit + counted + channels + covered;
+  for (const Aov aov : settings.aovs) assembling += std::size_t(aovRow(aov).computed_floats);
+  if (settings.wants(Aov::kListLength)) ++assembling;
   const LightUse use = lightUse(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
