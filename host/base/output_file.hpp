@@ -10,7 +10,7 @@ namespace luciole {
 
 /// Makes a system call again where a signal interrupted it. Returns its result, < 0 for failure.
 template <class Call>
-auto again(Call call) {
+auto retryInterrupted(Call call) {
   auto result = call();
   while (result < 0 && errno == EINTR) result = call();
   return result;

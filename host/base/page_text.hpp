@@ -15,9 +15,6 @@ std::string embeddableJson(std::string json);
 /// stand in strings, regular expressions and comments, where the backslash changes nothing.
 std::string embeddableScript(std::string script);
 
-/// Base 64 as in RFC 4648.
-std::string base64(std::string_view bytes);
-
 /// `text` with each {{name}} replaced by what the list has for it, once: what is put in is not looked at
 /// again.
 std::string fillIn(std::string_view text,

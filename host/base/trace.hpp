@@ -65,7 +65,7 @@ std::size_t deviceTrack(const std::string& name);
 
 TraceArguments traceArguments(std::initializer_list<TraceArgument> arguments);
 
-/// Records what its own life takes, as a part.
+/// Records the time from its construction to its destruction, as a part of a stage.
 class TraceSpan {
  public:
   explicit TraceSpan(const char* name, std::initializer_list<TraceArgument> arguments = {});

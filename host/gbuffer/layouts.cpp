@@ -186,13 +186,8 @@ std::vector<const Group*> fitting(const Catalogue& file, Role role, std::string_
 
 /// The layers that the first of the names fits that fits any.
 std::vector<const Group*> candidates(const Catalogue& file, Role role, std::string_view names) {
-  if (names.empty()) return {};
-  for (std::size_t begin = 0; begin <= names.size();) {
-    const std::size_t end = std::min(names.find('|', begin), names.size());
-    std::vector<const Group*> found = fitting(file, role, names.substr(begin, end - begin));
-    if (!found.empty()) return found;
-    begin = end + 1;
-  }
+  for (const std::string_view name : splitNames(names))
+    if (std::vector<const Group*> found = fitting(file, role, name); !found.empty()) return found;
   return {};
 }
 
@@ -214,12 +209,8 @@ constexpr const char* kHint = "request.layers ROLE=NAME,... says which layer is 
 
 /// What of the name comes before the part of it that the layout knows.
 std::string prefixOf(const FoundLayer& layer, std::string_view names) {
-  for (std::size_t begin = 0; begin <= names.size();) {
-    const std::size_t end = std::min(names.find('|', begin), names.size());
-    const std::string_view name = names.substr(begin, end - begin);
+  for (const std::string_view name : splitNames(names))
     if (endsIn(layer.name, name)) return layer.name.substr(0, layer.name.size() - name.size());
-    begin = end + 1;
-  }
   return layer.name.substr(0, layer.name.rfind('.') + 1);
 }
 
@@ -288,6 +279,15 @@ std::pair<int, bool> fit(const Layout& layout, const Catalogue& file) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> splitNames(std::string_view names) {
+  std::vector<std::string_view> list;
+  for (std::size_t begin = 0, end; begin < names.size() + 1 && !names.empty(); begin = end + 1) {
+    end = std::min(names.find('|', begin), names.size());
+    list.push_back(names.substr(begin, end - begin));
+  }
+  return list;
+}
 
 std::span<const Layout> layouts() { return kLayouts; }
 

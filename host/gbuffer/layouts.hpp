@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/layers.hpp"
@@ -72,6 +73,9 @@ struct Layout {
   bool is_albedo = true;                ///< `diffuse` is what share of light a surface reflects
   bool depth_is_distance = false;       ///< from the eye, rather than along the view axis
 };
+
+/// The names in a Layout's "A|B|…", which must outlive the result.
+std::vector<std::string_view> splitNames(std::string_view names);
 
 /// All that is known, this program's own layout first.
 std::span<const Layout> layouts();

@@ -50,8 +50,8 @@ Sheet sheetOf(int count, int columns, int picture_width, int picture_height);
 /// A white picture with channels R G B.
 Image blankPaper(int width, int height);
 
-/// Lays a picture on the canvas, every pixel as a square of `factor` a side. Both have three channels.
-void lay(OIIO::ImageBuf& canvas, int x, int y, const OIIO::ImageBuf& picture, int factor);
+/// Puts a picture on the canvas, every pixel as a square of `factor` a side. Both have three channels.
+void pasteEnlarged(OIIO::ImageBuf& canvas, int x, int y, const OIIO::ImageBuf& picture, int factor);
 
 /// The paper under a picture, and lengths on it: x from the left and y from the picture's bottom, both in
 /// text sizes.

@@ -134,8 +134,8 @@ struct Worker {
   }
 };
 
-/// Hands on what is done, from the top down, until all is.
-void handOn(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
+/// Gives finished rows to `take`, from the top down, until all are taken.
+void passFinishedRows(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
   while (true) {
     Image image;
     {
@@ -200,7 +200,7 @@ void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSe
   Joiner joiner{rows};
   for (Worker& worker : workers)
     joiner.threads.emplace_back([&] { worker.run(scene, without_report, plan, keeps); });
-  handOn(rows, top, settings, take);
+  passFinishedRows(rows, top, settings, take);
   joiner.join();
   for (const Worker& worker : workers) {
     addPart(worker.stats, stats);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/base64.hpp"
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
 #include "scene/find_file.hpp"
@@ -50,46 +50,6 @@ std::string withoutEscapes(std::string_view uri) {
     if (low >= 0) i += 2;
   }
   return text;
-}
-
-/// The digits' values; 64: none.
-constexpr std::array<std::uint8_t, 256> base64Values() {
-  std::array<std::uint8_t, 256> values{};
-  values.fill(64);
-  for (std::uint8_t i = 0; i < 26; ++i) {
-    values['A' + i] = i;
-    values['a' + i] = static_cast<std::uint8_t>(26 + i);
-  }
-  for (std::uint8_t i = 0; i < 10; ++i) values['0' + i] = static_cast<std::uint8_t>(52 + i);
-  values['+'] = values['-'] = 62;
-  values['/'] = values['_'] = 63;
-  return values;
-}
-
-/// The bytes of base64's text, in which blanks and ends of lines may lie; nothing where it is no such text.
-std::optional<std::string> fromBase64(std::string_view text) {
-  static constexpr std::array<std::uint8_t, 256> kValues = base64Values();
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
-  int digits = 0;
-  bool has_ended = false;
-  for (const char c : text) {
-    const std::uint8_t value = kValues[static_cast<unsigned char>(c)];
-    if (value < 64 && !has_ended) {
-      bits = bits << 6 | value;
-      if (++digits % 4 != 0) continue;
-      bytes += {static_cast<char>(bits >> 16), static_cast<char>(bits >> 8), static_cast<char>(bits)};
-    } else if (c == '=') {
-      has_ended = true;
-    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\n') {
-      return {};
-    }
-  }
-  if (digits % 4 == 1) return {};
-  if (digits % 4 == 2) bytes += static_cast<char>(bits >> 4);
-  if (digits % 4 == 3) bytes += {static_cast<char>(bits >> 10), static_cast<char>(bits >> 2)};
-  return bytes;
 }
 
 bool isData(std::string_view uri) { return uri.size() >= 5 && equalIgnoringCase(uri.substr(0, 5), "data:"); }
