@@ -18,10 +18,10 @@ struct Cleanups {
   std::array<std::atomic<const char*>, 64> hidden_files{};
 };
 Cleanups& cleanups();
-void useCleanups(Cleanups& others);
+void shareCleanups(Cleanups& others);
 
 /// While one is held no signal ends the process: for what takes several steps.
-[[nodiscard]] std::unique_lock<std::recursive_mutex> undisturbed();
+[[nodiscard]] std::unique_lock<std::recursive_mutex> holdSignals();
 
 /// As long as this lives, cleanUp() calls `undo`.
 class Cleanup {
@@ -39,7 +39,7 @@ class Cleanup {
 void removeHiddenFiles() noexcept;
 
 /// Removes them and undoes all else, what was registered last first, before the process ends. From then on
-/// whoever comes to undisturbed() or registers something waits for good.
+/// whoever comes to holdSignals() or registers something waits for good.
 void cleanUp();
 
 }  // namespace luciole

@@ -87,7 +87,7 @@ double stackBytes() {
   return double(bytes);
 }
 
-std::string inWords(double bytes) {
+std::string formatBytes(double bytes) {
   return bytes < double(1 << 30) ? fmt::format("{:.0f} MiB", bytes / (1 << 20))
                                  : fmt::format("{:.1f} GiB", bytes / (1 << 30));
 }
@@ -96,8 +96,8 @@ void require(double bytes, MemoryRoom room, const std::string& what) {
   room.bytes = std::max(room.bytes, 0.0);
   // The comparison is negated so that NaN, which a product of sizes may be, is refused.
   if (!(bytes <= room.bytes))
-    throw MachineError(fmt::format("{} needs {} of memory, and may use {} ({})", what, inWords(bytes),
-                                   inWords(room.bytes), room.limited_by));
+    throw MachineError(fmt::format("{} needs {} of memory, and may use {} ({})", what, formatBytes(bytes),
+                                   formatBytes(room.bytes), room.limited_by));
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ void requireMappings(double addresses, double writable, unsigned threads, const 
   require(writable + stacks, data, what);
 }
 
-void saveAddresses() {
+void limitMallocArenas() {
 #if defined(__GLIBC__)
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) mallopt(M_ARENA_MAX, 1);

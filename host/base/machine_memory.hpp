@@ -39,6 +39,6 @@ void requireMappings(double addresses, double writable, unsigned threads, const 
 /// that meet arenas of 64 MiB of addresses each, so that what the process takes depended on how threads are
 /// scheduled, and OpenCL's compiler aborts or hangs where addresses run out. To be called before any thread
 /// is started.
-void saveAddresses();
+void limitMallocArenas();
 
 }  // namespace luciole

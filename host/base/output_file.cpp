@@ -87,7 +87,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
   descriptor_ =
       retryInterrupted([&] { return open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); });
   if (descriptor_ >= 0) return;
-  const auto lock = undisturbed();
+  const auto lock = holdSignals();
   descriptor_ = makeHidden(folder, beside_, [](const char* name) {
     return open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   });
@@ -139,7 +139,7 @@ void OutputFile::putInPlace() {
   if (!is_stream_ && retryInterrupted([&] { return fsync(descriptor_); }) != 0 && errno != EINVAL &&
       errno != ENOTSUP)
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
-  const auto lock = undisturbed();
+  const auto lock = holdSignals();
   if (!is_stream_ && !has_name_) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
     // linkat() can't replace a file, rename() can: the file gets a hidden name first.

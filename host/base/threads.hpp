@@ -19,6 +19,6 @@ std::optional<int> threadLimit();
 unsigned threadCount();
 
 /// Threads that this process has now, idle ones too.
-unsigned livingThreads();
+unsigned countThreads();
 
 }  // namespace luciole

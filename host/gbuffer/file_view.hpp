@@ -13,7 +13,7 @@
 namespace luciole {
 
 /// What is known of a file's camera and spaces before its pixels are read, and what the user says of them.
-struct ViewQuestion {
+struct FileViewInput {
   const std::string& path;  ///< for messages
   const ExrAttributes& attributes;
   glm::ivec2 picture_size{0};
@@ -43,6 +43,6 @@ struct FileView {
 /// space where they lie on rays from the origin; else as usual. Without any camera view space is world space.
 /// Throws InputError where positions are in camera space and no camera says where that is, where there are no
 /// positions and no camera says how wide it sees, and as readCamera does.
-FileView findView(const ViewQuestion& asked);
+FileView findView(const FileViewInput& input);
 
 }  // namespace luciole

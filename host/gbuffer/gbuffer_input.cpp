@@ -167,7 +167,7 @@ class Conversion {
     std::vector<SeenPoint> points;
     if (!position_) return points;
     for (std::size_t p = 0; p < pixels(); p += 1 + pixels() / 1000) {
-      const glm::vec3 point = position_.three(p), normal = normal_ ? normal_.three(p) : point;
+      const glm::vec3 point = position_.vector(p), normal = normal_ ? normal_.vector(p) : point;
       const bool is_far = depth_ && isFar(depth_.value(p));
       if (!isFinite(point) || !isFinite(normal) || normal == glm::vec3(0.0f) || is_far) continue;
       points.push_back({point, screenOf(p)});
@@ -247,13 +247,13 @@ class Conversion {
       if (!isFinite(v)) return ++holes_.infinite;
       return v == glm::vec3(0.0f) && zero_counts ? ++holes_.zero : std::size_t(0);
     };
-    if (normal_ && isHole(normal = normal_.three(pixel), true)) return false;
+    if (normal_ && isHole(normal = normal_.vector(pixel), true)) return false;
     if (depth_) {
       const float depth = depth_.value(pixel);
       if (isHole(glm::vec3(depth), !position_)) return false;
       if (isFar(depth) && ++holes_.far) return false;
     }
-    position = position_ ? position_.three(pixel) : unproject(pixel);
+    position = position_ ? position_.vector(pixel) : unproject(pixel);
     if (isHole(position, !normal_)) return false;
     if (view_.in_view_space) {
       // Normals that this program wrote must keep their bits; another program may have changed them.
@@ -331,7 +331,7 @@ class Conversion {
   /// although it went through world space and float (see packNormal).
   std::uint32_t facetAt(const LayerPlanes& facet, std::size_t pixel, const GBuffer& gbuffer,
                         std::size_t place) const {
-    const glm::vec3 normal = facet.three(pixel);
+    const glm::vec3 normal = facet.vector(pixel);
     const std::size_t stride = gbuffer.pixels();
     if (!isFinite(normal) || normal == glm::vec3(0.0f))
       return packNormal(glm::vec3(gbuffer.normal[place], gbuffer.normal[place + stride],

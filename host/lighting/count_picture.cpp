@@ -63,7 +63,7 @@ void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lig
   if (!(settings.light_error > 0) || !scene.lighting) return;
   addCount(stats, "lights_stood_for", lighting.lights.clusters.lights);
   addCount(stats, "lights_exact", scene.lights.size() - lighting.lights.clusters.lights);
-  const auto counts = countReasons(scene.lights, lightUse(settings));
+  const auto counts = countReasons(scene.lights, clusterConditions(settings));
   for (std::size_t reason = 1; reason < counts.size(); ++reason)
     if (counts[reason] > 0)
       addCount(stats, std::string("lights_exact_by_") + exactReasonName(ExactReason(reason)), counts[reason]);

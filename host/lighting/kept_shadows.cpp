@@ -95,7 +95,7 @@ TreeWork updateTree(const Scene& scene, const glm::dvec3& origin, bool holes, Ke
     kept.tree_objects = scene.objects;
     kept.tree_poses = posesOf(scene);
     refitTriangleTree(scene, origin, *kept.tree);
-    if (areaOfBoxes(*kept.tree) <= kMostGrowth * kept.tree_area) return TreeWork::kRefitted;
+    if (boxArea(*kept.tree) <= kMostGrowth * kept.tree_area) return TreeWork::kRefitted;
   }
   kept.tree = nullptr;  // freed first, so that memory need not hold both
   kept.masks = nullptr;
@@ -103,7 +103,7 @@ TreeWork updateTree(const Scene& scene, const glm::dvec3& origin, bool holes, Ke
   if (holes) kept.masks = std::make_shared<const HoleMasks>(makeHoleMasks(scene, *kept.tree));
   kept.tree_objects = scene.objects;
   kept.tree_poses = posesOf(scene);
-  kept.tree_area = areaOfBoxes(*kept.tree);
+  kept.tree_area = boxArea(*kept.tree);
   return TreeWork::kBuilt;
 }
 

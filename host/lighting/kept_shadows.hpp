@@ -21,7 +21,7 @@ struct KeptShadows {
   std::shared_ptr<const HoleMasks> masks;  ///< of the tree; null where no triangle has holes
   std::vector<Object> tree_objects;        ///< as the tree has them
   ScenePoses tree_poses;
-  double tree_area = 0;  ///< areaOfBoxes() when the tree was built
+  double tree_area = 0;  ///< boxArea() when the tree was built
 
   ShadowMaps maps;
   std::vector<Object> maps_objects;  ///< as the maps show them

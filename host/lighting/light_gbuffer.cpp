@@ -14,7 +14,7 @@ namespace {
 /// Whether culling and shading go together, without lists in memory: where nothing else reads them and there
 /// are many lights. A few are faster by lists, whose rows of pixels are lit four side by side. A device of
 /// single lanes has far more threads than a picture has blocks of tiles.
-bool needsNoLists(const OpenedDevice& device, const Lighting& lighting, const LightPass& pass) {
+bool shadesByTiles(const OpenedDevice& device, const Lighting& lighting, const LightPass& pass) {
   const FeatureSet& features = pass.features;
   return features.has(Feature::kLightLists) && features.has(Feature::kLongSums) && !features.shadows() &&
          !pass.counts.list_length && lighting.group_log2 == 4 && device.description.lanes > 1;
@@ -31,7 +31,7 @@ void castByMaps(const StageInput& input, MapScene& maps, Stats& stats) {
 void castByBeams(const StageInput& input, LitPlanes& lit, Stats& stats) {
   lit.pairs = timed(stats, Stage::kBeamShadows, [&] { return decideBeams(input); });
   if (!lit.pairs.unsure.empty())
-    lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsure(input, lit.pairs); });
+    lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsurePairs(input, lit.pairs); });
   // But for lights of a size rays have set the bits of those that were unsure.
   if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = {};
 }
@@ -50,7 +50,7 @@ std::size_t bytesOf(const StageInput& input, const ClusterLight& clusters, const
 LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& lighting, LightPass pass,
                        Stats& stats) {
   const FeatureSet& features = pass.features;
-  const bool by_tiles = needsNoLists(device, lighting, pass);
+  const bool by_tiles = shadesByTiles(device, lighting, pass);
   const bool by_lists = features.has(Feature::kLightLists) && !by_tiles;
   const LightLists no_lists;
   LitPlanes lit;
@@ -70,7 +70,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
     clusters = timed(stats, Stage::kClusteredLight, [&] { return sumClusters(input, frame); });
     points.buffers.emission = borrowed(device, clusters.light);
   }
-  lit.color = std::move(pass.used);
+  lit.color = std::move(pass.recycled);
   lit.color.resize(points.stride * (features.has(Feature::kOutputShadow) ? 4 : 3));
   const Buffer<float> image = borrowedForOutput(device, lit.color);
   TileCounts of_tiles{input.lists.entries, 0};
@@ -86,9 +86,9 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   lit.clustered = clusters.counts;
   lit.light_error = std::move(clusters.bound);
   if (features.has(Feature::kClusteredLights) || lighting.vertex_error)
-    boundSeenLight(pass.gbuffer, frame, features,
-                   clusters.light.empty() ? pass.gbuffer.emission : clusters.light, lit.color,
-                   lighting.vertex_error, lit.light_error);
+    boundVisibleLight(pass.gbuffer, frame, features,
+                      clusters.light.empty() ? pass.gbuffer.emission : clusters.light, lit.color,
+                      lighting.vertex_error, lit.light_error);
   PixelCounts missing = pass.counts;
   missing.evaluated &= !by_tiles;
   if (missing.in_range || missing.evaluated || missing.list_length)

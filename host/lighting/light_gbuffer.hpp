@@ -41,7 +41,7 @@ struct LightPass {
   const FeatureSet& features;  ///< those that the lighting was prepared for, or fewer
   const GBuffer& gbuffer;
   PixelCounts counts = {};
-  Plane used = {};  ///< a plane that is done with, whose memory the colours take
+  Plane recycled = {};  ///< a plane that is done with, whose memory the colours take
 };
 
 /// Culls and shades one G-buffer: together where there are many lights and nothing but shading reads their

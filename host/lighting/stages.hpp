@@ -32,7 +32,7 @@ std::vector<std::uint32_t> findTexels(const StageInput& input);
 PairShadows decideBeams(const StageInput& input);
 
 /// Decides these by rays.
-TracedPairs traceUnsure(const StageInput& input, PairShadows& pairs);
+TracedPairs traceUnsurePairs(const StageInput& input, PairShadows& pairs);
 
 /// These shadows on the device, borrowed. See ShadeArguments.
 struct PairBuffers {

@@ -151,7 +151,7 @@ std::string statsJson(const Stats& stats, double ended) {
                     {"uploaded_bytes", stats.traffic.bytes_up},
                     {"downloaded_bytes", stats.traffic.bytes_down},
                     {"made_bytes", stats.traffic.bytes_made}};
-  json["threads"] = livingThreads();
+  json["threads"] = countThreads();
   json["cold_start_milliseconds"] = cold_start;
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;
@@ -176,7 +176,7 @@ std::string statsCsv(const Stats& stats, double ended) {
   add("device", stats.device.name);
   add("driver", stats.device.version);
   add("lanes", text(stats.device.lanes));
-  add("threads", text(livingThreads()));
+  add("threads", text(countThreads()));
   add("triangles", text(stats.triangles));
   add("lights", text(stats.lights));
   add("width", text(stats.width));

@@ -33,14 +33,15 @@ const char* exactReasonName(ExactReason reason);
 inline constexpr double kFarthestClustered = 1e15;
 
 /// What of a picture decides which of its lights others may stand for.
-struct LightUse {
+struct ClusterConditions {
   std::optional<Model> model = Model::kPhong;  ///< none: surfaces have different ones
   bool shadows = false;                        ///< lights cast them that can
 };
 
-ExactReason exactReason(const Light& light, const LightUse& use);
+ExactReason exactReason(const Light& light, const ClusterConditions& use);
 
 /// How many lights each reason holds for, by ExactReason. O(n), on all cores.
-std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights, const LightUse& use);
+std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights,
+                                                    const ClusterConditions& use);
 
 }  // namespace luciole

@@ -19,22 +19,22 @@ double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 /// Upper bounds of the factors by which a surface reflects, for each channel: of ambient light, and of the
 /// lights' diffuse and specular colours.
-struct Response {
+struct ReflectanceBound {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 
-  void cover(const Response& other) {
+  void cover(const ReflectanceBound& other) {
     ambient = glm::max(ambient, other.ambient);
     diffuse = glm::max(diffuse, other.diffuse);
     specular = glm::max(specular, other.specular);
   }
 };
 
-/// An object that the fog hides unless it is brighter than usualColor().
+/// An object that the fog hides unless it is brighter than assumedColor().
 struct Candidate {
   std::uint32_t object;
   Bounds box;    ///< world
   double depth;  ///< the least of the box along the view axis
-  Response response;
+  ReflectanceBound response;
 };
 
 /// Upper bounds of the light that points of a box get, whichever way surfaces face.
@@ -43,7 +43,7 @@ struct LightSum {
 };
 
 /// What the candidates have in common.
-struct Fogged {
+struct FogContext {
   const Scene& scene;
   glm::dvec3 eye;
   double emission = 0;  ///< the scene's brightest
@@ -54,15 +54,15 @@ struct Fogged {
 
 /// Texels are at most 1, vertex colours may be more. In a scene without lighting the diffuse colour takes the
 /// place of the ambient one.
-Response responseOf(const Scene& scene, const Object& object, Model model) {
+ReflectanceBound reflectanceBound(const Scene& scene, const Object& object, Model model) {
   const Mesh& mesh = scene.meshes[object.mesh];
   glm::dvec3 tint(mesh.colors.empty() ? 1.0 : 0.0);
   for (const glm::vec4& color : mesh.colors) tint = glm::max(tint, glm::dvec3(color));
-  Response response;
+  ReflectanceBound response;
   const auto cover = [&](const Material& material) {
     const glm::dvec3 diffuse(material.diffuse);
     const glm::dvec3 ambient = scene.lighting ? glm::dvec3(material.ambient) : diffuse;
-    Response own{.ambient = ambient * tint};
+    ReflectanceBound own{.ambient = ambient * tint};
     for (int c = 0; c < 3; ++c) {
       const ModelBounds most =
           modelBounds(material.model.value_or(model), material.specular[c], material.shininess);
@@ -84,7 +84,7 @@ Response responseOf(const Scene& scene, const Object& object, Model model) {
 }
 
 /// Upper bound of the share of a light's colours that reaches points of a box; 0 if it is out of range.
-double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
+double attenuationBound(const Light& light, const Bounds& box, const glm::dvec3& eye) {
   if (light.kind == LightKind::kDirectional) return 1;
   const glm::dvec3 nearest = glm::clamp(light.position, box.low, box.high);
   const glm::dvec3 farthest = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
@@ -100,7 +100,7 @@ double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
 }
 
 /// Upper bound of the colour of surfaces with this response in this light, without exposure.
-double brightestColor(const Fogged& fogged, const Response& response, const LightSum& light) {
+double brightestColor(const FogContext& fogged, const ReflectanceBound& response, const LightSum& light) {
   const glm::dvec3 ambient(fogged.scene.lighting ? fogged.scene.ambient : glm::vec3(1.0f));
   const glm::dvec3 color = (ambient + light.ambient) * response.ambient + light.diffuse * response.diffuse +
                            light.specular * response.specular;
@@ -109,7 +109,7 @@ double brightestColor(const Fogged& fogged, const Response& response, const Ligh
 
 /// The brightness that every colour is assumed to have; only brighter ones need the lights. Not below the
 /// fog's own colour, because a black surface differs from that by as much.
-double usualColor(const Fogged& fogged) {
+double assumedColor(const FogContext& fogged) {
   return std::max({1.0, fogged.emission, largest(glm::dvec3(fogged.scene.fog.color))});
 }
 
@@ -128,11 +128,11 @@ double nearestDepth(const Bounds& box, const View& view) {
 /// Adds to `seen` the candidates that may be bright enough to shine through the fog. lights: all that may
 /// reach them. The candidates are tried together, by the box around them. If that doesn't settle it they are
 /// halved, and each half is tried with the lights that reach this box. Changes the candidates' order.
-void addBright(const Fogged& fogged, std::span<Candidate> candidates, const std::vector<const Light*>& lights,
-               std::vector<std::uint32_t>& seen) {
+void addBright(const FogContext& fogged, std::span<Candidate> candidates,
+               const std::vector<const Light*>& lights, std::vector<std::uint32_t>& seen) {
   Bounds box;
   double depth = std::numeric_limits<double>::infinity();
-  Response response;
+  ReflectanceBound response;
   for (const Candidate& candidate : candidates) {
     box.low = glm::min(box.low, candidate.box.low);
     box.high = glm::max(box.high, candidate.box.high);
@@ -142,14 +142,14 @@ void addBright(const Fogged& fogged, std::span<Candidate> candidates, const std:
   LightSum sum;
   std::vector<const Light*> reaching;
   for (const Light* light : lights) {
-    const double strength = strongest(*light, box, fogged.eye);
+    const double strength = attenuationBound(*light, box, fogged.eye);
     if (strength == 0) continue;
     reaching.push_back(light);
     sum.ambient += strength * glm::dvec3(light->ambient);
     sum.diffuse += strength * glm::dvec3(light->diffuse);
     sum.specular += strength * glm::dvec3(light->specular);
   }
-  const double brightest = std::max(usualColor(fogged), brightestColor(fogged, response, sum));
+  const double brightest = std::max(assumedColor(fogged), brightestColor(fogged, response, sum));
   if ((1 - kSlack) * depth > fogLimit(fogged.scene.fog, brightest * fogged.gain)) return;
   if (candidates.size() == 1) {
     seen.push_back(candidates[0].object);
@@ -186,14 +186,14 @@ double fogLimit(const Fog& fog, double brightest) {
 }
 
 std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, float exposure, Model model) {
-  Fogged fogged{scene, glm::dvec3(glm::inverse(view.world_to_view)[3])};
+  FogContext fogged{scene, glm::dvec3(glm::inverse(view.world_to_view)[3])};
   for (const Material& material : scene.materials)
     fogged.emission = std::max(fogged.emission, largest(glm::dvec3(material.emission)));
   const double exposed = std::exp2(std::max(exposure, 0.0f));
   const glm::dvec3 contrast = glm::abs(glm::dvec3(scene.background) - glm::dvec3(scene.fog.color));
   const double left = kHalfStep - exposed * largest(contrast);
   fogged.gain = exposed * kHalfStep / left;
-  const double limit = fogLimit(scene.fog, usualColor(fogged) * fogged.gain);
+  const double limit = fogLimit(scene.fog, assumedColor(fogged) * fogged.gain);
   if (left <= 0 || !std::isfinite(limit)) return allObjects(scene);
   std::vector<std::uint32_t> seen;
   std::vector<Candidate> candidates;
@@ -203,7 +203,7 @@ std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, 
     if (depth <= limit)
       seen.push_back(i);
     else
-      candidates.push_back({i, box, depth, responseOf(scene, scene.objects[i], model)});
+      candidates.push_back({i, box, depth, reflectanceBound(scene, scene.objects[i], model)});
   }
   if (candidates.empty()) return seen;
   std::vector<const Light*> lights;

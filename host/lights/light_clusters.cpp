@@ -87,8 +87,8 @@ void split(std::span<const UnboundedLight> lights, std::vector<std::uint32_t>& o
 }
 
 /// Lights that sums take side by side: as many as a vector has doubles. Compilers may not reorder sums.
-constexpr std::size_t kAbreast = 8;
-using Doubles = std::array<double, kAbreast>;
+constexpr std::size_t kSumLanes = 8;
+using Doubles = std::array<double, kSumLanes>;
 
 double total(const Doubles& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
@@ -138,7 +138,7 @@ std::array<double, kSums> summands(double x, double y, double z) {
 glm::dvec3 centreOf(const LightPlanes& lights, std::size_t begin, std::size_t end) {
   std::array<Doubles, 4> sums{};
   for (std::size_t i = begin; i < end; ++i) {
-    const std::size_t part = (i - begin) % kAbreast;
+    const std::size_t part = (i - begin) % kSumLanes;
     const double weight = double(lights.color[0][i]) + lights.color[1][i] + lights.color[2][i];
     for (std::size_t axis = 0; axis < 3; ++axis) sums[axis][part] += weight * lights.position[axis][i];
     sums[3][part] += weight;
@@ -158,16 +158,16 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
   const glm::dvec3 centre = centreOf(lights, begin, end);
   std::array<std::array<Doubles, kSums>, 3> sums{};
   std::array<Doubles, 4> farthest{};  // |xyz| and the square of the distance
-  for (std::size_t first = begin; first < end; first += kAbreast) {
+  for (std::size_t first = begin; first < end; first += kSumLanes) {
     // Those beyond the end are taken for black ones at the centre.
     std::array<Doubles, 3> way{}, color{};
-    for (std::size_t i = 0; i < std::min(kAbreast, end - first); ++i)
+    for (std::size_t i = 0; i < std::min(kSumLanes, end - first); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) {
         way[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
         color[axis][i] = lights.color[axis][first + i];
       }
     std::array<Doubles, kSums> each;
-    for (std::size_t i = 0; i < kAbreast; ++i) {
+    for (std::size_t i = 0; i < kSumLanes; ++i) {
       const double x = way[0][i], y = way[1][i], z = way[2][i];
       const std::array<double, kSums> terms = summands(x, y, z);
       for (std::size_t m = 0; m < kSums; ++m) each[m][i] = terms[m];
@@ -178,7 +178,7 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
     }
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t m = 0; m < kSums; ++m)
-        for (std::size_t i = 0; i < kAbreast; ++i) sums[c][m][i] += color[c][i] * each[m][i];
+        for (std::size_t i = 0; i < kSumLanes; ++i) sums[c][m][i] += color[c][i] * each[m][i];
   }
   const auto most = [](const Doubles& values) { return *std::max_element(values.begin(), values.end()); };
   for (std::size_t axis = 0; axis < 3; ++axis) {

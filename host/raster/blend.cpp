@@ -37,7 +37,7 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t count, std::uint32_t seed)
 }
 
 /// Whether a material's opacity may be below 1 on a mesh whose vertices leave it as it is.
-bool isClear(const Scene& scene, const Material& material, const Mesh& mesh) {
+bool mayBeTransparent(const Scene& scene, const Material& material, const Mesh& mesh) {
   if (material.alpha < 1) return true;
   if (mesh.uvs.empty()) return false;
   const int diffuse = material.diffuse_map.texture;
@@ -75,7 +75,8 @@ std::vector<std::uint32_t> blendedMaterials(const Scene& scene) {
                                             [](const glm::vec4& color) { return color.a < 1; });
     const auto look = [&](std::uint32_t index) {
       const Material& material = scene.materials[index];
-      if (material.blended && !found[index]) found[index] = clear_vertices || isClear(scene, material, mesh);
+      if (material.blended && !found[index])
+        found[index] = clear_vertices || mayBeTransparent(scene, material, mesh);
     };
     if (object.material >= 0)
       look(std::uint32_t(object.material));

@@ -12,7 +12,7 @@ void checkView(const View& view);
 
 /// A G-buffer of a view's crop that shows nothing. `used`: one that is done with, whose memory it takes.
 /// Throws as allocateArray does.
-GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer used = {});
+GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer recycled = {});
 
 /// A G-buffer for single points, in so many columns and rows of tiles, that shows nothing. Throws as
 /// allocateArray does.

@@ -36,7 +36,7 @@ struct RasterCounts {
 /// `used`: a G-buffer that is done with, whose memory is taken.
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
-                  RasterCounts* counts = nullptr, GBuffer used = {});
+                  RasterCounts* counts = nullptr, GBuffer recycled = {});
 
 /// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop, row by
 /// row, into `texels` (8 bytes each). Alpha-masked holes stay open, and no face is culled. A texel's content

@@ -9,19 +9,19 @@
 
 namespace luciole {
 
-/// What resolving the pixels of a picture needs. It refers to its parts.
+/// The input of resolving the pixels of a picture. It refers to its parts.
 struct ResolveInput {
   const Scene& scene;
   const std::vector<PlacedObject>& objects;
   const ViewPlane& plane;
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
-  bool lifts;                                ///< fill in GBuffer::lift
+  bool lifts;                                ///< whether to fill in GBuffer::lift
   bool unbent;                               ///< GBuffer::knows_unbent
-  bool models;                               ///< fill in GBuffer::model
-  /// Not null: the plane sees these instead, which have the same triangles, laid out elsewhere, and shows the
-  /// fronts of `objects` there.
-  const std::vector<PlacedObject>* laid_out = nullptr;
+  bool models;                               ///< whether to fill in GBuffer::model
+  /// For texture space, else null: the same triangles, placed where `plane` sees them. Attributes are those
+  /// of the front of `objects`.
+  const std::vector<PlacedObject>* flattened_objects = nullptr;
 
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };

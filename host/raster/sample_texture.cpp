@@ -124,14 +124,14 @@ struct SquareLookup {
   Lanes<float> share;
 };
 
-void put(const SquareTexels& texels, const LaneMask& mask, SquareTexels& out) {
-  blend(texels.first, mask, out.first);
-  blend(texels.top_left, mask, out.top_left);
-  blend(texels.top_right, mask, out.top_right);
-  blend(texels.bottom_left, mask, out.bottom_left);
-  blend(texels.bottom_right, mask, out.bottom_right);
-  blend(texels.across, mask, out.across);
-  blend(texels.down, mask, out.down);
+void copyTexels(const SquareTexels& texels, const LaneMask& mask, SquareTexels& out) {
+  copyLanes(texels.first, mask, out.first);
+  copyLanes(texels.top_left, mask, out.top_left);
+  copyLanes(texels.top_right, mask, out.top_right);
+  copyLanes(texels.bottom_left, mask, out.bottom_left);
+  copyLanes(texels.bottom_right, mask, out.bottom_right);
+  copyLanes(texels.across, mask, out.across);
+  copyLanes(texels.down, mask, out.down);
 }
 
 bool any(const LaneMask& mask) {
@@ -207,8 +207,8 @@ void findMap(const Texture& texture, const TextureUse& use, const SquareFootprin
     least = std::min(least, wanted[i] ? finer[i] : least);
     most = std::max(most, wanted[i] ? coarser[i] : most);
   }
-  blend(share, wanted, lookup.share);
-  blend(is_finest, wanted, lookup.is_finest);
+  copyLanes(share, wanted, lookup.share);
+  copyLanes(is_finest, wanted, lookup.is_finest);
   for (std::int32_t l = least; l <= most; ++l) {
     LaneMask as_finer, as_coarser;
     for (int i = 0; i < kSquarePixels; ++i) {
@@ -218,8 +218,8 @@ void findMap(const Texture& texture, const TextureUse& use, const SquareFootprin
     const bool any_finer = any(as_finer), any_coarser = any(as_coarser);
     if (!any_finer && !any_coarser) continue;
     const SquareTexels texels = findTexels(texture.levels[std::size_t(l)], use, u, v);
-    if (any_finer) put(texels, as_finer, lookup.finer);
-    if (any_coarser) put(texels, as_coarser, lookup.coarser);
+    if (any_finer) copyTexels(texels, as_finer, lookup.finer);
+    if (any_coarser) copyTexels(texels, as_coarser, lookup.coarser);
   }
   if (!use.nearest_magnified && !use.nearest_minified) return;
   LaneMask nearest;

@@ -27,14 +27,14 @@ struct SeenSurface {
   Lift lift;                           ///< for ResolveInput::lifts
   bool mapped = false;                 ///< its material has maps that colour it, and its mesh coordinates:
   Interpolant<glm::dvec2> uv;          ///< zero where not
-  bool bends = false;                  ///< a normal map bends its normal
-  bool glows_apart = false;            ///< the emission map has texture coordinates of its own:
+  bool has_normal_map = false;         ///< for Shading::kPhong
+  bool has_emission_uv = false;        ///< the emission map has texture coordinates of its own:
   Interpolant<glm::dvec2> emission_uv;
   bool colored = false;
   Interpolant<glm::dvec3> color;  ///< where colored: the vertices' colours, or their lit colours
 };
 /// The surface of a triangle, by its number. O(log objects).
-SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle);
+SeenSurface makeSeenSurface(const ResolveInput& input, std::uint32_t triangle);
 
 /// A direct-mapped cache of the surfaces seen last, by the lowest bits of the triangle's number: neighbouring
 /// triangles mostly have consecutive numbers. Not safe for several threads.
@@ -44,7 +44,7 @@ class SurfaceCache {
   const SeenSurface& operator[](std::uint32_t triangle) {
     const std::size_t slot = triangle % kSlots;
     if (triangles_[slot] != triangle) {
-      surfaces_[slot] = seeSurface(input_, triangle);
+      surfaces_[slot] = makeSeenSurface(input_, triangle);
       triangles_[slot] = triangle;
     }
     return surfaces_[slot];

@@ -22,7 +22,7 @@ using LaneMask = Lanes<std::int32_t>;
 
 /// Writes the values of the chosen pixels.
 template <class T>
-void blend(const Lanes<T>& values, const LaneMask& mask, Lanes<T>& out) {
+void copyLanes(const Lanes<T>& values, const LaneMask& mask, Lanes<T>& out) {
   for (int i = 0; i < kSquarePixels; ++i) out[i] = mask[i] ? values[i] : out[i];
 }
 

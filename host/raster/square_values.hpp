@@ -42,10 +42,10 @@ SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel);
 /// The attributes of a surface at a square's pixels. Pixels that don't see it get those of its plane, which
 /// may lie outside the triangle.
 SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
-                      const LaneMask& sees_it);
+                      const LaneMask& mask);
 
-/// Copies to `out` the values of the pixels for which `sees_it` is 1.
-void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out);
+/// Copies to `out` the values of the pixels for which `mask` is 1.
+void copyValues(const SquareValues& values, const LaneMask& mask, SquareValues& out);
 
 /// Multiplies the reflection map into diffuse and ambient, and the emission map into emission. A pixel that
 /// is shaded for several samples takes the mean of four lookups, whose places have the samples' mean and

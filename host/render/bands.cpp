@@ -56,7 +56,7 @@ struct BandMaker {
   }
 
   /// Makes a band, or as many of its first rows as the device has memory for, which lowers limits.tallest.
-  /// Returns the rows that picture.used.picture then has.
+  /// Returns the rows that picture.recycled.picture then has.
   Band makeAsMuch(const Band& left, BandLimits& limits) {
     while (true) {
       const int end = bandEnd(left.first, {limits.tallest, limits.origin, left.first + left.height});
@@ -65,7 +65,7 @@ struct BandMaker {
       const RasterCounts triangles_before = triangles;
       const int done_before = rows_done;
       try {
-        picture.used.picture = make(rows);
+        picture.recycled.picture = make(rows);
         return rows;
       } catch (const DeviceError& error) {
         // How long light lists are only turns out while they are made. Fewer rows have shorter ones.
@@ -125,7 +125,7 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
   while (const std::optional<Band> asked = next(limits)) {
     for (Band left = *asked; left.height > 0;) {
       const Band rows = maker.makeAsMuch(left, limits);
-      take(rows, picture.used.picture);
+      take(rows, picture.recycled.picture);
       left = {rows.first + rows.height, left.height - rows.height};
     }
   }

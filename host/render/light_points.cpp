@@ -7,7 +7,7 @@ namespace luciole {
 void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister) {
   const auto light = [&](const LightSet& lights, const FeatureSet& of_lights, const PixelCounts& counts) {
     return lightGBuffer(picture.device, picture.scene, picture.lighting,
-                        {lights, of_lights, *lister.gbuffer, counts, std::exchange(lister.used, {})},
+                        {lights, of_lights, *lister.gbuffer, counts, std::exchange(lister.recycled, {})},
                         picture.stats);
   };
   while (lister.next()) {

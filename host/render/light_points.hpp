@@ -15,7 +15,7 @@ namespace luciole {
 struct PointLister {
   const GBuffer* gbuffer = nullptr;  ///< the points to be lit now
   PixelCounts counts;                ///< what to count of them
-  Plane used;                        ///< a plane that is done with
+  Plane recycled;                    ///< a plane that is done with
 
   virtual ~PointLister() = default;
   /// Sets the members for the next points. Returns false where there are none left.

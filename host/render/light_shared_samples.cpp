@@ -143,7 +143,7 @@ struct SharedLister final : PointLister {
         return;
       }
       image = startPicture(shared.gbuffer, lit, picture.settings, layerNames(picture),
-                           std::move(picture.used.picture));
+                           std::move(picture.recycled.picture));
       uneven = unevenPixels(sampled, shared, lit.color);
       leaveOut(uneven, shared);
       sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));

@@ -37,7 +37,7 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   std::size_t assembling = gbuffer + lit + counted + channels + covered;
   for (const Aov aov : settings.aovs) assembling += std::size_t(aovRow(aov).computed_floats);
   if (settings.wants(Aov::kListLength)) ++assembling;
-  const LightUse use = lightUse(plan.shade);
+  const ClusterConditions use = clusterConditions(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
         return !std::isfinite(light.range) && !(clustered && exactReason(light, use) == ExactReason::kNone);

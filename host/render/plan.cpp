@@ -19,14 +19,14 @@ FeatureSet vertexFeatures(const FeatureSet& features) {
 }
 
 /// Features of the pass that only applies fog, to lit colours in the emission planes.
-FeatureSet fogOnly(const FeatureSet& features) {
+FeatureSet fogFeatures(const FeatureSet& features) {
   FeatureSet kept = featuresFor(kForFog, features);
   kept.set(Feature::kEmission);
   return kept;
 }
 
 /// The traits of the surfaces as this shading shows them.
-SurfaceTraits shownTraits(const Scene& scene, Shading shading) {
+SurfaceTraits surfaceTraits(const Scene& scene, Shading shading) {
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= shading != Shading::kFlat;
   surfaces.normal_maps &= shading == Shading::kPhong;
@@ -42,14 +42,14 @@ ModelChoices modelsOf(const GBuffer& gbuffer) {
   return choices;
 }
 
-bool anyShines(const GBuffer& gbuffer) {
+bool hasSpecular(const GBuffer& gbuffer) {
   const auto colors = std::ptrdiff_t(gbuffer.specular.empty() ? 0 : 3 * gbuffer.pixels());
   return std::any_of(gbuffer.specular.begin(), gbuffer.specular.begin() + colors,
                      [](float color) { return color > 0; });
 }
 
-SurfaceTraits shownTraits(const GBuffer& gbuffer) {
-  return {anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(), gbuffer.knows_unbent,
+SurfaceTraits surfaceTraits(const GBuffer& gbuffer) {
+  return {hasSpecular(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(), gbuffer.knows_unbent,
           modelsOf(gbuffer)};
 }
 
@@ -65,8 +65,8 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
   if (!plan.layers.empty()) plan.shade.light_error = 0;
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
     plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits);
-  plan.features =
-      neededFeatures(scene, camera, surfaces, plan.shade, standsForLights(scene, view, surfaces, plan.shade));
+  plan.features = neededFeatures(scene, camera, surfaces, plan.shade,
+                                 usesLightClusters(scene, view, surfaces, plan.shade));
   plan.pixels = plan.features;
   return plan;
 }
@@ -82,7 +82,7 @@ void addLayersPrograms(PicturePlan& plan) {
 }  // namespace
 
 PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
-  const SurfaceTraits surfaces = shownTraits(scene, settings.shading);
+  const SurfaceTraits surfaces = surfaceTraits(scene, settings.shading);
   const bool shares_samples = sharesSamples(settings);
   PicturePlan plan =
       planLight(scene, settings, surfaces, settings.camera, cameraView(settings.camera, settings.size),
@@ -90,7 +90,7 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   plan.view = cameraView(settings.camera, settings.size, settings.crop);
   plan.shares_samples = shares_samples;
   if (settings.shading == Shading::kGouraud) {
-    plan.pixels = fogOnly(plan.features);
+    plan.pixels = fogFeatures(plan.features);
     plan.vertices = vertexFeatures(plan.features);
   }
   plan.planes = neededPlanes(plan.pixels);
@@ -110,7 +110,7 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
 
 PicturePlan planShading(const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings) {
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size, {}, gbuffer.display.pixel_aspect);
-  PicturePlan plan = planLight(scene, settings, shownTraits(gbuffer), gbuffer.camera, view,
+  PicturePlan plan = planLight(scene, settings, surfaceTraits(gbuffer), gbuffer.camera, view,
                                shadedPoints(scene, gbuffer.picture_size, 1, false));
   plan.view = view;
   addProgram(plan.pixels, plan.programs);

@@ -11,7 +11,7 @@ namespace luciole {
 
 /// Memory of a band that is done with, for the next one: the system takes as long to clear fresh memory as
 /// its pixels take to be shaded.
-struct UsedMemory {
+struct RecycledMemory {
   GBuffer gbuffer;
   Plane color;
   Image picture;
@@ -28,7 +28,7 @@ struct ReadyPicture {
   Lighting lighting = {};
   std::vector<LitLayer> layers = {};
   std::vector<glm::vec3> vertex_colors = {};  ///< with Shading::kGouraud only
-  UsedMemory used = {};
+  RecycledMemory recycled = {};
 };
 
 /// Adds to a picture's statistics what buffers cost while it exists.

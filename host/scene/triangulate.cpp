@@ -149,11 +149,11 @@ class Ring {
   /// crosses itself, the corner after the first.
   std::array<int, 3> cut() {
     int tip = firstEar();
-    if (tip < 0 && recheck(early_rechecks_left_)) tip = firstEar();
+    if (tip < 0 && updateAllEars(early_rechecks_left_)) tip = firstEar();
     if (tip < 0) tip = takeInLine();
     if (tip < 0) {
       margin_ = 0;
-      if (recheck(rechecks_left_)) tip = firstEar();
+      if (updateAllEars(rechecks_left_)) tip = firstEar();
     }
     if (tip < 0) tip = corners_[first_].next;
     const int before = corners_[tip].previous, after = corners_[tip].next;
@@ -163,7 +163,7 @@ class Ring {
     if (corners_[tip].is_reflex) grid_.remove(tip);
     corners_[tip] = {-1, -1};
     --size_;
-    for (const int corner : {before, after}) look(corner);
+    for (const int corner : {before, after}) updateEar(corner);
     return {before, tip, after};
   }
 
@@ -202,7 +202,7 @@ class Ring {
   }
 
   /// Looks at a corner whose neighbour was cut off.
-  void look(int number) {
+  void updateEar(int number) {
     Corner& corner = corners_[number];
     const std::array<glm::dvec2, 3> triangle = triangleOf(number);
     const bool turns_left = turn(triangle[0], triangle[1], triangle[2]) > 0;
@@ -219,12 +219,12 @@ class Ring {
 
   void lookAtAll() {
     int corner = first_;
-    for (std::size_t i = 0; i < size_; ++i, corner = corners_[corner].next) look(corner);
+    for (std::size_t i = 0; i < size_; ++i, corner = corners_[corner].next) updateEar(corner);
   }
 
   /// Looks at all corners if so many may still be looked at: some have become ears without a neighbour being
   /// cut off.
-  bool recheck(double& left) {
+  bool updateAllEars(double& left) {
     if (left < double(size_)) return false;
     left -= double(size_);
     lookAtAll();

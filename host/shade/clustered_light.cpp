@@ -88,7 +88,7 @@ double clusteredWork(const ClusterableLights& lights, const View& view) {
   return of_walks * pixel / kUsualPixel + kTreeWork * double(lights.count) / pixels;
 }
 
-bool clustersPay(const ClusterableLights& lights, const View& view) {
+bool clustersAreFaster(const ClusterableLights& lights, const View& view) {
   return clusteredWork(lights, view) < double(lights.count);
 }
 

@@ -47,6 +47,6 @@ struct ClusterableLights {
 double clusteredWork(const ClusterableLights& lights, const View& view);
 
 /// Whether clusters take less work than the lights.
-bool clustersPay(const ClusterableLights& lights, const View& view);
+bool clustersAreFaster(const ClusterableLights& lights, const View& view);
 
 }  // namespace luciole

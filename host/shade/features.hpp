@@ -87,16 +87,16 @@ void chooseModel(const ModelChoices& choices, ShadeSettings& settings);
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings);
 
 /// Whether clusters stand for some of the scene's lights in a picture with these settings: where the settings
-/// allow it, for those without an ExactReason, if there are enough of them (clustersPay). view: of the
+/// allow it, for those without an ExactReason, if there are enough of them (clustersAreFaster). view: of the
 /// picture. O(lights).
-bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
-                     const ShadeSettings& settings);
+bool usesLightClusters(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                       const ShadeSettings& settings);
 
 /// Which of a picture's lights others may stand for.
-LightUse lightUse(const ShadeSettings& settings);
+ClusterConditions clusterConditions(const ShadeSettings& settings);
 
 /// The features that this scene's lights, fog and surfaces need, seen by this camera. clustered: as
-/// standsForLights() says.
+/// usesLightClusters() says.
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings, bool clustered = false);
 

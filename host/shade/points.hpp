@@ -14,8 +14,8 @@ namespace luciole {
 struct Points {
   const GBuffer& gbuffer;
   PackedNormals normal_packed;  ///< in the place of geometric normals that the G-buffer lacks
-  Plane no_lift;                ///< likewise: zeros
-  ModelPlane no_model;          ///< likewise: the picture's model
+  Plane zero_lift;              ///< likewise: zeros
+  ModelPlane default_model;     ///< likewise: the picture's model
   GBufferBuffers buffers;
   std::size_t stride;  ///< elements in a plane
   std::size_t bytes;   ///< of all planes

@@ -69,9 +69,9 @@ float clusteredError(float light_error, const ShadeFrame& frame, const FeatureSe
   return std::max(float(light_error - kSeenRounding - through_fog), 1e-9f);
 }
 
-void boundSeenLight(const GBuffer& gbuffer, const ShadeFrame& frame, const FeatureSet& features,
-                    const Plane& emission, const Plane& color, const std::optional<glm::vec3>& vertex_error,
-                    Plane& bounds) {
+void boundVisibleLight(const GBuffer& gbuffer, const ShadeFrame& frame, const FeatureSet& features,
+                       const Plane& emission, const Plane& color,
+                       const std::optional<glm::vec3>& vertex_error, Plane& bounds) {
   const std::size_t n = gbuffer.pixels();
   bounds.resize(3 * n);
   const glm::dvec3 fog = rgb(frame.fog_color), ambient = rgb(frame.ambient);

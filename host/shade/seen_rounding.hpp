@@ -17,8 +17,8 @@ float clusteredError(float light_error, const ShadeFrame& frame, const FeatureSe
 /// Makes bounds of the light of clusters, r g b as the eye sees it, bounds of the colours that were shaded
 /// with it; 0 for background. emission: that of the pixels with the light of clusters; may be empty for none.
 /// color: r g b and perhaps more. vertex_error: takes the place of all bounds, where there is one.
-void boundSeenLight(const GBuffer& gbuffer, const ShadeFrame& frame, const FeatureSet& features,
-                    const Plane& emission, const Plane& color, const std::optional<glm::vec3>& vertex_error,
-                    Plane& bounds);
+void boundVisibleLight(const GBuffer& gbuffer, const ShadeFrame& frame, const FeatureSet& features,
+                       const Plane& emission, const Plane& color,
+                       const std::optional<glm::vec3>& vertex_error, Plane& bounds);
 
 }  // namespace luciole

@@ -35,6 +35,6 @@ Scene loadScene(const std::string& path, double frame = 1, const LoadSettings& s
 void completeScene(Scene& scene, bool is_mesh_file);
 
 /// The warning for a scene that nothing lights. Commands that replace a scene's lights remove it.
-Warning nothingLights(const Scene& scene);
+Warning noLightWarning(const Scene& scene);
 
 }  // namespace luciole

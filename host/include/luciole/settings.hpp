@@ -73,7 +73,8 @@ struct ShadeSettings {
   /// E, 0 to 1: lights may be stood for by clusters of them as long as each pixel's error stays below
   /// E·max(1, colour) in each channel. 0: each light is summed by itself.
   float light_error = 0;
-  /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
+  /// Clusters stand for lights even where summing each is less work (clustersAreFaster): to test and measure
+  /// them.
   bool always_clusters = false;
 };
 

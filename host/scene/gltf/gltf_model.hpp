@@ -58,10 +58,11 @@ const GltfJson& memberOf(const GltfJson& value, const char* name);
 int indexOf(const GltfJson& value);
 
 /// Adds a warning that the file breaks the format's rules: "path: place: what". `kind`: as Warning has it.
-void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
+void warnRepaired(const GltfModel& model, const std::string& place, const std::string& what,
+                  const char* kind);
 
 /// Adds a warning of what isn't shown though the file may ask for it.
-void leftOut(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
+void warnLeftOut(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
 
 /// Throws InputError "path: place: what".
 [[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);

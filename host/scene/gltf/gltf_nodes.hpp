@@ -30,7 +30,7 @@ std::string nodePlace(int node);
 /// also those that are, and the trees of joints outside the scene. Nodes that curves move are added to the
 /// animation. Throws InputError unless the nodes form trees (roots without a parent, other nodes with at most
 /// one), and where a transform isn't finite. What nodes have beside a matrix, last rows of matrices and
-/// rotations that aren't unit are mended, each with a warning.
+/// rotations that aren't unit are repaired, each with a warning.
 std::vector<PlacedNode> placedNodes(const GltfModel& model, const std::map<int, NodeCurves>& curves,
                                     Animation& animation);
 

@@ -124,7 +124,7 @@ void findBuffer(std::size_t index, std::string_view binary, const SearchFolders&
   GltfBuffer& buffer = model.file.buffers[index];
   const std::string place = fmt::format("buffers[{}]", index);
   if (buffer.uri && buffer.uri->empty()) {
-    repaired(model, place, "uri is '', taken for none", "empty uri");
+    warnRepaired(model, place, "uri is '', taken for none", "empty uri");
     buffer.uri.reset();
   }
   if (!buffer.uri) {
@@ -156,10 +156,11 @@ void checkLengths(const GltfModel& model) {
     if (!fits(view, buffer.bytes.size()))
       misses[std::size_t(view.buffer)] = true;
     else if (!fits(view, buffer.length))
-      repaired(model, fmt::format("bufferViews[{}]", i),
-               fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
-                           view.length, view.offset, buffer.length),
-               "view past byteLength");
+      warnRepaired(
+          model, fmt::format("bufferViews[{}]", i),
+          fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
+                      view.length, view.offset, buffer.length),
+          "view past byteLength");
   }
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const GltfBuffer& buffer = buffers[i];
@@ -169,7 +170,7 @@ void checkLengths(const GltfModel& model) {
                       what = fmt::format("byteLength is {}, but there are only {} bytes", buffer.length,
                                          buffer.bytes.size());
     if (misses[i]) failGltf(model, place, what);
-    repaired(model, place, what, "byteLength");
+    warnRepaired(model, place, what, "byteLength");
   }
 }
 
@@ -196,8 +197,8 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
   if (bytes.size() < kHeader + kChunkHeader) fail("it is cut short");
   if (wordAt(bytes, 4) != 2) fail(fmt::format("version {}, expected 2", wordAt(bytes, 4)));
   if (wordAt(bytes, 8) != bytes.size())
-    repaired(model, "its header", fmt::format("length is {}, the file's {}", wordAt(bytes, 8), bytes.size()),
-             "GLB length");
+    warnRepaired(model, "its header",
+                 fmt::format("length is {}, the file's {}", wordAt(bytes, 8), bytes.size()), "GLB length");
   const bool knows_its_end = wordAt(bytes, 8) == bytes.size();
   GltfParts parts;
   bool has_json = false;
@@ -208,15 +209,15 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
     const bool is_json = kind == kJsonChunk && !has_json, is_binary = kind == kBinChunk;
     if (is_json && length > bytes.size() - begin)
       fail(fmt::format("its JSON has {} bytes, but only {} follow", length, bytes.size() - begin));
-    if (is_json && place != kHeader) repaired(model, "its JSON chunk", "is not the first", "GLB order");
+    if (is_json && place != kHeader) warnRepaired(model, "its JSON chunk", "is not the first", "GLB order");
     // One that is cut short is refused where a buffer needs more.
     if (is_json) parts.json = bytes.substr(begin, length);
     if (is_binary && parts.binary.empty()) parts.binary = bytes.substr(begin, length);
     has_json = has_json || is_json;
     place = begin + length;
     if (length % 4 == 0 || place > bytes.size() || !(is_json || is_binary)) continue;
-    repaired(model, is_json ? "its JSON chunk" : "its BIN chunk",
-             fmt::format("{} bytes, expected a multiple of 4", length), "GLB padding");
+    warnRepaired(model, is_json ? "its JSON chunk" : "its BIN chunk",
+                 fmt::format("{} bytes, expected a multiple of 4", length), "GLB padding");
     const std::size_t padded = (place + 3) / 4 * 4;
     if (!startsChunk(bytes, place, kBinChunk) &&
         (startsChunk(bytes, padded, kBinChunk) || padded == bytes.size()))
@@ -224,8 +225,8 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
   }
   if (!has_json) fail("it has no JSON chunk");
   if (knows_its_end && place != bytes.size())
-    repaired(model, "its chunks", fmt::format("end at byte {}, the file at {}", place, bytes.size()),
-             "GLB length");
+    warnRepaired(model, "its chunks", fmt::format("end at byte {}, the file at {}", place, bytes.size()),
+                 "GLB length");
   return parts;
 }
 

@@ -13,7 +13,7 @@ struct GltfParts {
   std::string_view json, binary;
 };
 
-/// Cuts a file's bytes into its parts. Lengths, paddings and the order of a GLB's chunks are mended, each
+/// Cuts a file's bytes into its parts. Lengths, paddings and the order of a GLB's chunks are repaired, each
 /// with a warning, and unknown chunks left out. Throws InputError.
 GltfParts splitGltf(std::string_view bytes, const GltfModel& model);
 

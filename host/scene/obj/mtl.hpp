@@ -43,7 +43,7 @@ struct MapPlaces {
 struct MtlReading {
   Scene& scene;                          ///< gets their textures, not decoded yet, and warnings
   std::vector<std::string> search = {};  ///< folders of pictures, beside the file's own
-  std::set<std::pair<std::string, std::string>> told = {};  ///< what of which file was said to be ignored
+  std::set<std::pair<std::string, std::string>> reported = {};  ///< what of which file was said to be ignored
 };
 
 struct MtlMaterial {

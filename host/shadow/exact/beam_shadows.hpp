@@ -25,7 +25,7 @@ struct BeamScene {
   std::shared_ptr<const TriangleTree> tree;
   std::shared_ptr<const HoleMasks> masks;  ///< null where no triangle has holes
   glm::mat3 view_to_tree{1.0f};            ///< a rotation
-  float4 tree_most{};                      ///< the largest |x|, |y|, |z| in the tree
+  float4 largest_coordinates{};            ///< the largest |x|, |y|, |z| in the tree
   int soft_samples = 0;                    ///< of each light of a size; 0: none has one
   std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
   Buffer<const float> nodes, blocks;

@@ -33,7 +33,7 @@ struct Branch {
 
 /// Whether b rather than a is divided next: the one whose box is met more often; in halves, the larger.
 /// Blocks never are.
-bool comesBefore(const TriangleSet& a, const TriangleSet& b, bool halving) {
+bool isSplitFirst(const TriangleSet& a, const TriangleSet& b, bool halving) {
   if (a.size() <= kTreeWidth || b.size() <= kTreeWidth || halving) return a.size() < b.size();
   const float area_a = halfArea(a.box), area_b = halfArea(b.box);
   return area_a != area_b ? area_a < area_b : a.size() < b.size();
@@ -46,7 +46,7 @@ std::unique_ptr<Branch> grow(const TriangleSet& all, int depth, TriangleBoxes (&
   while (count < kTreeWidth) {
     const auto largest =
         std::max_element(sets.begin(), sets.begin() + count,
-                         [&](const auto& a, const auto& b) { return comesBefore(a, b, halving); });
+                         [&](const auto& a, const auto& b) { return isSplitFirst(a, b, halving); });
     if (largest->size() <= kTreeWidth) break;
     std::tie(*largest, sets[count]) =
         halving ? splitInHalves(*largest, arrays) : splitByArea(*largest, arrays);

@@ -149,7 +149,7 @@ bool isPlacedFor(const Scene& scene, const glm::dvec3& origin, const TriangleTre
   return tree.origin == origin && tree.scale == scaleFor(scene, origin);
 }
 
-double areaOfBoxes(const TriangleTree& tree) {
+double boxArea(const TriangleTree& tree) {
   double area = 0;
   for (std::size_t i = 0; i < tree.children.size(); ++i) {
     if (tree.children[i] == 0) continue;

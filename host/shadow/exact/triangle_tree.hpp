@@ -48,7 +48,7 @@ TriangleTree buildTriangleTree(const Scene& scene, const glm::dvec3& origin);
 bool isPlacedFor(const Scene& scene, const glm::dvec3& origin, const TriangleTree& tree);
 
 /// The sum of the areas of all children's boxes, in the tree's space: about how much a walk meets.
-double areaOfBoxes(const TriangleTree& tree);
+double boxArea(const TriangleTree& tree);
 
 /// Moves the tree to another pose of the same scene and another origin: what boxes are of and what blocks
 /// hold stays. O(n), on all cores.

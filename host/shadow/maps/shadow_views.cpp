@@ -39,7 +39,7 @@ View squareView(const glm::dmat4& world_to_view, const glm::dmat4& projection, i
 
 /// Texels around the one that a lookup falls into which it may read, on a face with this border. Where it
 /// reads that one alone, rounding may still make it the next.
-int readAround(int border, ShadowMethod method) {
+int lookupRadius(int border, ShadowMethod method) {
   return method == ShadowMethod::kPcf || method == ShadowMethod::kSoft ? border : 1;
 }
 
@@ -99,7 +99,7 @@ PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
   planned.lookup.depth_scale = float(depth_a_metre * depth_a_metre);
   planned.lookup.depth_offset = float(depth_a_metre);
   planned.lookup.penumbra_scale = float(std::tan(light.half_angle) / depth_a_metre);
-  planned.lookup.filter_radius = float(readAround(border, input.method));
+  planned.lookup.filter_radius = float(lookupRadius(border, input.method));
   planned.lookup.kind = kParallelMap;
   return planned;
 }
@@ -115,7 +115,7 @@ void addFace(const Light& light, const PlanInput& input, const glm::dmat4& world
   planned.lookup.depth_scale = float(projection[3][2]);
   planned.lookup.depth_offset = float(-projection[2][2]);
   planned.lookup.penumbra_scale = float(light.radius / projection[3][2]);
-  planned.lookup.filter_radius = float(readAround(border, input.method));
+  planned.lookup.filter_radius = float(lookupRadius(border, input.method));
   planned.views.push_back(squareView(world_to_light, projection, size));
   planned.faces.push_back(emptyFace(scale, {half, half}, size, border));
 }

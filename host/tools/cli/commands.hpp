@@ -25,18 +25,18 @@ struct CommandContext {
 
 /// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see
 /// event_log.hpp), and returns the exit status for the exception. frame: the one that failed, of several.
-int tellFailure(std::optional<int> frame = std::nullopt);
+int reportFailure(std::optional<int> frame = std::nullopt);
 
 /// Writes to standard error what is wrong, as a line or an event. status: the exit status that it leads to.
-void tellError(const std::string& message, int status);
+void reportError(const std::string& message, int status);
 
 /// Writes a warning to standard error, as a line or an event.
-void tellWarning(const std::string& text);
+void reportWarning(const std::string& text);
 /// Lines for people: of each kind of warning ten at most, in order, then how many more there are, which the
 /// option lists.
 std::vector<std::string> shownWarnings(const std::vector<Warning>& warnings, const std::string& option);
 /// Writes a scene's warnings to standard error: the lines above, or all of them as events.
-void tellWarnings(const std::vector<Warning>& warnings);
+void reportWarnings(const std::vector<Warning>& warnings);
 
 // Each adds a command to the program. The command's work runs while the command line is parsed, if it is
 // named there, and throws InputError and MachineError.

@@ -145,8 +145,8 @@ void generateLights(const LightsOptions& options) {
   std::vector<glm::dvec3> seen;
   if (!options.scene.empty()) {
     scene = loadScene(options.scene, 1, options.load);
-    std::erase(scene.warnings, nothingLights(scene));
-    tellWarnings(scene.warnings);
+    std::erase(scene.warnings, noLightWarning(scene));
+    reportWarnings(scene.warnings);
     scene.lights.clear();
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
                          kMeasuredPlaces, 0);

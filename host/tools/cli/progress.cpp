@@ -58,7 +58,7 @@ void ProgressLine::clear() {
   writeError("\r\x1b[K");
 }
 
-std::function<void()> tellsCompiling(ProgressLine& progress) {
+std::function<void()> compileReporter(ProgressLine& progress) {
   return [&progress] { progress.tell("compiling kernels"); };
 }
 

@@ -33,7 +33,7 @@ struct ProgressLine {
 };
 
 /// What tells that kernels are being compiled, for RenderSettings::on_long_compile.
-std::function<void()> tellsCompiling(ProgressLine& progress);
+std::function<void()> compileReporter(ProgressLine& progress);
 
 /// A time in minutes and seconds, from an hour on in hours, too: "0:07", "12:34" or "1:02:03".
 std::string duration(double seconds);

@@ -31,7 +31,7 @@ inline constexpr std::pair<const char*, std::uint64_t KeptBounds::*> kBoundCount
 /// Holds a picture with the channels R G B and light_error.R, .G and .B, of one sample a pixel, against the
 /// truth. exposure: the picture's, in stops. truth: the linear R G B of each of `pixels` in double, at that
 /// exposure. Pixels whose bounds are all 0 show no surface and are left out. O(pixels of the picture).
-KeptBounds judgeBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
-                       std::span<const glm::dvec3> truth);
+KeptBounds measureBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
+                         std::span<const glm::dvec3> truth);
 
 }  // namespace luciole
