@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "load/frame.hpp"
+#include "load/no_light_warning.hpp"
 #include "luciole/error.hpp"
 #include "luciole/pose.hpp"
 #include "scene/json/json_scene.hpp"

@@ -1,4 +1,4 @@
-#include "luciole/deformation.hpp"
+#include "scene/deform.hpp"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "luciole/scene.hpp"
 #include "scene/normals.hpp"
 
 namespace luciole {

@@ -1,4 +1,4 @@
-#include "luciole/pose.hpp"
+#include "scene/posing.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
+#include "scene/deform.hpp"
 #include "scene/place_limits.hpp"
 
 namespace luciole {

@@ -13,12 +13,12 @@
 #include "base/did_you_mean.hpp"
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
-#include "luciole/pose.hpp"
 #include "scene/gltf/gltf_animation.hpp"
 #include "scene/gltf/gltf_model.hpp"
 #include "scene/gltf/gltf_nodes.hpp"
 #include "scene/gltf/gltf_objects.hpp"
 #include "scene/light_groups.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

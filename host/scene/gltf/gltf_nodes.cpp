@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "luciole/pose.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

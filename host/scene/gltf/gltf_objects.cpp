@@ -10,11 +10,12 @@
 #include <utility>
 
 #include "base/machine_memory.hpp"
-#include "luciole/pose.hpp"
+#include "scene/deform.hpp"
 #include "scene/gltf/gltf_accessor.hpp"
 #include "scene/gltf/gltf_material.hpp"
 #include "scene/gltf/gltf_mesh.hpp"
 #include "scene/gltf/gltf_rest.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/write_file.hpp"
+#include "load/no_light_warning.hpp"
 #include "luciole/error.hpp"
 #include "luciole/load_scene.hpp"
 #include "raster/visible_points.hpp"

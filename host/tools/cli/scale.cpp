@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/write_file.hpp"
+#include "load/no_light_warning.hpp"
 #include "luciole/error.hpp"
 #include "luciole/gbuffer_file.hpp"
 #include "tools/cli/commands.hpp"
