@@ -8,15 +8,15 @@
 
 namespace luciole {
 
-/// How far a pixel's first point may be from the mean of its neighbours on the same surface, as a share of
-/// the brightest of them. Where the edge of a shadow or of a highlight goes through one of these pixels, that
-/// is half of the step, the most that the point may err by. One of 16 samples weighs as much.
+/// The largest difference between the colour of a pixel's first point and the mean of its neighbours on the
+/// same surface, as a share of the brightest of them. At the edge of a shadow or highlight it is half of the
+/// step, the largest error of the point. One of 16 samples has the same weight.
 constexpr float kMostUneven = 1.0f / 16;
 
-/// The pixels wanted whose first points are farther than kMostUneven from their neighbours to the left and
-/// right, or above and below: 1 or 0 for each pixel, row by row. A point with one such neighbour may be twice
-/// as far from it. What maps do to the reflectance doesn't count, since points average them. Exposure doesn't
-/// matter. color: of the first points, r g b.
+/// The pixels of sampled.inner whose first points differ by more than kMostUneven from the mean of their
+/// neighbours to the left and right, or above and below: 1 or 0 for each pixel, row by row. With a single
+/// neighbour on the surface half of the difference counts. Colours are divided by the diffuse reflectance,
+/// since points average maps already. color: of the first points, r g b, without exposure.
 std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedSamples& shared,
                                        const Plane& color);
 

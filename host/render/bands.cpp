@@ -19,7 +19,7 @@
 namespace luciole {
 namespace {
 
-/// A picture's bands as they are made.
+/// Renders a picture's bands.
 struct BandMaker {
   ReadyPicture& picture;
   const MatteIds matte_ids;
@@ -55,8 +55,8 @@ struct BandMaker {
     return image;
   }
 
-  /// Makes a band, or as many of its first rows as the device has memory for, which lowers limits.tallest.
-  /// Returns the rows that picture.recycled.picture then has.
+  /// Renders a band into picture.recycled.picture. If the device's memory doesn't hold it, renders only its
+  /// first rows and lowers limits.tallest. Returns the rows rendered.
   Band makeAsMuch(const Band& left, BandLimits& limits) {
     while (true) {
       const int end = bandEnd(left.first, {limits.tallest, limits.origin, left.first + left.height});
@@ -68,7 +68,7 @@ struct BandMaker {
         picture.recycled.picture = make(rows);
         return rows;
       } catch (const DeviceError& error) {
-        // How long light lists are only turns out while they are made. Fewer rows have shorter ones.
+        // The length of light lists isn't known before. Fewer rows have shorter ones.
         if (!error.is_out_of_memory || rows.height <= kBinSize) throw;
         picture.stats = stats_before;
         triangles = triangles_before;

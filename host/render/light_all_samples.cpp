@@ -11,8 +11,8 @@
 namespace luciole {
 namespace {
 
-/// Makes `sum` the sum with `more`, of as many floats, or `more` itself where it is empty. Returns memory
-/// that is done with.
+/// Adds `more` to `sum`, count floats; an empty `sum` becomes `more`. Returns a plane whose memory can be
+/// reused.
 Plane addPlane(Plane more, std::size_t count, Plane& sum) {
   if (sum.empty()) {
     sum = std::move(more);
@@ -22,7 +22,7 @@ Plane addPlane(Plane more, std::size_t count, Plane& sum) {
   return more;
 }
 
-/// The pixels of a band, at the place of one sample after the other.
+/// Lists a band's pixels once for each sample.
 struct SampleLister final : PointLister {
   ReadyPicture& picture;
   View view;

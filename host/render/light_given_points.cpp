@@ -7,7 +7,7 @@
 namespace luciole {
 namespace {
 
-/// The points of a G-buffer.
+/// Lists a G-buffer as it is.
 struct GivenLister final : PointLister {
   ReadyPicture& picture;
   const GBuffer& given;

@@ -7,7 +7,7 @@
 namespace luciole {
 namespace {
 
-/// A G-buffer of vertices.
+/// Lists the vertices of the objects to draw.
 struct VertexLister final : PointLister {
   ReadyPicture& picture;
   GBuffer vertices;

@@ -9,7 +9,7 @@
 namespace luciole {
 namespace {
 
-/// Features of the pass that lights vertices for Gouraud shading: without fog, which is applied to pixels.
+/// Features of the pass that lights vertices for Gouraud shading. Fog is left to pixels.
 FeatureSet vertexFeatures(const FeatureSet& features) {
   FeatureSet kept = features.without(featuresFor(kForFog, features));
   kept.set(Feature::kOutputShadow, false);
@@ -25,7 +25,7 @@ FeatureSet fogFeatures(const FeatureSet& features) {
   return kept;
 }
 
-/// The traits of the surfaces as this shading shows them.
+/// The traits of a scene's surfaces that this shading uses.
 SurfaceTraits surfaceTraits(const Scene& scene, Shading shading) {
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= shading != Shading::kFlat;
@@ -53,8 +53,8 @@ SurfaceTraits surfaceTraits(const GBuffer& gbuffer) {
           modelsOf(gbuffer)};
 }
 
-/// What doesn't depend on where the G-buffer comes from. view: of the whole picture. points_a_pixel: see
-/// shadowWays.
+/// The part of a plan that is the same for a scene's picture and for a G-buffer. view: of the whole picture.
+/// points_a_pixel: see shadowWays.
 PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const SurfaceTraits& surfaces,
                       const Camera& camera, const View& view, double points_a_pixel) {
   PicturePlan plan;
