@@ -14,7 +14,7 @@
 namespace luciole {
 namespace {
 
-/// The parts that the settings may ask for, named as kLightParts has them.
+/// A part of a picture's light by its AOV.
 struct LightPart {
   Aov aov;
   LightLayer layer;
@@ -33,7 +33,7 @@ std::vector<LightPart> lightParts() {
 
 void darken(float4& color) { color.x = color.y = color.z = 0; }
 
-/// What lights a layer. chosen: its lights, by their places in the picture's, in its order.
+/// The light set of a layer. chosen: indices of its lights in the picture's set, ascending.
 LightSet layerLights(OpenedDevice& device, const LightSet& lights, std::span<const std::uint32_t> chosen,
                      const LightLayer& layer) {
   LightSet set;

@@ -43,7 +43,7 @@ LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::ve
   return buildLightClusters(lights);
 }
 
-/// The clusters of the lights that some may stand for. highlights: surfaces have them.
+/// The clusters of the lights without an ExactReason. highlights: surfaces have specular colours.
 ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
                       const ShadeSettings& settings) {
   std::vector<std::uint32_t> chosen;

@@ -80,7 +80,7 @@ void addPart(const Stats& part, Stats& whole) {
   for (const auto& counted : part.counts) {
     const std::string& name = counted.first;
     const std::uint64_t count = counted.second;
-    // What is counted of the scene, and not of its pixels, every device counts.
+    // Every device has the counts of the scene; those of pixels add up.
     const bool is_of_scene =
         name.starts_with("lights_") || name.starts_with("shadow_lights") || name.starts_with("objects_");
     const auto known = std::find_if(whole.counts.begin(), whole.counts.end(),

@@ -22,14 +22,14 @@ double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 struct ReflectanceBound {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 
-  void cover(const ReflectanceBound& other) {
+  void include(const ReflectanceBound& other) {
     ambient = glm::max(ambient, other.ambient);
     diffuse = glm::max(diffuse, other.diffuse);
     specular = glm::max(specular, other.specular);
   }
 };
 
-/// An object that the fog hides unless it is brighter than assumedColor().
+/// An object that fog hides unless it is brighter than assumedColor().
 struct Candidate {
   std::uint32_t object;
   Bounds box;    ///< world
@@ -37,18 +37,18 @@ struct Candidate {
   ReflectanceBound response;
 };
 
-/// Upper bounds of the light that points of a box get, whichever way surfaces face.
+/// Upper bounds of the light at points of a box, for any normal.
 struct LightSum {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 };
 
-/// What the candidates have in common.
+/// The parameters of a picture that all candidates share.
 struct FogContext {
   const Scene& scene;
   glm::dvec3 eye;
   double emission = 0;  ///< the scene's brightest
-  /// Factor of colours for fogLimit(): the exposure, enlarged because the contrast of background and fog
-  /// uses up a part of the half step.
+  /// Factor of colours for fogLimit(): the exposure, times more for the part of the half step that the
+  /// contrast of background and fog takes.
   double gain = 0;
 };
 
@@ -59,7 +59,7 @@ ReflectanceBound reflectanceBound(const Scene& scene, const Object& object, Mode
   glm::dvec3 tint(mesh.colors.empty() ? 1.0 : 0.0);
   for (const glm::vec4& color : mesh.colors) tint = glm::max(tint, glm::dvec3(color));
   ReflectanceBound response;
-  const auto cover = [&](const Material& material) {
+  const auto include = [&](const Material& material) {
     const glm::dvec3 diffuse(material.diffuse);
     const glm::dvec3 ambient = scene.lighting ? glm::dvec3(material.ambient) : diffuse;
     ReflectanceBound own{.ambient = ambient * tint};
@@ -69,15 +69,15 @@ ReflectanceBound reflectanceBound(const Scene& scene, const Object& object, Mode
       own.diffuse[c] = most.diffuse * diffuse[c] * tint[c];
       own.specular[c] = most.specular;
     }
-    response.cover(own);
+    response.include(own);
   };
   if (object.material >= 0) {
-    cover(scene.materials[object.material]);
+    include(scene.materials[object.material]);
     return response;
   }
   std::vector<bool> is_covered(scene.materials.size());
   for (const std::uint32_t material : mesh.triangle_materials) {
-    if (!is_covered[material]) cover(scene.materials[material]);
+    if (!is_covered[material]) include(scene.materials[material]);
     is_covered[material] = true;
   }
   return response;
@@ -88,7 +88,7 @@ double attenuationBound(const Light& light, const Bounds& box, const glm::dvec3&
   if (light.kind == LightKind::kDirectional) return 1;
   const glm::dvec3 nearest = glm::clamp(light.position, box.low, box.high);
   const glm::dvec3 farthest = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
-  // The kernels' positions are rounded relative to their distance from the eye.
+  // Rounding of the kernels' positions, which is relative to their distance from the eye.
   const double lost = kSlack * (glm::length(farthest) + glm::distance(light.position, eye));
   const double distance = std::max(glm::distance(light.position, nearest) - lost, 0.0);
   if (distance >= light.range) return 0;
@@ -107,8 +107,8 @@ double brightestColor(const FogContext& fogged, const ReflectanceBound& response
   return (1 + kSlack) * (largest(color) + fogged.emission);
 }
 
-/// The brightness that every colour is assumed to have; only brighter ones need the lights. Not below the
-/// fog's own colour, because a black surface differs from that by as much.
+/// The brightness that every colour is assumed to have before lights are looked at. At least that of the fog,
+/// because a black surface differs from the fog by as much.
 double assumedColor(const FogContext& fogged) {
   return std::max({1.0, fogged.emission, largest(glm::dvec3(fogged.scene.fog.color))});
 }
@@ -125,9 +125,9 @@ double nearestDepth(const Bounds& box, const View& view) {
   return nearest;
 }
 
-/// Adds to `seen` the candidates that may be bright enough to shine through the fog. lights: all that may
-/// reach them. The candidates are tried together, by the box around them. If that doesn't settle it they are
-/// halved, and each half is tried with the lights that reach this box. Changes the candidates' order.
+/// Appends to `seen` the candidates that may be bright enough to be visible through the fog. lights: all that
+/// may reach them. Tests the box around all candidates; if it may be visible, divides them into halves, each
+/// with the lights that reach the box. Changes the candidates' order.
 void addBright(const FogContext& fogged, std::span<Candidate> candidates,
                const std::vector<const Light*>& lights, std::vector<std::uint32_t>& seen) {
   Bounds box;
@@ -137,7 +137,7 @@ void addBright(const FogContext& fogged, std::span<Candidate> candidates,
     box.low = glm::min(box.low, candidate.box.low);
     box.high = glm::max(box.high, candidate.box.high);
     depth = std::min(depth, candidate.depth);
-    response.cover(candidate.response);
+    response.include(candidate.response);
   }
   LightSum sum;
   std::vector<const Light*> reaching;

@@ -28,7 +28,7 @@ std::uint64_t rangeClass(const Light& light) {
   return std::uint64_t(std::clamp(std::ilogb(light.range), -510, 511) + 511);
 }
 
-/// The box around the lights that have a place.
+/// The bounding box of lights with a position.
 struct PositionBounds {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};

@@ -15,8 +15,8 @@ struct GBufferBuffers {
   Buffer<const float> lift;
 };
 
-/// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals and the lift given instead of
-/// its own. unlit: the diffuse colour takes the place of ambient.
+/// The planes of a G-buffer, borrowed (see Buffer), with the geometric normals, lift and models given instead
+/// of its own. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
                                const PackedNormals& geometric_normal, const Plane& lift,
                                const ModelPlane& model, bool unlit);
