@@ -45,8 +45,8 @@ BeamFrame frameOf(const BeamArguments& arguments) {
   return frame;
 }
 
-/// Counts the pairs of pixels and lights of a size that no ray decides. receivers: of each entry, how many of
-/// its pixels the light may reach.
+/// Counts the pairs with lights of a size that are decided without rays. receivers: for each entry the number
+/// of its pixels that the light may reach.
 void countDecided(const PairBits& receivers, std::size_t entries, PairShadows& pairs) {
   for (std::size_t entry = 0; entry < entries; ++entry) {
     if (receivers[entry] == 0) continue;
@@ -82,8 +82,8 @@ void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<co
 }
 
 BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams) {
-  // A light farther away shines from a direction, because a beam's numbers would overflow. One larger than
-  // any distance between places that beams know is as large as that: they are inside it.
+  // A light farther away becomes directional, because a beam's numbers would overflow. Radii are clamped to
+  // the largest distance between points of the tree's space: larger lights contain all points anyway.
   constexpr double kFarthest = 0x1p40;
   const TriangleTree& tree = *beams.tree;
   BeamLight result{};

@@ -16,17 +16,17 @@
 namespace luciole {
 namespace {
 
-/// What masks can address.
+/// The most texels that masks can address.
 constexpr std::size_t kMostTexels = std::size_t(1) << 31;
 /// Limits, in texels, of what kernels/exact/hole_masks.clh may compute a place from.
 constexpr double kMostPlace = 0x1p16, kMostCoordinate = 0x1p20;
 
-/// How much opacities may be off. A lookup mixes texels twice, with three roundings each: it exceeds them by
-/// 6·2⁻²⁴ < 2⁻²¹ of the largest, 1, at most. encodeSrgb is no steeper than 12.92, and adds 4·2⁻²⁴ of its own;
-/// factors round by 2⁻²⁴ each. All is below 2⁻¹⁷ + 2⁻²⁰.
+/// Upper bound of the error of opacities. A lookup interpolates texels twice, with three roundings each, so
+/// it exceeds them by 6·2⁻²⁴ < 2⁻²¹ at most. encodeSrgb has a slope of 12.92 at most and adds 4·2⁻²⁴; factors
+/// round by 2⁻²⁴ each. The sum is below 2⁻¹⁷ + 2⁻²⁰.
 constexpr float kMargin = 0x1p-16f;
 
-/// How much a mask's values may be off: ½, and what the kernel's rounding adds.
+/// Upper bound of the error of a mask's values: ½, plus the kernel's rounding.
 constexpr float kValueMargin = 0.5f + 0x1p-10f;
 
 unsigned char classify(float opacity, float factor, float cutoff) {
@@ -34,11 +34,11 @@ unsigned char classify(float opacity, float factor, float cutoff) {
   return opacity >= cutoff + margin ? kSolid : opacity < cutoff - margin ? kHole : kMixed;
 }
 
-/// How the opacity of a material depends on where one looks.
+/// How the opacity of a material varies over surfaces.
 struct MaterialHoles {
   unsigned char untextured = kMixed;  ///< on meshes without uvs
-  unsigned char all = kMixed;         ///< on others, if it is the same all over
-  const TextureUse* map = nullptr;    ///< what it varies by, if it has a mask
+  unsigned char all = kMixed;         ///< on others, if it is constant
+  const TextureUse* map = nullptr;    ///< the map of its mask; null: it has none
   int channel = 0;                    ///< of the map: 3, or 0 for the code of a grey one
   float factor = 0;                   ///< multiplies the map
   float solid_from = std::numeric_limits<float>::infinity(), hole_to = -solid_from;  ///< as HoleTriangle
@@ -74,14 +74,14 @@ float valueOf(int code, int channel) {
   return channel == 3 ? float(code) / 65535.0f : linearOfSrgb16()[std::size_t(code)];
 }
 
-/// The first of the codes 0 to 65535 for which `is` doesn't hold, which holds for all before it and none
-/// after; 65536 if it holds for all.
-template <class Is>
-int firstFailing(const Is& is) {
+/// The first of the codes 0 to 65535 for which `holds` is false; 65536 if there is none. `holds` must be true
+/// for all codes before it and false for all after it.
+template <class Holds>
+int firstFailing(const Holds& holds) {
   int first = 0, end = 65536;
   while (first < end) {
     const int middle = (first + end) / 2;
-    if (is(middle))
+    if (holds(middle))
       first = middle + 1;
     else
       end = middle;
@@ -194,7 +194,7 @@ std::vector<char> opaqueColors(const Scene& scene) {
   return opaque;
 }
 
-/// A coordinate of a triangle's corners on a mask, in texels: of corner a, and from there to b and to c.
+/// A texture coordinate of a triangle, in texels of a mask: at corner a, and the differences to b and to c.
 struct MaskCoordinates {
   double a, ab, ac;
   double largest;  ///< |coordinate|, or infinity if one isn't finite

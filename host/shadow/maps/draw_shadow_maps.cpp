@@ -17,16 +17,16 @@ static_assert(kShadowBin == kBinSize);  // so that lookups and drawing share bin
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-/// A face that must be drawn to.
+/// The drawing that a face needs.
 struct FaceUpdate {
   std::size_t face;
-  bool moves;                      ///< its rectangle grows: it gets a new place
-  std::vector<bool> bins_to_draw;  ///< bins to draw
-  glm::ivec2 kept_first;           ///< where it moves: of the old rectangle, whose texels are copied
+  bool moves;  ///< its rectangle grows: it gets a new place
+  std::vector<bool> bins_to_draw;
+  glm::ivec2 kept_first;  ///< if it moves: the old rectangle, whose texels are copied
   glm::ivec2 kept_count;
 };
 
-/// What must be drawn of a face, if anything. Updates its depths and its rectangle. expects_more: see
+/// The drawing that a face needs; nothing if none. Updates its depths and its rectangle. expects_more: see
 /// ShadowMaps.
 std::optional<FaceUpdate> faceUpdate(std::size_t index, const ShadowFace& lookup,
                                      std::span<const std::uint32_t> needed, bool expects_more,
@@ -48,11 +48,11 @@ std::optional<FaceUpdate> faceUpdate(std::size_t index, const ShadowFace& lookup
     last = glm::max(last, glm::ivec2(bin % side, bin / side));
   }
   if (!any) return std::nullopt;
-  const auto isHeld = [&](const glm::ivec2& bin) {
+  const auto isInRectangle = [&](const glm::ivec2& bin) {
     return glm::all(glm::greaterThanEqual(bin * kBinSize, face.first)) &&
            glm::all(glm::lessThan(bin * kBinSize, face.first + face.count));
   };
-  if (isHeld(first) && isHeld(last)) return task;
+  if (isInRectangle(first) && isInRectangle(last)) return task;
   task.moves = true;
   const int margin = expects_more ? 1 : 0;
   const glm::ivec2 from = glm::max(first - margin, 0) * kBinSize,
@@ -62,7 +62,7 @@ std::optional<FaceUpdate> faceUpdate(std::size_t index, const ShadowFace& lookup
   return task;
 }
 
-/// Draws all of a face again that was drawn so far, at a new place.
+/// Draws again all bins that a face has drawn so far, at a new place.
 FaceUpdate fullRedraw(std::size_t index, const PlannedFace& face) {
   FaceUpdate task{index, true, std::vector<bool>(face.farthest.size()), {}, glm::ivec2(0)};
   for (std::size_t bin = 0; bin < face.farthest.size(); ++bin)

@@ -37,13 +37,13 @@ View squareView(const glm::dmat4& world_to_view, const glm::dmat4& projection, i
   return view;
 }
 
-/// Texels around the one that a lookup falls into which it may read, on a face with this border. Where it
-/// reads that one alone, rounding may still make it the next.
+/// The distance in texels from the texel of a lookup to those that it may read, on a face with this border.
+/// It is at least 1, because rounding may select the next texel.
 int lookupRadius(int border, ShadowMethod method) {
   return method == ShadowMethod::kPcf || method == ShadowMethod::kSoft ? border : 1;
 }
 
-/// A face to which nothing is drawn yet.
+/// A face without texels.
 ShadowFace emptyFace(double scale, const glm::dvec2& middle, int size, int border) {
   ShadowFace face{};
   face.scale = float(scale);
@@ -57,7 +57,7 @@ ShadowFace emptyFace(double scale, const glm::dvec2& middle, int size, int borde
 PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
   // The axes depend on the light alone, so that texels stay where they are while the camera turns.
   const glm::dmat4 world_to_light = lookAlong(glm::dvec3(0), light.direction, glm::dvec3(0, 1, 0));
-  double low = 1e300, high = -1e300;  // everything between what is seen and the light casts
+  double low = 1e300, high = -1e300;  // depths of all that is seen, and of all casters in front of it
   for (const glm::dvec3& corner : boxCorners(input.bounds)) {
     const double towards = (world_to_light * glm::dvec4(corner, 1)).z;
     low = std::min(low, towards);
