@@ -109,15 +109,15 @@ inline float chosenLevel(float level, Mips mips) {
   return mips == Mips::kNone ? 0.0f : std::ceil(level - 0.5f);
 }
 
-/// Where a square's points lie between the texels of a level: the four around each, counted in texels from
-/// the level's first, and the shares of the right and lower ones.
+/// The bilinear footprint of a square's points in a level: the indices of the four texels around each point,
+/// and the weights of the right and lower ones.
 struct SquareTexels {
   Lanes<const std::uint16_t*> first;
   Lanes<std::uint32_t> top_left, top_right, bottom_left, bottom_right;
   Lanes<float> across, down;
 };
 
-/// What a square's pixels look up: each in two levels, of which the coarser has a share.
+/// The lookup of a square's pixels: each in two levels, which are mixed by the share of the coarser.
 struct SquareLookup {
   SquareTexels finer, coarser;
   LaneMask is_finest;  ///< whether `finer` is level 0, whose codes are others
@@ -140,7 +140,7 @@ bool any(const LaneMask& mask) {
   return found != 0;
 }
 
-/// Puts the points of some pixels on the texels that they lie in.
+/// Sets the points of some pixels to the centres of the texels that contain them.
 void snap(const LaneMask& mask, SquareTexels& texels) {
   for (int i = 0; i < kSquarePixels; ++i) {
     if (!mask[i]) continue;

@@ -25,13 +25,13 @@ struct SeenSurface {
   std::uint32_t geometric_normal = 0;  ///< facing_normal, by packNormal()
   Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
   Lift lift;                           ///< for ResolveInput::lifts
-  bool mapped = false;                 ///< its material has maps that colour it, and its mesh coordinates:
-  Interpolant<glm::dvec2> uv;          ///< zero where not
+  bool mapped = false;                 ///< it has diffuse or emission maps and texture coordinates
+  Interpolant<glm::dvec2> uv;          ///< if mapped
   bool has_normal_map = false;         ///< for Shading::kPhong
-  bool has_emission_uv = false;        ///< the emission map has texture coordinates of its own:
+  bool has_emission_uv = false;        ///< its emission map has other texture coordinates, emission_uv
   Interpolant<glm::dvec2> emission_uv;
-  bool colored = false;
-  Interpolant<glm::dvec3> color;  ///< where colored: the vertices' colours, or their lit colours
+  bool colored = false;           ///< it has vertex colours or lit vertices
+  Interpolant<glm::dvec3> color;  ///< if colored: these colours
 };
 /// The surface of a triangle, by its number. O(log objects).
 SeenSurface makeSeenSurface(const ResolveInput& input, std::uint32_t triangle);

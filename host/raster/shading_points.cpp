@@ -17,7 +17,7 @@
 namespace luciole {
 namespace {
 
-/// What a triangle's plane shows at a place of the picture, inside the triangle or not.
+/// The attributes of a triangle's plane at a place of the picture, inside the triangle or not.
 struct PlaneAttributes {
   glm::dvec3 position;
   glm::dvec3 normal;  ///< unit
@@ -36,11 +36,11 @@ PlaneAttributes planeAttributes(const SeenSurface& seen, const glm::dvec3& p) {
           glm::normalize(at(seen.normal)), at(seen.uv), at(seen.emission_uv), at(seen.color)};
 }
 
-/// Facets that are bent more against each other are not looked at further, to save time.
+/// The cosine between facets below which they are taken to differ, to save time.
 constexpr double kMostBentCosine = 0.97;
 
-/// Whether two triangles of one object and material show the same at the place p (see ViewPlane::at): normals
-/// and colours within kSameShade, positions and texture coordinates within half a pixel along x and along y.
+/// Whether two triangles of one object and material agree at the place p (see ViewPlane::at): normals and
+/// colours within kSameShade, positions and texture coordinates within half a pixel along x and along y.
 bool agreeAt(const SeenSurface& a, const SeenSurface& b, const glm::dvec3& p, const ViewPlane& plane) {
   // What isn't finite agrees with nothing.
   const PlaneAttributes of_a = planeAttributes(a, p), of_b = planeAttributes(b, p);
@@ -78,7 +78,7 @@ struct SampleGroup {
   bool merged;         ///< into another group
 };
 
-/// What tells at once that two groups see different surfaces, or the same.
+/// Attributes for a quick comparison of groups.
 struct GroupTraits {
   const PlacedObject* object;
   const Material* material;
@@ -87,7 +87,7 @@ struct GroupTraits {
   glm::dvec3 facing_normal;
 };
 
-/// What grouping the samples of a bin's pixels needs, one a thread.
+/// The state of grouping samples, one for each thread.
 struct Grouping {
   const SampledView& sampled;
   SurfaceCache& surfaces;
