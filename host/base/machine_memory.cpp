@@ -59,7 +59,7 @@ double roomInGroup(const std::string& folder, const GroupFiles& files) {
   return *limit - std::max(used - numberAfter(folder + "/memory.stat", files.droppable), 0.0);
 }
 
-/// Narrows `room` to what a control group and all groups above it leave.
+/// Reduces `room` to the memory that a control group and all groups above it leave.
 void narrow(MemoryRoom& room, const std::string& mount, std::string group, const GroupFiles& files) {
   for (;; group.erase(group.rfind('/'))) {
     const double left = roomInGroup(mount + group, files);
@@ -68,8 +68,8 @@ void narrow(MemoryRoom& room, const std::string& mount, std::string group, const
   }
 }
 
-/// Narrows `room` to what a resource limit leaves. `used`: the field of /proc/self/status that says, in kB,
-/// how much of it is in use.
+/// Reduces `room` to the memory that a resource limit leaves. `used`: the field of /proc/self/status with the
+/// use in kB.
 void narrow(MemoryRoom& room, __rlimit_resource_t resource, const char* used, const char* name) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;

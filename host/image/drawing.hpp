@@ -14,9 +14,9 @@ namespace luciole {
 
 using LinearColor = std::array<float, 3>;
 inline constexpr LinearColor kInk{0.0f, 0.0f, 0.0f};
-inline constexpr double kMargin = 2.0;  ///< left and right of what is written, in text sizes
+inline constexpr double kMargin = 2.0;  ///< left and right of texts, in text sizes
 
-/// Where a picture and the caption below it lie, in pixels.
+/// The layout of a picture and the caption below it, in pixels.
 struct CaptionedSize {
   int width, height;  ///< of both together
   int factor;         ///< every pixel of the picture is a square of so many a side
