@@ -91,8 +91,8 @@ FileView findView(const FileViewInput& input) {
   }
 
   if (view.space == FileSpace::kCamera) {
-    // Without a fit a point tells the side. The file's camera, but not a typed one, has the
-    // same axes as the positions.
+    // Without a fit a point decides the side. The file's camera, but not a typed one, has the same axes as
+    // the positions.
     const bool is_behind = !input.points.empty() && input.points.front().point.z > 0;
     const glm::dvec3 signs = rays ? rays->signs : glm::dvec3(1, 1, is_behind ? -1 : 1);
     view.to_view = scaled(signs);

@@ -31,11 +31,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Whether a depth means infinity: Blender writes 1e10, Arnold 1e30. Nothing of a scene is farther than 1e18.
 bool isFar(float depth) { return std::abs(depth) == 1e10f || !(std::abs(depth) < 1e20f); }
 
-/// How far from 1 a normal's length may be. The raster's are rounded once, and off by 2⁻²⁴ at most; what
-/// bounds a picture's error allows for this (LIGHT_ROUNDING in kernels/clusters/clustered_light.cl).
+/// Normals whose lengths differ from 1 by less keep their bits. The rasterizer's are rounded once, and off by
+/// 2⁻²⁴ at most. The bounds of light errors allow for this much (LIGHT_ROUNDING in
+/// kernels/clusters/clustered_light.cl).
 constexpr double kUnitError = 3 * 0x1p-24;
 
-/// Why pixels show nothing, counted by all threads.
+/// The numbers of background pixels by reason, counted by all threads.
 struct Holes {
   std::atomic<std::size_t> zero{0}, infinite{0}, nan{0}, far{0};
 
@@ -73,7 +74,7 @@ class Conversion {
     const FoundLayer& main =
         found_[Role::kPosition].isThere() ? found_[Role::kPosition] : found_[Role::kDepth];
     part_ = reader_.parts()[std::size_t(main.part)];
-    // Some writers put what is common into the first part alone.
+    // Some writers put attributes of all parts into the first part alone.
     for (const PicturePart& part : reader_.parts()) {
       ExrAttributes& all = part_.attributes;
       all.texts.insert(all.texts.end(), part.attributes.texts.begin(), part.attributes.texts.end());

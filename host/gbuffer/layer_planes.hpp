@@ -11,7 +11,7 @@
 
 namespace luciole {
 
-/// A layer's pixels, row by row. Empty where there is no such layer.
+/// A layer's pixels, row by row. False if the file lacks the layer.
 struct LayerPlanes {
   std::array<const float*, 3> planes{};
   std::array<std::string, 3> names;
