@@ -35,14 +35,14 @@ Facet facetOf(const Mesh& mesh, const glm::uvec3& corners) {
   return {along / length, area < 0};
 }
 
-/// A vector without its part along a unit normal, unit; zero where nothing is left.
+/// A vector projected into the plane of a unit normal, at unit length; zero if nothing remains.
 glm::dvec3 flattened(const glm::dvec3& vector, const glm::dvec3& normal) {
   const glm::dvec3 flat = vector - normal * glm::dot(normal, vector);
   const double length = glm::length(flat);
   return length > 1e-12 * glm::length(vector) && std::isfinite(length) ? flat / length : glm::dvec3(0.0);
 }
 
-/// The number of the first vertex that is the same for tangents: in place, normal and texture coordinates.
+/// For each vertex the first one with the same position, normal and texture coordinates.
 std::vector<std::uint32_t> weld(const Mesh& mesh) {
   using Key = std::array<float, 8>;
   const std::vector<glm::vec2>& uvs = uvsOf(mesh);

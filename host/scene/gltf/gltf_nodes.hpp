@@ -11,12 +11,12 @@
 
 namespace luciole {
 
-/// A node with its place in the world.
+/// A node with its world transform.
 struct PlacedNode {
   int node = 0;
   glm::dmat4 to_world{1.0};  ///< without animation
   int moving = -1;           ///< the node of Animation::nodes that it is attached to; -1: none
-  glm::dmat4 since{1.0};     ///< from the node's space to that of `moving`, or to world space
+  glm::dmat4 since{1.0};     ///< from the node's space to that of `moving`, or to world space if −1
   bool shown = true;         ///< false: only skins may need it
 };
 
