@@ -15,25 +15,25 @@ namespace luciole {
 /// failed (MachineError).
 enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3 };
 
-/// What the program and a command know of each other.
+/// The state that the program and a command share.
 struct CommandContext {
   std::string command_line;          ///< as typed, for metadata and statistics
-  int status = kDone;                ///< where the command leaves the exit status
+  int status = kDone;                ///< the exit status, set by the command
   OpenedDevice device{};             ///< for the command to open; the end of the process closes it
   std::list<OpenedDevice> others{};  ///< that --device all opens beside it
 };
 
-/// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see
-/// event_log.hpp), and returns the exit status for the exception. frame: the one that failed, of several.
+/// Call it in a catch block. Writes the exception's message to standard error, as a line or an event (see
+/// event_log.hpp), and returns its exit status. frame: the one that failed, of several.
 int reportFailure(std::optional<int> frame = std::nullopt);
 
-/// Writes to standard error what is wrong, as a line or an event. status: the exit status that it leads to.
+/// Writes an error to standard error, as a line or an event. status: the exit status that it leads to.
 void reportError(const std::string& message, int status);
 
 /// Writes a warning to standard error, as a line or an event.
 void reportWarning(const std::string& text);
-/// Lines for people: of each kind of warning ten at most, in order, then how many more there are, which the
-/// option lists.
+/// Lines for people: the first ten warnings of each kind, then the number of others, with the option that
+/// lists them.
 std::vector<std::string> shownWarnings(const std::vector<Warning>& warnings, const std::string& option);
 /// Writes a scene's warnings to standard error: the lines above, or all of them as events.
 void reportWarnings(const std::vector<Warning>& warnings);

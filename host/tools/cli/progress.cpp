@@ -35,7 +35,7 @@ void ProgressLine::show(const std::string& what, std::size_t done, std::size_t t
   put(line);
 }
 
-void ProgressLine::tell(const std::string& what) {
+void ProgressLine::showBusy(const std::string& what) {
   if (logsEvents()) {
     EventFields fields;
     if (frame) fields["frame"] = *frame;
@@ -59,7 +59,7 @@ void ProgressLine::clear() {
 }
 
 std::function<void()> compileReporter(ProgressLine& progress) {
-  return [&progress] { progress.tell("compiling kernels"); };
+  return [&progress] { progress.showBusy("compiling kernels"); };
 }
 
 std::string duration(double seconds) {
