@@ -65,6 +65,12 @@ PublicHeadersIncludeEachOtherAlone() {
     (($(find host/include -name '*.hpp' | wc -l) <= 25))
 }
 
+# An installed library has no other files.
+PublicHeadersNameNoFileOfARoom() {
+  ! sed 's|^#include.*||; s|luciole/[a-z_]*[.]hpp||g' host/include/luciole/*.hpp |
+    grep -E '[a-z_]+[.](hpp|cpp|clh?)\b|(host|kernels)/'
+}
+
 RoomsIncludeOnlyFromWhatTheyStandOn() {
   local file room other status=0
   while IFS=: read -r file other; do

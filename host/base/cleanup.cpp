@@ -14,18 +14,18 @@ Cleanups* cleanups_used = &of_program;
 
 Cleanups& cleanups() { return *cleanups_used; }
 
-void useCleanups(Cleanups& others) { cleanups_used = &others; }
+void shareCleanups(Cleanups& others) { cleanups_used = &others; }
 
-std::unique_lock<std::recursive_mutex> undisturbed() { return std::unique_lock(cleanups().mutex); }
+std::unique_lock<std::recursive_mutex> holdSignals() { return std::unique_lock(cleanups().mutex); }
 
 Cleanup::Cleanup(std::function<void()> undo) {
-  const auto lock = undisturbed();
+  const auto lock = holdSignals();
   cleanups().all.push_front(std::move(undo));
   place_ = cleanups().all.begin();
 }
 
 Cleanup::~Cleanup() {
-  const auto lock = undisturbed();
+  const auto lock = holdSignals();
   cleanups().all.erase(place_);
 }
 

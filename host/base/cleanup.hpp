@@ -6,22 +6,22 @@
 #include <list>
 #include <mutex>
 
-// What would outlive the process, such as files under hidden names, and is undone if a signal ends it.
+// Cleaning up what would outlive the process, such as files under hidden names, when a signal ends it.
 namespace luciole {
 
-/// What is registered. The module that reads pictures (image/module.hpp) has a copy of this code, and is
-/// given the program's.
+/// The registry. The module that reads pictures (image/module.hpp) has a copy of this code and shares the
+/// program's registry by shareCleanups().
 struct Cleanups {
   std::recursive_mutex mutex;
   std::list<std::function<void()>> all;
-  /// Names of files that are not whole yet. Those beyond are left behind by a process that ends early.
+  /// Names of incomplete files. More of them at once than this would be left behind.
   std::array<std::atomic<const char*>, 64> hidden_files{};
 };
 Cleanups& cleanups();
-void useCleanups(Cleanups& others);
+void shareCleanups(Cleanups& others);
 
-/// While one is held no signal ends the process: for what takes several steps.
-[[nodiscard]] std::unique_lock<std::recursive_mutex> undisturbed();
+/// While the lock is held no signal ends the process. For sequences of steps that must not be interrupted.
+[[nodiscard]] std::unique_lock<std::recursive_mutex> holdSignals();
 
 /// As long as this lives, cleanUp() calls `undo`.
 class Cleanup {
@@ -38,8 +38,8 @@ class Cleanup {
 /// Removes the hidden files, for a process that ends at once. A signal handler may call it.
 void removeHiddenFiles() noexcept;
 
-/// Removes them and undoes all else, what was registered last first, before the process ends. From then on
-/// whoever comes to undisturbed() or registers something waits for good.
+/// Removes the hidden files and calls all `undo` functions, the last registered first, before the process
+/// ends. Never releases the lock: from then on holdSignals() and Cleanup() block for ever.
 void cleanUp();
 
 }  // namespace luciole

@@ -7,8 +7,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// When the library was loaded. Not when the process began: a shell that becomes the program (exec) may have
-/// done minutes of other work in it.
+/// When the library was loaded.
 const Clock::time_point kLoaded = Clock::now();
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 namespace luciole {
 
-/// Nanoseconds since the program was loaded into this process. A shell may have lived in it before. The one
-/// clock of stages, statistics and traces; it runs at the same pace whatever is done to the time of day.
+/// Nanoseconds since the program was loaded. That may be later than the process's start, if a shell became
+/// the program by exec. The clock of stages, statistics and traces; it is monotonic.
 std::int64_t nanosecondsSinceStart();
 
 /// The same in milliseconds.

@@ -27,8 +27,8 @@ void makeUtf8(Json& json) {
   }
 }
 
-/// The text of a JSON value that may hold names from anywhere, which JSON may not: valid UTF-8 always.
-/// `indent`: as of Json::dump.
+/// The text of a JSON value whose strings may be invalid UTF-8, which Json::dump() refuses. `indent`: as of
+/// Json::dump().
 template <class Json>
 std::string dumpUtf8(Json json, int indent = -1) {
   makeUtf8(json);

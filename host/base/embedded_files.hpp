@@ -5,7 +5,7 @@
 
 namespace luciole {
 
-/// A file compiled into the program. Views of static memory: they are valid as long as the program runs.
+/// A file compiled into the program. Its views are of static memory.
 struct EmbeddedFile {
   std::string_view name;
   std::string_view text;

@@ -59,7 +59,7 @@ double roomInGroup(const std::string& folder, const GroupFiles& files) {
   return *limit - std::max(used - numberAfter(folder + "/memory.stat", files.droppable), 0.0);
 }
 
-/// Narrows `room` to what a control group and all groups above it leave.
+/// Reduces `room` to the memory that a control group and all groups above it leave.
 void narrow(MemoryRoom& room, const std::string& mount, std::string group, const GroupFiles& files) {
   for (;; group.erase(group.rfind('/'))) {
     const double left = roomInGroup(mount + group, files);
@@ -68,8 +68,8 @@ void narrow(MemoryRoom& room, const std::string& mount, std::string group, const
   }
 }
 
-/// Narrows `room` to what a resource limit leaves. `used`: the field of /proc/self/status that says, in kB,
-/// how much of it is in use.
+/// Reduces `room` to the memory that a resource limit leaves. `used`: the field of /proc/self/status with the
+/// use in kB.
 void narrow(MemoryRoom& room, __rlimit_resource_t resource, const char* used, const char* name) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
@@ -87,7 +87,7 @@ double stackBytes() {
   return double(bytes);
 }
 
-std::string inWords(double bytes) {
+std::string formatBytes(double bytes) {
   return bytes < double(1 << 30) ? fmt::format("{:.0f} MiB", bytes / (1 << 20))
                                  : fmt::format("{:.1f} GiB", bytes / (1 << 30));
 }
@@ -96,8 +96,8 @@ void require(double bytes, MemoryRoom room, const std::string& what) {
   room.bytes = std::max(room.bytes, 0.0);
   // The comparison is negated so that NaN, which a product of sizes may be, is refused.
   if (!(bytes <= room.bytes))
-    throw MachineError(fmt::format("{} needs {} of memory, and may use {} ({})", what, inWords(bytes),
-                                   inWords(room.bytes), room.limited_by));
+    throw MachineError(fmt::format("{} needs {} of memory, and may use {} ({})", what, formatBytes(bytes),
+                                   formatBytes(room.bytes), room.limited_by));
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ void requireMappings(double addresses, double writable, unsigned threads, const 
   require(writable + stacks, data, what);
 }
 
-void saveAddresses() {
+void limitMallocArenas() {
 #if defined(__GLIBC__)
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) mallopt(M_ARENA_MAX, 1);

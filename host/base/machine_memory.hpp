@@ -7,7 +7,7 @@ namespace luciole {
 /// Bytes of physical memory of the machine.
 double machineMemory();
 
-/// How much more memory this process may take.
+/// The memory that this process may still take.
 struct MemoryRoom {
   double bytes;            ///< ≥ 0
   std::string limited_by;  ///< "the machine", "the control group /a/b", "ulimit -v" or "ulimit -d"
@@ -26,8 +26,7 @@ MemoryRoom memoryRoom();
 /// text says.
 MemoryRoom controlGroupRoom(const std::string& groups, const std::string& mount);
 
-/// Throws MachineError where `bytes` are more than memoryRoom() leaves; `what` names in the message what
-/// needs them.
+/// Throws MachineError if `bytes` are more than memoryRoom(). `what`: their use, for the message.
 void requireMemory(double bytes, const std::string& what);
 
 /// The same for a library that maps much memory and touches little of it. `addresses`: bytes of address
@@ -35,10 +34,9 @@ void requireMemory(double bytes, const std::string& what);
 /// The stacks of `threads` threads are added to both.
 void requireMappings(double addresses, double writable, unsigned threads, const std::string& what);
 
-/// Where addresses are limited (`ulimit -v`), lets all threads allocate from one arena. glibc gives threads
-/// that meet arenas of 64 MiB of addresses each, so that what the process takes depended on how threads are
-/// scheduled, and OpenCL's compiler aborts or hangs where addresses run out. To be called before any thread
-/// is started.
-void saveAddresses();
+/// If address space is limited (`ulimit -v`), makes malloc use one arena for all threads. By default glibc
+/// gives contending threads arenas of 64 MiB of addresses each, so the need for addresses would depend on
+/// scheduling, and OpenCL's compiler aborts or hangs when they run out. Call it before any thread is started.
+void limitMallocArenas();
 
 }  // namespace luciole

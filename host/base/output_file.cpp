@@ -30,7 +30,7 @@ template <class Make>
 int makeHidden(const std::string& folder, std::string& name, Make make) {
   for (unsigned serial = 0;; ++serial) {
     name = fmt::format("{}/.luciole-{}-{}.tmp", folder, getpid(), serial);
-    const int result = again([&] { return make(name.c_str()); });
+    const int result = retryInterrupted([&] { return make(name.c_str()); });
     if (result >= 0 || errno != EEXIST) return result;
   }
 }
@@ -78,15 +78,16 @@ OutputFile::OutputFile(const std::string& path) : path_(path), is_stream_(leadsT
     return;
   }
   if (is_stream_) {
-    descriptor_ = again([&] { return open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC); });
+    descriptor_ = retryInterrupted([&] { return open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC); });
     if (descriptor_ < 0) throw InputError(fmt::format("{}: can't write to it: {}", path, systemReason()));
     return;
   }
   place_ = followLinks(path);
   const std::string folder = folderOf(place_);
-  descriptor_ = again([&] { return open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); });
+  descriptor_ =
+      retryInterrupted([&] { return open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666); });
   if (descriptor_ >= 0) return;
-  const auto lock = undisturbed();
+  const auto lock = holdSignals();
   descriptor_ = makeHidden(folder, beside_, [](const char* name) {
     return open(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   });
@@ -121,7 +122,7 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
     throw MachineError(name() + ": can't go back to where something was written, expected a file");
   size_ += bytes.size();
   while (!bytes.empty()) {
-    const ssize_t written = again([&] {
+    const ssize_t written = retryInterrupted([&] {
       return is_stream_ ? write(descriptor_, bytes.data(), bytes.size())
                         : pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
     });
@@ -135,9 +136,10 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
 void OutputFile::putInPlace() {
   if (path_ == "-") return;
   // Some file systems can't sync, which is no error.
-  if (!is_stream_ && again([&] { return fsync(descriptor_); }) != 0 && errno != EINVAL && errno != ENOTSUP)
+  if (!is_stream_ && retryInterrupted([&] { return fsync(descriptor_); }) != 0 && errno != EINVAL &&
+      errno != ENOTSUP)
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
-  const auto lock = undisturbed();
+  const auto lock = holdSignals();
   if (!is_stream_ && !has_name_) {
     const std::string nameless = fmt::format("/proc/self/fd/{}", descriptor_);
     // linkat() can't replace a file, rename() can: the file gets a hidden name first.
@@ -152,7 +154,7 @@ void OutputFile::putInPlace() {
   if (closed != 0 && errno != EINTR)  // Linux has closed it then, and fsync() above told what was lost
     throw MachineError(fmt::format("{}: can't write: {}", path_, systemReason()));
   if (is_stream_) return;
-  if (again([&] { return std::rename(beside_.c_str(), place_.c_str()); }) != 0) {
+  if (retryInterrupted([&] { return std::rename(beside_.c_str(), place_.c_str()); }) != 0) {
     const int code = errno;
     const std::string message = fmt::format("{}: can't put the file in place: {}", path_, systemReason());
     if (isPlaceRefused(code)) throw InputError(message);

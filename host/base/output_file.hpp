@@ -10,7 +10,7 @@ namespace luciole {
 
 /// Makes a system call again where a signal interrupted it. Returns its result, < 0 for failure.
 template <class Call>
-auto again(Call call) {
+auto retryInterrupted(Call call) {
   auto result = call();
   while (result < 0 && errno == EINTR) result = call();
   return result;
@@ -31,10 +31,10 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Whether each writeAt() must begin where the one before ended.
+  /// Whether it is a stream: each writeAt() must continue the one before.
   bool isStream() const { return is_stream_; }
 
-  /// For another program that writes the file, which is no stream, by itself.
+  /// For another program that writes the file. Not for streams.
   int descriptor() const { return descriptor_; }
 
   /// Throws MachineError where the disk is full or `offset` is not a stream's end.

@@ -1,8 +1,5 @@
 #include "base/page_text.hpp"
 
-#include <algorithm>
-#include <cstdint>
-
 namespace luciole {
 namespace {
 
@@ -22,19 +19,6 @@ std::string embeddableScript(std::string script) {
   replaceAll(script, "</script", "<\\/script");
   replaceAll(script, "<!--", "<\\!--");
   return script;
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 std::string fillIn(std::string_view text,

@@ -5,21 +5,18 @@
 #include <utility>
 #include <vector>
 
-// What pages are made of that are whole in one file.
+// Text for HTML pages that consist of one file.
 namespace luciole {
 
-/// JSON in which an HTML parser sees no tag. In JSON a '<' stands only in strings, where it can be escaped.
+/// JSON that contains no HTML tag: '<', which JSON has in strings only, is escaped.
 std::string embeddableJson(std::string json);
 
-/// A script without the texts that would end it early, or hide its end, in an HTML file. In a script they
-/// stand in strings, regular expressions and comments, where the backslash changes nothing.
+/// A script without the texts "</script" and "<!--", which would end it early, or hide its end, in an HTML
+/// file. Scripts have them in strings, regular expressions and comments, where the inserted backslash changes
+/// nothing.
 std::string embeddableScript(std::string script);
 
-/// Base 64 as in RFC 4648.
-std::string base64(std::string_view bytes);
-
-/// `text` with each {{name}} replaced by what the list has for it, once: what is put in is not looked at
-/// again.
+/// `text` with each {{name}} replaced by its entry in the list. Replacements aren't searched for names.
 std::string fillIn(std::string_view text,
                    const std::vector<std::pair<std::string_view, std::string>>& contents);
 

@@ -32,7 +32,7 @@ std::optional<int> threadLimit() { return limit(); }
 
 unsigned threadCount() { return limit() ? unsigned(*limit()) : std::thread::hardware_concurrency(); }
 
-unsigned livingThreads() {
+unsigned countThreads() {
   std::ifstream status("/proc/self/status");
   unsigned threads = 0;
   for (std::string field; status >> field;)

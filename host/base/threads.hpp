@@ -18,7 +18,7 @@ std::optional<int> threadLimit();
 /// Threads that work is spread over: threadLimit(), else as many as this process may run at once.
 unsigned threadCount();
 
-/// Threads that this process has now, idle ones too.
-unsigned livingThreads();
+/// The number of threads that this process has now, idle ones included.
+unsigned countThreads();
 
 }  // namespace luciole

@@ -9,12 +9,11 @@
 #include <variant>
 #include <vector>
 
-/// What the process did when, in which thread and on the device: recorded from startTrace() on, for --trace.
-/// Any thread may record. Without a trace nothing is recorded, and nothing allocated.
+/// A timeline of the process's threads and devices, recorded from startTrace() to endTrace(), for --trace.
+/// Any thread may record. Otherwise nothing is recorded or allocated.
 namespace luciole {
 
-/// A line of the picture that a trace makes: a thread, or a device's queue. What lies on it nests or doesn't
-/// overlap.
+/// A track of the timeline: a thread, or a device's queue. Its events are nested or don't overlap.
 struct TraceTrack {
   std::string name;
   bool is_device = false;
@@ -22,13 +21,13 @@ struct TraceTrack {
 
 using TraceArguments = std::vector<std::pair<std::string, std::variant<std::int64_t, double, std::string>>>;
 
-/// Something that was done. Times are nanosecondsSinceStart().
+/// An event of a track. Times are nanosecondsSinceStart().
 struct TraceEvent {
   std::string name;
   const char* category;  ///< one of the three below
   std::size_t track;     ///< index into Trace::tracks
   std::int64_t begin, end;
-  TraceArguments arguments{};  ///< what else it tells
+  TraceArguments arguments{};  ///< further details
 };
 
 /// Categories of events: a stage as --stats has it, a part of one, and a command of a device.
@@ -39,7 +38,7 @@ struct Trace {
   std::vector<TraceEvent> events;  ///< in the order in which they ended
 };
 
-/// A part of TraceArguments that allocates nothing, as long as what it names lives.
+/// An argument that allocates nothing. It refers to its texts.
 struct TraceArgument {
   const char* name;
   std::variant<std::int64_t, double, std::string_view> value;
@@ -49,10 +48,10 @@ struct TraceArgument {
 /// "worker 1", "worker 2" … in the order in which they first record.
 void startTrace();
 
-/// Whether what happens is recorded.
+/// Whether events are recorded now.
 bool isTracing();
 
-/// Ends recording and gives what was recorded.
+/// Ends recording and returns the trace.
 Trace endTrace();
 
 /// Records an event on its track.
@@ -65,7 +64,7 @@ std::size_t deviceTrack(const std::string& name);
 
 TraceArguments traceArguments(std::initializer_list<TraceArgument> arguments);
 
-/// Records what its own life takes, as a part.
+/// Records the time from its construction to its destruction, as a part of a stage.
 class TraceSpan {
  public:
   explicit TraceSpan(const char* name, std::initializer_list<TraceArgument> arguments = {});
@@ -78,8 +77,8 @@ class TraceSpan {
   bool is_recorded_;
 };
 
-/// Names the calling thread's track as long as it lives. Threads of one name that don't live at once share a
-/// track, so that a film has not one for each frame.
+/// Names the calling thread's track during its lifetime. Threads of one name whose lifetimes don't overlap
+/// share a track, so that a film doesn't get one for each frame.
 class TraceThread {
  public:
   explicit TraceThread(const char* name);

@@ -15,7 +15,7 @@
 namespace luciole {
 namespace {
 
-/// Host memory that a buffer lies in and owns: freed when OpenCL destroys the buffer.
+/// Host memory that a buffer owns. It is freed when OpenCL destroys the buffer.
 struct OwnArray {
   void* memory;
   std::size_t bytes;
@@ -27,8 +27,8 @@ struct OwnArray {
 
 void CL_CALLBACK freeOwnArray(cl_mem, void* array) { delete static_cast<OwnArray*>(array); }
 
-/// Shared by the copies of a borrowed buffer. The last one's destructor waits for the queue, so that nothing
-/// queued works on the host's array any more.
+/// Shared by the copies of a borrowed buffer. Its destructor waits for the queue, so that no queued command
+/// uses the host's array afterwards.
 struct Loan {
   cl::CommandQueue queue;
 

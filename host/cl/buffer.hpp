@@ -17,7 +17,7 @@ namespace luciole {
 /// An OpenCL buffer, not yet of any type. Copies are the same buffer.
 struct DeviceMemory {
   cl::Buffer handle;
-  std::shared_ptr<const void> loan;  ///< not null where the buffer lies in an array of the host's
+  std::shared_ptr<const void> loan;  ///< of a borrowed buffer in the host's array; else null
 };
 
 /// An array of T that kernels work on, or of const T that they only read. Copies are the same array.
@@ -56,7 +56,7 @@ void fill(OpenedDevice& device, const DeviceMemory& memory, const void* element,
           std::size_t size);
 }  // namespace bytes
 
-/// An array of the host's, as an lvalue or a span: a temporary would be gone when the buffer is used.
+/// An array of the host's, as an lvalue or a span. A temporary wouldn't outlive the call.
 template <class Array>
 concept HostArray = std::ranges::contiguous_range<Array> && std::ranges::borrowed_range<Array>;
 

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::string_view kPocl = "Portable Computing Language";
 
-/// Platforms that need no cache of ours: two that keep what they compiled, and one that interprets kernels to
-/// find their mistakes, for which it wants their source.
+/// Platforms without our cache: two have a cache of their own, and Oclgrind, which interprets kernels to find
+/// their mistakes, needs their source.
 constexpr std::string_view kWithoutOurCache[] = {kPocl, "NVIDIA CUDA", "Oclgrind"};
 
-/// Settings that change what Intel's compilers make of a program: the beginnings of their names.
+/// Prefixes of environment variables that change the output of Intel's compilers.
 constexpr std::string_view kCompilerSettings[] = {"CL_CONFIG_", "IGC_"};
 
 /// Bytes of memory that must be free when a program is compiled: the compiler's part of kPlatformBytes
@@ -46,14 +46,15 @@ cl::Program compile(const OpenedDevice& device, const std::string& source, const
       return built(device, kernelSource("builtins.clh") + source, options + " -D_OPENCL_H_");
     } catch (const cl::BuildError& error) {
       if (error.err() != CL_BUILD_PROGRAM_FAILURE) throw;
-      // Wrong, or in need of more than builtins.clh declares. PoCL's own header decides.
+      // It has an error, or uses a builtin that builtins.clh doesn't declare. Try again with PoCL's own
+      // header.
     }
   }
   return built(device, source, options);
 }
 
-/// The program of a kept binary. Empty if the driver doesn't take it, or makes other kernels of it than those
-/// that were kept with it.
+/// The program of a cached binary. Empty if the driver rejects it, or if its kernels aren't those of the
+/// cache entry.
 std::optional<Program> restored(const OpenedDevice& device, KeptProgram kept, const std::string& options) {
   try {
     const cl::Program program = callDriver([&] {
@@ -69,7 +70,7 @@ std::optional<Program> restored(const OpenedDevice& device, KeptProgram kept, co
   }
 }
 
-/// What is to be kept of a program for one device. Empty if OpenCL doesn't tell it all.
+/// The cache entry of a program for one device. Empty if OpenCL doesn't provide all of it.
 std::optional<KeptProgram> toKeep(const cl::Program& program) {
   try {
     KeptProgram kept;

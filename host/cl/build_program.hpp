@@ -11,12 +11,12 @@ namespace luciole {
 /// cl::Error as OpenCL does (cl::BuildError with the compiler's log) and MachineError if memory is short.
 Program buildProgram(const OpenedDevice& device, const std::string& source, const std::string& options);
 
-/// All that the bits of a program may depend on, as text: its source and options, the device with its driver,
-/// what the environment tells compilers, and this program's version. Throws cl::Error.
+/// Everything that determines the bits of a program, as text: its source and options, the device and its
+/// driver, the environment variables that compilers read, and this program's version. Throws cl::Error.
 std::string describeProgram(const OpenedDevice& device, const std::string& source,
                             const std::string& options);
 
-/// What OpenCL tells of a kernel's arguments. Throws cl::Error if it doesn't tell.
+/// The names and types of a kernel's arguments. Throws cl::Error if OpenCL has no information about them.
 std::vector<DeclaredArgument> declaredArguments(const cl::Kernel& kernel);
 
 /// The folder where binaries of this platform's programs are kept from one run to the next (see

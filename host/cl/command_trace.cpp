@@ -8,7 +8,7 @@
 namespace luciole {
 namespace {
 
-/// Nanoseconds a nanosecond by which the device's clock and the host's may part (see CommandTrace).
+/// The largest drift between the device's clock and the host's, without unit (see CommandTrace).
 constexpr double kMostSlew = 500e-6;
 
 /// A command that is done, by the device's clock.
@@ -17,7 +17,8 @@ struct DoneCommand {
   std::int64_t queued, submitted, start, end;
 };
 
-/// Takes the commands that are done out of the list. Those that failed are dropped: finish() tells of them.
+/// Removes the completed commands from the list and returns them. Failed ones are dropped: finish() reports
+/// them.
 std::vector<DoneCommand> takeDone(std::vector<QueuedCommand>& commands) {
   std::vector<DoneCommand> done;
   std::vector<QueuedCommand> left;
@@ -44,8 +45,8 @@ double errorAt(const CommandTrace& trace, std::int64_t now) {
   return trace.error + kMostSlew * std::abs(double(now - trace.tied));
 }
 
-/// Ties the clocks by the command if that is the better tie.
-void tie(const DoneCommand& done, CommandTrace& trace) {
+/// Synchronizes the clocks by the command if that reduces the error.
+void synchronize(const DoneCommand& done, CommandTrace& trace) {
   const auto& [event, name, arguments, before, after] = done.command;
   const double error = 0.5 * double(after - before);
   if (error > errorAt(trace, before)) return;
@@ -72,10 +73,10 @@ void recordCommands(OpenedDevice& device) {
     throw deviceError(error, device.description.name);
   }
   const std::int64_t now = nanosecondsSinceStart();
-  for (const DoneCommand& done : all) tie(done, trace);
+  for (const DoneCommand& done : all) synchronize(done, trace);
   for (DoneCommand& done : all) {
-    // What is known however the clocks are tied: it was queued after `before`, was done by now, and ran after
-    // the command before it, the queue being in order.
+    // Bounds that hold whatever the clocks' error: a command ran after `before`, ended before now, and ran
+    // after the command before it, since the queue is in order.
     const auto hostTime = [&](std::int64_t device_time, std::int64_t earliest) {
       return std::clamp(device_time + trace.host_minus_device, earliest, now);
     };

@@ -14,7 +14,7 @@
 #include "cl/device.hpp"
 #include "cl/driver_call.hpp"
 
-// What a device's queue did when, for a trace: kernels and copies, by OpenCL's profiling events.
+// The commands of a device's queue (kernels and copies) in a trace, with times of OpenCL's profiling events.
 namespace luciole {
 
 /// A queued command that isn't recorded yet.
@@ -25,18 +25,19 @@ struct QueuedCommand {
   std::int64_t before, after;  ///< when the host began to queue it and was done with that
 };
 
-/// What a trace knows of a device's queue.
+/// The trace of a device's queue.
 ///
-/// The device's clock is tied to the host's by the commands themselves: the device says when one was queued,
-/// and the host that this was between `before` and `after`. The command that was queued the fastest gives the
-/// best tie, half of its time being the error. With age an error grows by 0.5 ms a second, the most by which
-/// Linux slews one clock against another (adjtimex(2)), until another command's is better.
+/// The device's clock is synchronized to the host's by the commands: the device has the time at which a
+/// command was queued, and the host knows that this was between `before` and `after`. The offset is taken
+/// from the command with the shortest such interval; its error is half of the interval. The error grows by
+/// 0.5 ms a second, the most by which Linux slews a clock (adjtimex(2)), until another command gives a
+/// smaller one.
 struct CommandTrace {
   std::size_t track;
   std::vector<QueuedCommand> commands{};
   std::int64_t host_minus_device = 0;                      ///< nanoseconds to add to the device's times
-  double error = std::numeric_limits<double>::infinity();  ///< of that, in nanoseconds, when it was tied
-  std::int64_t tied = 0;                                   ///< when that was
+  double error = std::numeric_limits<double>::infinity();  ///< of the offset, in nanoseconds, at that time
+  std::int64_t tied = 0;                                   ///< the time of the last synchronization
   std::int64_t last_end = 0;                               ///< of the commands recorded so far
 };
 

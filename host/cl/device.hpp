@@ -19,7 +19,7 @@ namespace luciole {
 
 struct CommandTrace;
 
-/// An opened device, and what every launch on it needs.
+/// An opened device and its OpenCL objects.
 struct OpenedDevice {
   std::mutex use;  ///< held by a call of the library while it works on the device
   DeviceDescription description;
@@ -27,7 +27,7 @@ struct OpenedDevice {
   cl::Context context;
   cl::CommandQueue queue;           ///< in order; profiled only if a trace is recorded
   bool shares_host_memory = false;  ///< true on a CPU; not to be changed once a buffer is made
-  /// The compiler's options by which it computes: what denormals are, and who rounds quotients
+  /// The compiler's options for its arithmetic: whether denormals are flushed, and how quotients are rounded
   /// (quotient.clh).
   std::string arithmetic;
 
@@ -64,18 +64,17 @@ void openDevice(const std::string& selector, OpenedDevice& device);
 /// The selector that means all devices, where a command takes several.
 constexpr const char* kAllDevices = "all";
 
-/// openDevice(), and then `then` if there is one, in a thread of its own. Nobody else may use `device` until
-/// awaitDevice() has returned.
+/// Calls openDevice(), and then `then` if it is set, in a thread of its own. No other thread may use `device`
+/// until awaitDevice() has returned.
 void startDevice(const std::string& selector, OpenedDevice& device, std::function<void()> then = {});
 
-/// Waits until the device is open. Throws what that thread threw. For a device that no thread opens it does
-/// nothing.
+/// Waits for the thread of startDevice(), if any. Throws what that thread threw.
 void awaitDevice(const OpenedDevice& device);
 
 /// The bytes that buffers have copied and allocated so far. Any thread may ask.
 Traffic trafficOf(OpenedDevice& device);
 
-/// What a device holds.
+/// The device inside the public class Device.
 OpenedDevice& opened(Device& device);
 
 /// Waits until everything queued is done, and records it if there is a trace. Throws MachineError if a kernel

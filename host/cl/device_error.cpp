@@ -59,11 +59,11 @@ std::string errorName(cl_int error) {
 
 }  // namespace
 
-DeviceError deviceError(const cl::Error& error, const std::string& whose) {
+DeviceError deviceError(const cl::Error& error, const std::string& context) {
   if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_HOST_MEMORY ||
       error.err() == CL_OUT_OF_RESOURCES || error.err() == CL_INVALID_BUFFER_SIZE)
-    return {fmt::format("{}: out of memory ({}: {})", whose, error.what(), errorName(error.err())), true};
-  return {fmt::format("{}: {} failed: {}", whose, error.what(), errorName(error.err())), false};
+    return {fmt::format("{}: out of memory ({}: {})", context, error.what(), errorName(error.err())), true};
+  return {fmt::format("{}: {} failed: {}", context, error.what(), errorName(error.err())), false};
 }
 
 }  // namespace luciole

@@ -6,10 +6,10 @@
 
 namespace luciole {
 
-/// Calls OpenCL, and throws its cl::Error. Any other exception, as bad_alloc of a compiler written in C++,
-/// has come through a driver's C code and left its locks taken: who asks it again, or releases what it made,
-/// may wait for ever. So the program ends then, by std::terminate(), whose handler can look at the exception.
-/// Nothing in `call` may own an object of OpenCL that was there before the call.
+/// Calls OpenCL and passes on its cl::Error. Any other exception, such as bad_alloc of a compiler written in
+/// C++, has unwound a driver's C code and left its locks taken, so further calls of the driver could block
+/// for ever. So the program ends then, by std::terminate(), whose handler can see the exception. `call` must
+/// not own an OpenCL object that existed before the call.
 template <class Call>
 decltype(auto) callDriver(Call&& call) {
   try {

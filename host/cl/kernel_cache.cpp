@@ -23,8 +23,8 @@ double now() {
 
 std::optional<int> kernelsCompiled(const std::string& platform) {
   if (platform != "Portable Computing Language") return std::nullopt;
-  // PoCL keeps each compiled kernel as a shared object and loads it from there: one that is younger than the
-  // program's start wasn't in the cache then.
+  // PoCL loads each compiled kernel as a shared object from its cache: one younger than the program's start
+  // wasn't in the cache before.
   struct Search {
     double start;
     int younger = 0;

@@ -5,8 +5,8 @@
 
 namespace luciole {
 
-/// How many kernels this process has compiled because the platform's cache on disk hadn't got them: 0 is a
-/// warm start. platform: its name. Empty for any platform but PoCL, since others don't tell.
+/// The number of kernels that this process has compiled because the platform's cache on disk lacked them: 0
+/// is a warm start. platform: its name. Empty for any platform but PoCL: others don't provide it.
 std::optional<int> kernelsCompiled(const std::string& platform);
 
 }  // namespace luciole

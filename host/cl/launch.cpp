@@ -21,7 +21,8 @@ Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* na
                     const std::string& defines, Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
-    // -w: clang counts its warnings on standard error, and has some of vectors wider than the processor's.
+    // -w: clang warns about vectors wider than the processor's, and prints the number of warnings to standard
+    // error.
     const std::string options = fmt::format("-cl-std=CL1.2 -w {} -cl-kernel-arg-info -DLANES={} {}",
                                             device.arithmetic, device.description.lanes, defines);
     auto place = device.programs.find(options + key);
@@ -52,8 +53,8 @@ Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* na
   }
 }
 
-/// Why an argument can't take this value, for a message. Empty if it can.
-std::string whyNot(const DeclaredArgument& declared, const KernelArgument& given) {
+/// The reason why an argument can't have this value, for a message; empty if it can.
+std::string argumentFault(const DeclaredArgument& declared, const KernelArgument& given) {
   if (declared.space == CL_KERNEL_ARG_ADDRESS_LOCAL) return "is in local memory, where launch() puts nothing";
   if (declared.type != given.type) return fmt::format("is a {}, not a {}", declared.type, given.type);
   const bool writes = declared.space == CL_KERNEL_ARG_ADDRESS_GLOBAL && !declared.is_const;
@@ -75,7 +76,7 @@ std::vector<cl_uint> matchArguments(const Kernel& kernel, const std::vector<Kern
     const auto place = cl_uint(found - kernel.arguments.begin());
     if (std::find(places.begin(), places.end(), place) != places.end())
       refuse(argument.name, "is given twice");
-    if (const std::string why = whyNot(*found, argument); !why.empty()) refuse(argument.name, why);
+    if (const std::string why = argumentFault(*found, argument); !why.empty()) refuse(argument.name, why);
     places.push_back(place);
   }
   for (cl_uint i = 0; i < kernel.arguments.size(); ++i)

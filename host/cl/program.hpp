@@ -20,7 +20,8 @@ using KernelArguments = std::map<std::string, std::vector<DeclaredArgument>>;
 /// A program that is built for a device.
 struct Program {
   cl::Program program;
-  /// Of all its kernels, if it was built from a binary: OpenCL tells them only of one built from source.
+  /// Of all its kernels, if it was built from a binary: OpenCL provides them only for programs built from
+  /// source.
   KernelArguments arguments;
 };
 

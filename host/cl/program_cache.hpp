@@ -6,12 +6,12 @@
 
 #include "cl/program.hpp"
 
-// A folder with the binaries of programs, a file each, for platforms that compile anew in every run. A file
-// is named by a hash of all that its binary depends on, and holds that as well, so that two of one hash
-// aren't confused, and a checksum. Files appear whole, so any number of processes may use a folder at once.
+// A folder of program binaries, a file each, for platforms without a cache of their own. A file's name is a
+// hash of everything that its binary depends on. It also contains that text, against collisions of hashes,
+// and a checksum. Files appear whole, so any number of processes may use a folder at once.
 namespace luciole {
 
-/// What is kept of a program.
+/// A cached program.
 struct KeptProgram {
   std::vector<unsigned char> binary;
   KernelArguments arguments;  ///< of all its kernels
@@ -23,13 +23,13 @@ std::string userCache(const char* kind);
 /// Where the user's programs are kept: userCache("programs").
 std::string userProgramCache();
 
-/// The program kept under this description, and marks it as used. Empty if there is none, or if its file is
+/// The cached program of this description. Marks it as used. Empty if there is none, or if its file is
 /// damaged.
 std::optional<KeptProgram> findProgram(const std::string& folder, const std::string& description);
 
-/// Keeps a program, in place of one of the same description, and makes the folder where it is missing. The
-/// programs that were used longest ago are removed until all take at most `most_bytes`. A folder that can't
-/// be written to stays as it is, which is no error.
+/// Stores a program, replacing one of the same description, and makes the folder if it is missing. Then
+/// removes the least recently used programs until all take at most `most_bytes`. A folder that can't be
+/// written to is no error.
 void keepProgram(const std::string& folder, const std::string& description, const KeptProgram& program,
                  std::uintmax_t most_bytes = 64 << 20);
 

@@ -119,9 +119,9 @@ Camera parseOwn(const ExrAttributes& attributes, const std::string& path) {
 
 bool isParallel(const glm::dmat4& to_ndc) { return std::abs(to_ndc[2][3]) <= 1e-6 * std::abs(to_ndc[3][3]); }
 
-/// Whether the view axis meets the picture's middle. The product of a float matrix and a float matrix's
-/// inverse has an error of a few 1e-7 for a camera near the origin, which grows with its distance. A shift
-/// below a thousandth of the picture counts as such an error.
+/// Whether the view axis goes through the picture's middle, to within a thousandth of the picture. A float
+/// matrix times the inverse of another has an error of a few 1e-7 near the origin, which grows with the
+/// camera's distance.
 bool isCentred(const glm::dmat4& to_ndc) {
   const glm::dvec4 middle = to_ndc[isParallel(to_ndc) ? 3 : 2] / to_ndc[isParallel(to_ndc) ? 3 : 2].w;
   return std::abs(middle.x - 0.5) < 1e-3 && std::abs(middle.y - 0.5) < 1e-3;
@@ -144,8 +144,8 @@ void readProjection(const glm::dmat4& to_ndc, CameraHeader& header) {
   }
 }
 
-/// Whether the matrices are for column vectors, as pbrt writes them. A rotation alone doesn't tell; then the
-/// projection does.
+/// Whether the matrices are for column vectors, as pbrt writes them. For a rotation alone the projection
+/// decides.
 bool isTransposed(const glm::dmat4& world_to_camera, const std::optional<glm::dmat4>& world_to_ndc) {
   if (!isRigid(glm::transpose(world_to_camera))) return false;
   if (!isRigid(world_to_camera)) return true;

@@ -41,14 +41,13 @@ ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size, do
 /// Whether a matrix is a rotation, or mirroring, and a translation, to within 1e-4.
 bool isRigid(const glm::dmat4& matrix);
 
-/// Reads the camera of a header; empty where there is none. Attributes of our own take precedence. In some
-/// programs' files worldToCamera looks along −z. The sign of w in worldToNDC tells; without that attribute,
-/// the side on which most of `visible_points` lie (world space; may be empty); without these, the handedness
-/// of worldToCamera, for a right-handed world. `picture_size`: of the whole picture. `path` is for messages.
-/// Matrices that are transposed, as pbrt's, are known by that. Their worldToNDC, in which y points up and the
-/// picture's shorter side measures 1, doesn't count for the opening.
-/// Names of attributes are matched in any case. Throws InputError for a matrix that isn't a rotation (or
-/// mirroring) and a translation, and for text that can't be read.
+/// Reads the camera of a header; empty if there is none. Attributes of our own take precedence. In some
+/// programs' files worldToCamera looks along −z. That is decided by the sign of w in worldToNDC; without that
+/// attribute by the side on which most of `visible_points` lie (world space; may be empty); without these by
+/// the handedness of worldToCamera, for a right-handed world. Transposed matrices, as pbrt's, are recognized.
+/// Their worldToNDC has other units, so it isn't used for the field of view. `picture_size`: of the whole
+/// picture. `path` is for messages. Names of attributes are matched in any case. Throws InputError for a
+/// matrix that isn't a rotation (or mirroring) and a translation, and for text that can't be read.
 std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ivec2 picture_size,
                                        const std::string& path, std::span<const glm::dvec3> visible_points,
                                        double pixel_aspect = 1);

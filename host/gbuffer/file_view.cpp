@@ -31,88 +31,88 @@ void setOpening(const glm::dvec2& half_extent, bool parallel, FileView& view) {
     view.camera.fov_y = 2 * std::atan(half_extent.y);
 }
 
-std::optional<CameraHeader> headerCamera(const ViewQuestion& asked) {
+std::optional<CameraHeader> headerCamera(const FileViewInput& input) {
   std::vector<glm::dvec3> world;
-  if (asked.space.value_or(asked.usual) == FileSpace::kWorld)
-    for (const SeenPoint& seen : asked.points) world.push_back(seen.point);
-  return readCamera(asked.attributes, asked.picture_size, asked.path, world, asked.pixel_aspect);
+  if (input.space.value_or(input.usual) == FileSpace::kWorld)
+    for (const SeenPoint& seen : input.points) world.push_back(seen.point);
+  return readCamera(input.attributes, input.picture_size, input.path, world, input.pixel_aspect);
 }
 
-bool liesInWorldSpace(const ViewQuestion& asked, const std::optional<CameraHeader>& header) {
+bool liesInWorldSpace(const FileViewInput& input, const std::optional<CameraHeader>& header) {
   if (!header || !header->half_extent) return false;
-  return lieOnRays(transformed(asked.points, glm::inverse(header->camera.camera_to_world)),
-                   asked.picture_size, *header->half_extent, header->camera.orthographic);
+  return lieOnRays(transformed(input.points, glm::inverse(header->camera.camera_to_world)),
+                   input.picture_size, *header->half_extent, header->camera.orthographic);
 }
 
 }  // namespace
 
-FileView findView(const ViewQuestion& asked) {
-  const glm::dvec2 size = asked.picture_size;
-  const std::optional<CameraHeader> header = headerCamera(asked);
+FileView findView(const FileViewInput& input) {
+  const glm::dvec2 size = input.picture_size;
+  const std::optional<CameraHeader> header = headerCamera(input);
   FileView view;
-  if (header && header->is_exact && !asked.camera_to_world) {
+  if (header && header->is_exact && !input.camera_to_world) {
     view.camera = header->camera;
     view.knows_camera = true;
     view.half_extent = *header->half_extent;
     view.camera_source = "the file's";
-    view.in_view_space = asked.has_view_space;
-    view.space = asked.space.value_or(FileSpace::kWorld);
+    view.in_view_space = input.has_view_space;
+    view.space = input.space.value_or(FileSpace::kWorld);
     view.to_view =
         view.space == FileSpace::kCamera ? glm::dmat4(1.0) : glm::inverse(view.camera.camera_to_world);
     return view;
   }
 
-  const std::optional<RayFit> rays = fitRays(asked.points, size);
-  const bool has_camera = asked.camera_to_world || header || asked.camera;
-  view.space = asked.usual;
-  if (asked.space)
-    view.space = *asked.space;
-  else if (liesInWorldSpace(asked, header))
+  const std::optional<RayFit> rays = fitRays(input.points, size);
+  const bool has_camera = input.camera_to_world || header || input.camera;
+  view.space = input.usual;
+  if (input.space)
+    view.space = *input.space;
+  else if (liesInWorldSpace(input, header))
     view.space = FileSpace::kWorld;
   else if (rays && rays->is_deep && has_camera)
     view.space = FileSpace::kCamera;
   if (view.space == FileSpace::kCamera && !has_camera)
     throw InputError(
-        asked.path +
+        input.path +
         ": positions are in camera space, and no camera tells where that is: expected one in the "
         "header, or request.camera_to_world or request.camera");
 
   if (header) view.camera = header->camera;
   if (header && header->half_extent) setOpening(*header->half_extent, header->camera.orthographic, view);
   view.camera_source = "the file's";
-  if (asked.camera_to_world) {
-    view.camera.camera_to_world = *asked.camera_to_world;
+  if (input.camera_to_world) {
+    view.camera.camera_to_world = *input.camera_to_world;
     view.camera_source = "as told";
-  } else if (!header && asked.camera) {
-    view.camera = *asked.camera;
+  } else if (!header && input.camera) {
+    view.camera = *input.camera;
     view.camera_source = "the scene's";
   } else if (!header) {
     view.camera_source = "unknown, the eye is taken to be at the origin";
   }
 
   if (view.space == FileSpace::kCamera) {
-    // Without a fit a point tells the side. The file's camera, but not a typed one, has the
-    // same axes as the positions.
-    const bool is_behind = !asked.points.empty() && asked.points.front().point.z > 0;
+    // Without a fit a point decides the side. The file's camera, but not a typed one, has the same axes as
+    // the positions.
+    const bool is_behind = !input.points.empty() && input.points.front().point.z > 0;
     const glm::dvec3 signs = rays ? rays->signs : glm::dvec3(1, 1, is_behind ? -1 : 1);
     view.to_view = scaled(signs);
-    if (header && !asked.camera_to_world)
+    if (header && !input.camera_to_world)
       view.camera.camera_to_world = view.camera.camera_to_world * scaled({signs.x, signs.y, 1.0});
   } else {
     view.to_view = glm::inverse(view.camera.camera_to_world);
   }
 
-  const std::vector<SeenPoint> seen = transformed(asked.points, view.to_view);
-  const bool is_scenes = !header && !asked.camera_to_world && asked.camera;
+  const std::vector<SeenPoint> seen = transformed(input.points, view.to_view);
+  const bool is_scenes = !header && !input.camera_to_world && input.camera;
   if (!view.knows_camera && !is_scenes && has_camera)
     if (const auto fit = fitRays(seen, size); fit && fit->signs == glm::dvec3(1.0))
       setOpening(fit->half_extent, false, view);
-  if (!view.knows_camera && asked.camera)
-    setOpening(halfExtent(*asked.camera, asked.picture_size, asked.pixel_aspect), asked.camera->orthographic,
+  if (!view.knows_camera && input.camera)
+    setOpening(halfExtent(*input.camera, input.picture_size, input.pixel_aspect), input.camera->orthographic,
                view);
-  if (!asked.has_positions && !view.knows_camera)
+  if (!input.has_positions && !view.knows_camera)
     throw InputError(
-        asked.path +
+        input.path +
         ": attribute worldToNDC: depth without positions needs worldToCamera and worldToNDC of a "
         "centred projection, or request.camera");
   if (view.knows_camera && !seen.empty() &&

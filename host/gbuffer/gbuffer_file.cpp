@@ -16,7 +16,7 @@
 namespace luciole {
 namespace {
 
-/// The three components of a pixel in a group. `at` is GBuffer::index, `stride`
+/// The vector components of a pixel in a group. `at` is GBuffer::index, `stride`
 /// GBuffer::pixels.
 glm::vec3 load(const Plane& group, std::size_t at, std::size_t stride) {
   return {group[at], group[at + stride], group[at + 2 * stride]};

@@ -31,11 +31,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Whether a depth means infinity: Blender writes 1e10, Arnold 1e30. Nothing of a scene is farther than 1e18.
 bool isFar(float depth) { return std::abs(depth) == 1e10f || !(std::abs(depth) < 1e20f); }
 
-/// How far from 1 a normal's length may be. The raster's are rounded once, and off by 2⁻²⁴ at most; what
-/// bounds a picture's error allows for this (LIGHT_ROUNDING in kernels/clusters/clustered_light.cl).
+/// Normals whose lengths differ from 1 by less keep their bits. The rasterizer's are rounded once, and off by
+/// 2⁻²⁴ at most. The bounds of light errors allow for this much (LIGHT_ROUNDING in
+/// kernels/clusters/clustered_light.cl).
 constexpr double kUnitError = 3 * 0x1p-24;
 
-/// Why pixels show nothing, counted by all threads.
+/// The numbers of background pixels by reason, counted by all threads.
 struct Holes {
   std::atomic<std::size_t> zero{0}, infinite{0}, nan{0}, far{0};
 
@@ -73,7 +74,7 @@ class Conversion {
     const FoundLayer& main =
         found_[Role::kPosition].isThere() ? found_[Role::kPosition] : found_[Role::kDepth];
     part_ = reader_.parts()[std::size_t(main.part)];
-    // Some writers put what is common into the first part alone.
+    // Some writers put attributes of all parts into the first part alone.
     for (const PicturePart& part : reader_.parts()) {
       ExrAttributes& all = part_.attributes;
       all.texts.insert(all.texts.end(), part.attributes.texts.begin(), part.attributes.texts.end());
@@ -167,7 +168,7 @@ class Conversion {
     std::vector<SeenPoint> points;
     if (!position_) return points;
     for (std::size_t p = 0; p < pixels(); p += 1 + pixels() / 1000) {
-      const glm::vec3 point = position_.three(p), normal = normal_ ? normal_.three(p) : point;
+      const glm::vec3 point = position_.vector(p), normal = normal_ ? normal_.vector(p) : point;
       const bool is_far = depth_ && isFar(depth_.value(p));
       if (!isFinite(point) || !isFinite(normal) || normal == glm::vec3(0.0f) || is_far) continue;
       points.push_back({point, screenOf(p)});
@@ -243,13 +244,13 @@ class Conversion {
       if (!isFinite(v)) return ++holes_.infinite;
       return v == glm::vec3(0.0f) && zero_counts ? ++holes_.zero : std::size_t(0);
     };
-    if (normal_ && isHole(normal = normal_.three(pixel), true)) return false;
+    if (normal_ && isHole(normal = normal_.vector(pixel), true)) return false;
     if (depth_) {
       const float depth = depth_.value(pixel);
       if (isHole(glm::vec3(depth), !position_)) return false;
       if (isFar(depth) && ++holes_.far) return false;
     }
-    position = position_ ? position_.three(pixel) : unproject(pixel);
+    position = position_ ? position_.vector(pixel) : unproject(pixel);
     if (isHole(position, !normal_)) return false;
     if (view_.in_view_space) {
       // Normals that this program wrote must keep their bits; another program may have changed them.
@@ -331,7 +332,7 @@ class Conversion {
   /// although it went through world space and float (see packNormal).
   std::uint32_t packedAt(const LayerPlanes& layer, std::size_t pixel, const GBuffer& gbuffer,
                          std::size_t place) const {
-    const glm::vec3 normal = layer.three(pixel);
+    const glm::vec3 normal = layer.vector(pixel);
     const std::size_t stride = gbuffer.pixels();
     if (!isFinite(normal) || normal == glm::vec3(0.0f))
       return packNormal(glm::vec3(gbuffer.normal[place], gbuffer.normal[place + stride],

@@ -49,7 +49,7 @@ LayerPlanes LayerReader::planes(const FoundLayer& layer) const {
   if (!layer.isThere()) return planes;
   for (std::size_t i = 0; i < 3; ++i) {
     if (layer.channels[i] < 0) continue;
-    planes.first[i] = planes_.at({layer.part, layer.channels[i]});
+    planes.planes[i] = planes_.at({layer.part, layer.channels[i]});
     planes.names[i] = forMessage(parts()[std::size_t(layer.part)].channels[std::size_t(layer.channels[i])]);
   }
   return planes;

@@ -11,14 +11,14 @@
 
 namespace luciole {
 
-/// A layer's pixels, row by row. Empty where there is no such layer.
+/// A layer's pixels, row by row. False if the file lacks the layer.
 struct LayerPlanes {
-  std::array<const float*, 3> first{};
+  std::array<const float*, 3> planes{};
   std::array<std::string, 3> names;
 
-  explicit operator bool() const { return first[0] != nullptr; }
-  float value(std::size_t pixel, int component = 0) const { return first[component][pixel]; }
-  glm::vec3 three(std::size_t pixel) const { return {value(pixel, 0), value(pixel, 1), value(pixel, 2)}; }
+  explicit operator bool() const { return planes[0] != nullptr; }
+  float value(std::size_t pixel, int component = 0) const { return planes[component][pixel]; }
+  glm::vec3 vector(std::size_t pixel) const { return {value(pixel, 0), value(pixel, 1), value(pixel, 2)}; }
 };
 
 /// An EXR whose layers are read.

@@ -170,7 +170,7 @@ struct Catalogue {
   }
 };
 
-/// All layers that a name fits. A name that is a layer's whole one is no other's.
+/// All layers that a name matches. A layer of exactly this name excludes others.
 std::vector<const Group*> fitting(const Catalogue& file, Role role, std::string_view name) {
   std::vector<const Group*> found;
   for (const Group& group : isScalar(role) ? file.scalars : file.groups) {
@@ -178,21 +178,16 @@ std::vector<const Group*> fitting(const Catalogue& file, Role role, std::string_
     if (group.name.size() == name.size()) return {&group};
     found.push_back(&group);
   }
-  // A complete layer is meant rather than a part of one, such as the r of an id.
+  // Complete layers are preferred to single channels, such as the r of an id.
   if (!isScalar(role) && std::any_of(found.begin(), found.end(), [](auto* one) { return one->count() == 3; }))
     std::erase_if(found, [](auto* one) { return one->count() < 3; });
   return found;
 }
 
-/// The layers that the first of the names fits that fits any.
+/// The layers that match the first name with a match.
 std::vector<const Group*> candidates(const Catalogue& file, Role role, std::string_view names) {
-  if (names.empty()) return {};
-  for (std::size_t begin = 0; begin <= names.size();) {
-    const std::size_t end = std::min(names.find('|', begin), names.size());
-    std::vector<const Group*> found = fitting(file, role, names.substr(begin, end - begin));
-    if (!found.empty()) return found;
-    begin = end + 1;
-  }
+  for (const std::string_view name : splitNames(names))
+    if (std::vector<const Group*> found = fitting(file, role, name); !found.empty()) return found;
   return {};
 }
 
@@ -212,14 +207,10 @@ std::string channelList(const std::vector<PicturePart>& parts) {
 /// Words that end a message: how to say which layer is which.
 constexpr const char* kHint = "request.layers ROLE=NAME,... says which layer is which";
 
-/// What of the name comes before the part of it that the layout knows.
+/// The part of a layer's name before the name that the layout knows.
 std::string prefixOf(const FoundLayer& layer, std::string_view names) {
-  for (std::size_t begin = 0; begin <= names.size();) {
-    const std::size_t end = std::min(names.find('|', begin), names.size());
-    const std::string_view name = names.substr(begin, end - begin);
+  for (const std::string_view name : splitNames(names))
     if (endsIn(layer.name, name)) return layer.name.substr(0, layer.name.size() - name.size());
-    begin = end + 1;
-  }
   return layer.name.substr(0, layer.name.rfind('.') + 1);
 }
 
@@ -228,8 +219,7 @@ struct Search {
   const Catalogue& file;
   const std::string& path;
 
-  /// Of several layers that a name fits those with the prefix, such as the same view layer; all if none has
-  /// it.
+  /// The layers of a match that have the prefix, such as the same view layer; all if none has it.
   static std::vector<const Group*> withPrefix(const std::vector<const Group*>& found,
                                               const std::string& prefix) {
     std::vector<const Group*> same;
@@ -278,8 +268,8 @@ std::optional<float> typedNumber(const std::string& text) {
   return number;
 }
 
-/// How well a layout fits: how many of its layers there are. Of two that fit alike the one that knows an
-/// albedo is meant, whose "diffuse" is light.
+/// The rank of a layout: the number of its layers in the file; of equal ones the layout with an albedo layer,
+/// whose "diffuse" is light.
 std::pair<int, bool> fit(const Layout& layout, const Catalogue& file) {
   int count = 0;
   for (std::size_t role = 0; role < kRoleCount; ++role)
@@ -288,6 +278,15 @@ std::pair<int, bool> fit(const Layout& layout, const Catalogue& file) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> splitNames(std::string_view names) {
+  std::vector<std::string_view> list;
+  for (std::size_t begin = 0, end; begin < names.size() + 1 && !names.empty(); begin = end + 1) {
+    end = std::min(names.find('|', begin), names.size());
+    list.push_back(names.substr(begin, end - begin));
+  }
+  return list;
+}
 
 std::span<const Layout> layouts() { return kLayouts; }
 

@@ -6,14 +6,15 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/layers.hpp"
 
-// Which channels of a picture file are the planes of a G-buffer: by the names that programs give them.
+// Finds the channels of a picture file that are planes of a G-buffer, by the names that programs give them.
 namespace luciole {
 
-/// What a layer of a file holds. Three channels each, but depth, shininess, lift and model.
+/// The content of a layer of a file. It has three channels, except for depth, shininess, lift and model.
 enum class Role : std::uint8_t {
   kPosition,
   kNormal,
@@ -48,8 +49,8 @@ enum class FileSpace : std::uint8_t {
   kCamera,  ///< the eye at the origin, with axes of the program's own choice
 };
 
-/// How a program names its layers. A role may have several names, apart by |. A name stands for any layer
-/// that ends in a dot and it, so that view layers, parts and nested integrators may come before. Case is
+/// The names of a program's layers. A role may have several names, separated by |. A name matches layers of
+/// this name and those that end in "." and the name, after view layers, parts and nested integrators. Case is
 /// ignored.
 struct Layout {
   const char* program;
@@ -69,11 +70,14 @@ struct Layout {
   const char* view_normal = "";
   const char* color = "|";              ///< the nameless layer
   FileSpace space = FileSpace::kWorld;  ///< unless the positions tell another
-  bool is_albedo = true;                ///< `diffuse` is what share of light a surface reflects
+  bool is_albedo = true;                ///< `diffuse` is a reflectance, not light
   bool depth_is_distance = false;       ///< from the eye, rather than along the view axis
 };
 
-/// All that is known, this program's own layout first.
+/// The names in a Layout's "A|B|…", which must outlive the result.
+std::vector<std::string_view> splitNames(std::string_view names);
+
+/// All known layouts, this program's own first.
 std::span<const Layout> layouts();
 
 /// A layer that was found.
@@ -96,9 +100,9 @@ struct FoundLayers {
 /// Layers that the user named, or for shininess a number.
 using ChosenLayers = std::map<Role, std::string>;
 
-/// Finds the layers of a file: those that are chosen, and of the others those of the layout that has the
-/// most. Position, or depth, is always found. Throws InputError, in one line that lists the file's channels,
-/// where that is not so, where a name fits several layers, or where a layer lacks some of its components.
+/// Finds the layers of a file: those that the user chose, and the others by the layout that matches most
+/// layers. Throws InputError, in one line that lists the file's channels, if there is neither a position nor
+/// a depth, if a name matches several layers, or if a layer lacks components.
 FoundLayers findLayers(const std::vector<PicturePart>& parts, const ChosenLayers& chosen,
                        const std::string& path);
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-// Points that a picture shows lie on the rays through their pixels. That tells whether they are in camera
-// space, and how wide the camera sees.
+// The visible points of a picture lie on the rays through their pixels. From that follow the space of a
+// file's positions and the camera's field of view.
 namespace luciole {
 
 /// A point and the pixel that shows it.
@@ -19,12 +19,12 @@ struct SeenPoint {
 struct RayFit {
   glm::dvec2 half_extent;  ///< half the picture's width and height at distance 1, > 0
   glm::dvec3 signs;        ///< 1 or −1: point × signs has x to the right, y up and −z ahead
-  bool is_deep = false;    ///< the points' depths differ by more than a twentieth, so that it is no chance
+  bool is_deep = false;    ///< the points' depths differ by more than a twentieth, so the fit is significant
 };
 
-/// The camera that sees the points in their pixels, if there is one. At least 16 of them are wanted, and nine
-/// in ten must be less than 1.5 pixels off: positions that were averaged over a pixel at an edge lie
-/// elsewhere. `picture_size`: pixels of the whole picture.
+/// The camera that sees the points in their pixels, if there is one. Needs 16 points, nine in ten of which
+/// must be less than 1.5 pixels off; others may be averages over a pixel at an edge. `picture_size`: pixels
+/// of the whole picture.
 std::optional<RayFit> fitRays(std::span<const SeenPoint> points, const glm::dvec2& picture_size);
 
 /// Whether points in view space (−z ahead) lie on their pixels' rays, to the same extent. half_extent: as in

@@ -12,9 +12,9 @@
 namespace luciole {
 namespace {
 
-/// How far, of itself, a depth may be from what its neighbours lead one to expect. A plane's is off by
-/// rounding alone. A sphere's, 20 pixels wide and 1000 pixels away, is off by 1 / 3500 where it faces away by
-/// 45 degrees, and by 1 / 170 at 75.
+/// The largest relative error of a depth that is extrapolated from neighbours on the same surface. On a plane
+/// only rounding contributes. On a sphere 20 pixels wide and 1000 pixels away it is 1 / 3500 at 45° to the
+/// view, and 1 / 170 at 75°.
 constexpr double kEdge = 1.0 / 50;
 
 struct Positions {
@@ -34,7 +34,7 @@ struct Positions {
     return gbuffer.camera.orthographic ? z : 1 / z;
   }
 
-  /// The way along a surface from (x, y) towards (dx, dy), or zero where an edge is on both sides.
+  /// The tangent along a surface at (x, y) towards (dx, dy), or zero if both sides are edges.
   glm::dvec3 along(int x, int y, int dx, int dy) const {
     glm::dvec3 way{0.0};
     double least = kEdge;

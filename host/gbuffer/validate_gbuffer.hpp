@@ -4,10 +4,9 @@
 
 namespace luciole {
 
-/// Throws InputError for a G-buffer whose sizes, or those of its planes, don't fit each other, whose camera
-/// is none, or that names a model that there isn't: "gbuffer.normal: has 0 numbers, expected 786432". Other
-/// numbers in planes may be any that are finite, and are not looked at. O(1), and O(pixels) where it has
-/// models.
+/// Throws InputError for a G-buffer whose sizes and planes don't match, with an invalid camera, or with an
+/// unknown model: "gbuffer.normal: has 0 numbers, expected 786432". Other numbers in planes must be finite,
+/// and aren't checked. O(1), or O(pixels) if it has models.
 void validateGBuffer(const GBuffer& gbuffer);
 
 }  // namespace luciole

@@ -16,7 +16,7 @@ namespace luciole {
 /// say how much they cover.
 inline constexpr int kCryptomatteRanks = 6;
 
-/// What layers of mattes are called.
+/// The names of the layers.
 inline constexpr const char* kCryptoObject = "CryptoObject";
 inline constexpr const char* kCryptoMaterial = "CryptoMaterial";
 
@@ -29,8 +29,7 @@ std::uint32_t murmurHash(std::string_view text);
 /// The number that stands for a name, by the conversion uint32_to_float32: never denormal, infinite or NaN.
 float cryptomatteId(std::string_view name);
 
-/// The header's texts that mattes of these names need. Names in other encodings than UTF-8 have their bytes
-/// replaced in the manifest.
+/// The header's attributes for mattes of these names. Bytes that aren't UTF-8 are replaced in the manifest.
 Metadata cryptomatteTexts(const std::string& type_name, const std::vector<std::string>& names);
 
 }  // namespace luciole

@@ -9,12 +9,12 @@
 namespace luciole {
 namespace {
 
-// Of ISA-L's four the most thorough.
+// The most thorough of ISA-L's four levels.
 constexpr std::uint32_t kFastLevel = 3;
 constexpr std::size_t kFastTables = ISAL_DEF_LVL3_DEFAULT;
 
-/// What a piece may take: a literal takes at most 15 bits and a match fewer than its bytes would. Each block,
-/// of thousands of either, has a header below 400 bytes.
+/// Upper bound of a compressed piece: a literal takes at most 15 bits, a match fewer than its bytes as
+/// literals. Each block of thousands of symbols has a header below 400 bytes.
 std::size_t bound(std::size_t bytes) { return 2 * bytes + bytes / 4 + 1024; }
 
 /// Returns the bytes of the piece in `out`, or 0 where they don't fit.

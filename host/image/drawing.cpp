@@ -62,7 +62,7 @@ Image blankPaper(int width, int height) {
   return {width, height, {"R", "G", "B"}, std::vector<float>(std::size_t(width) * height * 3, 1.0f)};
 }
 
-void lay(OIIO::ImageBuf& canvas, int x, int y, const OIIO::ImageBuf& picture, int factor) {
+void pasteEnlarged(OIIO::ImageBuf& canvas, int x, int y, const OIIO::ImageBuf& picture, int factor) {
   const OIIO::ROI enlarged(0, picture.spec().width * factor, 0, picture.spec().height * factor, 0, 1, 0, 3);
   OIIO::ImageBufAlgo::paste(canvas, x, y, 0, 0, OIIO::ImageBufAlgo::resample(picture, false, enlarged));
 }

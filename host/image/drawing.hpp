@@ -14,9 +14,9 @@ namespace luciole {
 
 using LinearColor = std::array<float, 3>;
 inline constexpr LinearColor kInk{0.0f, 0.0f, 0.0f};
-inline constexpr double kMargin = 2.0;  ///< left and right of what is written, in text sizes
+inline constexpr double kMargin = 2.0;  ///< left and right of texts, in text sizes
 
-/// Where a picture and the caption below it lie, in pixels.
+/// The layout of a picture and the caption below it, in pixels.
 struct CaptionedSize {
   int width, height;  ///< of both together
   int factor;         ///< every pixel of the picture is a square of so many a side
@@ -50,8 +50,8 @@ Sheet sheetOf(int count, int columns, int picture_width, int picture_height);
 /// A white picture with channels R G B.
 Image blankPaper(int width, int height);
 
-/// Lays a picture on the canvas, every pixel as a square of `factor` a side. Both have three channels.
-void lay(OIIO::ImageBuf& canvas, int x, int y, const OIIO::ImageBuf& picture, int factor);
+/// Puts a picture on the canvas, every pixel as a square of `factor` a side. Both have three channels.
+void pasteEnlarged(OIIO::ImageBuf& canvas, int x, int y, const OIIO::ImageBuf& picture, int factor);
 
 /// The paper under a picture, and lengths on it: x from the left and y from the picture's bottom, both in
 /// text sizes.

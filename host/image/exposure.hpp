@@ -18,8 +18,8 @@ inline constexpr double kMostStops = 100;
 /// where nothing is left. colors: linear Rec.709; their order doesn't matter. NaN counts as black.
 double suitableExposure(std::span<const glm::vec3> colors);
 
-/// The size in which a picture is measured: of its shape, at most 256 pixels a side. So crops, bands, frames
-/// and pictures of several sizes get the same exposure.
+/// The size at which a picture's exposure is measured: of its aspect, at most 256 pixels a side. So crops,
+/// bands, frames and other sizes get the same exposure.
 glm::ivec2 measuringSize(glm::ivec2 picture_size);
 
 /// Multiplies R, G and B by 2^stops. What would be infinite becomes the largest finite value.

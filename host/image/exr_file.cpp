@@ -29,9 +29,9 @@
 namespace luciole {
 namespace {
 
-/// Passes what the library writes on to a file, at once; to a stream, which can't go back to the table of
-/// rows at the file's start, at the end. The library gets no write errors, since its destructors lose them;
-/// the first one is kept for throwError().
+/// Writes the library's output to a file at once. To a stream, which can't seek back to the table of rows, it
+/// is written at the end. Write errors aren't passed to the library, whose destructors lose them;
+/// throwError() throws the first.
 class ExrStream : public Imf::OStream {
  public:
   ExrStream(OutputFile& file, const std::string& path) : OStream(path.c_str()), file_(file) {}

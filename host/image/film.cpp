@@ -171,7 +171,7 @@ struct Film::State {
     sigset_t none;
     sigemptyset(&none);
     posix_spawnattr_setsigmask(&attributes, &none);
-    const auto lock = undisturbed();
+    const auto lock = holdSignals();
     const int error =
         posix_spawn(&child, findProgram("ffmpeg").c_str(), &actions, &attributes, pointers.data(), environ);
     posix_spawnattr_destroy(&attributes);

@@ -113,8 +113,8 @@ void drawBar(const Panel& panel, const Content& content) {
   const int columns = panel.pixels(length), rows = panel.pixels(kHeight);
   std::vector<float> ramp;
   for (int i = 0; i < columns * rows; ++i) ramp.push_back(float(i % columns) / float(columns - 1));
-  lay(panel.canvas, panel.pixels(kMargin), panel.top + panel.pixels(kTop), falseColors(columns, rows, ramp),
-      1);
+  pasteEnlarged(panel.canvas, panel.pixels(kMargin), panel.top + panel.pixels(kTop),
+                falseColors(columns, rows, ramp), 1);
   const auto tick = [&](double x, double y) { panel.fill(x - kTickWidth / 2, y, kTickWidth, kTick, kInk); };
   double written = -kMargin;  // up to where
   const auto label = [&](double value, const std::string& text) {
@@ -189,7 +189,7 @@ Image drawMap(const Content& content) {
   const CaptionedSize size = captionedSize(content.width, content.height);
   Image map = blankPaper(size.width, size.height);
   ImageBuf canvas(OIIO::ImageSpec(map.width, map.height, 3, OIIO::TypeDesc::FLOAT), map.pixels.data());
-  lay(canvas, size.left, 0, colorPixels(content), size.factor);
+  pasteEnlarged(canvas, size.left, 0, colorPixels(content), size.factor);
   drawPanel({canvas, size.caption_top, size.text_size, findLabelFont()}, content);
   return map;
 }
@@ -294,7 +294,7 @@ Image valueSheet(int width, int height, const std::vector<ValuePanel>& panels, i
   for (int i = 0; i < int(panels.size()); ++i) {
     Content one = content;
     one.values = content.values.subspan(std::size_t(i) * width * height, std::size_t(width) * height);
-    lay(canvas, sheet.left(i), sheet.top(i), colorPixels(one), sheet.factor);
+    pasteEnlarged(canvas, sheet.left(i), sheet.top(i), colorPixels(one), sheet.factor);
     writeLabel(canvas, sheet, i, panels[std::size_t(i)].label, font);
   }
   drawPanel({canvas, sheet.height, sheet.text_size, font}, content);

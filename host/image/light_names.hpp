@@ -5,10 +5,10 @@
 
 namespace luciole {
 
-/// Layers that hold a part of a picture's light have channels LAYER.R, LAYER.G and LAYER.B, in the units of
-/// the picture's own R, G and B. Those of groups of lights are called so, and then by the group.
+/// The prefix of layers of light groups, before the group's name. Layers of light have channels LAYER.R,
+/// LAYER.G and LAYER.B, in the units of the picture's own R, G and B.
 inline constexpr std::string_view kLightGroups = "light_groups.";
-/// Those of the parts that a picture's light is the sum of.
+/// The layers of the parts of a picture's light.
 inline constexpr std::string_view kLightParts[]{"ambient_light.", "diffuse_light.", "specular_light.",
                                                 "emission_light.", "fog_light."};
 

@@ -34,7 +34,7 @@ struct ImageFunctions {
   decltype(&sideBySide) side_by_side;
   decltype(&labelledSheet) labelled_sheet;
   decltype(&openImageIOWrites) open_image_io_writes;
-  decltype(&useCleanups) use_cleanups;
+  decltype(&shareCleanups) use_cleanups;
 };
 
 /// The module's only symbol.

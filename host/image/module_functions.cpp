@@ -16,7 +16,7 @@ const ImageFunctions luciole_image_functions{
     .side_by_side = sideBySide,
     .labelled_sheet = labelledSheet,
     .open_image_io_writes = openImageIOWrites,
-    .use_cleanups = useCleanups,
+    .use_cleanups = shareCleanups,
 };
 
 }  // namespace luciole

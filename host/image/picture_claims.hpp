@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-/// What a picture file's header says of a picture, before anything is allocated for it.
+/// The sizes in a picture file's header, to be checked before anything is allocated.
 struct PictureClaims {
   glm::i64vec2 size;          ///< of the pixels, to be read
   glm::i64vec2 whole;         ///< of the picture that they are part of

@@ -37,8 +37,8 @@ void copy(const MemoryFile& from, OutputFile& to, const std::string& name) {
 }  // namespace
 
 struct PictureFile::State {
-  /// Passes what an encoder writes on to a file, at once. Write errors are hidden from the encoder, since
-  /// some encoders lose them and others end the program; the first one is kept for throwError().
+  /// Writes an encoder's output to a file at once. Write errors are hidden from the encoder, since some
+  /// encoders lose them and others end the program; throwError() throws the first.
   class Stream : public OIIO::Filesystem::IOProxy {
    public:
     explicit Stream(OutputFile& file) : IOProxy("", Write), file_(file) {}

@@ -35,7 +35,7 @@ class PngInput : public OIIO::ImageInput {
     }
     png_ = std::make_unique<PngRows>(
         [this](png_bytep bytes, std::size_t count) { return std::fread(bytes, 1, count, file_) == count; });
-    const bool read = told(png_->readHeader() && png_->begin());
+    const bool read = checked(png_->readHeader() && png_->begin());
     if (read) spec = m_spec = readSpec();
     return read;
   }
@@ -63,12 +63,12 @@ class PngInput : public OIIO::ImageInput {
       return false;
     }
     ++next_row_;
-    return told(png_->next(static_cast<png_bytep>(data)));
+    return checked(png_->next(static_cast<png_bytep>(data)));
   }
 
  private:
-  /// Tells what is wrong where the file couldn't be read.
-  bool told(bool read) {
+  /// Passes libpng's error on to OpenImageIO if `read` is false. Returns `read`.
+  bool checked(bool read) {
     if (!read) errorfmt("{}", png_->error());
     return read;
   }
@@ -103,7 +103,7 @@ class PngInput : public OIIO::ImageInput {
     rows_.resize(row_bytes * m_spec.height);
     for (int pass = 0; pass < png_->passes(); ++pass)
       for (int y = 0; y < m_spec.height; ++y)
-        if (!told(png_->next(rows_.data() + std::size_t(y) * row_bytes))) return false;
+        if (!checked(png_->next(rows_.data() + std::size_t(y) * row_bytes))) return false;
     return true;
   }
 

@@ -11,8 +11,8 @@
 
 namespace luciole {
 
-/// A PNG that libpng reads, whose messages are kept instead of printed. Its functions return whether they
-/// could; after one that couldn't, only error() may be called.
+/// A PNG read by libpng, whose messages are stored instead of printed. Functions return false on failure;
+/// then only error() may be called.
 class PngRows {
  public:
   /// read: copies so many bytes of the file, and returns whether there were as many.

@@ -56,7 +56,7 @@ Image captioned(const Image& image, const CaptionedSize& size, const std::vector
                         paper.pixels.data());
   std::vector<float> colors;
   const OIIO::ImageBuf picture = drawable(image, colors);
-  lay(canvas, size.left, 0, picture, size.factor);
+  pasteEnlarged(canvas, size.left, 0, picture, size.factor);
   const Panel panel{canvas, size.caption_top, size.text_size, findLabelFont()};
   double baseline = 1.5;
   for (const std::string& line : lines) {
@@ -117,7 +117,8 @@ Image labelledSheet(const std::vector<Image>& pictures, const std::vector<std::s
   });
   for (int i = 0; i < int(pictures.size()); ++i) {
     std::vector<float> colors;
-    lay(canvas, sheet.left(i), sheet.top(i), drawable(pictures[std::size_t(i)], colors), sheet.factor);
+    pasteEnlarged(canvas, sheet.left(i), sheet.top(i), drawable(pictures[std::size_t(i)], colors),
+                  sheet.factor);
     writeLabel(canvas, sheet, i, (all_fit ? labels : brief)[std::size_t(i)], font);
   }
   return paper;

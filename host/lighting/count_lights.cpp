@@ -15,8 +15,8 @@ std::size_t squareOf(std::size_t place) {
   return place / kTilePixels * kSquaresPerTile + SQUARE_OF_PIXEL(place);
 }
 
-/// How many of the lights that `counts` says the pixels of each square are shaded with: those in its list, or
-/// without lists all.
+/// For each square the number of lights in its list, or without lists of all lights, for which `counts` is
+/// true.
 template <class Predicate>
 std::vector<std::uint32_t> squareLengths(const StageInput& input, Predicate&& counts) {
   const LightArray& lights = input.pass.lights.lights;

@@ -17,7 +17,7 @@ PairShadows decideBeams(const StageInput& input) {
                       .soft = features.has(Feature::kSoftExact)});
 }
 
-TracedPairs traceUnsure(const StageInput& input, PairShadows& pairs) {
+TracedPairs traceUnsurePairs(const StageInput& input, PairShadows& pairs) {
   return tracePairs(input.device, input.scene, input.lighting.beams, input.pass.lights, input.pass.gbuffer,
                     input.lists, input.pass.features.has(Feature::kSoftExact), pairs);
 }

@@ -23,11 +23,11 @@ struct MapScene {
   MapScene& operator=(const MapScene&) = delete;
 };
 
-/// Makes the device's buffers of what is planned and drawn. Throws MachineError.
+/// Makes the device's buffers of the planned maps and their texels. Throws MachineError.
 void borrowMaps(OpenedDevice& device, MapScene& maps);
 
-/// Draws those parts of the maps that lookups need and that aren't drawn yet, and brings the device's buffers
-/// up to date. needed: as findTexels() returns it. Throws as drawNeeded does.
+/// Draws the bins of the maps that lookups need and that aren't drawn yet, and updates the device's buffers.
+/// needed: of findTexels(). Throws as drawNeeded does.
 void drawMaps(OpenedDevice& device, const Scene& scene, std::span<const std::uint32_t> needed,
               MapScene& maps);
 

@@ -37,7 +37,7 @@ std::vector<bool> deformingMeshes(const Scene& scene) {
   return deforms;
 }
 
-/// The boxes around all objects that moved or deformed, as they were and as they are.
+/// The bounds of all objects that moved or deformed, each before and after.
 std::vector<Bounds> movedBounds(const Scene& scene, const KeptShadows& kept) {
   std::vector<bool> changed(scene.meshes.size());
   const std::vector<Deformation>& deformations = scene.animation.deformations;
@@ -62,15 +62,15 @@ bool showsAny(const View& view, const std::vector<Bounds>& boxes) {
     return std::ranges::all_of(planes, [&](const glm::dvec4& plane) {
       const glm::dvec3 corner(plane.x > 0 ? box.high.x : box.low.x, plane.y > 0 ? box.high.y : box.low.y,
                               plane.z > 0 ? box.high.z : box.low.z);
-      // Not ≥ 0, so that what isn't finite may show.
+      // Negated, so that boxes with NaN count as shown.
       return !(glm::dot(plane, glm::dvec4(corner, 1)) < 0);
     });
   });
 }
 
-/// Which faces show what they showed; none if the faces are others.
-std::vector<bool> sameFaces(const Scene& scene, const KeptShadows& kept, const ShadowMaps& before,
-                            const ShadowMaps& maps) {
+/// The faces whose texels are unchanged; none if the maps have other faces.
+std::vector<bool> unchangedFaces(const Scene& scene, const KeptShadows& kept, const ShadowMaps& before,
+                                 const ShadowMaps& maps) {
   std::vector<bool> same(maps.planned.size());
   if (before.planned.size() != maps.planned.size() || before.method != maps.method ||
       kept.maps_objects.size() != scene.objects.size() || kept.maps_ranges.size() != scene.lights.size() ||
@@ -95,7 +95,7 @@ TreeWork updateTree(const Scene& scene, const glm::dvec3& origin, bool holes, Ke
     kept.tree_objects = scene.objects;
     kept.tree_poses = posesOf(scene);
     refitTriangleTree(scene, origin, *kept.tree);
-    if (areaOfBoxes(*kept.tree) <= kMostGrowth * kept.tree_area) return TreeWork::kRefitted;
+    if (boxArea(*kept.tree) <= kMostGrowth * kept.tree_area) return TreeWork::kRefitted;
   }
   kept.tree = nullptr;  // freed first, so that memory need not hold both
   kept.masks = nullptr;
@@ -103,14 +103,14 @@ TreeWork updateTree(const Scene& scene, const glm::dvec3& origin, bool holes, Ke
   if (holes) kept.masks = std::make_shared<const HoleMasks>(makeHoleMasks(scene, *kept.tree));
   kept.tree_objects = scene.objects;
   kept.tree_poses = posesOf(scene);
-  kept.tree_area = areaOfBoxes(*kept.tree);
+  kept.tree_area = boxArea(*kept.tree);
   return TreeWork::kBuilt;
 }
 
 void takeMaps(const Scene& scene, KeptShadows& kept, ShadowMaps& maps) {
   ShadowMaps before = std::exchange(kept.maps, {});
   maps.texels = std::move(before.texels);
-  const std::vector<bool> same = sameFaces(scene, kept, before, maps);
+  const std::vector<bool> same = unchangedFaces(scene, kept, before, maps);
   if (std::ranges::none_of(same, [](bool is_same) { return is_same; })) {
     maps.texels.clear();
     return;

@@ -11,32 +11,32 @@
 namespace luciole {
 namespace {
 
-/// Whether culling and shading go together, without lists in memory: where nothing else reads them and there
-/// are many lights. A few are faster by lists, whose rows of pixels are lit four side by side. A device of
-/// single lanes has far more threads than a picture has blocks of tiles.
-bool needsNoLists(const OpenedDevice& device, const Lighting& lighting, const LightPass& pass) {
+/// Whether one kernel culls and shades, without light lists in memory. It does if nothing else reads the
+/// lists and there are many lights. With few, lists are faster: four rows of pixels are lit together. A
+/// device of single lanes (a GPU) has far more threads than a picture has blocks of tiles.
+bool shadesByTiles(const OpenedDevice& device, const Lighting& lighting, const LightPass& pass) {
   const FeatureSet& features = pass.features;
   return features.has(Feature::kLightLists) && features.has(Feature::kLongSums) && !features.shadows() &&
          !pass.counts.list_length && lighting.group_log2 == 4 && device.description.lanes > 1;
 }
 
-/// Shadows of the lights that have maps. What of these is drawn stays drawn.
-void castByMaps(const StageInput& input, MapScene& maps, Stats& stats) {
+/// Draws the texels of shadow maps that the points look up, unless earlier points did.
+void drawNeededMaps(const StageInput& input, MapScene& maps, Stats& stats) {
   if (maps.host.maps.empty()) return;
   const auto needed = timed(stats, Stage::kFindShadowTexels, [&] { return findTexels(input); });
   timed(stats, Stage::kShadowMaps, [&] { drawMaps(input.device, input.scene, needed, maps); });
 }
 
-/// Shadows of the lights that have none.
-void castByBeams(const StageInput& input, LitPlanes& lit, Stats& stats) {
+/// Computes the exact shadows: by beams, and by rays for the pairs that beams leave undecided.
+void computeExactShadows(const StageInput& input, LitPlanes& lit, Stats& stats) {
   lit.pairs = timed(stats, Stage::kBeamShadows, [&] { return decideBeams(input); });
   if (!lit.pairs.unsure.empty())
-    lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsure(input, lit.pairs); });
-  // But for lights of a size rays have set the bits of those that were unsure.
+    lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsurePairs(input, lit.pairs); });
+  // Without lights of a size all bits are decided now. With them shading reads the shares of unsure pairs.
   if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = PairBits();
 }
 
-/// The bytes that this G-buffer took on the device.
+/// The bytes of the device's buffers for this G-buffer.
 std::size_t bytesOf(const StageInput& input, const ClusterLight& clusters, const LitPlanes& lit) {
   const std::size_t floats = clusters.light.size() + lit.light_error.size() + lit.color.size();
   const std::size_t words =
@@ -50,7 +50,7 @@ std::size_t bytesOf(const StageInput& input, const ClusterLight& clusters, const
 LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& lighting, LightPass pass,
                        Stats& stats) {
   const FeatureSet& features = pass.features;
-  const bool by_tiles = needsNoLists(device, lighting, pass);
+  const bool by_tiles = shadesByTiles(device, lighting, pass);
   const bool by_lists = features.has(Feature::kLightLists) && !by_tiles;
   const LightLists no_lists;
   LitPlanes lit;
@@ -58,10 +58,9 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   Points points = pointsOnDevice(device, pass.gbuffer, features, lighting.unlit);
   const StageInput input{device, scene, lighting, pass, points, by_lists ? lighting.lists : no_lists};
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
-  if (features.shadowMaps()) castByMaps(input, lighting.maps, stats);
-  if (features.has(Feature::kExact)) castByBeams(input, lit, stats);
-  // Kept to the end: where a buffer is made in the place of one that is gone, Oclgrind takes it for
-  // unwritten.
+  if (features.shadowMaps()) drawNeededMaps(input, lighting.maps, stats);
+  if (features.has(Feature::kExact)) computeExactShadows(input, lit, stats);
+  // Lives to the end: Oclgrind takes a buffer for unwritten if it reuses the address of a freed one.
   const PairBuffers pairs = borrowPairs(device, lit.pairs);
   ShadeFrame frame = pass.lights.frame;
   frame.plane_stride = static_cast<uint>(points.stride);
@@ -70,7 +69,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
     clusters = timed(stats, Stage::kClusteredLight, [&] { return sumClusters(input, frame); });
     points.buffers.emission = borrowed(device, clusters.light);
   }
-  lit.color = std::move(pass.used);
+  lit.color = std::move(pass.recycled);
   lit.color.resize(points.stride * (features.has(Feature::kOutputShadow) ? 4 : 3));
   const Buffer<float> image = borrowedForOutput(device, lit.color);
   TileCounts of_tiles{input.lists.entries, 0};
@@ -86,9 +85,9 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   lit.clustered = clusters.counts;
   lit.light_error = std::move(clusters.bound);
   if (features.has(Feature::kClusteredLights) || lighting.vertex_error)
-    boundSeenLight(pass.gbuffer, frame, features,
-                   clusters.light.empty() ? pass.gbuffer.emission : clusters.light, lit.color,
-                   lighting.vertex_error, lit.light_error);
+    boundVisibleLight(pass.gbuffer, frame, features,
+                      clusters.light.empty() ? pass.gbuffer.emission : clusters.light, lit.color,
+                      lighting.vertex_error, lit.light_error);
   PixelCounts missing = pass.counts;
   missing.evaluated &= !by_tiles;
   if (missing.in_range || missing.evaluated || missing.list_length)

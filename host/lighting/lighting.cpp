@@ -43,12 +43,12 @@ LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::ve
   return buildLightClusters(lights);
 }
 
-/// The clusters of the lights that some may stand for. highlights: surfaces have them.
+/// The clusters of the lights without an ExactReason. highlights: surfaces have specular colours.
 ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
                       const ShadeSettings& settings) {
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
-    if (exactReason(scene.lights[i], lightUse(settings)) == ExactReason::kNone) chosen.push_back(i);
+    if (exactReason(scene.lights[i], clusterConditions(settings)) == ExactReason::kNone) chosen.push_back(i);
   const bool one_color = std::all_of(chosen.begin(), chosen.end(), [&](std::uint32_t light) {
     return scene.lights[light].diffuse == scene.lights[light].specular;
   });
@@ -71,7 +71,7 @@ void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& cam
     if (set.clusters.lights < scene.lights.size()) set.order = spatialOrder(scene.lights);
     if (clustered)
       std::erase_if(set.order, [&](std::uint32_t light) {
-        return exactReason(scene.lights[light], lightUse(settings)) == ExactReason::kNone;
+        return exactReason(scene.lights[light], clusterConditions(settings)) == ExactReason::kNone;
       });
     set.lights = prepareLights(scene, set.order, camera, lighting.maps.host.map_of_light);
     if (lighting.features.has(Feature::kExact))

@@ -16,27 +16,26 @@
 
 namespace luciole {
 
-/// What all G-buffers of one picture are lit with: its lights, the shadows that they share with its layers,
-/// and device memory that each G-buffer reuses.
+/// The lights and shadows of one picture, and the device memory that its passes reuse.
 struct Lighting {
   FeatureSet features;
   std::string math_defines;  ///< as by mathDefines
   unsigned group_log2 = 0;   ///< see CullArguments
-  bool unlit = false;  ///< the scene switches lighting off: the diffuse colour takes the place of ambient
+  bool unlit = false;        ///< Scene::lighting is off: the diffuse colour takes the place of ambient
   MapScene maps;
   BeamScene beams;  ///< with Feature::kExact only
   LightSet lights;
   LightLists lists;           ///< of the last G-buffer that was shaded by lists
   LightLists lists_in_range;  ///< lists by range alone, to count lights in range
-  /// With Gouraud shading and clusters: the largest bound of any vertex, r g b. A pixel mixes vertices by
-  /// weights that add up to 1, and maps don't make it brighter, so it is a bound for each pixel.
+  /// With Gouraud shading and clusters: the largest error bound of any vertex, r g b. It holds for each pixel
+  /// too, because weights of vertices add up to 1 and maps are at most 1.
   std::optional<glm::vec3> vertex_error;
 };
 
-/// Fills `lighting` for a scene seen by a view of `camera`, and plans the shadow maps that the features need;
-/// none is drawn yet. kept: of the picture before this one, or null: see KeptShadows. The device may still be
-/// opening: this waits for it as late as possible. Adds the times of its stages to `stats`. Throws
-/// MachineError, and what opening the device throws.
+/// Fills `lighting` for a scene seen by a view of `camera`, and plans the shadow maps that the features need.
+/// Draws none. kept: of the picture before this one, or null. Waits, as late as possible, for a device that
+/// is still being opened. Adds the times of its stages to `stats`. Throws MachineError, and what opening the
+/// device throws.
 void prepareLighting(OpenedDevice& device, const Scene& scene, const Camera& camera, const View& view,
                      const FeatureSet& features, const ShadeSettings& settings, Lighting& lighting,
                      Stats& stats, KeptShadows* kept = nullptr);

@@ -12,7 +12,7 @@
 // lightGBuffer() composes them. All throw MachineError.
 namespace luciole {
 
-/// What all stages know: the points, their lights, and what a picture's G-buffers share.
+/// The input of all stages.
 struct StageInput {
   OpenedDevice& device;
   const Scene& scene;
@@ -25,16 +25,16 @@ struct StageInput {
 /// Makes the lists.
 void cullLights(const StageInput& input, LightLists& lists);
 
-/// For each bin of the shadow maps what the points need of it: see findNeeded. drawMaps() draws it.
+/// For each bin of the shadow maps the depth to which drawMaps() must draw it: see findNeeded.
 std::vector<std::uint32_t> findTexels(const StageInput& input);
 
-/// The exact shadows of all entries of the lists, but for the pairs that rays decide.
+/// The exact shadows of all entries of the lists. PairShadows::unsure are left to traceUnsurePairs().
 PairShadows decideBeams(const StageInput& input);
 
-/// Decides these by rays.
-TracedPairs traceUnsure(const StageInput& input, PairShadows& pairs);
+/// Decides the unsure pairs by rays.
+TracedPairs traceUnsurePairs(const StageInput& input, PairShadows& pairs);
 
-/// These shadows on the device, borrowed. See ShadeArguments.
+/// Exact shadows on the device, borrowed. See ShadeArguments.
 struct PairBuffers {
   Buffer<const uint> pair_bits, ray_bits, first_share;
   Buffer<const float> shares;
@@ -44,7 +44,7 @@ PairBuffers borrowPairs(OpenedDevice& device, const PairShadows& pairs);
 /// The light of clusters: planes r g b.
 struct ClusterLight {
   Plane light;  ///< as it leaves the surface, and the G-buffer's emission with it
-  Plane bound;  ///< how far each value may be from the truth, seen through the fog; 0 for background
+  Plane bound;  ///< upper bounds of each value's error, seen through the fog; 0 for background
   ClusteredLightCounts counts;
 };
 ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame);
@@ -53,7 +53,7 @@ ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame);
 void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,
                   const Buffer<float>& image);
 
-/// Culls and shades tile by tile, without lists in memory, and counts what it does.
+/// Culls and shades in one kernel, without lists in memory.
 TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const Buffer<float>& image);
 
 }  // namespace luciole

@@ -80,7 +80,7 @@ void addPart(const Stats& part, Stats& whole) {
   for (const auto& counted : part.counts) {
     const std::string& name = counted.first;
     const std::uint64_t count = counted.second;
-    // What is counted of the scene, and not of its pixels, every device counts.
+    // Every device has the counts of the scene; those of pixels add up.
     const bool is_of_scene =
         name.starts_with("lights_") || name.starts_with("shadow_lights") || name.starts_with("objects_");
     const auto known = std::find_if(whole.counts.begin(), whole.counts.end(),
@@ -151,7 +151,7 @@ std::string statsJson(const Stats& stats, double ended) {
                     {"uploaded_bytes", stats.traffic.bytes_up},
                     {"downloaded_bytes", stats.traffic.bytes_down},
                     {"made_bytes", stats.traffic.bytes_made}};
-  json["threads"] = livingThreads();
+  json["threads"] = countThreads();
   json["cold_start_milliseconds"] = cold_start;
   const std::optional<int> compiled = kernelsCompiled(stats.device.platform);
   json["kernels_compiled"] = compiled ? nlohmann::ordered_json(*compiled) : nullptr;
@@ -176,7 +176,7 @@ std::string statsCsv(const Stats& stats, double ended) {
   add("device", stats.device.name);
   add("driver", stats.device.version);
   add("lanes", text(stats.device.lanes));
-  add("threads", text(livingThreads()));
+  add("threads", text(countThreads()));
   add("triangles", text(stats.triangles));
   add("lights", text(stats.lights));
   add("width", text(stats.width));

@@ -8,15 +8,15 @@
 
 namespace luciole {
 
-/// Whether a stage is done only once in a process (opening the device, compiling kernels, waiting for them),
-/// so that it is no work on the picture.
+/// Whether a stage is part of a process's start rather than of a picture: opening the device, compiling
+/// kernels, and waiting for them.
 bool isStart(Stage stage);
 
 /// Adds `milliseconds` to the stage, which starts at 0.
 void addStage(Stats& stats, Stage stage, double milliseconds);
 
-/// Adds what one of several devices cost that made parts of a picture, and what it says of the scene where
-/// nobody has said that yet. Times are sums over devices that worked side by side.
+/// Adds the statistics of one of several devices that rendered a picture in parallel. Times are sums over the
+/// devices. Counts of the scene, which all devices have, are taken from the first.
 void addPart(const Stats& part, Stats& whole);
 
 /// Ends a stage that began at `begin` (nanosecondsSinceStart()): records it for a trace, and returns the
@@ -31,7 +31,7 @@ double millisecondsOf(Function&& function) {
   return 1e-6 * double(nanosecondsSinceStart() - begin);
 }
 
-/// Runs a stage, adds the time it took, also if it throws, and returns its result. A trace tells the same.
+/// Runs a stage, adds its time, also if it throws, and records it for a trace. Returns its result.
 template <class Function>
 auto timed(Stats& stats, Stage stage, Function&& function) {
   struct Timer {

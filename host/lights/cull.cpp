@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kFile = "lights/cull.cl";
 
-/// The lists' lengths, or then the lists themselves: see kernels/lights/cull.cl.
+/// Launches kernels/lights/cull.cl. fill: writes the lists, else counts their lengths.
 void findLights(OpenedDevice& device, const CullArguments& arguments, bool fill, const LightLists& lists) {
   Kernel find_lights = makeKernel(device, kFile, "find_lights", "");
   const CullFrame frame{.plane_stride = uint(arguments.plane_stride),

@@ -10,10 +10,10 @@ namespace luciole {
 struct LightLists {
   Buffer<uint> starts;      ///< tiles + 1
   Buffer<ListEntry> list;   ///< `entries`; in a tile ascending by light
-  Buffer<ListEntry> found;  ///< kFoundPerTile for each tile, which counting keeps for filling
+  Buffer<ListEntry> found;  ///< kFoundPerTile for each tile: entries that the counting pass keeps for filling
   std::size_t tiles = 0;
   std::size_t entries = 0;
-  std::size_t bytes = 0;  ///< that these lists need of the three buffers together
+  std::size_t bytes = 0;  ///< of the three buffers that these lists use
 };
 
 struct CullArguments {

@@ -18,7 +18,7 @@ const char* exactReasonName(ExactReason reason) {
   return kNames[std::size_t(reason)];
 }
 
-ExactReason exactReason(const Light& light, const LightUse& use) {
+ExactReason exactReason(const Light& light, const ClusterConditions& use) {
   if (use.model != Model::kPhong && use.model != Model::kBlinnPhong) return ExactReason::kModel;
   if (light.kind != LightKind::kPoint) return ExactReason::kKind;
   if (use.shadows && light.shadow) return ExactReason::kShadow;
@@ -31,10 +31,11 @@ ExactReason exactReason(const Light& light, const LightUse& use) {
   return ExactReason::kNone;
 }
 
-std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights, const LightUse& use) {
+std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights,
+                                                    const ClusterConditions& use) {
   using Counts = std::array<std::size_t, kExactReasons>;
-  const auto count = [&](const tbb::blocked_range<std::size_t>& some, Counts counts) {
-    for (std::size_t i = some.begin(); i < some.end(); ++i)
+  const auto count = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
       ++counts[std::size_t(exactReason(lights[i], use))];
     return counts;
   };

@@ -11,10 +11,10 @@
 
 namespace luciole {
 
-/// Why a light is summed by itself when others might stand for it (ShadeSettings::light_error): the first
-/// that holds, in this order.
+/// The reason why a light can't be in a cluster (ShadeSettings::light_error) and is summed by itself: the
+/// first that holds, in this order.
 enum class ExactReason : std::uint8_t {
-  kNone,         ///< others may stand for it
+  kNone,         ///< it can be in a cluster
   kModel,        ///< not all surfaces have Phong's model, nor have all Blinn's
   kKind,         ///< it is no point light
   kShadow,       ///< it casts a shadow in this picture
@@ -32,15 +32,16 @@ const char* exactReasonName(ExactReason reason);
 /// Metres: squares of distances, and their inverses, are floats well within this.
 inline constexpr double kFarthestClustered = 1e15;
 
-/// What of a picture decides which of its lights others may stand for.
-struct LightUse {
-  std::optional<Model> model = Model::kPhong;  ///< none: surfaces have different ones
-  bool shadows = false;                        ///< lights cast them that can
+/// The properties of a picture that decide which of its lights can be in clusters.
+struct ClusterConditions {
+  std::optional<Model> model = Model::kPhong;  ///< of all surfaces; empty: they have different ones
+  bool shadows = false;                        ///< lights with Light::shadow cast shadows
 };
 
-ExactReason exactReason(const Light& light, const LightUse& use);
+ExactReason exactReason(const Light& light, const ClusterConditions& use);
 
-/// How many lights each reason holds for, by ExactReason. O(n), on all cores.
-std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights, const LightUse& use);
+/// The number of lights for each ExactReason. O(n), on all cores.
+std::array<std::size_t, kExactReasons> countReasons(std::span<const Light> lights,
+                                                    const ClusterConditions& use);
 
 }  // namespace luciole

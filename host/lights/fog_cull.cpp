@@ -19,76 +19,76 @@ double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 /// Upper bounds of the factors by which a surface reflects, for each channel: of ambient light, and of the
 /// lights' diffuse and specular colours.
-struct Response {
+struct ReflectanceBound {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 
-  void cover(const Response& other) {
+  void include(const ReflectanceBound& other) {
     ambient = glm::max(ambient, other.ambient);
     diffuse = glm::max(diffuse, other.diffuse);
     specular = glm::max(specular, other.specular);
   }
 };
 
-/// An object that the fog hides unless it is brighter than usualColor().
+/// An object that fog hides unless it is brighter than assumedColor().
 struct Candidate {
   std::uint32_t object;
   Bounds box;    ///< world
   double depth;  ///< the least of the box along the view axis
-  Response response;
+  ReflectanceBound response;
 };
 
-/// Upper bounds of the light that points of a box get, whichever way surfaces face.
+/// Upper bounds of the light at points of a box, for any normal.
 struct LightSum {
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0};
 };
 
-/// What the candidates have in common.
-struct Fogged {
+/// The parameters of a picture that all candidates share.
+struct FogContext {
   const Scene& scene;
   glm::dvec3 eye;
   double emission = 0;  ///< the scene's brightest
-  /// Factor of colours for fogLimit(): the exposure, enlarged because the contrast of background and fog
-  /// uses up a part of the half step.
+  /// Factor of colours for fogLimit(): the exposure, times more for the part of the half step that the
+  /// contrast of background and fog takes.
   double gain = 0;
 };
 
 /// Texels are at most 1, vertex colours may be more. In a scene without lighting the diffuse colour takes the
 /// place of the ambient one.
-Response responseOf(const Scene& scene, const Object& object, Model model) {
+ReflectanceBound reflectanceBound(const Scene& scene, const Object& object, Model model) {
   const Mesh& mesh = scene.meshes[object.mesh];
   glm::dvec3 tint(mesh.colors.empty() ? 1.0 : 0.0);
   for (const glm::vec4& color : mesh.colors) tint = glm::max(tint, glm::dvec3(color));
-  Response response;
-  const auto cover = [&](const Material& material) {
+  ReflectanceBound response;
+  const auto include = [&](const Material& material) {
     const glm::dvec3 diffuse(material.diffuse);
     const glm::dvec3 ambient = scene.lighting ? glm::dvec3(material.ambient) : diffuse;
-    Response own{.ambient = ambient * tint};
+    ReflectanceBound own{.ambient = ambient * tint};
     for (int c = 0; c < 3; ++c) {
       const ModelBounds most =
           modelBounds(material.model.value_or(model), material.specular[c], material.shininess);
       own.diffuse[c] = most.diffuse * diffuse[c] * tint[c];
       own.specular[c] = most.specular;
     }
-    response.cover(own);
+    response.include(own);
   };
   if (object.material >= 0) {
-    cover(scene.materials[object.material]);
+    include(scene.materials[object.material]);
     return response;
   }
   std::vector<bool> is_covered(scene.materials.size());
   for (const std::uint32_t material : mesh.triangle_materials) {
-    if (!is_covered[material]) cover(scene.materials[material]);
+    if (!is_covered[material]) include(scene.materials[material]);
     is_covered[material] = true;
   }
   return response;
 }
 
 /// Upper bound of the share of a light's colours that reaches points of a box; 0 if it is out of range.
-double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
+double attenuationBound(const Light& light, const Bounds& box, const glm::dvec3& eye) {
   if (light.kind == LightKind::kDirectional) return 1;
   const glm::dvec3 nearest = glm::clamp(light.position, box.low, box.high);
   const glm::dvec3 farthest = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
-  // The kernels' positions are rounded relative to their distance from the eye.
+  // Rounding of the kernels' positions, which is relative to their distance from the eye.
   const double lost = kSlack * (glm::length(farthest) + glm::distance(light.position, eye));
   const double distance = std::max(glm::distance(light.position, nearest) - lost, 0.0);
   if (distance >= light.range) return 0;
@@ -100,16 +100,16 @@ double strongest(const Light& light, const Bounds& box, const glm::dvec3& eye) {
 }
 
 /// Upper bound of the colour of surfaces with this response in this light, without exposure.
-double brightestColor(const Fogged& fogged, const Response& response, const LightSum& light) {
+double brightestColor(const FogContext& fogged, const ReflectanceBound& response, const LightSum& light) {
   const glm::dvec3 ambient(fogged.scene.lighting ? fogged.scene.ambient : glm::vec3(1.0f));
   const glm::dvec3 color = (ambient + light.ambient) * response.ambient + light.diffuse * response.diffuse +
                            light.specular * response.specular;
   return (1 + kSlack) * (largest(color) + fogged.emission);
 }
 
-/// The brightness that every colour is assumed to have; only brighter ones need the lights. Not below the
-/// fog's own colour, because a black surface differs from that by as much.
-double usualColor(const Fogged& fogged) {
+/// The brightness that every colour is assumed to have before lights are looked at. At least that of the fog,
+/// because a black surface differs from the fog by as much.
+double assumedColor(const FogContext& fogged) {
   return std::max({1.0, fogged.emission, largest(glm::dvec3(fogged.scene.fog.color))});
 }
 
@@ -125,31 +125,31 @@ double nearestDepth(const Bounds& box, const View& view) {
   return nearest;
 }
 
-/// Adds to `seen` the candidates that may be bright enough to shine through the fog. lights: all that may
-/// reach them. The candidates are tried together, by the box around them. If that doesn't settle it they are
-/// halved, and each half is tried with the lights that reach this box. Changes the candidates' order.
-void addBright(const Fogged& fogged, std::span<Candidate> candidates, const std::vector<const Light*>& lights,
-               std::vector<std::uint32_t>& seen) {
+/// Appends to `seen` the candidates that may be bright enough to be visible through the fog. lights: all that
+/// may reach them. Tests the box around all candidates; if it may be visible, divides them into halves, each
+/// with the lights that reach the box. Changes the candidates' order.
+void addBright(const FogContext& fogged, std::span<Candidate> candidates,
+               const std::vector<const Light*>& lights, std::vector<std::uint32_t>& seen) {
   Bounds box;
   double depth = std::numeric_limits<double>::infinity();
-  Response response;
+  ReflectanceBound response;
   for (const Candidate& candidate : candidates) {
     box.low = glm::min(box.low, candidate.box.low);
     box.high = glm::max(box.high, candidate.box.high);
     depth = std::min(depth, candidate.depth);
-    response.cover(candidate.response);
+    response.include(candidate.response);
   }
   LightSum sum;
   std::vector<const Light*> reaching;
   for (const Light* light : lights) {
-    const double strength = strongest(*light, box, fogged.eye);
+    const double strength = attenuationBound(*light, box, fogged.eye);
     if (strength == 0) continue;
     reaching.push_back(light);
     sum.ambient += strength * glm::dvec3(light->ambient);
     sum.diffuse += strength * glm::dvec3(light->diffuse);
     sum.specular += strength * glm::dvec3(light->specular);
   }
-  const double brightest = std::max(usualColor(fogged), brightestColor(fogged, response, sum));
+  const double brightest = std::max(assumedColor(fogged), brightestColor(fogged, response, sum));
   if ((1 - kSlack) * depth > fogLimit(fogged.scene.fog, brightest * fogged.gain)) return;
   if (candidates.size() == 1) {
     seen.push_back(candidates[0].object);
@@ -186,14 +186,14 @@ double fogLimit(const Fog& fog, double brightest) {
 }
 
 std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, float exposure, Model model) {
-  Fogged fogged{scene, glm::dvec3(glm::inverse(view.world_to_view)[3])};
+  FogContext fogged{scene, glm::dvec3(glm::inverse(view.world_to_view)[3])};
   for (const Material& material : scene.materials)
     fogged.emission = std::max(fogged.emission, largest(glm::dvec3(material.emission)));
   const double exposed = std::exp2(std::max(exposure, 0.0f));
   const glm::dvec3 contrast = glm::abs(glm::dvec3(scene.background) - glm::dvec3(scene.fog.color));
   const double left = kHalfStep - exposed * largest(contrast);
   fogged.gain = exposed * kHalfStep / left;
-  const double limit = fogLimit(scene.fog, usualColor(fogged) * fogged.gain);
+  const double limit = fogLimit(scene.fog, assumedColor(fogged) * fogged.gain);
   if (left <= 0 || !std::isfinite(limit)) return allObjects(scene);
   std::vector<std::uint32_t> seen;
   std::vector<Candidate> candidates;
@@ -203,7 +203,7 @@ std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, 
     if (depth <= limit)
       seen.push_back(i);
     else
-      candidates.push_back({i, box, depth, responseOf(scene, scene.objects[i], model)});
+      candidates.push_back({i, box, depth, reflectanceBound(scene, scene.objects[i], model)});
   }
   if (candidates.empty()) return seen;
   std::vector<const Light*> lights;

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t kRowFloats = std::size_t(kClusterFields) * kClusterSlots;
 constexpr std::size_t kLightRowFloats = std::size_t(kLightFields) * kClusterSlots;
-/// Lights that are split in a thread of their own.
+/// Nodes with fewer lights are split by one thread.
 constexpr std::size_t kParallelLights = 1 << 14;
-/// Moments that bound something are at least this, so that none is lost below the least float.
+/// Moments in bounds are at least this, so that none underflows.
 constexpr double kLeastMoment = 1e-30;
 
 /// A number's upper 24 bits, which a float holds: G. Veltkamp's splitting. Not by way of a float, because GCC
@@ -62,7 +62,7 @@ void split(std::span<const UnboundedLight> lights, std::vector<std::uint32_t>& o
   };
   const auto begin = at(level, index), end = at(level, index + 1);
   if (level == levels) {
-    // The order within a leaf would be the library's.
+    // std::nth_element leaves the order within a leaf unspecified.
     std::sort(begin, end);
     return;
   }
@@ -86,13 +86,13 @@ void split(std::span<const UnboundedLight> lights, std::vector<std::uint32_t>& o
   }
 }
 
-/// Lights that sums take side by side: as many as a vector has doubles. Compilers may not reorder sums.
-constexpr std::size_t kAbreast = 8;
-using Doubles = std::array<double, kAbreast>;
+/// Partial sums: as many as a vector has doubles, since compilers may not reorder sums.
+constexpr std::size_t kSumLanes = 8;
+using Doubles = std::array<double, kSumLanes>;
 
 double total(const Doubles& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
-/// Planes of the lights' places, and of their colours as the device has them.
+/// Planes of the lights' positions, and of their colours as the device's floats.
 struct LightPlanes {
   std::array<std::vector<double>, 3> position;
   std::array<std::vector<float>, 3> color;
@@ -101,8 +101,9 @@ struct LightPlanes {
 /// A bound as a float, rounded up.
 float atLeast(double bound) { return std::nextafter(float(std::max(bound, kLeastMoment)), INFINITY); }
 
-/// Sums over lights at δ: of q, qδ, qδδ, q|δ| and q|δ|³, and of q times the solid harmonics of the degrees 2
-/// to 4, so normalized that the squares of those of degree j add to |δ|²ʲ (G. Racah's).
+/// Sums over lights of intensity q at δ from the cluster's centre: of q, qδ, qδδ, q|δ| and q|δ|³, and of q
+/// times the solid harmonics of degrees 2 to 4 in Racah's normalization, in which the squares of degree j add
+/// up to |δ|²ʲ.
 enum {
   kAbsolute1 = kMoments,
   kAbsolute3,
@@ -112,7 +113,7 @@ enum {
   kSums = kDegree4 + 9
 };
 
-/// What the sums add for a light of q = 1.
+/// The terms of the sums for a light of q = 1.
 std::array<double, kSums> summands(double x, double y, double z) {
   const double xx = x * x, yy = y * y, zz = z * z, across = xx + yy, d2 = across + zz, d = std::sqrt(d2);
   const double s3 = 1.7320508075688772, s5 = 2.23606797749979, s6 = 2.449489742783178,
@@ -133,12 +134,11 @@ std::array<double, kSums> summands(double x, double y, double z) {
           0.125 * s35 * (xx * xx - 6 * xx * yy + yy * yy), 0.5 * s35 * x * y * (xx - yy)};
 }
 
-/// A point amid the lights from `begin` to `end`: their mean place weighted by their light, as floats have
-/// it.
+/// The mean position of the lights from `begin` to `end`, weighted by their light and rounded to float.
 glm::dvec3 centreOf(const LightPlanes& lights, std::size_t begin, std::size_t end) {
   std::array<Doubles, 4> sums{};
   for (std::size_t i = begin; i < end; ++i) {
-    const std::size_t part = (i - begin) % kAbreast;
+    const std::size_t part = (i - begin) % kSumLanes;
     const double weight = double(lights.color[0][i]) + lights.color[1][i] + lights.color[2][i];
     for (std::size_t axis = 0; axis < 3; ++axis) sums[axis][part] += weight * lights.position[axis][i];
     sums[3][part] += weight;
@@ -152,23 +152,23 @@ glm::dvec3 centreOf(const LightPlanes& lights, std::size_t begin, std::size_t en
 }
 
 /// Sets a cluster's fields, which lie kClusterSlots floats apart from `out` on, to the lights from `begin` to
-/// `end`. Where a float doesn't hold one of them, a bound is infinite, so that nothing stands for its lights.
+/// `end`. If a field overflows a float, a bound is set to infinity, so that the cluster is never used.
 void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, float* out) {
   const auto field = [out](std::size_t number) -> float& { return out[number * kClusterSlots]; };
   const glm::dvec3 centre = centreOf(lights, begin, end);
   std::array<std::array<Doubles, kSums>, 3> sums{};
   std::array<Doubles, 4> farthest{};  // |xyz| and the square of the distance
-  for (std::size_t first = begin; first < end; first += kAbreast) {
-    // Those beyond the end are taken for black ones at the centre.
-    std::array<Doubles, 3> way{}, color{};
-    for (std::size_t i = 0; i < std::min(kAbreast, end - first); ++i)
+  for (std::size_t first = begin; first < end; first += kSumLanes) {
+    // Lanes beyond the end are black lights at the centre.
+    std::array<Doubles, 3> offset{}, color{};
+    for (std::size_t i = 0; i < std::min(kSumLanes, end - first); ++i)
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        way[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
+        offset[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
         color[axis][i] = lights.color[axis][first + i];
       }
     std::array<Doubles, kSums> each;
-    for (std::size_t i = 0; i < kAbreast; ++i) {
-      const double x = way[0][i], y = way[1][i], z = way[2][i];
+    for (std::size_t i = 0; i < kSumLanes; ++i) {
+      const double x = offset[0][i], y = offset[1][i], z = offset[2][i];
       const std::array<double, kSums> terms = summands(x, y, z);
       for (std::size_t m = 0; m < kSums; ++m) each[m][i] = terms[m];
       farthest[0][i] = std::max(farthest[0][i], std::abs(x));
@@ -178,7 +178,7 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
     }
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t m = 0; m < kSums; ++m)
-        for (std::size_t i = 0; i < kAbreast; ++i) sums[c][m][i] += color[c][i] * each[m][i];
+        for (std::size_t i = 0; i < kSumLanes; ++i) sums[c][m][i] += color[c][i] * each[m][i];
   }
   const auto most = [](const Doubles& values) { return *std::max_element(values.begin(), values.end()); };
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -17,13 +17,13 @@ struct UnboundedLight {
   double quadratic;  ///< at least kLeastQuadratic
 };
 
-/// Attenuation is held at 2¹⁰⁰ where quadratic·d² is less than 2⁻¹⁰⁰. Clusters, which are farther than 2⁻²⁵ m
-/// from what they light, are beyond that for larger ones than this.
+/// The falloff 1 / (quadratic·d²) is clamped to 2¹⁰⁰. With quadratic at least this, no cluster is clamped:
+/// clusters are farther than 2⁻²⁵ m from the points that they light.
 inline constexpr double kLeastQuadratic = 0x1p-40;
 
-/// A balanced tree over lights that clusters may stand for; its layout is that of kernels/shared.h.
+/// A balanced tree over lights; its layout is that of kernels/shared.h.
 struct LightClusters {
-  std::size_t lights = 0;  ///< how many there are
+  std::size_t lights = 0;  ///< their number
   /// kLightFields · kClusterSlots floats for each pair of leaves. Slots without a light are 0.
   std::vector<float, RawArrayAllocator<float>> light_rows;
   /// kClusterFields · kClusterSlots floats a row. Slots without a cluster are 0.

@@ -12,17 +12,16 @@
 
 namespace luciole {
 
-/// Clusters that stand for lights, with Feature::kClusteredLights only.
+/// Clusters of lights, with Feature::kClusteredLights only.
 struct ClusterSet {
   LightClusters diffuse;
-  LightClusters specular;  ///< of the same lights by their specular colours; empty where these are no others
-  std::size_t lights = 0;  ///< that they stand for
+  LightClusters specular;  ///< the same by specular colours; empty if these equal the diffuse ones
+  std::size_t lights = 0;  ///< number of lights in the clusters
   float light_error = 0;   ///< see ShadeSettings
 };
 
-/// The light that a G-buffer is lit by, as the kernels take it: lights, and what shines beside them. A layer
-/// of light is another one. Buffers are borrowed from the members before them, so it can be moved, but not
-/// copied.
+/// The lights of a picture or of a layer of light, as kernels take them, with ambient light, fog and
+/// background. Buffers are borrowed from the members before them, so it can be moved, but not copied.
 struct LightSet {
   /// Ambient light, fog and background; all but plane_stride and texel_count, which depend on the G-buffer.
   ShadeFrame frame{};
@@ -39,8 +38,8 @@ struct LightSet {
   LightSet(LightSet&&) = default;
 };
 
-/// Sets what follows from the lights: the frame's count, the tree, and the device's buffers. Throws
-/// MachineError.
+/// Sets the members that follow from the lights: the frame's count, the tree, and the device's buffers.
+/// Throws MachineError.
 void finishLightSet(OpenedDevice& device, LightSet& set);
 
 /// The bytes of its lights, their tree and clusters on the device.

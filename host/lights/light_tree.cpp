@@ -28,25 +28,25 @@ std::uint64_t rangeClass(const Light& light) {
   return std::uint64_t(std::clamp(std::ilogb(light.range), -510, 511) + 511);
 }
 
-/// The box around the lights that have a place.
-struct Places {
+/// The bounding box of lights with a position.
+struct PositionBounds {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 };
 
-Places placesOf(std::span<const Light> lights) {
-  const auto add = [&](const tbb::blocked_range<std::size_t>& some, Places places) {
-    for (std::size_t i = some.begin(); i < some.end(); ++i) {
+PositionBounds positionBounds(std::span<const Light> lights) {
+  const auto add = [&](const tbb::blocked_range<std::size_t>& range, PositionBounds places) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (reachesEverywhere(lights[i])) continue;
       places.low = glm::min(places.low, lights[i].position);
       places.high = glm::max(places.high, lights[i].position);
     }
     return places;
   };
-  const auto join = [](const Places& a, const Places& b) {
-    return Places{glm::min(a.low, b.low), glm::max(a.high, b.high)};
+  const auto join = [](const PositionBounds& a, const PositionBounds& b) {
+    return PositionBounds{glm::min(a.low, b.low), glm::max(a.high, b.high)};
   };
-  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, lights.size()), Places{}, add, join);
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, lights.size()), PositionBounds{}, add, join);
 }
 
 constexpr std::size_t rowsFor(std::size_t nodes) { return (nodes + kTreeArity - 1) / kTreeArity; }
@@ -93,7 +93,7 @@ void setNode(LightTree& tree, std::size_t place, const Node& node) {
 }  // namespace
 
 std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights) {
-  const Places places = placesOf(lights);
+  const PositionBounds places = positionBounds(lights);
   const glm::dvec3 cells =
       double((1 << kCellBits) - 1) / glm::max(places.high - places.low, glm::dvec3(1e-300));
   KeyedArray keyed(lights.size());

@@ -17,7 +17,7 @@ constexpr double kFarthestLight = 1e18;
 /// inside the cone.
 constexpr double kNarrowestEdge = 1 - 12 * 0x1p-24;
 
-/// How many lights ahead of the one at work are asked for, enough to hide what memory takes.
+/// Prefetch distance in lights, enough to hide the latency of memory.
 constexpr std::size_t kLightsAhead = 12;
 
 void prefetch(const Light& light) {
@@ -37,7 +37,7 @@ LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> orde
   const glm::dmat3 rotation(world_to_view);
   LightArray result(order.size());
   tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
-    // Neighbours in space lie anywhere in memory.
+    // The order is that of space, not of memory.
     if (i + kLightsAhead < order.size()) prefetch(scene.lights[order[i + kLightsAhead]]);
     const Light& light = scene.lights[order[i]];
     ShadeLight& out = result[i];

@@ -13,9 +13,10 @@ namespace luciole {
 /// New elements are not cleared.
 using LightArray = std::vector<ShadeLight, RawArrayAllocator<ShadeLight>>;
 
-/// Lights of the scene as kernels see them: in the camera's view space, in the order of these indices. A
-/// light whose squared distance would overflow a float is moved nearer, with its falloff scaled to match.
-/// map_of_light: of each of the scene's lights (see ShadowMaps); empty if none casts shadows.
+/// Lights of the scene as kernels take them: in the camera's view space, in the order of these indices. A
+/// light so far away that its squared distance would overflow a float is moved nearer, with its falloff
+/// scaled to match. map_of_light: of each of the scene's lights (see ShadowMaps); empty if none casts
+/// shadows.
 LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> order, const Camera& camera,
                          std::span<const std::uint32_t> map_of_light);
 

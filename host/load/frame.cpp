@@ -12,6 +12,7 @@
 #include "luciole/pose.hpp"
 #include "rays/ray_cast.hpp"
 #include "scene/bounds.hpp"
+#include "scene/count_triangles.hpp"
 
 namespace luciole {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 constexpr double kAspect = 16.0 / 9.0;
 constexpr double kMargin = 1.06;  // the picture's size relative to that of the scene's box
 /// With more triangles the rays that find a room would take seconds; such a scene is framed from outside.
-constexpr std::uint64_t kMostTrianglesToAsk = 8'000'000;
+constexpr std::uint64_t kMostTrianglesForRays = 8'000'000;
 
 glm::dvec3 centerOf(const Bounds& bounds) { return bounds.low + (bounds.high - bounds.low) / 2.0; }
 
@@ -252,9 +253,7 @@ Framing frameScene(const Scene& scene) {
     framing.camera.camera_to_world = cameraToWorld({0, 0, 5}, glm::dvec3(0), {0, 1, 0});
     return framing;
   }
-  std::uint64_t triangles = 0;
-  for (const Object& object : scene.objects) triangles += scene.meshes[object.mesh].triangles.size();
-  if (triangles > kMostTrianglesToAsk)
+  if (countTriangles(scene) > kMostTrianglesForRays)
     return frameFromOutside(bounds, glm::normalize(glm::dvec3(0.5, 0.35, 1)));
 
   const RayScene rays = buildRayScene(scene, centerOf(bounds));

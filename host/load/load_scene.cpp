@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "load/frame.hpp"
+#include "load/no_light_warning.hpp"
 #include "luciole/error.hpp"
 #include "luciole/pose.hpp"
 #include "scene/json/json_scene.hpp"
@@ -121,14 +122,14 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
   return scene;
 }
 
-Warning nothingLights(const Scene& scene) {
+Warning noLightWarning(const Scene& scene) {
   return {scene.name + ": nothing lights this scene", "nothing lights"};
 }
 
 void completeScene(Scene& scene, bool is_mesh_file) {
   const bool is_bare = is_mesh_file || !scene.objects.empty();
   const bool needs_lights = is_bare && !scene.says_light && scene.lights.empty();
-  if (!needs_lights && isDark(scene)) scene.warnings.push_back(nothingLights(scene));
+  if (!needs_lights && isDark(scene)) scene.warnings.push_back(noLightWarning(scene));
   if (!scene.cameras.empty() && !needs_lights) return;
   const Framing framing = frameScene(scene);
   if (scene.cameras.empty()) {

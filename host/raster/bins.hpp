@@ -25,8 +25,8 @@ struct BinGrid {
 /// The bins that a view's crop touches.
 BinGrid binGrid(const View& view);
 
-/// For each row of a bin's pixels, as far as it lies in the crop, calls visit(in_bin, in_crop, count): where
-/// its first pixel is in the bin and in the crop, both stored row by row, and how many pixels it has.
+/// Calls visit(in_bin, in_crop, count) for each row of a bin's pixels in the crop: the indices of its first
+/// pixel in the bin and in the crop, both row by row, and its number of pixels.
 template <class Visit>
 void forEachRow(const View& view, const glm::ivec2& bin_origin, Visit visit) {
   const glm::ivec2 first = glm::max(bin_origin, view.crop_origin);
@@ -37,8 +37,8 @@ void forEachRow(const View& view, const glm::ivec2& bin_origin, Visit visit) {
           end.x - first.x);
 }
 
-/// For every bin, the triangles whose bounding boxes touch it. Opaque triangles come first, in order. Those
-/// with holes follow, so that opacity is looked up only where they are the nearest.
+/// For every bin the triangles whose bounding boxes touch it: first opaque triangles, in order, then those
+/// with holes. So opacity is looked up only where these are the nearest.
 struct Bins : BinGrid {
   ItemLists
       lists;  ///< indices into the triangles given; two lists a bin: opaque triangles, then those with holes
@@ -50,8 +50,8 @@ struct Bins : BinGrid {
   }
 };
 
-/// Puts triangles into the bins of the view's crop. `farthest`: one a bin, row by row, the smallest reversed
-/// depth that matters there. Triangles that are farther away everywhere are left out. Empty: all matter.
+/// Puts triangles into the bins of the view's crop. `farthest`: for each bin, row by row, the smallest
+/// reversed depth that is needed; triangles that are farther away everywhere are left out. Empty: no limit.
 /// O(triangles · bins that each touches), in parallel.
 Bins binTriangles(std::span<const RasterTriangle> triangles, const View& view,
                   std::span<const float> farthest = {});

@@ -7,9 +7,8 @@
 namespace luciole {
 namespace {
 
-/// Where the number i, below count, goes in the permutation of a seed. A. Kensler, "Correlated multi-jittered
-/// sampling", 2013: a hash of as many bits as the last number has, which is invertible, again and again
-/// until the result is below count.
+/// Element i of a random permutation of 0 … count − 1. A. Kensler, "Correlated multi-jittered sampling",
+/// 2013: an invertible hash on the next power of two, repeated until the result is below count.
 std::uint32_t permuted(std::uint32_t i, std::uint32_t count, std::uint32_t seed) {
   std::uint32_t mask = count - 1;
   for (int shift = 1; shift < 32; shift *= 2) mask |= mask >> shift;
@@ -37,7 +36,7 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t count, std::uint32_t seed)
 }
 
 /// Whether a material's opacity may be below 1 on a mesh whose vertices leave it as it is.
-bool isClear(const Scene& scene, const Material& material, const Mesh& mesh) {
+bool mayBeTransparent(const Scene& scene, const Material& material, const Mesh& mesh) {
   if (material.alpha < 1) return true;
   if (mesh.uvs.empty()) return false;
   const int diffuse = material.diffuse_map.texture;
@@ -73,14 +72,15 @@ std::vector<std::uint32_t> blendedMaterials(const Scene& scene) {
     const Mesh& mesh = scene.meshes[object.mesh];
     const bool clear_vertices = std::any_of(mesh.colors.begin(), mesh.colors.end(),
                                             [](const glm::vec4& color) { return color.a < 1; });
-    const auto look = [&](std::uint32_t index) {
+    const auto check = [&](std::uint32_t index) {
       const Material& material = scene.materials[index];
-      if (material.blended && !found[index]) found[index] = clear_vertices || isClear(scene, material, mesh);
+      if (material.blended && !found[index])
+        found[index] = clear_vertices || mayBeTransparent(scene, material, mesh);
     };
     if (object.material >= 0)
-      look(std::uint32_t(object.material));
+      check(std::uint32_t(object.material));
     else
-      std::for_each(mesh.triangle_materials.begin(), mesh.triangle_materials.end(), look);
+      std::for_each(mesh.triangle_materials.begin(), mesh.triangle_materials.end(), check);
   }
   std::vector<std::uint32_t> materials;
   for (std::uint32_t i = 0; i < found.size(); ++i)

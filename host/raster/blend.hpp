@@ -12,21 +12,20 @@
 // sorted, and the mean over samples is right for any number of layers.
 namespace luciole {
 
-/// What tells surfaces apart, so that layers behind each other keep different samples: an object, by its
-/// number in the scene, a triangle of its mesh or a quad's two, and the side that is seen. Two triangles of
-/// one side that share an edge are never behind each other, so a quad may count as one surface, whose samples
-/// are then kept evenly across its diagonal.
+/// A key of a surface, by which layers behind each other keep different samples: the object's index in the
+/// scene, the index of a triangle of its mesh, and the visible side. The two triangles of a quad have the
+/// same key, so that samples are kept evenly across its diagonal: seen from one side, neither is behind the
+/// other.
 std::uint64_t blendSurface(std::uint32_t object, std::uint32_t triangle_or_quad, bool front);
 
-/// A sample of a pixel keeps a blended surface where its opacity is above this, which is in [0, 1). Over the
-/// samples of a pixel these are (k + u) / count for k from 0 to count − 1 in an order of their own, with one
-/// u: of a surface of the same opacity all over as many are kept as the opacity says, rounded up or down. u
-/// and the order are hashed from the pixel of the whole picture and the surface, so nothing else changes
-/// them.
+/// The threshold in [0, 1) of a sample: it keeps a blended surface whose opacity is above. The thresholds of
+/// a pixel's samples are (k + u) / count, k from 0 to count − 1, in a random order (stratified). So a surface
+/// of constant opacity keeps opacity · count samples, rounded up or down. u and the order are hashed from the
+/// pixel of the whole picture and the surface, and depend on nothing else.
 double blendThreshold(std::uint64_t surface, const glm::ivec2& pixel, const SampleNumber& sample);
 
-/// The blended materials that objects have where anything could show through, as indices of Scene::materials.
-/// O(triangles) where any material is blended.
+/// The blended materials in use whose opacity may be below 1, as indices of Scene::materials. O(triangles) if
+/// any material is blended.
 std::vector<std::uint32_t> blendedMaterials(const Scene& scene);
 
 }  // namespace luciole

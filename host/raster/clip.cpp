@@ -27,7 +27,7 @@ double distance(const glm::dvec4& p, Side side, const ClipVolume& volume) {
 }
 
 /// The new corner of a cut edge, in the clip plane. Always computed from the corner inside to the one
-/// outside, so that triangles that run along the edge in opposite directions get the same bits.
+/// outside, so that both triangles of an edge get the same bits.
 glm::dvec4 crossing(const glm::dvec4& a, double da, const glm::dvec4& b, double db, Side side,
                     const ClipVolume& volume) {
   glm::dvec4 p = da >= 0.0 ? edgeCrossing(a, da, b, db) : edgeCrossing(b, db, a, da);

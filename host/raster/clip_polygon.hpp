@@ -4,9 +4,8 @@
 
 namespace luciole {
 
-/// A polygon's corners, in order around it. Each plane that cuts a convex polygon adds at most one corner.
-/// But rounding may dent a polygon, and a plane turns n arbitrary corners into at most 3n/2; kRoom must hold
-/// that many.
+/// A polygon's corners, in order. kRoom must hold the corners after clipping: a plane adds at most one corner
+/// to a convex polygon, but rounding may make it concave, and then n corners become at most 3n/2.
 template <class Corner, int kRoom>
 struct Polygon {
   std::array<Corner, kRoom> corners;

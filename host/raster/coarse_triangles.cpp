@@ -18,8 +18,8 @@ double widestTriangle(const Scene& scene) {
       const auto edge = [&](int from, int to) {
         const glm::vec3 &a = object.mesh->positions[triangle[from]],
                         &b = object.mesh->positions[triangle[to]];
-        const glm::dvec3 way(object.object_to_view * glm::dvec4(glm::dvec3(b) - glm::dvec3(a), 0));
-        return glm::dot(way, way);
+        const glm::dvec3 edge_in_view(object.object_to_view * glm::dvec4(glm::dvec3(b) - glm::dvec3(a), 0));
+        return glm::dot(edge_in_view, edge_in_view);
       };
       squared = std::max({squared, edge(0, 1), edge(1, 2), edge(2, 0)});
     }

@@ -4,10 +4,10 @@
 
 namespace luciole {
 
-/// Gouraud shading lights the corners of triangles only, so a light that shines between them is lost. Returns
-/// the width (the longest edge, metres) of the scene's widest triangle, of meshes as they are divided for
-/// that shading, where it is larger than the least range of a light with a place, or than a quarter of the
-/// scene's diagonal; 0 where it isn't, or no light has a place. O(triangles).
+/// Finds triangles too large for Gouraud shading, which lights their corners only and loses lights that shine
+/// between them. Returns the width (the longest edge, metres) of the widest triangle of the meshes' divided
+/// forms if it is larger than the least range of a light with a position, or than a quarter of the scene's
+/// diagonal. Otherwise, and if no light has a position, returns 0. O(triangles).
 double coarseTriangleWidth(const Scene& scene);
 
 }  // namespace luciole

@@ -10,7 +10,7 @@
 namespace luciole {
 namespace {
 
-/// What a sample's label says of the triangle that it sees: its number, or its slopes of depth.
+/// The kind of labels: the visible triangle's number, or its slopes of depth.
 enum class Label : std::uint8_t { kTriangle, kSlopes };
 
 template <Label kLabel>
@@ -79,8 +79,8 @@ struct Group {
 constexpr int kRows = 16;     ///< tested together, as SIMD lanes
 constexpr int kFewRows = 12;  ///< up to here drawing all rows costs less than testing which are covered
 
-/// Which of the kRows groups one below the other from (x, y) on the triangle may cover a sample of: a bit a
-/// row. The bits set are contiguous, since each edge cuts off rows at one end only.
+/// The rows, a bit each, of the kRows groups below (x, y) in which the triangle may cover a sample. The bits
+/// set are contiguous, since each edge excludes rows at one end only.
 std::uint32_t rowsReached(const Target& target, int x, int y) {
   const auto [e0, e1, e2] = target.edgesAt(x, y);
   const std::int32_t* step_x = target.edges.step_x;
@@ -96,7 +96,7 @@ std::uint32_t rowsReached(const Target& target, int x, int y) {
   return rows;
 }
 
-/// Calls `visit` with every group that the triangle may cover a sample of, in a box of the bin's pixels.
+/// Calls `visit` with every group in a box of the bin's pixels in which the triangle may cover a sample.
 template <class Visit>
 void forEachGroup(const Target& target, const PixelBox& box, BinPixels& pixels, Visit visit) {
   const bool few = box.last.y - box.first.y < kFewRows;
@@ -128,7 +128,7 @@ bool coversAny(const Group& group, const std::int32_t* step_x) {
 }
 
 /// Draws an opaque triangle to a box of the bin's pixels. Returns whether it covers a sample, visible or not;
-/// false for Label::kSlopes, whose callers don't ask.
+/// for Label::kSlopes always false.
 template <Label kLabel>
 bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   const float step = float(target.triangle.depth_dx);
@@ -152,7 +152,7 @@ bool drawOpaque(const Target& target, const PixelBox& box, BinPixels& pixels) {
   return covered;
 }
 
-/// Samples of a triangle that it is the nearest at unless it has holes there.
+/// Samples at which a triangle is the nearest unless it has a hole there.
 struct NearestSamples {
   int count = 0;
   Lanes<double> x{}, y{};  ///< pixels of the whole picture
@@ -160,7 +160,7 @@ struct NearestSamples {
   Lanes<float> z;
 };
 
-/// Draws to those of the samples where the triangle has no hole, and forgets them all.
+/// Draws the samples where the triangle has no hole, and clears the list.
 void drawWhereSolid(const HoleTest& holes, const Surface& surface, std::uint32_t label,
                     NearestSamples& samples, BinPixels& pixels) {
   LaneMask wanted;

@@ -12,25 +12,24 @@
 
 namespace luciole {
 
-/// What the samples of a bin see, row by row.
+/// Depth and label of a bin's pixels, row by row.
 struct BinPixels {
   alignas(64) std::array<float, kBinSize * kBinSize> depth;          ///< reversed; 0: nothing
-  alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> label;  ///< the triangle, or its slopes
+  alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> label;  ///< the triangle's number, or its slopes
 };
 
-/// What the test for holes of alpha-masked and blended triangles needs.
+/// The input of the test for holes of alpha-masked and blended triangles.
 struct HoleTest {
   const Scene& scene;
   const std::vector<PlacedObject>& objects;
   const ViewPlane& plane;
-  /// Of each pixel, where one is drawn. None for a depth map, which knows masks alone.
+  /// The sample that is drawn, for blended surfaces. Empty for a depth map: then blended surfaces are masked.
   std::optional<SampleNumber> sample;
 };
 
 /// Draws a bin's triangles: the nearer wins, and at equal depth the one with the lower number. Labels are the
-/// triangles' numbers, or kNoTriangle. Samples of the bin outside the crop may be drawn too; their content
-/// means nothing. `covering` has one entry a triangle, which is set to 1 where the triangle covers a sample,
-/// seen or not.
+/// triangles' numbers, or kNoTriangle. Samples outside the crop are undefined. `covering` has an entry for
+/// each triangle, which is set to 1 if the triangle covers a sample, visible or not.
 void drawBin(std::span<const RasterTriangle> triangles, const Bins& bins, int bin, const HoleTest& holes,
              std::span<std::uint8_t> covering, BinPixels& pixels);
 

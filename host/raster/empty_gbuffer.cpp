@@ -23,8 +23,8 @@ void checkView(const View& view) {
                                  crop.x, crop.y, origin.x, origin.y, size.x, size.y));
 }
 
-GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer used) {
-  GBuffer gbuffer = std::move(used);
+GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer recycled) {
+  GBuffer gbuffer = std::move(recycled);
   gbuffer.width = view.crop_size.x;
   gbuffer.height = view.crop_size.y;
   gbuffer.tiles_x = (gbuffer.width + kTileSize - 1) / kTileSize;

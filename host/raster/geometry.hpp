@@ -13,8 +13,8 @@
 
 namespace luciole {
 
-/// An object among those to draw. Vertices and triangles are numbered through all of these objects, in order.
-/// It refers to the scene's mesh.
+/// An object to draw. Vertices and triangles are numbered through all objects to draw, in order. It refers to
+/// the scene's mesh.
 struct PlacedObject {
   const Mesh* mesh = nullptr;
   std::uint32_t number = 0;  ///< in Scene::objects
@@ -53,7 +53,7 @@ enum VertexPlace : std::uint16_t {
   kAbove = 32,
   kOutsideVolume = 63,  ///< any of the above
   kOutsideGuard = 64,   ///< see clip.hpp
-  kUnusable = 128,      ///< not finite, or not so as a float
+  kUnusable = 128,      ///< not finite, in double or as float
 };
 
 /// All vertices of the objects to draw, seen by a view.

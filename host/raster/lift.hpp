@@ -26,8 +26,8 @@
 // as on a saddle. On a concave surface p lies above the tangent planes: h is 0, and p stays where it is.
 namespace luciole {
 
-/// What the lift of a triangle's points is computed from. rise[i][0] is (vᵢ − v)·nᵢ with v the next corner,
-/// rise[i][1] with v the one after that; 0 for a corner that isn't bent.
+/// The coefficients of the lift over a triangle. rise[i][0] is (vᵢ − v)·nᵢ with v the next corner, rise[i][1]
+/// with v the one after that; 0 for a corner that isn't bent.
 struct Lift {
   bool any = false;  ///< false: the lift is 0 everywhere
   double rise[3][2]{};

@@ -23,7 +23,7 @@ struct Meshlet {
   glm::dvec3 high{0.0};
 };
 
-/// All triangles of a scene in meshlets, so that a view that sees little of it draws little.
+/// All triangles of a scene in meshlets, so that a view draws only those whose boxes it sees.
 ///
 ///     groups   box┬box┬…       one for kMeshletsPerGroup meshlets in a row
 ///     items    ┌──┴──┐

@@ -32,8 +32,8 @@ LaneWeights inPlane(const Surface& surface, const ViewPlane& plane, const Lanes<
 }
 
 /// Moves the weights of wanted places into the triangle, as weightsInside().
-void holdInside(const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
-                const Lanes<double>& y, const LaneMask& wanted, LaneWeights& weights) {
+void clampInside(const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
+                 const Lanes<double>& y, const LaneMask& wanted, LaneWeights& weights) {
   LaneMask outside;
   std::int32_t any = 0;
   for (int i = 0; i < kSquarePixels; ++i) {
@@ -173,7 +173,7 @@ LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& pl
   const Material& material = *surface.material;
   const LaneWeights here = inPlane(surface, plane, x, y, {0, 0});
   LaneWeights weights = here;
-  holdInside(surface, plane, x, y, wanted, weights);
+  clampInside(surface, plane, x, y, wanted, weights);
   const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;
   SquareFootprints places{};
   if (textured && !surface.object->mesh->uvs.empty())

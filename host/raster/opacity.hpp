@@ -13,8 +13,8 @@ float opacityAt(const Scene& scene, const Surface& surface, const Weights& weigh
                 const TexturePlace& place);
 
 /// Whether a triangle of an object (counted in its mesh) has a hole at a place given by barycentric weights:
-/// its opacity there, with maps looked up at their finest level, is below its material's alpha_cutoff.
-/// Shadows ask it.
+/// its opacity there, with maps looked up at their finest level, is below its material's alpha_cutoff. For
+/// shadows.
 bool isHoleAt(const Scene& scene, const PlacedObject& object, std::uint32_t triangle, const Weights& weights);
 
 /// Whether surfaces of a material may have holes, for a camera.
@@ -25,8 +25,8 @@ inline bool hasHoles(const Material& material) { return material.alpha_cutoff > 
 bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, const glm::dvec2& place,
             const glm::ivec2& pixel, const SampleNumber& sample);
 
-/// The same, bit for bit, for the wanted ones of several pixels at once: 1 where there is a hole, 0
-/// elsewhere. Without a sample blended materials, too, are held against their alpha_cutoff.
+/// The same, bit for bit, for several pixels at once: 1 for `wanted` pixels with a hole, 0 for others.
+/// Without a sample blended materials are tested against their alpha_cutoff, too.
 LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
                  const Lanes<double>& y, const LaneMask& wanted, const std::optional<SampleNumber>& sample);
 

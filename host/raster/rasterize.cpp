@@ -18,7 +18,7 @@ namespace luciole {
 
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors,
-                  RasterCounts* counts, GBuffer used) {
+                  RasterCounts* counts, GBuffer recycled) {
   checkView(view);
   const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
   const Geometry geometry = transformObjects(scene, objects, view, lit_vertices);
@@ -26,7 +26,7 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   const Bins bins = binTriangles(setup.triangles, view);
 
   planes.emission |= lit_vertices;
-  GBuffer gbuffer = emptyGBuffer(view, planes, std::move(used));
+  GBuffer gbuffer = emptyGBuffer(view, planes, std::move(recycled));
   const ViewPlane plane = viewPlane(view);
   const HoleTest holes{scene, geometry.objects, plane, view.number};
   const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors, planes};

@@ -13,9 +13,9 @@
 
 namespace luciole {
 
-/// Counts of triangles. Each is counted once in `submitted`, and in at most one of the others. The parts and
-/// samples of a picture that is drawn in several calls share their counts: a triangle is outside if it covers
-/// no sample in any of them.
+/// Counts of triangles. Each is counted once in `submitted`, and in at most one of the others. Several calls
+/// for parts and samples of one picture share their counts: a triangle is outside if it covers no sample in
+/// any of them.
 struct RasterCounts {
   std::uint64_t submitted = 0;
   std::uint64_t back_facing = 0;
@@ -33,17 +33,17 @@ struct RasterCounts {
 /// in order (see gatherVertices). Then meshes are drawn in their divided form, the interpolated colour × the
 /// diffuse map goes into `emission`, and diffuse, specular and ambient are zero.
 ///
-/// `used`: a G-buffer that is done with, whose memory is taken.
+/// `recycled`: a G-buffer whose memory is reused.
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
-                  RasterCounts* counts = nullptr, GBuffer used = {});
+                  RasterCounts* counts = nullptr, GBuffer recycled = {});
 
 /// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop, row by
 /// row, into `texels` (8 bytes each). Alpha-masked holes stay open, and no face is culled. A texel's content
-/// does not depend on the crop, nor on meshlets that don't reach it. `farthest`: one for each bin of
-/// kBinSize² texels that the crop touches, row by row. What has a smaller reversed depth may be missing
-/// there; a bin of infinity isn't drawn at all, and its texels keep their content. Empty: all is drawn.
-/// Throws as rasterize does.
+/// does not depend on the crop, nor on meshlets that don't reach it. `farthest`: for each bin of kBinSize²
+/// texels that the crop touches, row by row, the smallest reversed depth that is needed; farther surfaces may
+/// be missing. A bin of infinity isn't drawn, and its texels keep their content. Empty: no limit. Throws as
+/// rasterize does.
 void rasterizeDepth(const Scene& scene, const Meshlets& meshlets, std::span<const std::uint32_t> chosen,
                     const View& view, std::span<const float> farthest, std::span<ShadowTexel> texels);
 

@@ -9,7 +9,7 @@
 
 namespace luciole {
 
-/// What resolving the pixels of a picture needs. It refers to its parts.
+/// The input of resolving the pixels of a picture. It refers to its parts.
 struct ResolveInput {
   const Scene& scene;
   const std::vector<PlacedObject>& objects;
@@ -17,9 +17,9 @@ struct ResolveInput {
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
   const PlaneSet& planes;                    ///< of the G-buffer
-  /// Not null: the plane sees these instead, which have the same triangles, laid out elsewhere, and shows the
-  /// fronts of `objects` there.
-  const std::vector<PlacedObject>* laid_out = nullptr;
+  /// For texture space, else null: the same triangles, placed where `plane` sees them. Attributes are those
+  /// of the front of `objects`.
+  const std::vector<PlacedObject>* flattened_objects = nullptr;
 
   bool litVertices() const { return shading == Shading::kGouraud && !vertex_colors.empty(); }
 };

@@ -15,29 +15,29 @@ int nextSeen(const Lanes<std::uint32_t>& triangles, int from) {
 /// Which pixels see the triangle that pixel `lane` sees; they are taken out of `triangles`.
 LaneMask takeTriangle(Lanes<std::uint32_t>& triangles, int lane) {
   const std::uint32_t triangle = triangles[lane];
-  LaneMask sees_it;
+  LaneMask mask;
   for (int i = 0; i < kSquarePixels; ++i) {
-    sees_it[i] = triangles[i] == triangle;
-    triangles[i] = sees_it[i] ? kNoTriangle : triangles[i];
+    mask[i] = triangles[i] == triangle;
+    triangles[i] = mask[i] ? kNoTriangle : triangles[i];
   }
-  return sees_it;
+  return mask;
 }
 
 /// The values of a square of which at least one pixel sees something. Those of pixels that see nothing are
 /// arbitrary.
 SquareValues valuesSeen(const ResolveInput& input, const SquarePlace& place, Lanes<std::uint32_t> triangles,
                         SurfaceCache& surfaces) {
-  const auto show = [&](int lane, LaneMask& sees_it) {
+  const auto show = [&](int lane, LaneMask& mask) {
     const SeenSurface& seen = surfaces[triangles[lane]];
-    sees_it = takeTriangle(triangles, lane);
-    return valuesOf(input, seen, place, sees_it);
+    mask = takeTriangle(triangles, lane);
+    return valuesOf(input, seen, place, mask);
   };
-  LaneMask sees_it;
+  LaneMask mask;
   int lane = nextSeen(triangles, 0);
-  SquareValues values = show(lane, sees_it);
+  SquareValues values = show(lane, mask);
   while ((lane = nextSeen(triangles, lane + 1)) < kSquarePixels) {
-    const SquareValues others = show(lane, sees_it);
-    put(others, sees_it, values);
+    const SquareValues others = show(lane, mask);
+    copyValues(others, mask, values);
   }
   applyMaps(input.scene, place, values);
   return values;

@@ -105,7 +105,8 @@ inline Covered cover(const Samples& at) {
   return covered;
 }
 
-/// Whether an opaque triangle covers any of the samples. It takes those where it is the nearest.
+/// Draws an opaque triangle to the samples where it is the nearest. Returns whether it covers any, visible or
+/// not.
 inline bool takeOpaque(const Samples& at, std::uint32_t number) {
   const Covered covered = cover(at);
   alignas(64) std::array<float, kVector> depth;
@@ -124,7 +125,7 @@ inline bool takeOpaque(const Samples& at, std::uint32_t number) {
   return any != 0;
 }
 
-/// The same for a triangle with holes; isOpen(lane) tells whether it has one at a sample.
+/// The same for a triangle with holes; isOpen(lane): it has a hole at the sample.
 template <class IsOpen>
 bool takeMasked(const Samples& at, std::uint32_t number, IsOpen isOpen) {
   const Covered covered = cover(at);

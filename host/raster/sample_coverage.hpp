@@ -12,7 +12,7 @@
 
 namespace luciole {
 
-/// What all samples of some rows of a bin's pixels see: row by row, pixel by pixel, SamplePattern::stride
+/// Depth and label of all samples of some rows of a bin: row by row, pixel by pixel, SamplePattern::stride
 /// entries each.
 struct StripSamples {
   template <class T>
@@ -29,7 +29,7 @@ struct StripSamples {
   }
 };
 
-/// How many rows of a bin are drawn together: as many as keep their samples in a core's cache, or 1. It
+/// The number of rows of a bin that are drawn together: as many as fit into a core's cache, at least 1. It
 /// divides kBinSize.
 int stripRows(const SamplePattern& pattern);
 

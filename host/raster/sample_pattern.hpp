@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-/// Where the samples of a pixel lie that are drawn together: at samplePoint(), rounded to 1/256 pixel.
+/// The positions of a pixel's samples that are drawn in one pass: samplePoint(), rounded to 1/256 pixel.
 struct SamplePattern {
   int count = 1;
   /// Entries a pixel in tables of samples: `count` rounded up to 2, 4, 8 or a multiple of 16, so that pixels

@@ -109,29 +109,29 @@ inline float chosenLevel(float level, Mips mips) {
   return mips == Mips::kNone ? 0.0f : std::ceil(level - 0.5f);
 }
 
-/// Where a square's points lie between the texels of a level: the four around each, counted in texels from
-/// the level's first, and the shares of the right and lower ones.
+/// The bilinear footprint of a square's points in a level: the indices of the four texels around each point,
+/// and the weights of the right and lower ones.
 struct SquareTexels {
   Lanes<const std::uint16_t*> first;
   Lanes<std::uint32_t> top_left, top_right, bottom_left, bottom_right;
   Lanes<float> across, down;
 };
 
-/// What a square's pixels look up: each in two levels, of which the coarser has a share.
+/// The lookup of a square's pixels: each in two levels, which are mixed by the share of the coarser.
 struct SquareLookup {
   SquareTexels finer, coarser;
   LaneMask is_finest;  ///< whether `finer` is level 0, whose codes are others
   Lanes<float> share;
 };
 
-void put(const SquareTexels& texels, const LaneMask& mask, SquareTexels& out) {
-  blend(texels.first, mask, out.first);
-  blend(texels.top_left, mask, out.top_left);
-  blend(texels.top_right, mask, out.top_right);
-  blend(texels.bottom_left, mask, out.bottom_left);
-  blend(texels.bottom_right, mask, out.bottom_right);
-  blend(texels.across, mask, out.across);
-  blend(texels.down, mask, out.down);
+void copyTexels(const SquareTexels& texels, const LaneMask& mask, SquareTexels& out) {
+  copyLanes(texels.first, mask, out.first);
+  copyLanes(texels.top_left, mask, out.top_left);
+  copyLanes(texels.top_right, mask, out.top_right);
+  copyLanes(texels.bottom_left, mask, out.bottom_left);
+  copyLanes(texels.bottom_right, mask, out.bottom_right);
+  copyLanes(texels.across, mask, out.across);
+  copyLanes(texels.down, mask, out.down);
 }
 
 bool any(const LaneMask& mask) {
@@ -140,7 +140,7 @@ bool any(const LaneMask& mask) {
   return found != 0;
 }
 
-/// Puts the points of some pixels on the texels that they lie in.
+/// Sets the points of some pixels to the centres of the texels that contain them.
 void snap(const LaneMask& mask, SquareTexels& texels) {
   for (int i = 0; i < kSquarePixels; ++i) {
     if (!mask[i]) continue;
@@ -207,8 +207,8 @@ void findMap(const Texture& texture, const TextureUse& use, const SquareFootprin
     least = std::min(least, wanted[i] ? finer[i] : least);
     most = std::max(most, wanted[i] ? coarser[i] : most);
   }
-  blend(share, wanted, lookup.share);
-  blend(is_finest, wanted, lookup.is_finest);
+  copyLanes(share, wanted, lookup.share);
+  copyLanes(is_finest, wanted, lookup.is_finest);
   for (std::int32_t l = least; l <= most; ++l) {
     LaneMask as_finer, as_coarser;
     for (int i = 0; i < kSquarePixels; ++i) {
@@ -218,8 +218,8 @@ void findMap(const Texture& texture, const TextureUse& use, const SquareFootprin
     const bool any_finer = any(as_finer), any_coarser = any(as_coarser);
     if (!any_finer && !any_coarser) continue;
     const SquareTexels texels = findTexels(texture.levels[std::size_t(l)], use, u, v);
-    if (any_finer) put(texels, as_finer, lookup.finer);
-    if (any_coarser) put(texels, as_coarser, lookup.coarser);
+    if (any_finer) copyTexels(texels, as_finer, lookup.finer);
+    if (any_coarser) copyTexels(texels, as_coarser, lookup.coarser);
   }
   if (!use.nearest_magnified && !use.nearest_minified) return;
   LaneMask nearest;

@@ -28,11 +28,11 @@ Lift liftOf(const Surface& surface, const Interpolant<glm::dvec3>& normal) {
 
 }  // namespace
 
-SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
+SeenSurface makeSeenSurface(const ResolveInput& input, std::uint32_t triangle) {
   SeenSurface seen;
   seen.surface = makeSurface(input.scene, input.objects, triangle, input.plane);
-  if (input.laid_out) {
-    const Surface flat = makeSurface(input.scene, *input.laid_out, triangle, input.plane);
+  if (input.flattened_objects) {
+    const Surface flat = makeSurface(input.scene, *input.flattened_objects, triangle, input.plane);
     seen.surface.weight1 = flat.weight1;
     seen.surface.weight2 = flat.weight2;
     seen.surface.determinant = flat.determinant;
@@ -48,11 +48,11 @@ SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle) {
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   seen.mapped = any_map && !mesh.uvs.empty();
   if (seen.mapped) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
-  seen.bends =
+  seen.has_normal_map =
       surface.material->normal_map.texture >= 0 && input.shading == Shading::kPhong && !mesh.tangents.empty();
   // Lit vertex colours are multiplied by the diffuse map, so they need no other coordinates.
-  seen.glows_apart = seen.mapped && !mesh.emission_uvs.empty() && !input.litVertices();
-  if (seen.glows_apart) seen.emission_uv = between<glm::dvec2>(mesh.emission_uvs.data(), surface.corners);
+  seen.has_emission_uv = seen.mapped && !mesh.emission_uvs.empty() && !input.litVertices();
+  if (seen.has_emission_uv) seen.emission_uv = between<glm::dvec2>(mesh.emission_uvs.data(), surface.corners);
   if (input.litVertices()) {
     seen.colored = true;
     seen.color =

@@ -24,17 +24,17 @@ struct SeenSurface {
   glm::dvec3 facing_normal{0.0};       ///< the triangle's normal, unit, on the viewer's side
   std::uint32_t geometric_normal = 0;  ///< facing_normal, by packNormal()
   Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
-  Lift lift;                           ///< where ResolveInput::planes has it
-  bool mapped = false;                 ///< its material has maps that colour it, and its mesh coordinates:
-  Interpolant<glm::dvec2> uv;          ///< zero where not
-  bool bends = false;                  ///< a normal map bends its normal
-  bool glows_apart = false;            ///< the emission map has texture coordinates of its own:
+  Lift lift;                           ///< for ResolveInput::planes with lift
+  bool mapped = false;                 ///< it has diffuse or emission maps and texture coordinates
+  Interpolant<glm::dvec2> uv;          ///< if mapped
+  bool has_normal_map = false;         ///< for Shading::kPhong
+  bool has_emission_uv = false;        ///< its emission map has other texture coordinates, emission_uv
   Interpolant<glm::dvec2> emission_uv;
-  bool colored = false;
-  Interpolant<glm::dvec3> color;  ///< where colored: the vertices' colours, or their lit colours
+  bool colored = false;           ///< it has vertex colours or lit vertices
+  Interpolant<glm::dvec3> color;  ///< if colored: these colours
 };
 /// The surface of a triangle, by its number. O(log objects).
-SeenSurface seeSurface(const ResolveInput& input, std::uint32_t triangle);
+SeenSurface makeSeenSurface(const ResolveInput& input, std::uint32_t triangle);
 
 /// A direct-mapped cache of the surfaces seen last, by the lowest bits of the triangle's number: neighbouring
 /// triangles mostly have consecutive numbers. Not safe for several threads.
@@ -44,7 +44,7 @@ class SurfaceCache {
   const SeenSurface& operator[](std::uint32_t triangle) {
     const std::size_t slot = triangle % kSlots;
     if (triangles_[slot] != triangle) {
-      surfaces_[slot] = seeSurface(input_, triangle);
+      surfaces_[slot] = makeSeenSurface(input_, triangle);
       triangles_[slot] = triangle;
     }
     return surfaces_[slot];

@@ -16,17 +16,17 @@
 namespace luciole {
 namespace {
 
-/// The winding that a triangle must have on the picture, y down. One that is wound the other way after
-/// snapping is there by rounding only.
+/// The winding that a triangle must have on the picture, y down. A triangle that snapping has turned over is
+/// dropped.
 enum class Winding : std::uint8_t { kAny, kClockwise, kCounterClockwise };
 
-/// What a task of the setup produces.
+/// The output of a task of the setup.
 struct Output {
   RasterTriangles triangles;
   std::uint64_t back_facing = 0;
 };
 
-/// What all triangles of a view share.
+/// The parameters of a view for all triangles.
 struct Frame {
   const View& view;
   ClipVolume volume;

@@ -37,8 +37,8 @@ struct RasterSetup {
   std::uint64_t back_facing = 0;
 };
 
-/// Culls, clips, projects and snaps all triangles, in parallel. The bounding boxes of those that are left
-/// reach a sample of the view's crop. O(triangles).
+/// Culls, clips, projects and snaps all triangles, in parallel. Keeps those whose bounding boxes contain a
+/// sample of the view's crop. O(triangles).
 RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
                            FaceCulling culling);
 

@@ -17,8 +17,8 @@
 namespace luciole {
 namespace {
 
-/// What a triangle's plane shows at a place of the picture, inside the triangle or not.
-struct Glimpse {
+/// The attributes of a triangle's plane at a place of the picture, inside the triangle or not.
+struct PlaneAttributes {
   glm::dvec3 position;
   glm::dvec3 normal;  ///< unit
   glm::dvec2 uv;
@@ -26,7 +26,7 @@ struct Glimpse {
   glm::dvec3 color;
 };
 
-Glimpse glimpseAt(const SeenSurface& seen, const glm::dvec3& p) {
+PlaneAttributes planeAttributes(const SeenSurface& seen, const glm::dvec3& p) {
   const Weights weights = weightsInPlane(seen.surface, p);
   const auto at = [&](const auto& values) {
     return values.first + weights[1] * values.to_second + weights[2] * values.to_third;
@@ -36,30 +36,30 @@ Glimpse glimpseAt(const SeenSurface& seen, const glm::dvec3& p) {
           glm::normalize(at(seen.normal)), at(seen.uv), at(seen.emission_uv), at(seen.color)};
 }
 
-/// Facets that are bent more against each other are not looked at further, to save time.
+/// The cosine between facets below which they are taken to differ, to save time.
 constexpr double kMostBentCosine = 0.97;
 
-/// Whether two triangles of one object and material show the same at the place p (see ViewPlane::at): normals
-/// and colours within kSameShade, positions and texture coordinates within half a pixel along x and along y.
+/// Whether two triangles of one object and material agree at the place p (see ViewPlane::at): normals and
+/// colours within kSameShade, positions and texture coordinates within half a pixel along x and along y.
 bool agreeAt(const SeenSurface& a, const SeenSurface& b, const glm::dvec3& p, const ViewPlane& plane) {
   // What isn't finite agrees with nothing.
-  const Glimpse of_a = glimpseAt(a, p), of_b = glimpseAt(b, p);
+  const PlaneAttributes of_a = planeAttributes(a, p), of_b = planeAttributes(b, p);
   if (!(glm::distance(of_a.normal, of_b.normal) <= kSameShade)) return false;
   if (!(glm::distance(of_a.color, of_b.color) <= kSameShade)) return false;
-  if (a.bends) {
+  if (a.has_normal_map) {
     const glm::dvec4 tangent = tangentAt(a.surface, weightsInPlane(a.surface, p)),
                      other = tangentAt(b.surface, weightsInPlane(b.surface, p));
     if (!(glm::distance(tangent, other) <= kSameShade)) return false;
   }
-  const Glimpse right = glimpseAt(a, p + glm::dvec3(0.5 * plane.scale.x, 0, 0));
-  const Glimpse below = glimpseAt(a, p + glm::dvec3(0, 0.5 * plane.scale.y, 0));
+  const PlaneAttributes right = planeAttributes(a, p + glm::dvec3(0.5 * plane.scale.x, 0, 0));
+  const PlaneAttributes below = planeAttributes(a, p + glm::dvec3(0, 0.5 * plane.scale.y, 0));
   const auto near = [&](const auto& value) {
     return glm::distance(value(of_a), value(of_b)) <=
            glm::distance(value(of_a), value(right)) + glm::distance(value(of_a), value(below));
   };
-  return near([](const Glimpse& at) { return at.position; }) &&
-         near([](const Glimpse& at) { return at.uv; }) &&
-         near([](const Glimpse& at) { return at.emission_uv; });
+  return near([](const PlaneAttributes& at) { return at.position; }) &&
+         near([](const PlaneAttributes& at) { return at.uv; }) &&
+         near([](const PlaneAttributes& at) { return at.emission_uv; });
 }
 
 int cornersInCommon(const glm::uvec3& a, const glm::uvec3& b) {
@@ -78,7 +78,7 @@ struct SampleGroup {
   bool merged;         ///< into another group
 };
 
-/// What tells at once that two groups see different surfaces, or the same.
+/// Attributes for a quick comparison of groups.
 struct GroupTraits {
   const PlacedObject* object;
   const Material* material;
@@ -87,7 +87,7 @@ struct GroupTraits {
   glm::dvec3 facing_normal;
 };
 
-/// What grouping the samples of a bin's pixels needs, one a thread.
+/// The state of grouping samples, one for each thread.
 struct Grouping {
   const SampledView& sampled;
   SurfaceCache& surfaces;
@@ -195,7 +195,7 @@ GroupPlace placeOf(const SampleGroup& group, const std::uint32_t* labels, Groupi
   return {glm::vec2(nearest / fine), glm::vec2(0.0f)};
 }
 
-bool allAlike(const std::uint32_t* labels, int count) {
+bool allEqual(const std::uint32_t* labels, int count) {
   std::uint32_t differ = 0;
   for (int i = 1; i < count; ++i) differ |= labels[i] ^ labels[0];
   return differ == 0;
@@ -252,7 +252,7 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
         out.objects[number] = std::uint32_t(object - grouping.sampled.objects.data());
         any = true;
       };
-      const bool alike = allAlike(labels, pattern.count), wanted = grouping.sampled.inner.contains(pixel);
+      const bool alike = allEqual(labels, pattern.count), wanted = grouping.sampled.inner.contains(pixel);
       if (wanted) {
         out.labels.places[number] = std::uint32_t(2 * kept.size()) | (alike ? 1u : 0u);
         kept.insert(kept.end(), labels, labels + (alike ? 1 : pattern.count));

@@ -61,9 +61,9 @@ struct SampledView {
   Bins bins;
 };
 
-/// What is drawn around the pixels wanted, as far as the picture goes, so that they have their neighbours: a
-/// pixel, or all of the tiles in which the pixels and their neighbours lie, counted from the picture's
-/// corner. Light that pixels of a tile share is with whole tiles the same in every band of the picture.
+/// The margin that is drawn around the pixels wanted, inside the picture: one pixel, for neighbours; or all
+/// tiles that contain the pixels and their neighbours, counted from the picture's corner. With whole tiles,
+/// light that the pixels of a tile share is the same in every band.
 enum class Margin : std::uint8_t { kPixel, kTiles };
 
 /// Sets up the given objects for `samples` samples a pixel. The arguments are those of rasterize(), which
@@ -72,16 +72,16 @@ SampledView setupSamples(const Scene& scene, std::span<const std::uint32_t> obje
                          Margin margin, int samples, Shading shading, PlaneSet planes,
                          std::span<const glm::vec3> vertex_colors);
 
-/// The triangles that the samples of the pixels wanted see.
+/// The visible triangles of the samples of the pixels wanted.
 struct SampleLabels {
-  /// One for each pixel, row by row: where its labels begin in its strip's list, times 2, plus 1 where there
-  /// is one label for all samples. Means nothing outside SampledView::inner.
+  /// For each pixel, row by row: the index of its first label in its strip's list, times 2, plus 1 if one
+  /// label stands for all samples. Undefined outside SampledView::inner.
   std::vector<std::uint32_t> places;
   /// One for each part in which a bin is drawn: triangles' numbers, or kNoTriangle.
   std::vector<std::vector<std::uint32_t>> strips;
 };
 
-/// What the samples of a view's pixels see.
+/// The shading points of a view's samples.
 ///
 /// Samples that see the same triangle share a point. So do those of triangles of one object and material that
 /// continue each other: they have an edge's vertices in common and interpolate between them, or where the
@@ -89,22 +89,22 @@ struct SampleLabels {
 /// point lies on the triangle that most of the samples see, at the samples' mean place, or the place of the
 /// triangle nearest to that. On a triangle with holes it lies at one of the samples.
 struct SharedSamples {
-  GBuffer gbuffer;                     ///< of each pixel the point of its first sample
-  std::vector<std::uint16_t> samples;  ///< how many share that point, row by row; 0 where it sees nothing
-  std::vector<std::uint32_t> objects;  ///< that the point lies on, an index into those drawn; or kNoObject
+  GBuffer gbuffer;                     ///< for each pixel the point of its first sample
+  std::vector<std::uint16_t> samples;  ///< number of samples of that point, row by row; 0 for background
+  std::vector<std::uint32_t> objects;  ///< index of its object among those drawn, or kNoObject
   PointLists further;                  ///< the other points of the pixels wanted
   SampleLabels labels;
 };
 
 constexpr std::uint32_t kNoObject = 0xffffffffu;
 
-/// How much normals (unit) and vertex colours of two triangles may differ that share a point. The one that
-/// loses its own has at most half of the samples. So what half of this changes is what the picture does: by a
-/// step of 8 bits under a light of 1.
+/// The largest difference of normals (unit) and vertex colours of triangles that share a point. The triangle
+/// that loses its own point has at most half of the samples, so the pixel changes by half of this: one 8-bit
+/// step under a light of 1.
 constexpr double kSameShade = 2.0 / 255;
 
-/// Draws the samples and lets them share points. The result doesn't depend on the number of threads, and a
-/// pixel's points not on the crop. `counts`: as in rasterize(). Throws as allocateArray does.
+/// Draws the samples and groups them into points. The result doesn't depend on the number of threads, and a
+/// pixel's points don't depend on the crop. `counts`: as in rasterize(). Throws as allocateArray does.
 SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts);
 
 /// Draws the samples, and calls visit(pixel of the whole picture, triangles' numbers or kNoTriangle of its

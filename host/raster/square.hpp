@@ -20,9 +20,9 @@ using Lanes3 = std::array<Lanes<T>, 3>;
 /// A choice of pixels: 0 or 1 each, as wide as the floats that it selects, for vectorized loops.
 using LaneMask = Lanes<std::int32_t>;
 
-/// Writes the values of the chosen pixels.
+/// Copies the values of the pixels in `mask`.
 template <class T>
-void blend(const Lanes<T>& values, const LaneMask& mask, Lanes<T>& out) {
+void copyLanes(const Lanes<T>& values, const LaneMask& mask, Lanes<T>& out) {
   for (int i = 0; i < kSquarePixels; ++i) out[i] = mask[i] ? values[i] : out[i];
 }
 

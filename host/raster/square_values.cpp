@@ -36,15 +36,15 @@ PlaneCrossing crossPlane(const Surface& surface, const SquarePlace& place) {
 }
 
 /// The weights with those of the pixels that see the surface moved into the triangle (see weightsInside).
-SquareWeights holdInside(const Surface& surface, const SquarePlace& place, const LaneMask& sees_it,
-                         const SquareWeights& in_plane) {
+SquareWeights clampInside(const Surface& surface, const SquarePlace& place, const LaneMask& mask,
+                          const SquareWeights& in_plane) {
   SquareWeights weights = in_plane;
   LaneMask outside;
   std::int32_t any = 0;
   for (int i = 0; i < kSquarePixels; ++i) {
     const double second = in_plane.second[i], third = in_plane.third[i];
     const bool inside = (1.0 - second - third >= 0.0) & (second >= 0.0) & (third >= 0.0);
-    outside[i] = sees_it[i] & !inside;
+    outside[i] = mask[i] & !inside;
     any |= outside[i];
   }
   if (!any) return weights;
@@ -191,10 +191,10 @@ void setMaterial(const ResolveInput& input, const SeenSurface& seen, const Squar
 
 /// Sets the maps of the pixels that see the surface, and their footprints. Its material must be mapped.
 void setMaps(const ResolveInput& input, const SeenSurface& seen, const PlaneCrossing& crossing,
-             const SquareWeights& weights, const LaneMask& sees_it, SquareValues& out) {
+             const SquareWeights& weights, const LaneMask& mask, SquareValues& out) {
   const Material& material = *seen.surface.material;
   const auto setMap = [&](const TextureUse& map, Lanes<const TextureUse*>& uses) {
-    for (int i = 0; i < kSquarePixels; ++i) uses[i] = sees_it[i] && map.texture >= 0 ? &map : nullptr;
+    for (int i = 0; i < kSquarePixels; ++i) uses[i] = mask[i] && map.texture >= 0 ? &map : nullptr;
   };
   // The diffuse map colours what vertices reflect.
   if (input.litVertices()) {
@@ -206,24 +206,24 @@ void setMaps(const ResolveInput& input, const SeenSurface& seen, const PlaneCros
   const Surface& surface = seen.surface;
   setFootprints(surface, seen.uv, input.plane, crossing, weights, out.footprints);
   out.emission_footprints = out.footprints;
-  if (seen.glows_apart)
+  if (seen.has_emission_uv)
     setFootprints(surface, seen.emission_uv, input.plane, crossing, weights, out.emission_footprints);
   out.mapped = true;
 }
 
 template <std::size_t kCount>
-void put(const std::array<Lanes<float>, kCount>& values, const LaneMask& mask,
-         std::array<Lanes<float>, kCount>& out) {
-  for (std::size_t c = 0; c < kCount; ++c) blend(values[c], mask, out[c]);
+void copyComponents(const std::array<Lanes<float>, kCount>& values, const LaneMask& mask,
+                    std::array<Lanes<float>, kCount>& out) {
+  for (std::size_t c = 0; c < kCount; ++c) copyLanes(values[c], mask, out[c]);
 }
 
-void put(const SquareFootprints& values, const LaneMask& mask, SquareFootprints& out) {
-  blend(values.u, mask, out.u);
-  blend(values.v, mask, out.v);
-  blend(values.du_dx, mask, out.du_dx);
-  blend(values.dv_dx, mask, out.dv_dx);
-  blend(values.du_dy, mask, out.du_dy);
-  blend(values.dv_dy, mask, out.dv_dy);
+void copyFootprints(const SquareFootprints& values, const LaneMask& mask, SquareFootprints& out) {
+  copyLanes(values.u, mask, out.u);
+  copyLanes(values.v, mask, out.v);
+  copyLanes(values.du_dx, mask, out.du_dx);
+  copyLanes(values.dv_dx, mask, out.dv_dx);
+  copyLanes(values.du_dy, mask, out.du_dy);
+  copyLanes(values.dv_dy, mask, out.dv_dy);
 }
 
 bool anyMap(const Lanes<const TextureUse*>& maps) {
@@ -267,7 +267,7 @@ Lanes3<float> mapColors(const Scene& scene, const Lanes<const TextureUse*>& maps
 /// vector is shorter than a step of 8 bits, the normal stays. The lift keeps its height above the surface:
 /// along the bent normal it is longer, up to twice, which is enough for normals bent by 60°.
 void bendNormals(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
-                 const PlaneCrossing& crossing, const SquareWeights& weights, const LaneMask& sees_it,
+                 const PlaneCrossing& crossing, const SquareWeights& weights, const LaneMask& mask,
                  SquareValues& values) {
   const Surface& surface = seen.surface;
   const Mesh& mesh = *surface.object->mesh;
@@ -279,11 +279,11 @@ void bendNormals(const ResolveInput& input, const SeenSurface& seen, const Squar
       {first, glm::dvec2(uvs[surface.corners[1]]) - first, glm::dvec2(uvs[surface.corners[2]]) - first},
       input.plane, crossing, weights, footprints);
   Lanes<const TextureUse*> maps;
-  for (int i = 0; i < kSquarePixels; ++i) maps[i] = sees_it[i] ? &surface.material->normal_map : nullptr;
+  for (int i = 0; i < kSquarePixels; ++i) maps[i] = mask[i] ? &surface.material->normal_map : nullptr;
   const Lanes3<float> numbers = mapColors(input.scene, maps, place, footprints);
   const double scale = surface.material->normal_scale, face = surface.front_facing ? 1.0 : -1.0;
   for (int i = 0; i < kSquarePixels; ++i) {
-    if (!sees_it[i]) continue;
+    if (!mask[i]) continue;
     const glm::dvec3 normal =
         face * glm::dvec3(values.normal[0][i], values.normal[1][i], values.normal[2][i]);
     const glm::dvec4 given =
@@ -313,11 +313,11 @@ SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel) {
 }
 
 SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
-                      const LaneMask& sees_it) {
+                      const LaneMask& mask) {
   const Surface& surface = seen.surface;
   SquareValues values;
   const PlaneCrossing crossing = crossPlane(surface, place);
-  const SquareWeights weights = holdInside(surface, place, sees_it, crossing.weights);
+  const SquareWeights weights = clampInside(surface, place, mask, crossing.weights);
   // Relative to the first corner, so that small triangles far from the eye keep their precision.
   for (int c = 0; c < 3; ++c)
     values.position[c] = rounded(interpolate(surface.corner[c], surface.edge1[c], surface.edge2[c], weights));
@@ -331,30 +331,30 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
   } else {
     values.surface_normal.fill(seen.geometric_normal);
   }
-  if (seen.bends) bendNormals(input, seen, place, crossing, weights, sees_it, values);
+  if (seen.has_normal_map) bendNormals(input, seen, place, crossing, weights, mask, values);
   values.has_models = input.planes.model;
   if (values.has_models) values.model.fill(modelNumber(surface.material->model));
   setMaterial(input, seen, weights, values);
-  if (seen.mapped) setMaps(input, seen, crossing, weights, sees_it, values);
+  if (seen.mapped) setMaps(input, seen, crossing, weights, mask, values);
   return values;
 }
 
-void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out) {
-  put(values.position, sees_it, out.position);
-  put(values.normal, sees_it, out.normal);
-  put(values.diffuse, sees_it, out.diffuse);
-  put(values.specular, sees_it, out.specular);
-  put(values.ambient, sees_it, out.ambient);
-  put(values.emission, sees_it, out.emission);
-  blend(values.surface_normal, sees_it, out.surface_normal);
-  blend(values.lift, sees_it, out.lift);
-  if (values.has_models) blend(values.model, sees_it, out.model);
+void copyValues(const SquareValues& values, const LaneMask& mask, SquareValues& out) {
+  copyComponents(values.position, mask, out.position);
+  copyComponents(values.normal, mask, out.normal);
+  copyComponents(values.diffuse, mask, out.diffuse);
+  copyComponents(values.specular, mask, out.specular);
+  copyComponents(values.ambient, mask, out.ambient);
+  copyComponents(values.emission, mask, out.emission);
+  copyLanes(values.surface_normal, mask, out.surface_normal);
+  copyLanes(values.lift, mask, out.lift);
+  if (values.has_models) copyLanes(values.model, mask, out.model);
   if (!values.mapped && !out.mapped) return;
   out.mapped = true;
-  blend(values.reflection_map, sees_it, out.reflection_map);
-  blend(values.emission_map, sees_it, out.emission_map);
-  put(values.footprints, sees_it, out.footprints);
-  put(values.emission_footprints, sees_it, out.emission_footprints);
+  copyLanes(values.reflection_map, mask, out.reflection_map);
+  copyLanes(values.emission_map, mask, out.emission_map);
+  copyFootprints(values.footprints, mask, out.footprints);
+  copyFootprints(values.emission_footprints, mask, out.emission_footprints);
 }
 
 void applyMaps(const Scene& scene, const SquarePlace& place, SquareValues& values) {

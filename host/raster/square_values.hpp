@@ -21,7 +21,7 @@ struct SquareValues {
   bool has_models = false;     ///< as ResolveInput::planes.model
   Lanes<std::uint32_t> model;  ///< a ModelPlane's, where has_models
   /// The maps that applyMaps() multiplies in.
-  bool mapped = false;                        ///< any pixel has one, or else all below means nothing
+  bool mapped = false;  ///< any pixel has one; otherwise the members below are undefined
   Lanes<const TextureUse*> reflection_map{};  ///< into diffuse and ambient; null: none
   Lanes<const TextureUse*> emission_map{};
   SquareFootprints footprints{};
@@ -39,13 +39,13 @@ struct SquarePlace {
 /// `first_pixel`: the square's top left one, in the whole picture.
 SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel);
 
-/// The attributes of a surface at a square's pixels. Pixels that don't see it get those of its plane, which
-/// may lie outside the triangle.
+/// The attributes of a surface at a square's pixels. For pixels that aren't in `mask` they are those of the
+/// plane, perhaps outside the triangle.
 SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
-                      const LaneMask& sees_it);
+                      const LaneMask& mask);
 
-/// Copies to `out` the values of the pixels for which `sees_it` is 1.
-void put(const SquareValues& values, const LaneMask& sees_it, SquareValues& out);
+/// Copies the values of the pixels in `mask` to `out`.
+void copyValues(const SquareValues& values, const LaneMask& mask, SquareValues& out);
 
 /// Multiplies the reflection map into diffuse and ambient, and the emission map into emission. A pixel that
 /// is shaded for several samples takes the mean of four lookups, whose places have the samples' mean and

@@ -27,9 +27,9 @@ constexpr int kSamplesOfATexel = 16;
 /// Of a texel: all groups of a G-buffer, and three labels.
 constexpr double kBytesPerTexel = (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1 + 3) * 4;
 
-/// The object alone, flat as its map, before a parallel camera at the origin whose picture is the map.
-/// Triangles keep their numbers, or get those from the end.
-Scene laidOut(const Mesh& mesh, const std::vector<glm::vec2>& uvs, double aspect, bool from_the_end) {
+/// A scene of the object alone, flattened into texture space: a parallel camera at the origin sees the map.
+/// Triangles keep their order, or are reversed.
+Scene flattenedObject(const Mesh& mesh, const std::vector<glm::vec2>& uvs, double aspect, bool from_the_end) {
   Scene flat;
   flat.materials.resize(1);
   flat.materials[0].double_sided = true;
@@ -100,11 +100,11 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
   gbuffer.knows_camera = false;
 
   const double aspect = double(size.x) / size.y;
-  const Scene flat = laidOut(mesh, uvs, aspect, false);
+  const Scene flat = flattenedObject(mesh, uvs, aspect, false);
   std::vector<std::uint32_t> labels = labelsOf(flat, view, 1);
   {
-    // Of several triangles in one place the first is seen. From the end, that is another.
-    const std::vector<std::uint32_t> others = labelsOf(laidOut(mesh, uvs, aspect, true), view, 1);
+    // Where triangles overlap the first is visible. In reverse order that is another one.
+    const std::vector<std::uint32_t> others = labelsOf(flattenedObject(mesh, uvs, aspect, true), view, 1);
     const auto last = std::uint32_t(mesh.triangles.size() - 1);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       result.covered += labels[i] != kNoTriangle;

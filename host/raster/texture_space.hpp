@@ -16,10 +16,10 @@ namespace luciole {
 /// none or they don't fit into a square.
 std::vector<glm::vec2> lightMapUvs(const Scene& scene, const Mesh& mesh);
 
-/// An object's fronts, spread out as its light map's coordinates say.
+/// The fronts of an object in texture space, by the coordinates of its light map.
 struct TextureSpace {
-  /// A pixel for each texel, in the view space of the camera. A texel shows the place of its middle, or where
-  /// a chart covers another part of the texel alone, the nearest place of the chart.
+  /// A pixel for each texel, in the view space of the camera: the surface at the texel's middle, or if a
+  /// chart covers only other parts of the texel, the nearest point of the chart.
   GBuffer gbuffer;
   std::size_t covered = 0;      ///< texels whose middle lies in a chart
   std::size_t overlapping = 0;  ///< of these, in more than one triangle

@@ -24,8 +24,8 @@ struct View {
   glm::ivec2 crop_size{0};
   glm::dvec2 sample{0.5};  ///< where in a pixel the sample lies, from its top left corner, in [0,1)²
   SampleNumber number;     ///< of that sample, for surfaces that are blended (blendThreshold)
-  /// Where several samples of a pixel are drawn together, they lie at `sample` and up to so many 1/256 pixel
-  /// to the right of it and below it (see SamplePattern).
+  /// With several samples in one pass: the largest offset of a sample from `sample`, right and down, in 1/256
+  /// pixel (see SamplePattern).
   glm::ivec2 reach{0};
 };
 
@@ -59,7 +59,7 @@ View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>
 /// the centre.
 glm::dvec2 samplePoint(int index, int count);
 
-/// Makes a view that of a sample of its pixels, at samplePoint().
+/// Sets the view to a sample of its pixels, at samplePoint().
 void takeSample(View& view, const SampleNumber& number);
 
 /// The camera of a view: the inverse of cameraView, without the name. A shift of the picture (an off-centre

@@ -20,10 +20,10 @@ std::vector<glm::dvec3> visiblePoints(const Scene& scene, const Camera& camera, 
 /// The same of the pixels of a G-buffer.
 std::vector<glm::dvec3> visiblePoints(const GBuffer& gbuffer, std::size_t count, std::uint64_t seed);
 
-/// A box around the part of a scene that is worth lighting, world space, metres: from the 5th to the 95th
-/// percentile of visible points along each axis, so that a little sky or far horizon doesn't enlarge it. A
-/// side shorter than a tenth of the longest, such as the height of a floor seen alone, grows to a tenth
-/// towards the eye, from where light reaches what is seen. `points` must not be empty. O(n log n).
+/// A box for lights, around visible points, world space, metres: from the 5th to the 95th percentile along
+/// each axis, so that a little sky or far horizon doesn't enlarge it. A side shorter than a tenth of the
+/// longest, such as the height of a floor, is extended to a tenth towards the eye, where lights shine on the
+/// visible side. `points` must not be empty. O(n log n).
 Bounds seenBox(std::span<const glm::dvec3> points, const glm::dvec3& eye);
 
 }  // namespace luciole

@@ -16,15 +16,10 @@
 #include <limits>
 
 #include "luciole/error.hpp"
+#include "scene/count_triangles.hpp"
 
 namespace luciole {
 namespace {
-
-std::size_t countTriangles(const Scene& scene) {
-  std::size_t count = 0;
-  for (const Object& object : scene.objects) count += scene.meshes[object.mesh].triangles.size();
-  return count;
-}
 
 /// Embree's filter callback: asks the HitFilter about each hit of a packet.
 void filterHits(const RTCFilterFunctionNArguments* arguments) {
@@ -57,8 +52,8 @@ RTCRay makeRay(const RayScene& scene, const glm::dvec3& from, const glm::dvec3& 
   return ray;
 }
 
-/// Embree takes components of origins and directions up to 1.844·10¹⁸; it ends the program at larger ones and
-/// at NaN. Such rays occur in scenes of 10¹⁸ metres, and from a point to itself. They count as hitting
+/// Whether Embree accepts the ray: it ends the program for components of origin or direction
+/// beyond 1.844·10¹⁸ or NaN. Such rays occur in scenes of 10¹⁸ metres, and from a point to itself. They hit
 /// nothing.
 bool canBeCast(const RTCRay& ray) {
   constexpr float kLargest = 1.8e18f;
@@ -72,8 +67,8 @@ constexpr std::size_t kPacketSize = 16;
 /// Packets that a task traces.
 constexpr std::size_t kPacketsPerTask = 64;
 
-/// Traces one packet of 1 to 16 rays. Without AVX-512 Embree 3 takes 16 rays for a stream: it asks no mask,
-/// but leaves out rays that end before they begin.
+/// Traces one packet of 1 to 16 rays. Unused rays have tfar < tnear as well: without AVX-512 Embree 3
+/// treats 16 rays as a stream and ignores `valid`.
 void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span<std::uint8_t> blocked) {
   alignas(64) std::array<int, kPacketSize> valid{};
   RTCRay16 packet{};

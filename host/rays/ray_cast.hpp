@@ -14,7 +14,7 @@ struct RTCSceneTy;  // Embree's
 
 namespace luciole {
 
-/// A hit of a ray on a triangle, which a HitFilter accepts or ignores.
+/// An intersection of a ray and a triangle, to be accepted or ignored by a HitFilter.
 struct CandidateHit {
   glm::dvec3 from;         ///< where the ray starts, in a RayScene's own space
   std::uint32_t triangle;  ///< counted through all objects in order
@@ -41,7 +41,7 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter h
 
 struct RayHit {
   double distance;         ///< metres
-  bool front;              ///< the triangle's front was met
+  bool front;              ///< of the triangle's front
   std::uint32_t triangle;  ///< as in CandidateHit
 };
 /// The nearest hit of the ray; empty where it hits nothing. `from` and `direction` (unit) are in world space.

@@ -59,9 +59,9 @@ glm::dvec3 shadowStart(const GBuffer& gbuffer, std::size_t place) {
 
 ShadowRay shadowRay(const Light& light, const glm::dvec3& point) {
   const bool directional = light.kind == LightKind::kDirectional;
-  const glm::dvec3 way = directional ? -light.direction : light.position - point;
-  const double length = glm::length(way);
-  return {point, way / length, directional ? std::numeric_limits<double>::infinity() : length};
+  const glm::dvec3 to_light = directional ? -light.direction : light.position - point;
+  const double length = glm::length(to_light);
+  return {point, to_light / length, directional ? std::numeric_limits<double>::infinity() : length};
 }
 
 }  // namespace luciole

@@ -30,7 +30,7 @@ constexpr double kSameNormal = 1e-5;
 /// a scale of 1 turns a normal by up to 2 · 2 / 512 along both axes.
 constexpr double kSameBentNormal = 8e-3;
 
-/// What is needed to trace rays in view space.
+/// A scene for rays in view space.
 struct Tracer {
   const Scene& scene;
   const View& view;
@@ -54,7 +54,8 @@ struct SurfaceHit {
 thread_local std::vector<std::uint32_t> hit_triangles;
 
 Tracer makeTracer(const Scene& scene, const View& view) {
-  // The filter lets rays pass, so that they find all triangles. Which one is nearest is decided in double.
+  // The filter rejects every hit, so that a ray visits all triangles. The nearest one is found in double
+  // precision.
   const HitFilter note = [](const CandidateHit& candidate) {
     hit_triangles.push_back(candidate.triangle);
     return true;
@@ -293,8 +294,8 @@ bool endsBeside(const Tracer& tracer, std::uint32_t triangle, const glm::dvec2& 
   });
 }
 
-/// Whether the point that is shown lies on the rim of a triangle that the sample's ray passes beside: it is
-/// seen within kEdgePixels of the sample, and a ray close around it meets the triangle.
+/// Whether the pixel's point lies on the edge of a triangle that the sample's ray misses: its projection is
+/// within kEdgePixels of the sample, and a ray close to it hits the triangle.
 bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<SurfaceHit>& hits,
                    const glm::dvec2& at, const glm::ivec2& pixel) {
   const double w = tracer.plane.perspective ? -shown.position.z : 1.0;
@@ -316,8 +317,8 @@ bool isOnRimBeside(const Tracer& tracer, const Shown& shown, const std::vector<S
   return false;
 }
 
-/// Whether snapping explains that the pixel shows this instead of the first of the hits: all that lies in
-/// front of it has an edge beside the sample, and so has the surface itself unless the ray meets it.
+/// Whether snapping explains that the pixel shows this surface instead of the first hit: all surfaces in
+/// front of it have an edge near the sample, and so has the surface itself unless the ray hits it.
 bool isBesideEdge(const Tracer& tracer, const Shown& shown, const std::vector<SurfaceHit>& hits,
                   const glm::dvec2& at, const glm::ivec2& pixel) {
   bool is_hit = !shown.surface;

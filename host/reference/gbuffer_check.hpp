@@ -10,8 +10,8 @@
 
 namespace luciole {
 
-/// Pixels between an edge and a pixel's sample within which snapping corners to the rasterizer's grid may
-/// move the edge across the sample.
+/// Snapping corners to the rasterizer's grid may move an edge across a sample that is at most so many pixels
+/// away.
 inline constexpr double kEdgePixels = 1.0 / 256;
 
 /// How a G-buffer differs from what a ray through each pixel's sample hits.
@@ -22,8 +22,8 @@ struct GBufferCheck {
   double position_error = 0, normal_error = 0;
   double bent_normal_error = 0;  ///< radians, of normals that a map bends, and of no others
   double lift_error = 0;         ///< likewise, as a share of the distance, where the G-buffer has lifts
-  /// Numbers of pixels that show another surface than the ray hits, or where only one of the two has a
-  /// surface, by the reason.
+  /// Numbers of pixels whose surface isn't the one that the ray hits, or where only one of the two is
+  /// background, by reason.
   std::uint64_t beside_edges = 0;  ///< an edge of one of the two is within kEdgePixels: snapping explains it
   std::uint64_t at_ties = 0;  ///< both are within 10⁻⁶ of their distance from each other: rounding decides
   std::uint64_t unexplained = 0;

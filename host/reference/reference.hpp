@@ -26,7 +26,7 @@ struct SurfacePoint {
   double shininess = 0.0;
 };
 
-/// Returns the share of a light, in [0, 1], that nothing hides from the point that is lit.
+/// Returns the visible share of a light, in [0, 1], at the point that is lit.
 using Visibility = std::function<double(const Light& light)>;
 
 /// Radiance that leaves the point towards the eye, before fog, by all lights of the scene: O(lights).
@@ -57,26 +57,26 @@ std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuff
                                         std::span<const glm::ivec2> pixels,
                                         const ReferenceSettings& settings);
 
-/// What a light adds to the radiance that leaves a point.
+/// The contribution of a light to the radiance that leaves a point.
 struct LightTerm {
-  std::size_t light = 0;  ///< of Scene::lights
-  double n_dot_l = 0;     ///< the cosine between the normal and the way to the light
-  double falloff = 0;     ///< by attenuation, range and spot: a factor of all that follows
-  double visibility = 0;  ///< the share that nothing hides, which diffuse and specular have in them; 0 behind
+  std::size_t light = 0;    ///< of Scene::lights
+  double n_dot_l = 0;       ///< the cosine between the normal and the direction to the light
+  double falloff = 0;       ///< by attenuation, range and spot: a factor of all that follows
+  double visibility = 0;    ///< in [0, 1], a factor of diffuse and specular already; 0 if the light is behind
   glm::dvec3 ambient{0.0};  ///< the light's own ambient light
   glm::dvec3 diffuse{0.0}, specular{0.0};
 
   glm::dvec3 sum() const { return (ambient + diffuse + specular) * falloff; }
 };
 
-/// All that makes a pixel's colour.
+/// All terms of a pixel's colour.
 struct PixelTerms {
   SurfacePoint point;
   Model model = Model::kPhong;
   glm::dvec3 own{0.0};  ///< the scene's ambient light that it reflects; without lighting its diffuse colour
   std::vector<LightTerm> lights;  ///< those that reach the point, in the scene's order
-  glm::dvec3 fog_share{1.0};  ///< of the radiance that gets through the fog, whose colour makes up the rest
-  glm::dvec3 color{0.0};      ///< as referencePixels() has it
+  glm::dvec3 fog_share{1.0};      ///< transmittance of the fog, per channel; the rest is the fog's colour
+  glm::dvec3 color{0.0};          ///< as referencePixels() has it
 };
 
 /// The terms of a pixel, counted from the G-buffer's top left; nothing for the background. O(lights) time

@@ -10,25 +10,27 @@
 
 namespace luciole {
 
-/// What is known of a picture's first sample, from which most layers are filled.
+/// A picture's first sample, of which most layers show the planes.
 struct FirstSample {
   const GBuffer& gbuffer;
   const LitPlanes& lit;
-  Plane world_position, world_normal, depth;  ///< of the G-buffer's points, with a row of `in_world` only
-  Plane all_visible;                          ///< ones, with Aov::kShadow only
+  std::vector<Plane> computed = {};  ///< planes for layers that neither of these has
 };
 
-/// Where the channels of a layer lie: planes in the G-buffer's layout.
-using ChannelPlaces = std::vector<const float*>;
+/// The planes of a layer's channels, in the G-buffer's layout.
+using PlanePointers = std::vector<const float*>;
 
+/// An AOV of a picture, that is a layer of its EXR.
 struct AovRow {
   Aov aov;
-  const char* name;                     ///< as people type it
-  std::vector<std::string> channels{};  ///< in the file; none for parts of the light: LightLayer names theirs
-  /// The channels' places. A null one isn't in the picture. Without this function they are filled in later.
-  ChannelPlaces (*places)(const FirstSample&) = nullptr;
-  bool in_world = false;   ///< asks for FirstSample's places and directions in world space
-  float otherwise = 0.0f;  ///< until they are filled in
+  const char* name;  ///< for --aov and scripts
+  /// The names in the file. None for parts of the light, whose channels LightLayer names.
+  std::vector<std::string> channels{};
+  /// Finds the channels' planes, or computes them. The picture lacks a channel whose plane is null. No
+  /// function: the channels are filled in after startPicture().
+  PlanePointers (*planes)(FirstSample&) = nullptr;
+  int computed_floats = 0;  ///< that planes() allocates for each pixel
+  float initial = 0.0f;     ///< value of the channels before they are filled in
 };
 inline constexpr std::size_t kAovCount = std::size_t(Aov::kCount);
 

@@ -14,49 +14,26 @@
 namespace luciole {
 namespace {
 
-/// A channel of the finished picture, and where its values are.
-struct Layer {
+/// A channel of the picture, filled from a plane of the first sample.
+struct Channel {
   std::string name;
   const float* plane;  ///< in the G-buffer's layout; null: filled in later
-  float otherwise;     ///< without a plane
+  float initial;       ///< value without a plane
 };
 
-/// World-space positions or normals and depths, from the view-space planes.
-void fillWorldPlanes(FirstSample& sample) {
-  const GBuffer& gbuffer = sample.gbuffer;
-  const std::size_t n = gbuffer.pixels();
-  sample.world_position.resize(3 * n);
-  sample.world_normal.resize(3 * n);
-  sample.depth.resize(n);
-  const glm::dmat4& to_world = gbuffer.camera.camera_to_world;
-  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
-    const glm::dvec3 p(gbuffer.position[i], gbuffer.position[i + n], gbuffer.position[i + 2 * n]);
-    const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + n], gbuffer.normal[i + 2 * n]);
-    const bool covered = std::isfinite(p.z);
-    const glm::dvec3 world_p = covered ? glm::dvec3(to_world * glm::dvec4(p, 1)) : glm::dvec3(0);
-    const glm::dvec3 world_n = glm::dmat3(to_world) * normal;
-    for (int c = 0; c < 3; ++c) {
-      sample.world_position[i + c * n] = float(world_p[c]);
-      sample.world_normal[i + c * n] = float(world_n[c]);
-    }
-    sample.depth[i] = float(-p.z);
-  });
-}
-
-/// The layers that the settings ask for, but parts of the light.
-std::vector<Layer> layersOf(const FirstSample& sample, const RenderSettings& settings) {
-  std::vector<Layer> layers;
+/// The channels of the AOVs in the settings, but for parts of the light.
+std::vector<Channel> aovChannels(FirstSample& sample, const RenderSettings& settings) {
+  std::vector<Channel> channels;
   for (const Aov aov : settings.aovs) {
     const AovRow& row = aovRow(aov);
-    const ChannelPlaces places = row.places ? row.places(sample) : ChannelPlaces(row.channels.size());
-    for (std::size_t c = 0; c < places.size(); ++c)
-      if (places[c] || !row.places) layers.push_back({row.channels[c], places[c], row.otherwise});
+    const PlanePointers planes = row.planes ? row.planes(sample) : PlanePointers(row.channels.size());
+    for (std::size_t c = 0; c < planes.size(); ++c)
+      if (planes[c] || !row.planes) channels.push_back({row.channels[c], planes[c], row.initial});
   }
-  return layers;
+  return channels;
 }
 
-/// Calls `visit(place in the G-buffer, pixel of the picture)` for each pixel, tile by tile, as they lie in
-/// the planes.
+/// Calls visit(place in the G-buffer, pixel of the picture) for each pixel, in the order of the planes.
 template <class Visit>
 void forEachPixel(const GBuffer& gbuffer, Image& image, Visit visit) {
   const int tiles_x = gbuffer.tiles_x;
@@ -73,34 +50,25 @@ void forEachPixel(const GBuffer& gbuffer, Image& image, Visit visit) {
   });
 }
 
-/// As finite_color() in the kernels: the sum of bright samples may overflow a float.
+/// Clamps to finite floats, as finite_color() in the kernels does: the sum of bright samples may overflow.
 float finiteColor(float color) {
   constexpr float kLargest = std::numeric_limits<float>::max();
   return std::max(color < kLargest ? color : kLargest, -kLargest);
 }
 
-/// What sums over a pixel's samples are multiplied by.
+/// The factor from a sum over a pixel's samples to the exposed mean.
 float scaleOf(const RenderSettings& settings) {
   return std::exp2(settings.exposure) / float(settings.samples);
 }
 
 }  // namespace
 
-bool wants(const RenderSettings& settings, Aov aov) {
-  return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
-}
-
 bool countsCovered(const RenderSettings& settings) {
-  return settings.alpha || wants(settings, Aov::kShadingCount);
-}
-
-bool wantsInWorld(const RenderSettings& settings) {
-  return std::any_of(settings.aovs.begin(), settings.aovs.end(),
-                     [](Aov aov) { return aovRow(aov).in_world; });
+  return settings.alpha || settings.wants(Aov::kShadingCount);
 }
 
 std::optional<std::size_t> channelOf(const Image& image, const RenderSettings& settings, Aov aov) {
-  if (!wants(settings, aov)) return std::nullopt;
+  if (!settings.wants(aov)) return std::nullopt;
   return std::find(image.channels.begin(), image.channels.end(), aovRow(aov).channels.front()) -
          image.channels.begin();
 }
@@ -115,22 +83,20 @@ std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes)
 }
 
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
-                   const std::vector<std::string>& light_layers, Image used) {
-  FirstSample sample{gbuffer, first, {},
-                     {},      {},    Plane(wants(settings, Aov::kShadow) ? gbuffer.pixels() : 0, 1.0f)};
-  if (wantsInWorld(settings)) fillWorldPlanes(sample);
-  const std::vector<Layer> layers = layersOf(sample, settings);
-  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, std::move(used.pixels)};
+                   const std::vector<std::string>& light_layers, Image recycled) {
+  FirstSample sample{gbuffer, first};
+  const std::vector<Channel> aovs = aovChannels(sample, settings);
+  Image image{gbuffer.width, gbuffer.height, {"R", "G", "B"}, std::move(recycled.pixels)};
   if (settings.alpha) image.channels.push_back("A");
-  const std::size_t first_layer = image.channels.size();
-  for (const Layer& layer : layers) image.channels.push_back(layer.name);
+  const std::size_t first_aov = image.channels.size();
+  for (const Channel& aov : aovs) image.channels.push_back(aov.name);
   for (const std::string& layer : light_layers)
     for (const char* component : {"R", "G", "B"}) image.channels.push_back(layer + component);
   image.pixels.resize(std::size_t(image.width) * image.height * image.channels.size());
-  if (layers.empty()) return image;
+  if (aovs.empty()) return image;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
-    for (std::size_t c = 0; c < layers.size(); ++c)
-      pixel[first_layer + c] = layers[c].plane ? layers[c].plane[place] : layers[c].otherwise;
+    for (std::size_t c = 0; c < aovs.size(); ++c)
+      pixel[first_aov + c] = aovs[c].plane ? aovs[c].plane[place] : aovs[c].initial;
   });
   return image;
 }
@@ -155,8 +121,8 @@ void countCovered(const GBuffer& gbuffer, Plane& covered) {
 void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image) {
   const std::size_t n = gbuffer.pixels();
   const Plane& shadings = sums.shadings.empty() ? sums.covered : sums.shadings;
-  const std::optional<std::size_t> counted = channelOf(image, settings, Aov::kShadingCount);
-  const std::optional<std::size_t> bounded =
+  const std::optional<std::size_t> count_channel = channelOf(image, settings, Aov::kShadingCount);
+  const std::optional<std::size_t> bound_channel =
       sums.light_error.empty() ? std::nullopt : channelOf(image, settings, Aov::kLightError);
   const float scale = scaleOf(settings);
   // Each of n samples' products and sums rounds both colour and bound, and so do the factor and the product
@@ -165,11 +131,11 @@ void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettin
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(sums.color[place + c * n] * scale);
     if (settings.alpha) pixel[3] = sums.covered[place] / float(settings.samples);
-    for (int c = 0; c < 3 && bounded; ++c) {
+    for (int c = 0; c < 3 && bound_channel; ++c) {
       const double bound = double(sums.light_error[place + c * n]) * scale;
-      pixel[*bounded + c] = finiteColor(float((1 + rounding) * bound + rounding * double(pixel[c])));
+      pixel[*bound_channel + c] = finiteColor(float((1 + rounding) * bound + rounding * double(pixel[c])));
     }
-    if (counted) pixel[*counted] = shadings[place];
+    if (count_channel) pixel[*count_channel] = shadings[place];
   });
 }
 

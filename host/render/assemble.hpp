@@ -10,40 +10,34 @@
 
 namespace luciole {
 
-/// Whether the settings ask for this layer.
-bool wants(const RenderSettings& settings, Aov aov);
-
-/// Whether they ask for one that is in world space.
-bool wantsInWorld(const RenderSettings& settings);
-
-/// Which of the picture's channels is the layer's first; nothing where the settings don't ask for it.
+/// The index of an AOV's first channel in the picture; empty if the settings don't ask for it.
 std::optional<std::size_t> channelOf(const Image& image, const RenderSettings& settings, Aov aov);
 
-/// Number of channels of a picture whose G-buffer has these groups: R G B, A and the layers asked for,
-/// without those of lightLayers().
+/// The number of channels of a picture whose G-buffer has these groups: R G B, A and AOVs, without
+/// lightLayers().
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes);
 
-/// A picture of the G-buffer's size with channels R G B and, if asked for, A, which setColors() fills in as
-/// it does the number of shadings, and the layers that the settings ask for, from the first sample's G-buffer
-/// and lit planes. Its positions and normals are in world space. light_layers: names
-/// of layers whose channels come last, NAME + R, G and B, for setLightLayer(). `used`: a picture that is done
-/// with, whose memory it takes.
+/// Allocates a picture of the G-buffer's size and fills in those of its AOVs that show the first sample.
+/// Channels: R G B and, with RenderSettings::alpha, A, all for setColors(); the AOVs; then R G B of each of
+/// light_layers, NAME.R …, for setLightLayer(). `recycled`: a picture whose memory is taken.
 Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderSettings& settings,
-                   const std::vector<std::string>& light_layers, Image used = {});
+                   const std::vector<std::string>& light_layers, Image recycled = {});
 
-/// Adds 1 to each pixel of `covered` that shows a surface in this sample's G-buffer. An empty plane is made.
+/// Adds 1 to each pixel of `covered` that shows a surface in this sample's G-buffer. Allocates an empty
+/// plane.
 void countCovered(const GBuffer& gbuffer, Plane& covered);
 
-/// Whether the settings need to know how many samples of each pixel show a surface.
+/// Whether the settings need PixelSums::covered.
 bool countsCovered(const RenderSettings& settings);
 
-/// Fills in R G B: the mean of the samples times 2^exposure, clamped to finite floats; A and the number of
-/// shadings and bounds of the light's error, if asked for. sums: over `settings.samples` samples, in the
-/// G-buffer's layout; `covered` as countsCovered() says, and empty `shadings` where each of those samples was
-/// shaded.
+/// Fills in R G B, the mean of the samples times 2^exposure, clamped to finite floats; and A,
+/// Aov::kShadingCount and Aov::kLightError if the picture has them. sums: over settings.samples samples, in
+/// the G-buffer's layout. sums.covered is needed if countsCovered(). Empty sums.shadings: each sample that
+/// shows a surface was shaded.
 void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image);
 
-/// Fills in three channels of a layer of light as setColors() does R G B. sums: r g b, over the samples.
+/// Fills in the three channels of a layer of light, from first_channel on, as setColors() does R G B. sums:
+/// r g b, over the samples.
 void setLightLayer(const GBuffer& gbuffer, const Plane& sums, const RenderSettings& settings,
                    std::size_t first_channel, Image& image);
 

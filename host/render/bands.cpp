@@ -8,17 +8,18 @@
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
 #include "cl/device_error.hpp"
+#include "lighting/compile_kernels.hpp"
+#include "lighting/count_picture.hpp"
 #include "lights/fog_cull.hpp"
 #include "raster/bins.hpp"
-#include "render/compile_kernels.hpp"
-#include "render/count_picture.hpp"
+#include "raster/surface_ids.hpp"
+#include "render/assemble.hpp"
 #include "render/light_points.hpp"
-#include "render/surface_ids.hpp"
 
 namespace luciole {
 namespace {
 
-/// A picture's bands as they are made.
+/// Renders a picture's bands.
 struct BandMaker {
   ReadyPicture& picture;
   const MatteIds matte_ids;
@@ -44,14 +45,18 @@ struct BandMaker {
     } else {
       image = lightAllSamples(picture, band, triangles, [&] { step(rows.height); });
     }
-    if (wantsSurfaceIds(picture.settings))
+    if (wantsSurfaceIds(picture.settings)) {
+      const auto channel = [&](Aov aov) { return channelOf(image, picture.settings, aov); };
+      const SurfaceIdChannels channels{channel(Aov::kObjectId), channel(Aov::kMaterialId),
+                                       channel(Aov::kCryptoObject), channel(Aov::kCryptoMaterial)};
       timed(picture.stats, Stage::kRasterize,
-            [&] { setSurfaceIds(picture.scene, band, picture.settings, matte_ids, image); });
+            [&] { setSurfaceIds(picture.scene, band, picture.settings, matte_ids, channels, image); });
+    }
     return image;
   }
 
-  /// Makes a band, or as many of its first rows as the device has memory for, which lowers limits.tallest.
-  /// Returns the rows that picture.used.picture then has.
+  /// Renders a band into picture.recycled.picture. If the device's memory doesn't hold it, renders only its
+  /// first rows and lowers limits.tallest. Returns the rows rendered.
   Band makeAsMuch(const Band& left, BandLimits& limits) {
     while (true) {
       const int end = bandEnd(left.first, {limits.tallest, limits.origin, left.first + left.height});
@@ -60,10 +65,10 @@ struct BandMaker {
       const RasterCounts triangles_before = triangles;
       const int done_before = rows_done;
       try {
-        picture.used.picture = make(rows);
+        picture.recycled.picture = make(rows);
         return rows;
       } catch (const DeviceError& error) {
-        // How long light lists are only turns out while they are made. Fewer rows have shorter ones.
+        // The length of light lists isn't known before. Fewer rows have shorter ones.
         if (!error.is_out_of_memory || rows.height <= kBinSize) throw;
         picture.stats = stats_before;
         triangles = triangles_before;
@@ -103,7 +108,7 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
                                    {"objects", std::int64_t(scene.objects.size())},
                                    {"lights", std::int64_t(scene.lights.size())}});
   ReadyPicture picture{device, scene, settings, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan);
+  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade);
   picture.objects = settings.alpha
                         ? allObjects(scene)
                         : objectsInSight(scene, plan.view, settings.exposure, settings.shade.model);
@@ -120,12 +125,12 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
   while (const std::optional<Band> asked = next(limits)) {
     for (Band left = *asked; left.height > 0;) {
       const Band rows = maker.makeAsMuch(left, limits);
-      take(rows, picture.used.picture);
+      take(rows, picture.recycled.picture);
       left = {rows.first + rows.height, left.height - rows.height};
     }
   }
   countLighting(picture);
-  countTriangles(maker.triangles, stats);
+  addRasterCounts(maker.triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - picture.objects.size());
   if (kept) keepMaps(scene, takeMaps(picture.lighting.maps), *kept);
 }

@@ -5,7 +5,7 @@
 
 #include "render/plan.hpp"
 
-// Pictures are made in bands of whole rows, so that they fit into memory.
+// Pictures are rendered in bands of whole rows, so that they fit into memory.
 namespace luciole {
 
 /// Rows of a picture, counted from the whole picture's top.
@@ -13,25 +13,25 @@ struct Band {
   int first, height;
 };
 
-/// What holds for the bands of a picture.
+/// Where the bands of a picture may end.
 struct BandLimits {
   int tallest;  ///< the most rows that fit into memory
-  int origin;   ///< bands end at this row plus a multiple of kBinSize, but for the last, and for lower ones
-  int bottom;   ///< where the picture, or its crop, ends
+  int origin;  ///< bands of kBinSize rows or more end at this row plus a multiple of kBinSize, or at `bottom`
+  int bottom;  ///< the end of the picture, or of its crop
 };
 
-/// Where a band ends that begins at row `first`: as far down as may be.
+/// The end of the tallest band that begins at row `first`.
 int bandEnd(int first, const BandLimits& limits);
 
-/// Says which band to make next; none: the picture is done.
+/// Returns the band to render next; none: the picture is complete.
 using NextBand = std::function<std::optional<Band>(const BandLimits& limits)>;
 
-/// Takes the pixels of a band, or of the next of its rows where the device had no memory for all of them at
-/// once. They last until it returns.
+/// Takes the pixels of a band, or of its next rows if the device's memory doesn't hold all of it. They last
+/// until it returns.
 using BandSink = std::function<void(const Band& band, const Image& rows)>;
 
-/// Makes the bands of a planned picture that `next` asks for. The scene and the settings are valid. All else:
-/// see renderBands().
+/// Renders the bands of a planned picture that `next` returns. The scene and the settings must be valid.
+/// Otherwise as renderBands().
 void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
                const PicturePlan& plan, const NextBand& next, const BandSink& take, Stats& stats,
                KeptShadows* kept);

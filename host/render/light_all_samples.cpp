@@ -4,15 +4,15 @@
 #include <utility>
 
 #include "base/trace.hpp"
+#include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {
 namespace {
 
-/// Makes `sum` the sum with `more`, of as many floats, or `more` itself where it is empty. Returns memory
-/// that is done with.
+/// Adds `more` to `sum`, count floats; an empty `sum` becomes `more`. Returns a plane whose memory can be
+/// reused.
 Plane addPlane(Plane more, std::size_t count, Plane& sum) {
   if (sum.empty()) {
     sum = std::move(more);
@@ -22,7 +22,7 @@ Plane addPlane(Plane more, std::size_t count, Plane& sum) {
   return more;
 }
 
-/// The pixels of a band, at the place of one sample after the other.
+/// Lists a band's pixels once for each sample.
 struct SampleLister final : PointLister {
   ReadyPicture& picture;
   View view;
@@ -39,7 +39,7 @@ struct SampleLister final : PointLister {
                const std::function<void()>& report)
       : picture(ready), view(band), triangles(counted), on_sample(report) {
     layer_sums.resize(picture.layers.size());
-    used = std::move(picture.used.color);
+    recycled = std::move(picture.recycled.color);
   }
 
   int samples() const { return picture.settings.samples; }
@@ -48,7 +48,7 @@ struct SampleLister final : PointLister {
   bool next() override {
     span.reset();
     if (sample >= 0) {
-      picture.used.gbuffer = std::move(drawn);
+      picture.recycled.gbuffer = std::move(drawn);
       on_sample();
     }
     if (++sample == samples()) return false;
@@ -56,7 +56,7 @@ struct SampleLister final : PointLister {
     takeSample(view, {sample, samples()});
     drawn = timed(picture.stats, Stage::kRasterize, [&] {
       return rasterize(picture.scene, picture.objects, view, picture.settings.shading, picture.plan.planes,
-                       picture.vertex_colors, &triangles, std::move(picture.used.gbuffer));
+                       picture.vertex_colors, &triangles, std::move(picture.recycled.gbuffer));
     });
     drawn.camera = picture.settings.camera;
     gbuffer = &drawn;
@@ -68,11 +68,11 @@ struct SampleLister final : PointLister {
     countPass(drawn, lit, counts.evaluated, picture.stats);
     timed(picture.stats, Stage::kResolve, [&] {
       if (sample == 0)
-        image =
-            startPicture(drawn, lit, picture.settings, layerNames(picture), std::move(picture.used.picture));
+        image = startPicture(drawn, lit, picture.settings, layerNames(picture),
+                             std::move(picture.recycled.picture));
       const std::size_t bounds = lit.light_error.size();
       addPlane(std::move(lit.light_error), bounds, sums.light_error);
-      used = addPlane(std::move(lit.color), 3 * drawn.pixels(), sums.color);
+      recycled = addPlane(std::move(lit.color), 3 * drawn.pixels(), sums.color);
       if (countsCovered(picture.settings)) countCovered(drawn, sums.covered);
       if (isLast()) setColors(drawn, sums, picture.settings, image);
     });
@@ -81,10 +81,10 @@ struct SampleLister final : PointLister {
   void takeLayer(std::size_t layer, Plane color) override {
     timed(picture.stats, Stage::kResolve, [&] {
       Plane& sum = layer_sums[layer];
-      used = addPlane(std::move(color), 3 * drawn.pixels(), sum);
+      recycled = addPlane(std::move(color), 3 * drawn.pixels(), sum);
       if (!isLast()) return;
       setLightLayer(drawn, sum, picture.settings, channelOfLayer(image, layer, layer_sums.size()), image);
-      used = std::move(sum);
+      recycled = std::move(sum);
     });
   }
 };
@@ -95,7 +95,7 @@ Image lightAllSamples(ReadyPicture& picture, const View& band, RasterCounts& tri
                       const std::function<void()>& on_sample) {
   SampleLister lister(picture, band, triangles, on_sample);
   lightPoints(picture, picture.plan.pixels, lister);
-  picture.used.color = std::move(lister.sums.color);
+  picture.recycled.color = std::move(lister.sums.color);
   return std::move(lister.image);
 }
 

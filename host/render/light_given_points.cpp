@@ -1,13 +1,13 @@
 #include <utility>
 
+#include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {
 namespace {
 
-/// The points of a G-buffer.
+/// Lists a G-buffer as it is.
 struct GivenLister final : PointLister {
   ReadyPicture& picture;
   const GBuffer& given;

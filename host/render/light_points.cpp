@@ -2,14 +2,12 @@
 
 #include <utility>
 
-#include "render/assemble.hpp"
-
 namespace luciole {
 
 void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister) {
   const auto light = [&](const LightSet& lights, const FeatureSet& of_lights, const PixelCounts& counts) {
     return lightGBuffer(picture.device, picture.scene, picture.lighting,
-                        {lights, of_lights, *lister.gbuffer, counts, std::exchange(lister.used, {})},
+                        {lights, of_lights, *lister.gbuffer, counts, std::exchange(lister.recycled, {})},
                         picture.stats);
   };
   while (lister.next()) {
@@ -21,8 +19,8 @@ void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister&
 
 PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
   return {.evaluated = settings.count_lights,
-          .in_range = settings.count_lights || (sample == 0 && wants(settings, Aov::kLightCount)),
-          .list_length = sample == 0 && wants(settings, Aov::kListLength)};
+          .in_range = settings.count_lights || (sample == 0 && settings.wants(Aov::kLightCount)),
+          .list_length = sample == 0 && settings.wants(Aov::kListLength)};
 }
 
 std::vector<std::string> layerNames(const ReadyPicture& picture) {

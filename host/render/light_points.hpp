@@ -8,21 +8,21 @@
 #include "lighting/light_gbuffer.hpp"
 #include "render/ready_picture.hpp"
 
-// The one loop by which all light is made: points are listed, lit, and added to what they are part of.
+// The one loop that lights points: a PointLister gives batches of points, and takes their light.
 namespace luciole {
 
-/// Lists a picture's points, some at a time, and takes their light.
+/// Gives a picture's points batch by batch as G-buffers, and takes their light.
 struct PointLister {
-  const GBuffer* gbuffer = nullptr;  ///< the points to be lit now
-  PixelCounts counts;                ///< what to count of them
-  Plane used;                        ///< a plane that is done with
+  const GBuffer* gbuffer = nullptr;  ///< the batch
+  PixelCounts counts;                ///< to be made of it
+  Plane recycled;                    ///< a plane whose memory the next colours take
 
   virtual ~PointLister() = default;
-  /// Sets the members for the next points. Returns false where there are none left.
+  /// Sets the members for the next batch. Returns false after the last one.
   virtual bool next() = 0;
-  /// Takes the picture's light.
+  /// Takes the batch's light.
   virtual void take(LitPlanes lit) = 0;
-  /// Takes the light of a layer, r g b. Called for one after the other, after take().
+  /// Takes its light of a layer, r g b. Called after take(), for each layer in order.
   virtual void takeLayer(std::size_t layer, Plane color) = 0;
 };
 
@@ -30,13 +30,13 @@ struct PointLister {
 /// picture's own light. Throws MachineError.
 void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister);
 
-/// What to count for this sample: for layers only in the first one, for statistics in all.
+/// The counts for a sample: those that layers show in the first one only, those of statistics in all.
 PixelCounts wantedCounts(const RenderSettings& settings, int sample);
 
 /// The names of the picture's layers of light.
 std::vector<std::string> layerNames(const ReadyPicture& picture);
 
-/// The first channel of a layer of light: they come last.
+/// The first channel of a layer of light. These layers are the picture's last.
 std::size_t channelOfLayer(const Image& image, std::size_t layer, std::size_t layers);
 
 /// The pixels that `band` shows, with each sample rasterized and lit by itself. on_sample: called after each.

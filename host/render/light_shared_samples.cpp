@@ -3,27 +3,27 @@
 #include <utility>
 
 #include "kernels/shared.h"
+#include "lighting/count_picture.hpp"
 #include "luciole/planes.hpp"
 #include "raster/shading_points.hpp"
+#include "raster/uneven_pixels.hpp"
 #include "render/assemble.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
-#include "render/uneven_pixels.hpp"
 
 namespace luciole {
 namespace {
 
-/// The lists from `first` on that are lit together: as many as fill at most so many points' tiles, or one.
+/// The end of the lists from `first` on that are lit in one pass: at most most_points points, or one list.
 std::size_t endOfPass(const PointLists& points, std::size_t first, std::size_t most_points) {
   std::size_t end = first + 1, tiles = points.tiles(first);
   while (end < points.size() && (tiles += points.tiles(end)) * kTilePixels <= most_points) ++end;
   return end;
 }
 
-/// Takes from these pixels all their points.
-void leaveOut(const std::vector<std::uint8_t>& pixels, SharedSamples& shared) {
+/// Removes all points of the pixels that are set.
+void removePoints(const std::vector<std::uint8_t>& pixels, SharedSamples& shared) {
   tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t i) {
     if (pixels[i]) shared.samples[i] = 0;
   });
@@ -38,7 +38,7 @@ void leaveOut(const std::vector<std::uint8_t>& pixels, SharedSamples& shared) {
   further.items.resize(kept);
 }
 
-/// The part of a picture from `first` on.
+/// A rectangle of a picture.
 Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
   if (size == glm::ivec2(picture.width, picture.height)) return picture;
   Image part{size.x, size.y, picture.channels, {}};
@@ -52,8 +52,8 @@ Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
   return part;
 }
 
-/// Of a band first the points of all pixels' first samples, then the other points of pixels that see several
-/// surfaces, and last, where light is uneven, every sample by itself.
+/// Lists a band's shading points: first those of all pixels' first samples, then the other points of pixels
+/// that see several surfaces, and last every sample of pixels with uneven light.
 struct SharedLister final : PointLister {
   ReadyPicture& picture;
   SampledView sampled;
@@ -64,12 +64,12 @@ struct SharedLister final : PointLister {
   Image image;
   bool is_begun = false;
 
-  // After the first points: lists, and those of them that are lit now.
+  // After the first batch: the lists, and the range of the current batch.
   const PointLists* points = nullptr;
   std::size_t first_list = 0, end_list = 0;
   GBuffer gathered;
 
-  // Every sample of the uneven pixels, some bins after the other.
+  // For every sample of the uneven pixels: the bins, and the lists of the current ones.
   std::vector<std::uint8_t> uneven;
   std::vector<std::size_t> in_bins;
   std::size_t next_bin = 0;
@@ -143,9 +143,9 @@ struct SharedLister final : PointLister {
         return;
       }
       image = startPicture(shared.gbuffer, lit, picture.settings, layerNames(picture),
-                           std::move(picture.used.picture));
+                           std::move(picture.recycled.picture));
       uneven = unevenPixels(sampled, shared, lit.color);
-      leaveOut(uneven, shared);
+      removePoints(uneven, shared);
       sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));
     });
   }
@@ -165,15 +165,15 @@ struct SharedLister final : PointLister {
     addCount(picture.stats, "refined_pixels", refined_pixels);
     addCount(picture.stats, "refined_points", refined_points);
     return timed(picture.stats, Stage::kResolve, [&] {
-      const auto addBare = [&](const LightSet& lights, Plane& color) {
+      const auto addUncovered = [&](const LightSet& lights, Plane& color) {
         const float4& background = lights.frame.background;
         addBackground({background.x, background.y, background.z}, picture.settings.samples, sums.covered,
                       color);
       };
-      addBare(picture.lighting.lights, sums.color);
+      addUncovered(picture.lighting.lights, sums.color);
       setColors(shared.gbuffer, sums, picture.settings, image);
       for (std::size_t layer = 0; layer < layer_sums.size(); ++layer) {
-        addBare(picture.layers[layer].lights, layer_sums[layer].color);
+        addUncovered(picture.layers[layer].lights, layer_sums[layer].color);
         setLightLayer(shared.gbuffer, layer_sums[layer].color, picture.settings,
                       channelOfLayer(image, layer, layer_sums.size()), image);
       }

@@ -1,13 +1,13 @@
 #include <algorithm>
 
+#include "lighting/count_picture.hpp"
 #include "raster/rasterize.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {
 namespace {
 
-/// A G-buffer of vertices.
+/// Lists the vertices of the objects to draw.
 struct VertexLister final : PointLister {
   ReadyPicture& picture;
   GBuffer vertices;

@@ -22,7 +22,7 @@ double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSet
   Image picture;
   const TraceSpan span(stageName(Stage::kMeasureExposure));
   const double milliseconds = millisecondsOf([&] { picture = renderScene(device, scene, small, of_small); });
-  // The start isn't measuring: the picture would have had to wait for it, too.
+  // Waiting for the device and kernels doesn't count: the picture itself would have to.
   const double waited =
       stageTime(of_small, Stage::kWaitForDevice) + stageTime(of_small, Stage::kWaitForKernels);
   addStage(stats, Stage::kMeasureExposure, milliseconds - waited);

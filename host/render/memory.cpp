@@ -7,6 +7,7 @@
 #include "kernels/shared.h"
 #include "lights/exact_reason.hpp"
 #include "raster/bins.hpp"
+#include "render/aov_table.hpp"
 #include "render/assemble.hpp"
 
 namespace luciole {
@@ -19,24 +20,24 @@ std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step 
 std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan) {
   const PlaneSet& planes = plan.planes;
   const FeatureSet& features = plan.pixels;
-  // Beside the groups the light of clusters, with its bounds and their sum.
+  // Clustered light adds 3 planes each of light, bounds and their sum.
   const bool clustered = features.has(Feature::kClusteredLights);
   const std::size_t gbuffer = 9 + (clustered ? 9 : 0) + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
                               (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
-  const std::size_t counted = settings.count_lights || wants(settings, Aov::kLightCount) ? 1 : 0;
+  const std::size_t counted = settings.count_lights || settings.wants(Aov::kLightCount) ? 1 : 0;
   const std::size_t light_layers = 3 * plan.layers.size();
   const std::size_t channels = channelCount(settings, planes) + light_layers;
-  // Colours and counts are counted twice: on the device and on the host. The picture of the band before is
-  // there, too, and from the second sample on the sum.
+  // Colours and counts are on the device and on the host. The picture of the band before still exists, and
+  // from the second sample on the sums.
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
   const std::size_t sums = settings.samples > 1 ? lit + covered + light_layers : 0;
   const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
-  const std::size_t assembling =
-      gbuffer + lit + counted + channels + covered + (wantsInWorld(settings) ? 7 : 0) +
-      (wants(settings, Aov::kListLength) ? 1 : 0) + (wants(settings, Aov::kShadow) ? 1 : 0);
-  const LightUse use = lightUse(plan.shade);
+  std::size_t assembling = gbuffer + lit + counted + channels + covered;
+  for (const Aov aov : settings.aovs) assembling += std::size_t(aovRow(aov).computed_floats);
+  if (settings.wants(Aov::kListLength)) ++assembling;
+  const ClusterConditions use = clusterConditions(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
         return !std::isfinite(light.range) && !(clustered && exactReason(light, use) == ExactReason::kNone);
@@ -44,15 +45,16 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels
                                 : 0;
-  // Counting lights in range needs lists of its own. Exact shadows are words for each entry. Where lights
-  // have a size two more are, and what rays find: as much as eight, if they decide a fourth of the pairs.
+  // Counting lights in range needs lists of its own. Exact shadows take a group of words for each entry.
+  // Lights with a size take ten: two more, and the shares found by rays, eight if rays decide a fourth of the
+  // pairs.
   const std::size_t words = (features.has(Feature::kExact) ? 1 : 0) + (features.has(Feature::kSoftExact) ? 10
                                                                        : features.has(Feature::kHoles)   ? 1
                                                                                                          : 0);
   const std::size_t all_lists =
       lists * (1 + counted) + lists * words * (kPairWords * sizeof(uint) / sizeof(ListEntry));
   if (!plan.shares_samples) return sizeof(float) * std::max(lighting, assembling) + all_lists;
-  // Two sums beside colours, and a pass of points with as many planes as pixels have.
+  // Sums of `covered` and `shadings` beside colours, and a pass of points with as many planes as pixels have.
   const std::size_t first =
       std::max(gbuffer + 2 * lit + 2 * counted + channels + light_layers, assembling + 2);
   const std::size_t further =

@@ -7,7 +7,7 @@
 #include "raster/shading_points.hpp"
 #include "render/plan.hpp"
 
-// How much memory pictures and lights take, computed from the sizes of their parts.
+// The memory of pictures and lights, computed from the sizes of their parts.
 namespace luciole {
 
 /// A picture is rendered in bands of whole rows, whose pixels take at most so many bytes. That is enough that
@@ -28,25 +28,24 @@ inline constexpr std::size_t kBytesPerLight =
 /// counting found.
 inline constexpr std::size_t kListBytesPerPixel = 1 + kFoundPerTile * sizeof(ListEntry) / kTilePixels;
 
-/// Of the points beside each pixel's first that are shaded for its samples (SharedSamples), so many are lit
-/// in a pass: one for every four pixels.
+/// A pass over SharedSamples::further lights at most one point for so many pixels of the band.
 inline constexpr std::size_t kPixelsAPoint = 4;
 
-/// A pixel's share of those points' list, while it is made, where there is one point more a pixel; and its
-/// own: its first point's object and number of samples, whether it is uneven, and where its labels are.
+/// A pixel's bytes beside the G-buffer's where samples share points: one ShadingPoint in two lists while they
+/// are joined, the object (4) and number of samples (2) of its first point, whether it is uneven (1), and the
+/// place of its labels (4).
 inline constexpr std::size_t kPointBytesPerPixel = 2 * sizeof(ShadingPoint) + 4 + 2 + 1 + 4;
 
 /// Upper bound of the bytes that a pixel of a band takes, on the host and on a device that shares its memory:
-/// the G-buffer's groups, colours, what --stats and the layers need, and its share of the list entries of
-/// lights that reach everywhere. Not in it: each tile's entries, of 8 bytes, for other lights that reach it,
-/// and of points that are shaded for a pixel's samples those beyond the second.
-/// plan: what comes before this figure.
+/// the G-buffer's groups, colours, counts, layers, and its share of the list entries of lights that reach
+/// everywhere. Not included are the entries of other lights, 8 bytes each, and points of a pixel beyond the
+/// second. plan: all members before pixel_bytes must be set.
 std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan);
 
-/// Whether samples that see the same surface are shaded once.
+/// Whether samples that see the same surface share a shading point.
 bool sharesSamples(const RenderSettings& settings);
 
-/// How many points are lit in a pass, at most, of a band of so many pixels.
+/// The most points in a pass over a band of so many pixels.
 std::size_t pointsAPass(std::size_t pixels);
 
 /// The height of the bands of a picture of `size` pixels, in rows: a multiple of kBinSize. There are as few

@@ -13,12 +13,12 @@ namespace luciole {
 struct PixelSums {
   Plane color;        ///< r g b
   Plane covered;      ///< samples that see a surface
-  Plane shadings;     ///< points that were shaded for them
+  Plane shadings;     ///< points that were shaded
   Plane light_error;  ///< bounds of color's errors, r g b
 };
 
-/// Begins with the first points of the pixels. layout: their G-buffer, of which the planes aren't used.
-/// samples: as in SharedSamples. lit: their colours, r g b and perhaps more. light_error: r g b, or empty.
+/// The sums over the first points of the pixels. layout: their G-buffer, whose planes may be empty. samples:
+/// as in SharedSamples. lit: their colours, planes r g b and perhaps more. light_error: r g b, or empty.
 PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit,
                       Plane light_error);
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/assemble.hpp"
 #include "render/memory.hpp"
-#include "render/shadow_ways.hpp"
+#include "shade/shadow_ways.hpp"
 
 namespace luciole {
 namespace {
 
-/// Features of the pass that lights vertices for Gouraud shading: without fog, which is applied to pixels.
+/// Features of the pass that lights vertices for Gouraud shading. Fog is left to pixels.
 FeatureSet vertexFeatures(const FeatureSet& features) {
   FeatureSet kept = features.without(featuresFor(kForFog, features));
   kept.set(Feature::kOutputShadow, false);
@@ -20,14 +19,14 @@ FeatureSet vertexFeatures(const FeatureSet& features) {
 }
 
 /// Features of the pass that only applies fog, to lit colours in the emission planes.
-FeatureSet fogOnly(const FeatureSet& features) {
+FeatureSet fogFeatures(const FeatureSet& features) {
   FeatureSet kept = featuresFor(kForFog, features);
   kept.set(Feature::kEmission);
   return kept;
 }
 
-/// The traits of the surfaces as this shading shows them.
-SurfaceTraits shownTraits(const Scene& scene, Shading shading) {
+/// The traits of a scene's surfaces that this shading uses.
+SurfaceTraits surfaceTraits(const Scene& scene, Shading shading) {
   SurfaceTraits surfaces = materialTraits(scene);
   surfaces.smooth &= shading != Shading::kFlat;
   surfaces.normal_maps &= shading == Shading::kPhong;
@@ -43,31 +42,31 @@ ModelChoices modelsOf(const GBuffer& gbuffer) {
   return choices;
 }
 
-bool anyShines(const GBuffer& gbuffer) {
+bool hasSpecular(const GBuffer& gbuffer) {
   const auto colors = std::ptrdiff_t(gbuffer.specular.empty() ? 0 : 3 * gbuffer.pixels());
   return std::any_of(gbuffer.specular.begin(), gbuffer.specular.begin() + colors,
                      [](float color) { return color > 0; });
 }
 
-SurfaceTraits shownTraits(const GBuffer& gbuffer) {
-  return {anyShines(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
+SurfaceTraits surfaceTraits(const GBuffer& gbuffer) {
+  return {hasSpecular(gbuffer), !gbuffer.emission.empty(), !gbuffer.lift.empty(),
           !gbuffer.unbent_normal.empty(), modelsOf(gbuffer)};
 }
 
-/// What doesn't depend on where the G-buffer comes from. view: of the whole picture. points_a_pixel: see
-/// shadowWays.
+/// The part of a plan that is the same for a scene's picture and for a G-buffer. view: of the whole picture.
+/// points_a_pixel: see shadowWays.
 PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const SurfaceTraits& surfaces,
                       const Camera& camera, const View& view, double points_a_pixel) {
   PicturePlan plan;
   plan.shade = settings.shade;
-  plan.shade.shadow_layer = wants(settings, Aov::kShadow);
+  plan.shade.shadow_layer = settings.wants(Aov::kShadow);
   chooseModel(surfaces.models, plan.shade);
   plan.layers = lightLayers(scene, settings);
   if (!plan.layers.empty()) plan.shade.light_error = 0;
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
     plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits);
-  plan.features =
-      neededFeatures(scene, camera, surfaces, plan.shade, standsForLights(scene, view, surfaces, plan.shade));
+  plan.features = neededFeatures(scene, camera, surfaces, plan.shade,
+                                 usesLightClusters(scene, view, surfaces, plan.shade));
   plan.pixels = plan.features;
   return plan;
 }
@@ -83,7 +82,7 @@ void addLayersPrograms(PicturePlan& plan) {
 }  // namespace
 
 PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
-  const SurfaceTraits surfaces = shownTraits(scene, settings.shading);
+  const SurfaceTraits surfaces = surfaceTraits(scene, settings.shading);
   const bool shares_samples = sharesSamples(settings);
   PicturePlan plan =
       planLight(scene, settings, surfaces, settings.camera, cameraView(settings.camera, settings.size),
@@ -91,14 +90,14 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   plan.view = cameraView(settings.camera, settings.size, settings.crop);
   plan.shares_samples = shares_samples;
   if (settings.shading == Shading::kGouraud) {
-    plan.pixels = fogOnly(plan.features);
+    plan.pixels = fogFeatures(plan.features);
     plan.vertices = vertexFeatures(plan.features);
   }
   plan.planes = neededPlanes(plan.pixels);
   // The light of clusters has planes of its own.
   if (plan.pixels.has(Feature::kClusteredLights)) plan.planes.emission = surfaces.emission;
   if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
-  if (wants(settings, Aov::kMaterial))
+  if (settings.wants(Aov::kMaterial))
     plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;
   addProgram(plan.pixels, plan.programs);
   if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);
@@ -111,7 +110,7 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
 
 PicturePlan planShading(const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings) {
   const View view = cameraView(gbuffer.camera, gbuffer.picture_size, {}, gbuffer.display.pixel_aspect);
-  PicturePlan plan = planLight(scene, settings, shownTraits(gbuffer), gbuffer.camera, view,
+  PicturePlan plan = planLight(scene, settings, surfaceTraits(gbuffer), gbuffer.camera, view,
                                shadedPoints(scene, gbuffer.picture_size, 1, false));
   plan.view = view;
   addProgram(plan.pixels, plan.programs);

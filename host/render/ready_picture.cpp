@@ -1,6 +1,6 @@
 #include "render/ready_picture.hpp"
 
-#include "render/count_picture.hpp"
+#include "lighting/count_picture.hpp"
 
 namespace luciole {
 

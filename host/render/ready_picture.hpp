@@ -9,29 +9,29 @@
 
 namespace luciole {
 
-/// Memory of a band that is done with, for the next one: the system takes as long to clear fresh memory as
+/// Memory of the last band, to be reused by the next one: the system takes as long to clear fresh memory as
 /// its pixels take to be shaded.
-struct UsedMemory {
+struct RecycledMemory {
   GBuffer gbuffer;
   Plane color;
   Image picture;
 };
 
-/// A picture that is ready to be made.
+/// A planned picture, its lights, and the state that its bands share.
 struct ReadyPicture {
   OpenedDevice& device;
   const Scene& scene;
   const RenderSettings& settings;
   const PicturePlan& plan;
   Stats& stats;
-  std::vector<std::uint32_t> objects = {};  ///< that are drawn
+  std::vector<std::uint32_t> objects = {};  ///< indices of those to draw
   Lighting lighting = {};
   std::vector<LitLayer> layers = {};
   std::vector<glm::vec3> vertex_colors = {};  ///< with Shading::kGouraud only
-  UsedMemory used = {};
+  RecycledMemory recycled = {};
 };
 
-/// Adds to a picture's statistics what buffers cost while it exists.
+/// Adds the device's buffer traffic during its lifetime to a picture's statistics.
 struct TrafficMeter {
   OpenedDevice& device;
   Stats& stats;
@@ -43,10 +43,10 @@ struct TrafficMeter {
 /// Fills in the lights of the picture and of its layers. See prepareLighting.
 void prepareLights(ReadyPicture& picture, const Camera& camera, KeptShadows* kept);
 
-/// Sets what the statistics say of a picture of this size beside what it cost.
+/// Sets Stats::width, height and samples, and what describeScene() sets.
 void describePicture(ReadyPicture& picture, glm::ivec2 size);
 
-/// Adds to the statistics what is known of the picture's lights when all is lit.
+/// Adds the counts of the picture's lights and shadows to the statistics, after the last pass.
 void countLighting(ReadyPicture& picture);
 
 }  // namespace luciole

@@ -8,22 +8,22 @@
 #include "base/machine_memory.hpp"
 #include "base/trace.hpp"
 #include "gbuffer/validate_gbuffer.hpp"
+#include "lighting/compile_kernels.hpp"
+#include "lighting/count_picture.hpp"
 #include "lights/fog_cull.hpp"
 #include "luciole/error.hpp"
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
 #include "render/bands.hpp"
-#include "render/compile_kernels.hpp"
-#include "render/count_picture.hpp"
 #include "render/light_points.hpp"
 #include "render/memory.hpp"
 #include "render/validate.hpp"
+#include "scene/count_triangles.hpp"
 
 namespace luciole {
 
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats) {
-  stats.triangles = 0;
-  for (const Object& object : scene.objects) stats.triangles += scene.meshes[object.mesh].triangles.size();
+  stats.triangles = countTriangles(scene);
   stats.lights = scene.lights.size();
   for (const Warning& warning : scene.warnings) stats.warnings.push_back(warning.text);
   stats.features = featureNames(features);
@@ -98,7 +98,7 @@ GBuffer rasterizeScene(OpenedDevice* device, const Scene& scene, const RenderSet
   });
   gbuffer.camera = settings.camera;
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
-  countTriangles(triangles, stats);
+  addRasterCounts(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
   return gbuffer;
 }
@@ -120,7 +120,7 @@ Image shadeGBuffer(OpenedDevice& device, const Scene& scene, const GBuffer& gbuf
   requireMemory(double(gbuffer.width) * gbuffer.height * 3 * double(layers) * sizeof(float),
                 fmt::format("{} layers of {}x{} pixels", layers, gbuffer.width, gbuffer.height));
   ReadyPicture picture{device, scene, one_sample, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan);
+  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade);
   prepareLights(picture, gbuffer.camera, nullptr);
   awaitKernels(compiling, device, settings, stats);
   describePicture(picture, {gbuffer.width, gbuffer.height});

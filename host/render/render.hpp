@@ -11,13 +11,13 @@
 
 namespace luciole {
 
-/// Sets what the statistics say of the scene: triangles, lights, warnings, and the names of the features.
+/// Sets Stats::triangles, lights, warnings and features.
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
-/// Makes a scene's picture (channels R G B, linear, A if asked for, then the layers) and hands it to `take`
-/// band by band: rasterizes, draws shadow maps, culls and shades. Adds to the statistics. kept: for pictures
-/// of one scene at several poses, one after another; they are the same bits as without it, sooner. Throws as
-/// validate() does, InputError for a crop outside the picture, MachineError, and what `take` throws.
+/// Renders a scene (channels R G B, linear, A if asked for, then the layers) and hands the picture to `take`
+/// band by band. Adds to the statistics. kept: for pictures of one scene at several poses, one after another;
+/// it saves time and changes no bit. Throws as validate() does, InputError for a crop outside the picture,
+/// MachineError, and what `take` throws.
 void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
                  const RowSink& take, Stats& stats, KeptShadows* kept = nullptr);
 

@@ -20,28 +20,28 @@
 namespace luciole {
 namespace {
 
-/// A device's first bands, before anybody knows how fast it is, are together this part of the picture.
+/// The first bands of all devices, whose speeds aren't known yet, are together one part of so many.
 constexpr int kFirstPart = 8;
-/// Of the rows that are left a device takes half of its share, so that those that turn out slower have less
-/// to do in the end.
+/// A device takes half of its share of the rows that are left, so that speeds that change are evened out
+/// later.
 constexpr double kShareTaken = 0.5;
-/// How many of its tallest bands a device may be ahead of the rows that were taken: what waits is memory.
+/// A device may be so many bands ahead of the rows given to the caller: waiting bands take memory.
 constexpr int kMostAhead = 4;
 
-/// The rows of a picture, as devices take them and give them back.
+/// The state of a picture's rows, shared by the devices' threads.
 struct SharedRows {
-  int bottom;  ///< where the picture ends
-  int next;    ///< the first row that no device has taken yet
-  int taken;   ///< the rows before it were handed on
-  int working;
+  int bottom;                       ///< the picture's end
+  int next;                         ///< the first row that no device has taken
+  int taken;                        ///< the first row that the caller's sink hasn't got
+  int working;                      ///< devices at work
   std::vector<Band> returned = {};  ///< by devices that failed
   std::map<int, Image> done = {};   ///< by first row
-  std::exception_ptr failure = {};  ///< that ends all work
+  std::exception_ptr failure = {};  ///< not null: all threads stop
   std::mutex mutex = {};
   std::condition_variable changed = {};
 };
 
-/// How many of the rows that are left a device should take. rows.mutex is held.
+/// The height of the next band of a device, by its speed. rows.mutex must be held.
 double wantedRows(const std::list<Sharer>& sharers, const Sharer& mine, const SharedRows& rows, int height) {
   double rates = 0;
   int count = 0;
@@ -56,19 +56,19 @@ double wantedRows(const std::list<Sharer>& sharers, const Sharer& mine, const Sh
   return kShareTaken * (rows.bottom - rows.next) * (mine.rows / mine.milliseconds) / rates;
 }
 
-/// What one device does, in a thread of its own.
+/// Renders bands on one device, in a thread of its own.
 struct Worker {
   std::list<Sharer>& sharers;
   Sharer& mine;
   SharedRows& rows;
   int height;                     ///< of the picture
-  std::optional<Band> band = {};  ///< what is left of the one it makes
+  std::optional<Band> band = {};  ///< the rest of the current band
   double begun = 0;
   Stats stats = {};
   std::uint64_t rows_made = 0;
   double milliseconds = 0;
 
-  /// NextBand: waits where there may still be something to do.
+  /// A NextBand. Waits while other devices may still return bands.
   std::optional<Band> nextBand(const BandLimits& limits) {
     std::unique_lock lock(rows.mutex);
     const auto isAhead = [&] { return rows.next - rows.taken > kMostAhead * limits.tallest; };
@@ -80,7 +80,7 @@ struct Worker {
     if (!rows.returned.empty()) {
       band = rows.returned.back();
       rows.returned.pop_back();
-      // Its device may have had more memory.
+      // It may be taller than this device's memory allows.
       const int bottom = band->first + band->height;
       const int end = bandEnd(band->first, {limits.tallest, limits.origin, bottom});
       if (end < bottom) rows.returned.push_back({end, bottom - end});
@@ -95,7 +95,7 @@ struct Worker {
     return band;
   }
 
-  /// BandSink.
+  /// A BandSink.
   void takeRows(const Band& made, const Image& image) {
     const double now = millisecondsSinceStart();
     const std::lock_guard lock(rows.mutex);
@@ -128,14 +128,14 @@ struct Worker {
     --rows.working;
     mine.error = error;
     if (band && band->height > 0) rows.returned.push_back(*band);
-    // Without a message the input is wrong, which no other device mends.
+    // An empty message: the input is wrong, for every device.
     if (failure && (error.empty() || rows.working == 0)) rows.failure = failure;
     rows.changed.notify_all();
   }
 };
 
-/// Hands on what is done, from the top down, until all is.
-void handOn(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
+/// Gives finished rows to `take`, from the top down, until all are taken.
+void passFinishedRows(SharedRows& rows, int top, const RenderSettings& settings, const RowSink& take) {
   while (true) {
     Image image;
     {
@@ -200,7 +200,7 @@ void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSe
   Joiner joiner{rows};
   for (Worker& worker : workers)
     joiner.threads.emplace_back([&] { worker.run(scene, without_report, plan, keeps); });
-  handOn(rows, top, settings, take);
+  passFinishedRows(rows, top, settings, take);
   joiner.join();
   for (const Worker& worker : workers) {
     addPart(worker.stats, stats);

@@ -8,10 +8,10 @@
 
 #include "base/picture_size.hpp"
 #include "image/exposure.hpp"
+#include "lighting/light_layers.hpp"
 #include "luciole/error.hpp"
 #include "luciole/validate_scene.hpp"
 #include "render/aov_table.hpp"
-#include "render/light_layers.hpp"
 #include "scene/models.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
@@ -51,7 +51,7 @@ void validateShading(const ShadeSettings& shade, std::size_t lights) {
   checkRange("settings.shade.soft_samples", shade.soft_samples, 1, kMostSoftSamples);
   checkRange("settings.shade.pcf_width", shade.pcf_width, 2, 6);
   checkRange("settings.shade.shadow_limits.size", shade.shadow_limits.size, kSmallestFace, kLargestFace);
-  // What kernels/math.clh lists.
+  // The polynomials of kernels/math.clh.
   checkRange("settings.shade.log2_degree", shade.log2_degree, 3, 9);
   checkRange("settings.shade.exp2_degree", shade.exp2_degree, 2, 7);
   checkRange("settings.shade.light_error", shade.light_error, 0.0f, 1.0f);
@@ -60,7 +60,7 @@ void validateShading(const ShadeSettings& shade, std::size_t lights) {
 }  // namespace
 
 void validate(const Scene& scene, const RenderSettings& settings, const KeptShadows* kept) {
-  // What an earlier picture kept is of this scene, so that was valid, and stays so at every pose.
+  // An earlier picture of this scene has checked it, and it stays valid at every pose.
   if (!kept || kept->maps_objects.empty()) validateScene(scene);
   checkSize("settings.size", settings.size);
   if (const std::string fault = cameraFault(settings.camera); !fault.empty())

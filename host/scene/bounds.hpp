@@ -12,7 +12,7 @@ struct Bounds {
   glm::dvec3 high{-1e300};
 };
 
-/// The box around one object's vertices, and around those of all objects; empty without vertices.
+/// The bounding box of one object's vertices, and of those of all objects; empty without vertices.
 /// O(vertices).
 Bounds objectBounds(const Scene& scene, const Object& object);
 Bounds sceneBounds(const Scene& scene);

@@ -1,4 +1,4 @@
-#include "luciole/deformation.hpp"
+#include "scene/deform.hpp"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "luciole/scene.hpp"
 #include "scene/normals.hpp"
 
 namespace luciole {
@@ -15,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMatrix = 16;  ///< numbers a joint has in a pose
 
-/// What the targets add to each vertex of the rest; empty where none has a weight.
+/// The offsets of all targets for each vertex of the rest; empty if no target has a weight.
 struct Morph {
   std::vector<glm::dvec3> positions, normals, tangents;
 };
@@ -47,7 +46,7 @@ bool isFinite(const glm::vec3& point) {
   return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
 }
 
-/// Gives the vertices whose normal is 0 that of the triangles around them.
+/// Sets normals that are 0 to those of the triangles around the vertex.
 void fillNormals(Mesh& mesh) {
   std::vector<glm::vec3> from_faces;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {

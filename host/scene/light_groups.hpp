@@ -9,19 +9,19 @@
 
 namespace luciole {
 
-/// What layers call the light that no light gives: ambient light, emission, the fog's own colour and the
-/// background. No group may have that name.
+/// The name of the layer of light that no light emits: ambient light, emission, the fog's own colour and the
+/// background. No group may have this name.
 inline constexpr const char* kRestOfLight = "rest";
 
-/// Why no group of lights can have this name; "" where one can. It becomes a part of a layer's name, which
-/// dots divide, and commas, = and : divide what --light-mixer says.
+/// The reason why a group of lights can't have this name, or "". Names are parts of layers' names, which dots
+/// divide, and of the option --light-mixer, which commas, = and : divide.
 std::string faultOfGroupName(std::string_view name);
 
 /// Groups' numbers, in Scene::light_groups, by their names.
 using LightGroupNumbers = std::unordered_map<std::string, std::uint32_t>;
 LightGroupNumbers lightGroupNumbers(const Scene& scene);
 
-/// The number of the group of this name, which the scene gets where it has none of that name.
+/// The number of the group of this name. Adds it to the scene if it is new.
 std::uint32_t lightGroupNumber(const std::string& name, LightGroupNumbers& numbers, Scene& scene);
 
 }  // namespace luciole

@@ -10,7 +10,7 @@ namespace luciole {
 /// that several materials name is one texture of each kind. O(textures).
 int addTexture(Scene& scene, const std::string& path, TextureKind kind = TextureKind::kColor);
 
-/// Whether no texture is left without levels.
+/// Whether all textures have levels.
 bool allDecoded(const Scene& scene);
 
 /// Decodes, in parallel, every texture that addTexture() left without levels. Throws as readTexture does.

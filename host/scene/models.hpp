@@ -27,15 +27,15 @@ static_assert(hasRowsOfKernels());
 inline constexpr std::array kModelNames{EACH_MODEL(MODEL_NAME)};
 #undef MODEL_NAME
 
-/// The most that a model makes of a light of 1 that nothing hides, whatever the directions, before rounding.
+/// Upper bounds of a model's reflection of an unshadowed light of 1, for any directions, before rounding.
 struct ModelBounds {
   double diffuse;   ///< a factor of the diffuse colour
   double specular;  ///< a channel of the highlight
 };
 
-/// The most of Cook and Torrance's highlight: α²/facets² · N·L/smith(N·L) / smith(N·V) · F with facets ≥ α²,
-/// smith(x) ≥ 2x and smith(x) ≥ α (see kernels/shade/cook_torrance.clh), so 1/(2α³) times the larger of F0
-/// and F90.
+/// Upper bound of Cook and Torrance's highlight. It is α²/facets² · N·L/smith(N·L) / smith(N·V) · F with
+/// facets ≥ α², smith(x) ≥ 2x and smith(x) ≥ α (see kernels/shade/cook_torrance.clh), so at most 1/(2α³)
+/// times the larger of F0 and F90.
 inline double mostCookTorrance(double f0, double n) {
   const double alpha2 = std::max(1 / (0.5 * n + 1), 0x1p-40);
   return std::max(f0, std::min(50 * f0, 1.0)) / (2 * alpha2 * std::sqrt(alpha2));

@@ -1,4 +1,4 @@
-#include "luciole/pose.hpp"
+#include "scene/posing.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
+#include "scene/deform.hpp"
 #include "scene/place_limits.hpp"
 
 namespace luciole {
@@ -18,8 +19,8 @@ namespace {
 
 /// Metres; points that are closer give no direction.
 constexpr double kLeastDistance = 1e-18;
-/// The least sine of the angle between two directions. Closer to parallel or opposite, rounding would decide:
-/// 10⁻⁸ leaves half of a double's digits.
+/// The least sine of the angle between two directions that aren't taken for parallel. 10⁻⁸ leaves half of a
+/// double's digits.
 constexpr double kLeastSine = 1e-8;
 
 [[noreturn]] void fail(const Scene& scene, double frame, const std::string& thing, const std::string& what) {
@@ -84,8 +85,8 @@ void poseMesh(Scene& scene, const std::vector<glm::dmat4>& worlds, double frame,
   deformation.pose = std::move(pose);
 }
 
-/// Lets a light give nothing while a scale of 0 hides it, and its own colours again afterwards.
-void showLight(bool shown, Light& light, Attachment& attachment) {
+/// Sets a light's colours to 0 while a scale of 0 hides it, and restores them afterwards.
+void setLightShown(bool shown, Light& light, Attachment& attachment) {
   std::optional<glm::mat3>& kept = attachment.hidden_colors;
   if (shown == !kept.has_value()) return;
   const glm::mat3 colors = kept.value_or(glm::mat3(0.0f));
@@ -129,7 +130,7 @@ void poseScene(Scene& scene, double frame) {
   }
   for (Attachment& attachment : animation.attached_lights) {
     Light& light = scene.lights[attachment.index];
-    showLight(attachLight(placeOf(attachment), light).empty(), light, attachment);
+    setLightShown(attachLight(placeOf(attachment), light).empty(), light, attachment);
   }
   for (const CameraMotion& motion : animation.cameras) {
     const std::string fault = poseCamera(motion, frame, scene.cameras[motion.camera]);

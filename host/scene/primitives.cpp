@@ -17,9 +17,9 @@ std::uint32_t addVertex(Mesh& mesh, const glm::dvec3& position, const glm::dvec3
   return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
-/// The point at `step` of `steps` around the unit circle, from (0, −1) over (−1, 0). On a shape around the y
-/// axis, with (x, z) on this circle, a texture's middle then faces +z and its u grows to the right. Step 0
-/// and step `steps` are the same point to the bit; quarters are exact.
+/// The point at `step` of `steps` around the unit circle, from (0, −1) towards (−1, 0). On a shape around the
+/// y axis, with (x, z) on this circle, a texture's middle faces +z and its u grows to the right. Step 0 and
+/// step `steps` have the same bits; quarters are exact.
 glm::dvec2 circle(int step, int steps) {
   const int s = step % steps;
   if (s == 0) return {0, -1};

@@ -5,8 +5,8 @@
 
 #include "luciole/scene.hpp"
 
-// For code that visits a scene field by field. Each function below names all members of one plain struct by a
-// structured binding, so a struct that gets a member doesn't compile here until it is named too.
+// Visits a scene field by field. Each function names all members of a struct in a structured binding, so
+// adding a member to the struct is a compile error here until it is named.
 namespace luciole {
 
 template <class T, class Struct>

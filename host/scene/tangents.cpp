@@ -35,14 +35,14 @@ Facet facetOf(const Mesh& mesh, const glm::uvec3& corners) {
   return {along / length, area < 0};
 }
 
-/// A vector without its part along a unit normal, unit; zero where nothing is left.
+/// A vector projected into the plane of a unit normal, at unit length; zero if nothing remains.
 glm::dvec3 flattened(const glm::dvec3& vector, const glm::dvec3& normal) {
   const glm::dvec3 flat = vector - normal * glm::dot(normal, vector);
   const double length = glm::length(flat);
   return length > 1e-12 * glm::length(vector) && std::isfinite(length) ? flat / length : glm::dvec3(0.0);
 }
 
-/// The number of the first vertex that is the same for tangents: in place, normal and texture coordinates.
+/// For each vertex the first one with the same position, normal and texture coordinates.
 std::vector<std::uint32_t> weld(const Mesh& mesh) {
   using Key = std::array<float, 8>;
   const std::vector<glm::vec2>& uvs = uvsOf(mesh);
@@ -135,7 +135,7 @@ std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>&
   const std::vector<std::uint32_t> welded = weld(mesh);
   Groups groups = groupCorners(mesh, facets, welded);
   std::vector<glm::dvec3> sums(3 * facets.size());
-  std::vector<std::uint32_t> some_group(mesh.positions.size(), kNone);  // of a welded vertex
+  std::vector<std::uint32_t> group_of_vertex(mesh.positions.size(), kNone);  // any one, of a welded vertex
   for (std::uint32_t corner = 0; corner < sums.size(); ++corner) {
     const Facet& facet = facets[corner / 3];
     if (facet.tangent == glm::dvec3(0.0)) continue;
@@ -143,15 +143,15 @@ std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>&
     const glm::dvec3 normal(mesh.normals[corners[int(corner % 3)]]);
     const std::uint32_t group = groups.find(corner);
     sums[group] += flattened(facet.tangent, normal) * angleAt(mesh, corners, int(corner % 3), normal);
-    std::uint32_t& some = some_group[welded[corners[int(corner % 3)]]];
-    if (some == kNone) some = group;
+    std::uint32_t& known = group_of_vertex[welded[corners[int(corner % 3)]]];
+    if (known == kNone) known = group;
   }
   std::vector<glm::vec4> tangents(sums.size(), glm::vec4(0));
   for (std::uint32_t corner = 0; corner < sums.size(); ++corner) {
     if (!wanted[corner / 3]) continue;
     const std::uint32_t vertex = mesh.triangles[corner / 3][int(corner % 3)];
     const bool own = facets[corner / 3].tangent != glm::dvec3(0.0);
-    const std::uint32_t group = own ? groups.find(corner) : some_group[welded[vertex]];
+    const std::uint32_t group = own ? groups.find(corner) : group_of_vertex[welded[vertex]];
     if (group == kNone) continue;
     const glm::dvec3 tangent = flattened(sums[group], glm::dvec3(mesh.normals[vertex]));
     if (tangent == glm::dvec3(0.0)) continue;

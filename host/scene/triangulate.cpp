@@ -64,15 +64,16 @@ class ReflexGrid {
     if (*link == corner) *link = next_[corner];
   }
 
-  /// Whether `is` holds for a corner in a cell that the triangle touches, with the margin around it.
-  template <class Is>
-  bool anyNear(const std::array<glm::dvec2, 3>& triangle, const Is& is) const {
-    if (side_ == 1) return anyIn(0, is);
+  /// Whether test(corner) is true for any corner in the cells that the triangle and the margin around it
+  /// touch.
+  template <class Test>
+  bool anyNear(const std::array<glm::dvec2, 3>& triangle, const Test& test) const {
+    if (side_ == 1) return anyIn(0, test);
     const auto [low, high] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
     for (int y = row(low - margin_); y <= row(high + margin_); ++y) {
       const auto [left, right] = extentIn(y, triangle);
       for (int x = column(left); x <= column(right); ++x)
-        if (anyIn(cell(x, y), is)) return true;
+        if (anyIn(cell(x, y), test)) return true;
     }
     return false;
   }
@@ -80,10 +81,10 @@ class ReflexGrid {
  private:
   static constexpr double kInCell = 4;  ///< corners, on average
 
-  template <class Is>
-  bool anyIn(std::size_t cell, const Is& is) const {
+  template <class Test>
+  bool anyIn(std::size_t cell, const Test& test) const {
     for (int corner = first_[cell]; corner >= 0; corner = next_[corner])
-      if (is(corner)) return true;
+      if (test(corner)) return true;
     return false;
   }
   int place(double at, double low, double high) const {
@@ -97,7 +98,7 @@ class ReflexGrid {
     return side_ == 1 ? 0 : cell(column(flat_[corner].x), row(flat_[corner].y));
   }
 
-  /// From where to where the triangle reaches in a row of cells, and a little more, for rounding.
+  /// The interval of x that the triangle covers in a row of cells, enlarged for rounding.
   std::pair<double, double> extentIn(int y, const std::array<glm::dvec2, 3>& triangle) const {
     const double height = (high_.y - low_.y) / side_, slack = margin_ + 1e-9 * (high_.y - low_.y);
     const double bottom = low_.y + y * height - slack, top = low_.y + (y + 1) * height + slack;
@@ -125,10 +126,10 @@ class ReflexGrid {
   std::vector<int> next_;   ///< of each corner the next in its cell, or -1
 };
 
-/// A polygon that ears are cut off from, and what is left of it: a ring of corners.
+/// The ring of corners of a polygon from which ears are cut off.
 class Ring {
  public:
-  /// `rounding`: how far corners may lie beside where they are meant.
+  /// `rounding`: the largest error of a corner's position.
   Ring(const std::vector<glm::dvec2>& flat, const std::vector<int>& reflex, double rounding)
       : flat_(flat),
         rounding_(rounding),
@@ -149,11 +150,11 @@ class Ring {
   /// crosses itself, the corner after the first.
   std::array<int, 3> cut() {
     int tip = firstEar();
-    if (tip < 0 && recheck(early_rechecks_left_)) tip = firstEar();
+    if (tip < 0 && updateAllEars(early_rechecks_left_)) tip = firstEar();
     if (tip < 0) tip = takeInLine();
     if (tip < 0) {
       margin_ = 0;
-      if (recheck(rechecks_left_)) tip = firstEar();
+      if (updateAllEars(rechecks_left_)) tip = firstEar();
     }
     if (tip < 0) tip = corners_[first_].next;
     const int before = corners_[tip].previous, after = corners_[tip].next;
@@ -163,11 +164,11 @@ class Ring {
     if (corners_[tip].is_reflex) grid_.remove(tip);
     corners_[tip] = {-1, -1};
     --size_;
-    for (const int corner : {before, after}) look(corner);
+    for (const int corner : {before, after}) updateEar(corner);
     return {before, tip, after};
   }
 
-  /// The triangle that is left in the end.
+  /// The remaining triangle.
   std::array<int, 3> last() const { return {first_, corners_[first_].next, corners_[first_].previous}; }
   std::size_t size() const { return size_; }
 
@@ -201,8 +202,8 @@ class Ring {
     return std::abs(turn(a, b, c)) <= rounding_ * (glm::distance(a, b) + glm::distance(b, c));
   }
 
-  /// Looks at a corner whose neighbour was cut off.
-  void look(int number) {
+  /// Updates the state of a corner whose neighbour was cut off.
+  void updateEar(int number) {
     Corner& corner = corners_[number];
     const std::array<glm::dvec2, 3> triangle = triangleOf(number);
     const bool turns_left = turn(triangle[0], triangle[1], triangle[2]) > 0;
@@ -219,12 +220,12 @@ class Ring {
 
   void lookAtAll() {
     int corner = first_;
-    for (std::size_t i = 0; i < size_; ++i, corner = corners_[corner].next) look(corner);
+    for (std::size_t i = 0; i < size_; ++i, corner = corners_[corner].next) updateEar(corner);
   }
 
-  /// Looks at all corners if so many may still be looked at: some have become ears without a neighbour being
+  /// Updates all corners, unless the budget `left` is exhausted: some become ears without a neighbour being
   /// cut off.
-  bool recheck(double& left) {
+  bool updateAllEars(double& left) {
     if (left < double(size_)) return false;
     left -= double(size_);
     lookAtAll();

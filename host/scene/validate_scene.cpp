@@ -15,9 +15,9 @@
 #include "base/text_file.hpp"
 #include "base/trace.hpp"
 #include "luciole/error.hpp"
-#include "luciole/pose.hpp"
 #include "scene/models.hpp"
 #include "scene/place_limits.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

@@ -11,15 +11,15 @@
 namespace luciole {
 namespace {
 
-/// GROUP_RADIUS of kernels/clusters/clustered_light.cl: how far a group reaches from its first pixel, which
-/// mostly is a corner of it, as a share of the distance.
+/// GROUP_RADIUS of kernels/clusters/clustered_light.cl: the largest distance of a group's pixels from its
+/// first one, mostly a corner, as a share of the distance from the eye.
 constexpr double kGroupWidth = 0.03;
-/// The angle of a pixel of 1280 × 720, where a picture is 60° high.
+/// The angle of a pixel, in radians, of a picture of 720 rows and 60°.
 constexpr double kUsualPixel = 0.0016;
-/// A light is put into the tree while it is summed at so many pixels.
+/// Inserting a light into the tree takes as long as summing it at so many pixels.
 constexpr double kTreeWork = 3000;
 
-/// How wide a pixel is as a share of its distance, in the picture's middle.
+/// The width of a pixel in the picture's middle as a share of its distance.
 double pixelAngle(const View& view) {
   return (isPerspective(view) ? 2 / view.projection[1][1] : 1) / view.size.y;
 }
@@ -88,7 +88,7 @@ double clusteredWork(const ClusterableLights& lights, const View& view) {
   return of_walks * pixel / kUsualPixel + kTreeWork * double(lights.count) / pixels;
 }
 
-bool clustersPay(const ClusterableLights& lights, const View& view) {
+bool clustersAreFaster(const ClusterableLights& lights, const View& view) {
   return clusteredWork(lights, view) < double(lights.count);
 }
 

@@ -60,19 +60,19 @@ ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& 
   return settings.shadow_ways.empty() ? ShadowWay::kBeams : settings.shadow_ways[light];
 }
 
-LightUse lightUse(const ShadeSettings& settings) {
+ClusterConditions clusterConditions(const ShadeSettings& settings) {
   return {settings.material_models ? std::nullopt : std::optional(settings.model),
           settings.shadows != ShadowMethod::kOff};
 }
 
-bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
-                     const ShadeSettings& settings) {
+bool usesLightClusters(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                       const ShadeSettings& settings) {
   // Clusters know nothing of what stands behind a surface that a bent normal faces.
   if (!scene.lighting || !(settings.light_error > 0) || surfaces.normal_maps) return false;
-  const auto counts = countReasons(scene.lights, lightUse(settings));
+  const auto counts = countReasons(scene.lights, clusterConditions(settings));
   const std::size_t lights = counts[std::size_t(ExactReason::kNone)];
   if (settings.always_clusters) return lights > 0;
-  return clustersPay({lights, settings.light_error, surfaces.specular}, view);
+  return clustersAreFaster({lights, settings.light_error, surfaces.specular}, view);
 }
 
 namespace {
@@ -140,7 +140,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   std::size_t summed = 0;  // lights that are summed by themselves
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const bool in_clusters = clustered && exactReason(light, lightUse(settings)) == ExactReason::kNone;
+    const bool in_clusters =
+        clustered && exactReason(light, clusterConditions(settings)) == ExactReason::kNone;
     (in_clusters ? clusters_specular : any_specular) |= light.specular != glm::vec3(0.0f);
     if (in_clusters) continue;
     ++summed;

@@ -15,25 +15,25 @@
 
 namespace luciole {
 
-/// What scenes may use. A program is compiled for a set of features and contains the code of no others.
+/// Features of scenes. A program is compiled for a set of features and contains no code of others.
 #define FEATURE_ENUMERATOR(name, ...) k##name,
 enum class Feature : unsigned { EACH_FEATURE(FEATURE_ENUMERATOR, FEATURE_ENUMERATOR) kCount };
 #undef FEATURE_ENUMERATOR
 inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::kCount);
 
-/// Which kernels depend on a feature, besides those that shade pixels and vertices.
+/// The kernels that depend on a feature, besides those that shade pixels and vertices.
 enum FeatureUse : unsigned {
-  kForLookups = 1,   ///< kernels/maps/find_needed.cl: where shadow maps are looked up
+  kForLookups = 1,   ///< kernels/maps/find_needed.cl
   kForBeams = 2,     ///< kernels/exact/beam_shadows.cl
   kForClusters = 4,  ///< kernels/clusters/clustered_light.cl
-  kForFog = 8,       ///< shading that gives lit pixels their fog
+  kForFog = 8,       ///< shading that applies fog to colours lit at vertices
 };
 
 /// A row of kernels/feature_table.h.
 struct FeatureRow {
   const char* define;   ///< its name in the kernels; for a model, that of its number
   const char* name;     ///< in --stats
-  const char* meaning;  ///< what the compiled code does
+  const char* meaning;  ///< of the compiled code, for people
   unsigned uses;        ///< bits of FeatureUse
 };
 extern const std::array<FeatureRow, kFeatureCount> kFeatureTable;
@@ -62,13 +62,13 @@ class FeatureSet {
 /// The names in --stats of the features that are set, in the table's order.
 std::vector<std::string> featureNames(const FeatureSet& features);
 
-/// What surfaces need of shading, whether they come from a scene's materials or from a G-buffer file.
+/// The features that surfaces need, of a scene's materials or of a G-buffer file.
 struct SurfaceTraits {
   bool specular = false;
   bool emission = false;
   bool smooth = false;  ///< shadow tests start above facets (raster/lift.hpp)
   bool normal_maps = false;
-  ModelChoices models{1};  ///< that they choose
+  ModelChoices models{1};  ///< of the surfaces
 };
 /// The traits of a scene's materials and meshes. `smooth` is set only if a light casts shadows.
 SurfaceTraits materialTraits(const Scene& scene);
@@ -80,28 +80,27 @@ constexpr bool isModel(Feature feature) {
   return feature >= Feature::kPhong && unsigned(feature) < unsigned(Feature::kPhong) + kModelNames.size();
 }
 
-/// Sets the model of a picture whose surfaces choose these: the one that all have, or `material_models`.
+/// Sets settings.model if all surfaces of a picture have one model, else settings.material_models.
 void chooseModel(const ModelChoices& choices, ShadeSettings& settings);
 
-/// Who tells of a light's shadows in a picture with these settings. light: its index in the scene.
+/// How a light's shadows are computed in a picture with these settings. light: its index in the scene.
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings);
 
-/// Whether clusters stand for some of the scene's lights in a picture with these settings: where the settings
-/// allow it, for those without an ExactReason, if there are enough of them (clustersPay). view: of the
-/// picture. O(lights).
-bool standsForLights(const Scene& scene, const View& view, SurfaceTraits surfaces,
-                     const ShadeSettings& settings);
+/// Whether a picture with these settings sums clusters of lights: if the settings allow an error, and there
+/// are enough lights without an ExactReason (clustersAreFaster). view: of the picture. O(lights).
+bool usesLightClusters(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                       const ShadeSettings& settings);
 
-/// Which of a picture's lights others may stand for.
-LightUse lightUse(const ShadeSettings& settings);
+/// The conditions of a picture under which a light may be in a cluster.
+ClusterConditions clusterConditions(const ShadeSettings& settings);
 
 /// The features that this scene's lights, fog and surfaces need, seen by this camera. clustered: as
-/// standsForLights() says.
+/// usesLightClusters() says.
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
                           const ShadeSettings& settings, bool clustered = false);
 
-/// Those of a program's features that kernels of this use depend on. Programs that differ only in others
-/// share these kernels.
+/// The subset of a program's features on which kernels of this use depend. Programs that differ in other
+/// features share these kernels.
 FeatureSet featuresFor(FeatureUse use, const FeatureSet& features);
 
 /// The G-buffer groups that a program with these features reads.

@@ -26,16 +26,16 @@ Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const Featur
   const bool asks_surfaces = features.shadowMaps() || features.has(Feature::kNormalMaps);
   PackedNormals packed;
   if (asks_surfaces && surfaceNormals(gbuffer).empty()) packed = packNormals(gbuffer);
-  Plane no_lift(features.has(Feature::kLift) && gbuffer.lift.empty() ? stride : 0);
-  ModelPlane no_model(features.has(Feature::kMaterialModels) && gbuffer.model.empty() ? stride : 0);
+  Plane zero_lift(features.has(Feature::kLift) && gbuffer.lift.empty() ? stride : 0);
+  ModelPlane default_model(features.has(Feature::kMaterialModels) && gbuffer.model.empty() ? stride : 0);
   const PackedNormals& surface_normal = packed.empty() ? surfaceNormals(gbuffer) : packed;
-  const Plane& lift = no_lift.empty() ? gbuffer.lift : no_lift;
-  const ModelPlane& model = no_model.empty() ? gbuffer.model : no_model;
+  const Plane& lift = zero_lift.empty() ? gbuffer.lift : zero_lift;
+  const ModelPlane& model = default_model.empty() ? gbuffer.model : default_model;
   const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, surface_normal, lift, model, unlit);
   const std::size_t floats = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
                              surface_normal.size() + lift.size() + model.size();
-  return {gbuffer, std::move(packed),     std::move(no_lift), std::move(no_model), buffers,
+  return {gbuffer, std::move(packed),     std::move(zero_lift), std::move(default_model), buffers,
           stride,  floats * sizeof(float)};
 }
 

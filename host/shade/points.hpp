@@ -9,23 +9,23 @@
 
 namespace luciole {
 
-/// The points of a G-buffer as kernels take them. Buffers are borrowed from the G-buffer, and from the
-/// members before them: not to be copied.
+/// The points of a G-buffer on the device. Buffers are borrowed from the G-buffer and from the members before
+/// them, so it must not be copied.
 struct Points {
   const GBuffer& gbuffer;
   PackedNormals normal_packed;  ///< in the place of surfaceNormals() that the G-buffer lacks
-  Plane no_lift;                ///< likewise: zeros
-  ModelPlane no_model;          ///< likewise: the picture's model
+  Plane zero_lift;              ///< likewise: zeros
+  ModelPlane default_model;     ///< likewise: the picture's model
   GBufferBuffers buffers;
   std::size_t stride;  ///< elements in a plane
   std::size_t bytes;   ///< of all planes
 };
 
-/// features: what of the planes is needed. unlit: the diffuse colour takes the place of ambient. Throws
+/// Borrows the planes that the features need. unlit: the diffuse colour takes the place of ambient. Throws
 /// MachineError.
 Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit);
 
-/// What cull() takes to cull the lights of these points. tests: see CullArguments.
+/// The arguments of cull() for these points and lights. tests: see CullArguments.
 CullArguments cullArguments(const Points& points, const LightSet& lights, unsigned group_log2,
                             unsigned tests);
 

@@ -11,16 +11,17 @@ namespace {
 
 constexpr double kRounding = 0x1p-24;
 
-/// What sums and products add to a bound, times the colour that is seen. Between the light of clusters and
-/// the colour stand at most four roundings of 2⁻²⁴: the sum with the surface's emission, that with the light
-/// of other lights, the fog's own light, and the sum of both through the fog (fog.clh). All terms are ≥ 0, so
-/// none is more than the colour, but for the roundings after it, which a fifth 2⁻²⁴ covers.
+/// Relative error of a colour by sums and products after clustered light. There are at most four roundings of
+/// 2⁻²⁴: the sums with the surface's emission and with other lights, the fog's own light, and their sum
+/// (fog.clh). All terms are ≥ 0, so none exceeds the colour, except by later roundings, which a fifth 2⁻²⁴
+/// covers.
 constexpr double kSeenRounding = 5 * kRounding;
 
-/// What the rounding of fog's share adds to a colour, times the larger of 1 and the colour, and times the
-/// fog's brightest channel. Of light of which e⁻⁴ or more comes through, it is 3 + 15.23·4 < 64 roundings at
-/// most, and of the fog's own 3 + 15.23/e < 9. Linear fog that ends soon after it starts, and brighter light
-/// through thicker fog, may take more than this leaves. Then their bound says so.
+/// Error of a colour by rounding of the fog's transmittance, relative to the larger of 1 and the colour, and
+/// to the fog's brightest channel. Where the transmittance is e⁻⁴ or more it is at most 3 + 15.23·4 < 64
+/// roundings, and for the fog's own light 3 + 15.23/e < 9. Linear fog that ends soon after it starts, and
+/// bright light through thick fog, may exceed this. Their bounds, computed from the actual error, then exceed
+/// the light_error asked for.
 constexpr double kFogRounding = 64 * kRounding;
 
 bool seesFog(const FeatureSet& features) {
@@ -30,11 +31,11 @@ bool seesFog(const FeatureSet& features) {
 
 glm::dvec3 rgb(const float4& color) { return {color.x, color.y, color.z}; }
 
-/// How far the share of linear fog may be off: by five roundings of a difference, its scale and their
-/// product, and by the distance, which is known to within `distance_error` of it.
+/// Upper bound of the error of linear fog's transmittance: five roundings of a difference, its scale and
+/// their product, and the effect of the distance's relative error `distance_error`.
 double linearShareError(const ShadeFrame& frame, double distance, double distance_error) {
   const double left = frame.fog_end - distance, scale = frame.fog_scale, share = left * scale;
-  // Fog that starts where it ends is a step, on whose very edge anything may come.
+  // Fog that starts where it ends is a step, at whose edge the transmittance may be anything.
   if (!std::isfinite(share)) return std::abs(left) > distance_error * distance ? 0 : 1;
   const double error = 5 * kRounding * std::abs(share) + distance_error * distance * std::abs(scale);
   return std::clamp(share + error, 0.0, 1.0) - std::clamp(share - error, 0.0, 1.0);
@@ -48,7 +49,7 @@ double exponentialShareError(double depth, double relative_depth_error) {
   return depth > 86 ? share : 1.001 * error * share;
 }
 
-/// How far the kernels' share (kernels/shade/fog.clh) of a surface's light that reaches the eye may be off.
+/// Upper bound of the error of the kernels' transmittance (kernels/shade/fog.clh) between eye and surface.
 /// position: view space, metres.
 double fogShareError(const ShadeFrame& frame, int channel, const glm::dvec3& position) {
   // A distance is √(dot product) by way of x·rsqrt_lanes(x): 1.5 + 3 + 1 roundings. A depth is a float
@@ -69,9 +70,9 @@ float clusteredError(float light_error, const ShadeFrame& frame, const FeatureSe
   return std::max(float(light_error - kSeenRounding - through_fog), 1e-9f);
 }
 
-void boundSeenLight(const GBuffer& gbuffer, const ShadeFrame& frame, const FeatureSet& features,
-                    const Plane& emission, const Plane& color, const std::optional<glm::vec3>& vertex_error,
-                    Plane& bounds) {
+void boundVisibleLight(const GBuffer& gbuffer, const ShadeFrame& frame, const FeatureSet& features,
+                       const Plane& emission, const Plane& color,
+                       const std::optional<glm::vec3>& vertex_error, Plane& bounds) {
   const std::size_t n = gbuffer.pixels();
   bounds.resize(3 * n);
   const glm::dvec3 fog = rgb(frame.fog_color), ambient = rgb(frame.ambient);

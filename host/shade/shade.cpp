@@ -8,7 +8,7 @@ namespace luciole {
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
                                const PackedNormals& surface_normal, const Plane& lift,
                                const ModelPlane& model, bool unlit) {
-  // A single buffer for both: OpenCL leaves two buffers in the same host memory undefined.
+  // One buffer, also if unlit: two OpenCL buffers in the same host memory are undefined behaviour.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
   return {.position = borrowed(device, gbuffer.position),
           .normal = borrowed(device, gbuffer.normal),

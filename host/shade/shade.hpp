@@ -20,8 +20,8 @@ inline const PackedNormals& surfaceNormals(const GBuffer& gbuffer) {
   return gbuffer.unbent_normal.empty() ? gbuffer.geometric_normal : gbuffer.unbent_normal;
 }
 
-/// The planes of a G-buffer, borrowed (see Buffer), with the surface normals, the lift and the models given
-/// instead of its own. unlit: the diffuse colour takes the place of ambient.
+/// The planes of a G-buffer, borrowed (see Buffer), with the surface normals, lift and models given instead
+/// of its own. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
                                const PackedNormals& surface_normal, const Plane& lift,
                                const ModelPlane& model, bool unlit);

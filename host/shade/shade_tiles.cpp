@@ -9,8 +9,8 @@
 namespace luciole {
 namespace {
 
-/// Blocks of tiles for each thread of the device, at least: with fewer, some threads would end long before
-/// the others. PoCL gives a thread 32 at a time, and fewer towards the end.
+/// The fewest blocks of tiles for each thread of the device, to balance their load. PoCL gives a thread 32 at
+/// a time, and fewer towards the end.
 constexpr std::size_t kBlocksPerThread = 2 * 32;
 
 std::size_t blockCount(const TileBlock& block, int tiles_x, int tiles_y) {
@@ -18,7 +18,7 @@ std::size_t blockCount(const TileBlock& block, int tiles_x, int tiles_y) {
   return blocks(tiles_x, block.width) * blocks(tiles_y, block.height);
 }
 
-/// A step through `count` that meets each once and spreads neighbours: near the golden ratio of it.
+/// A stride, coprime to `count` and near its golden section, that visits all and separates neighbours.
 std::size_t spreadingStride(std::size_t count) {
   auto stride = std::size_t(0.618 * double(count)) + 1;
   while (std::gcd(stride, count) > 1) ++stride;

@@ -26,7 +26,7 @@ struct ShadeTilesArguments {
   Buffer<float> image;              ///< out: planes r, g, b
 };
 
-/// What shadeTiles() counted on its way.
+/// The counts of shadeTiles().
 struct TileCounts {
   std::uint64_t entries = 0;  ///< pairs of a tile and a light in reach of it
   std::uint64_t pairs = 0;    ///< pixel-light pairs that were shaded

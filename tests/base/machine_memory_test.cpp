@@ -120,7 +120,7 @@ TEST(MachineMemory, WhereAddressesAreLimitedThreadsShareAnArena) {
     getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = most;
     setrlimit(RLIMIT_AS, &limit);
-    saveAddresses();
+    limitMallocArenas();
     std::_Exit(arenasOfThreads());
   };
   // A limit, but more than even the sanitizers take.

@@ -209,9 +209,9 @@ TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
   Scene scene = sceneFromJson(manyLights(kEmits));
   RenderSettings settings = settingsFor(scene, {40, 30});
   const View view = cameraView(settings.camera, settings.size);
-  EXPECT_FALSE(standsForLights(scene, view, materialTraits(scene), settings.shade));
+  EXPECT_FALSE(usesLightClusters(scene, view, materialTraits(scene), settings.shade));
   scene.lights.resize(100);
-  ASSERT_FALSE(clustersPay({100, 1.0f / 256, false}, view));
+  ASSERT_FALSE(clustersAreFaster({100, 1.0f / 256, false}, view));
   const Both both = renderBoth(scene, settings, false);
   for (std::size_t i = 0; i < both.clustered.pixels.size(); ++i) {
     if (i % 6 < 3)
@@ -225,7 +225,7 @@ TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
 
 /// Whether clusters pay for so many lights on matte surfaces.
 bool pays(std::size_t lights, const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop = {}) {
-  return clustersPay({lights, 1.0f / 256, false}, cameraView(camera, size, crop));
+  return clustersAreFaster({lights, 1.0f / 256, false}, cameraView(camera, size, crop));
 }
 
 // A group of pixels shares a walk through the tree, and holds fewer pixels the wider each of them is.

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lighting/count_picture.hpp"
 #include "luciole/error.hpp"
 #include "luciole/pose.hpp"
-#include "render/count_picture.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {

@@ -12,7 +12,7 @@
 #include "luciole/curve.hpp"
 #include "luciole/error.hpp"
 #include "luciole/load_scene.hpp"
-#include "luciole/pose.hpp"
+#include "scene/posing.hpp"
 #include "scene/scene_fault.hpp"
 #include "shared_files.hpp"
 

@@ -17,7 +17,7 @@ struct MovingNode {
   glm::dmat4 before{1.0};
   int translate = -1;       ///< metres
   int rotate = -1;          ///< degrees about x, then y, then z
-  bool quaternion = false;  ///< rotate is a quaternion x, y, z, w instead, not necessarily unit
+  bool quaternion = false;  ///< `rotate` is a quaternion x, y, z, w of any length but 0 instead
   int scale = -1;           ///< factors
 };
 
@@ -27,8 +27,8 @@ struct Attachment {
   std::uint32_t node = 0;   ///< in Animation::nodes
   glm::dmat4 after{1.0};
   std::uint32_t mesh = 0;  ///< of an object: its mesh, unless a scale of 0 flattens it
-  /// Of a light that a scale of 0 hides at this pose: its ambient, diffuse and specular colours, which are 0
-  /// meanwhile.
+  /// The ambient, diffuse and specular colours of a light that a scale of 0 hides at this pose. Its own are 0
+  /// then. Set by poseScene().
   std::optional<glm::mat3> hidden_colors = {};
 };
 
@@ -36,7 +36,9 @@ struct Attachment {
 struct CameraMotion {
   std::uint32_t camera = 0;  ///< in Scene::cameras
   bool orbits = false;
-  Curve eye = {};  ///< world, metres; of one that orbits azimuth, elevation (degrees) and distance (orbitEye)
+  /// World, metres. With `orbits` azimuth and elevation in degrees and the distance from the target in
+  /// metres: azimuth 0 lies towards +z, 90 towards +x; elevation is the angle above the horizon.
+  Curve eye = {};
   Curve target = {};
   glm::dvec3 up{0.0, 1.0, 0.0};
   Curve fov_y = {};  ///< degrees; without keys the camera's own stays
@@ -55,7 +57,7 @@ struct LightMotion {
   float own_intensity = 1.0f;
 };
 
-/// What moves in a scene, and how; empty where nothing moves.
+/// The animation of a scene. Empty: nothing moves.
 struct Animation {
   double frame_rate = 24;  ///< frames a second, for files with times in seconds: frame 1 is time 0
   std::vector<Curve> curves = {};
@@ -64,7 +66,8 @@ struct Animation {
   std::vector<CameraMotion> cameras = {};
   std::vector<LightMotion> lights = {};
   std::vector<Deformation> deformations = {};
-  int no_mesh = -1;  ///< in Scene::meshes: the empty mesh of flattened objects; -1: nothing is attached
+  /// In Scene::meshes: the empty mesh that hidden objects get. -1: no object is attached.
+  int no_mesh = -1;
 };
 
 }  // namespace luciole

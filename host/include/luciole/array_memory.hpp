@@ -9,8 +9,8 @@ namespace luciole {
 /// Allocates `bytes` bytes, aligned to at least 128 bytes, so that a row of up to 16 floats is one aligned
 /// load and OpenCL can use the memory in place. From 1 MiB on it is whole huge pages of 2 MiB where the
 /// system has them, which take a tenth of the time to get. The content is undefined; the caller frees it with
-/// freeArray. Throws std::bad_alloc, and MachineError for 32 MiB or more where less than that is left (see
-/// memoryRoom).
+/// freeArray. Throws std::bad_alloc, and MachineError for 32 MiB or more if the machine, the process's
+/// control group or its resource limits leave less.
 void* allocateArray(std::size_t bytes);
 
 /// Frees what allocateArray(bytes) returned; `bytes` must be the same.

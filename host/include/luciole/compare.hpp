@@ -9,10 +9,10 @@
 
 namespace luciole {
 
-/// How B differs from A, over the compared pixels and channels, in linear units unless said otherwise. Equal
-/// values differ by 0; so do infinities of the same sign, and two NaNs. Other pairs with a value that is not
-/// finite count in `nonfinite`, and as an infinite difference in max_abs, the percentiles and `over`. The
-/// means leave them out, and are infinite where no other pair is left.
+/// How picture B differs from picture A, over the compared pixels and channels, in linear units unless said
+/// otherwise. Equal values differ by 0; so do infinities of the same sign, and two NaNs. Any other pair with
+/// a value that is not finite counts in `nonfinite`, and as an infinite difference in max_abs, the
+/// percentiles and `over`. The means leave such pairs out. They are infinite if no other pair is left.
 struct ImageDifference {
   std::vector<std::string> channels = {};  ///< compared
   std::uint64_t pixels = 0;                ///< compared
@@ -20,7 +20,7 @@ struct ImageDifference {
   double mean_abs = 0;
   double max_relative = 0;  ///< max_abs / the largest magnitude of A's finite compared values
   double mean_relative = 0;
-  double mean_signed = 0;  ///< mean of B − A: a bias, which no other figure shows
+  double mean_signed = 0;  ///< mean of B − A: the bias
   double rmse = 0;
   double psnr = 0;      ///< dB, peak 1; infinite for equal pictures
   double relmse = 0;    ///< mean of (B − A)² / (A² + 10⁻²)

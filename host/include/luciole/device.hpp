@@ -7,23 +7,23 @@
 
 namespace luciole {
 
-/// An OpenCL device as `luciole devices` lists it.
+/// An OpenCL device.
 struct DeviceDescription {
   std::string platform = {};
   std::string name = {};
   std::string version = {};  ///< the driver's
-  int lanes = 1;  ///< pixels a work-item shades: 16, 8, 4 or 1, by the device's native vector width
+  int lanes = 1;  ///< pixels that a work-item shades: 16, 8, 4 or 1, by the device's native vector width
   unsigned compute_units = 0;  ///< work-groups that run at once; on a CPU, the device's threads
-  /// The hash of what it makes of hard numbers (see ArithmeticCheck). Empty: nobody has asked.
+  /// A hash of its results for arithmetic corner cases. Devices of equal hashes make pictures of equal bits.
+  /// Empty: not checked.
   std::string arithmetic = {};
 };
 
-/// Bytes that buffers have copied and allocated. A device that shares the host's memory copies nothing.
+/// Bytes that OpenCL buffers have copied and allocated. A device that shares the host's memory copies none.
 struct Traffic {
   std::uint64_t bytes_up = 0;    ///< copied from the host to the device
   std::uint64_t bytes_down = 0;  ///< copied from the device to the host
-  std::uint64_t bytes_made =
-      0;  ///< allocated as memory of buffers; those that lie in an array of the host's don't count
+  std::uint64_t bytes_made = 0;  ///< allocated by buffers, except for those in an array of the host's
 };
 
 /// All OpenCL devices of all platforms, in the runtime's order. Empty if there is none. Throws MachineError

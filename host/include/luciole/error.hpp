@@ -6,12 +6,12 @@
 namespace luciole {
 
 /// The user's input or arguments are wrong. The message is one line: file, place in it, what is wrong,
-/// what was expected. The command line prints it and exits with status 2.
+/// what was expected.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The machine can't do it: no OpenCL device, out of memory, disk full. Exit status 3.
+/// The machine can't do it: no OpenCL device, out of memory, disk full.
 struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -14,7 +14,9 @@ namespace luciole {
 
 /// One component or several of a G-buffer, one after another: `pixels()` floats each.
 using Plane = std::vector<float, ArrayAllocator<float>>;
-/// A plane of normals, packed by packNormal().
+/// A plane of unit normals, octahedral: x in the lower 16 bits, y in the upper 16, both signed, in steps of
+/// 1/32767. The square is the octahedron |x| + |y| + |z| = 1 seen from +z, with its far half folded outwards
+/// (Meyer et al., "On floating-point normal vectors", 2010).
 using PackedNormals = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
 /// A plane of reflection models: 0 where a surface has the picture's, else modelNumber() of its own.
 using ModelPlane = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
@@ -25,7 +27,7 @@ constexpr std::size_t everyOtherBit(std::size_t v) {
   return (v | v << 1) & 0x55;
 }
 
-/// What the camera sees, one sample a pixel, laid out for the kernels.
+/// The surfaces that a camera sees, one sample a pixel, laid out for the kernels.
 ///
 ///     tile (kTileSide × kTileSide pixels)      a plane group, here 3 components of `pixels()` floats each
 ///     ┌────────┬────────┬──────                ┌───────────────┬───────────────┬───────────────┐
@@ -55,10 +57,13 @@ struct GBuffer {
   /// Instead of geometric_normal, never beside it: the interpolated normal that normal maps bent to `normal`.
   /// Lights that stand behind it are not seen, even by a bent normal that faces them.
   PackedNormals unbent_normal = {};
-  Plane lift = {};        ///< metres along `normal` to where shadow tests start (lift.hpp), ≥ 0; optional
-  ModelPlane model = {};  ///< optional
-  Camera camera = {};     ///< whose view space this is
-  bool knows_camera = true;    ///< false where a file tells no camera, or not how wide it sees
+  /// Metres along `normal`, ≥ 0, to the point where shadow tests start; optional. That is near the smooth
+  /// surface which the vertex normals describe, so that facets don't shadow themselves at the terminator
+  /// (J. Hanika, "Hacking the Shadow Terminator", 2021).
+  Plane lift = {};
+  ModelPlane model = {};       ///< optional
+  Camera camera = {};          ///< defines view space
+  bool knows_camera = true;    ///< false: a file without a camera, or without its field of view
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   Display display{};           ///< of the file that it was read from
@@ -75,7 +80,7 @@ struct GBuffer {
   }
 };
 
-/// Which of a G-buffer's optional groups to fill.
+/// The optional groups of a G-buffer that are to be filled.
 struct PlaneSet {
   bool specular = false;
   bool ambient = false;

@@ -19,20 +19,25 @@ namespace luciole {
 ///     shininess                  exponent
 ///     Ng.X/Y/Z                   the triangle's own normal, unit, world space; 0 where nothing was hit
 ///     Nunbent.X/Y/Z              instead, where there are normal maps: N before a map bent it
-///     lift                       metres along N to where shadow tests start (see raster/lift.hpp)
-///     model                      modelNumber() of what surfaces choose, where any does: 0 none, 1 phong,
+///     lift                       metres along N to where shadow tests start (see GBuffer::lift)
+///     model                      modelNumber() of a surface's own model, if any surface has one: 0 none, 1
+///     phong,
 ///                                2 blinn-phong, 3 toon, 4 cook-torrance, 5 oren-nayar
 ///
-/// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC and as our own attributes (see
-/// camera_header.hpp). A crop becomes the data window inside the display window. `format` and `compression`
-/// as in WriteOptions. Throws as writeImage does, and InputError for a format other than exr.
+/// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC, and with all digits in attributes
+/// luciole:cameraToWorld, luciole:projection and luciole:cameraName. A crop becomes the data window inside
+/// the display window. `format` and `compression` as in WriteOptions. Throws as writeImage does, and
+/// InputError for a format other than exr.
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
                   const std::string& format = "", const std::string& compression = "");
 
 /// Calls take(rows) for all pixels, some rows at a time, with the channels that writeGBuffer() writes.
 void passRows(const GBuffer& gbuffer, const std::function<void(const Image& rows)>& take);
 
-/// Reads a G-buffer that this program or another wrote, as gbuffer_input.hpp says, with nothing asked for.
+/// Reads a G-buffer from an EXR that writeGBuffer() or another program wrote. Layers are recognized by the
+/// names that Blender, Mitsuba, pbrt, RenderMan, Arnold and 3Delight give them. Missing ones read as: normals
+/// rebuilt from positions, positions from the depth, diffuse 0.8, specular 0, ambient = diffuse. Throws
+/// InputError, which names the file and the channel, and MachineError where it doesn't fit into memory.
 GBuffer readGBuffer(const std::string& path);
 
 }  // namespace luciole

@@ -7,19 +7,21 @@
 
 namespace luciole {
 
-/// What to do where a picture file that a scene names doesn't exist.
+/// What happens if a picture file that a scene names doesn't exist.
 enum class MissingTextures : std::uint8_t {
   kError,  ///< the scene is refused
-  kWarn,   ///< its materials are drawn without it, and Scene::warnings say so
+  kWarn,   ///< its materials are drawn without it, with a warning in Scene::warnings
 };
 
 /// How a scene's files are read.
 struct LoadSettings {
   MissingTextures missing = MissingTextures::kError;
-  bool strict = false;                 ///< what breaks a format's rules is refused, not repaired
-  std::vector<std::string> search{};   ///< folders of files that aren't where the scene says, see findFile()
-  GltfChoice choice{};                 ///< of a glTF file
-  std::vector<std::string> changes{};  ///< of the scene, PATH=VALUE, see readChanges()
+  bool strict = false;                ///< what breaks a format's rules is refused, not repaired
+  std::vector<std::string> search{};  ///< folders to look in for files that aren't where the scene says
+  GltfChoice choice{};                ///< of a glTF file
+  /// Values to replace in the scene, each "PATH=VALUE": a PATH is keys by dots and elements as [0], such as
+  /// lights[0].intensity; VALUE is JSON, or else a text.
+  std::vector<std::string> changes{};
 };
 
 /// Reads a scene by its file's extension (.json, .obj, .gltf, .glb; case ignored), or Luciole JSON from
@@ -33,8 +35,5 @@ Scene loadScene(const std::string& path, double frame = 1, const LoadSettings& s
 /// ambient light, and for a mesh file a sky colour. A file that asks for no light of any kind gets a warning.
 /// `is_mesh_file`: the scene came from .obj, .gltf or .glb rather than from a Luciole scene.
 void completeScene(Scene& scene, bool is_mesh_file);
-
-/// The warning for a scene that nothing lights. Commands that replace a scene's lights remove it.
-Warning nothingLights(const Scene& scene);
 
 }  // namespace luciole

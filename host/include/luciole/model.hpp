@@ -20,7 +20,7 @@ inline constexpr std::size_t kNumberOfModels = 5;
 /// The model's name in scene files: "phong" …
 const char* modelName(Model model);
 
-/// A material's model as G-buffers have it: 0 where it chooses none.
+/// The number of a material's model in G-buffers: 0 if it has none of its own.
 inline constexpr std::uint32_t modelNumber(const std::optional<Model>& chosen) {
   return chosen ? std::uint32_t(*chosen) + 1 : 0;
 }
@@ -29,7 +29,7 @@ inline constexpr Model modelOfNumber(std::uint32_t number, Model of_picture) {
   return number > 0 ? Model(number - 1) : of_picture;
 }
 
-/// Which models surfaces choose: bit i is set if one has the modelNumber() i.
+/// The models that surfaces have: bit i is set if one has the modelNumber() i.
 using ModelChoices = std::bitset<kNumberOfModels + 1>;
 
 }  // namespace luciole

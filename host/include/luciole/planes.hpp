@@ -6,12 +6,12 @@
 
 namespace luciole {
 
-/// Allocates the groups of planes that `planes` asks for, and position, normal and diffuse, in the memory of
-/// those that there are. They show nothing (see GBuffer). tiles_x and tiles_y must be set. Throws as
-/// allocateArray does.
+/// Allocates the groups of planes that `planes` asks for, and position, normal and diffuse, and fills them
+/// with background (see GBuffer). Reuses the memory of groups that exist. tiles_x and tiles_y must be set.
+/// Throws as allocateArray does.
 void allocatePlanes(PlaneSet planes, GBuffer& gbuffer);
 
-/// Frees all groups, so that the G-buffer tells sizes and places only.
+/// Frees all groups. The G-buffer keeps its sizes and places.
 void freePlanes(GBuffer& gbuffer);
 
 inline bool isFinite(const glm::vec3& v) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <string>
 
 #include "luciole/scene.hpp"
 
@@ -12,45 +11,13 @@ namespace luciole {
 glm::dmat4 cameraToWorld(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
 
 /// Poses a scene at a frame, which may be fractional: sets the members of cameras, lights, objects and meshes
-/// that are animated, and nothing else. The result doesn't depend on earlier poses. Objects that a scale of 0
-/// along two axes hides show an empty mesh. Throws InputError naming the frame where a pose doesn't exist (a
-/// camera whose up is parallel to its view, a spot at its target, a transform that isn't finite), and as
-/// checkPlaces() does.
+/// that are animated, and nothing else. The result doesn't depend on earlier poses. An object that a scale of
+/// 0 along two axes or more hides gets an empty mesh. Throws InputError naming the frame where a pose doesn't
+/// exist: a camera whose up is parallel to its view, a spot at its target, a transform that isn't finite, or
+/// a coordinate beyond ±10¹⁸ metres.
 void poseScene(Scene& scene, double frame);
 
 /// Attaches an object to a node, from the next poseScene() on.
 void attach(Scene& scene, const Attachment& object);
-
-/// Poses one camera or light at a frame. Returns what is wrong, or "".
-std::string poseCamera(const CameraMotion& motion, double frame, Camera& camera);
-std::string poseLight(const LightMotion& motion, double frame, Light& light);
-
-/// Places a camera at `eye`, looking at `target`; `up` is unit. Returns what is wrong (`eye` is `target`, or
-/// `up` is parallel to the view), or "".
-std::string aimCamera(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, Camera& camera);
-/// Aims a spot from its position at a target. Returns what is wrong, or "".
-std::string aimSpot(const glm::dvec3& target, Light& light);
-
-/// The position at [azimuth, elevation, distance] (degrees, metres) around a target. Azimuth 0 lies towards
-/// +z, 90 towards +x; elevation is the angle above the horizon. Azimuths that differ by 360 give the same
-/// bits.
-glm::dvec3 orbitEye(const glm::dvec3& orbit, const glm::dvec3& target);
-
-/// The transform translate · rotate (degrees about x, then y, then z) · scale.
-glm::dmat4 placement(const glm::dvec3& translate, const glm::dvec3& degrees, const glm::dvec3& scale);
-/// The same with a quaternion x, y, z, w of any length but 0.
-glm::dmat4 placementByQuaternion(const glm::dvec3& translate, const glm::dvec4& rotation,
-                                 const glm::dvec3& scale);
-
-/// Places a camera or light that is attached to a node: it looks along the node's −z. Returns what is wrong,
-/// such as a scale of 0 that leaves it no direction or hides a light, or "".
-std::string attachCamera(const glm::dmat4& node_to_world, Camera& camera);
-std::string attachLight(const glm::dmat4& node_to_world, Light& light);
-
-/// Whether all 16 elements are finite.
-bool isFinite(const glm::dmat4& matrix);
-/// Whether a transform makes every object a line or a point, so that nothing of it shows. One that flattens
-/// them along one axis alone doesn't.
-bool hidesObjects(const glm::dmat4& matrix);
 
 }  // namespace luciole

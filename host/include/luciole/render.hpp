@@ -27,13 +27,14 @@ Picture render(Device& device, const Scene& scene, const RenderSettings& setting
 /// Takes the next rows of a picture, from the top down. `rows` lasts until it returns.
 using RowSink = std::function<void(const Image& rows)>;
 
-/// What of a picture's shadows the next picture of the same scene, at another pose, may use.
+/// Shadow maps and acceleration structures of a picture, for the next picture of the same scene at another
+/// pose.
 struct KeptShadows;
 std::shared_ptr<KeptShadows> keepShadows();
 
 /// The same, handed to `take` band by band, so that the whole never lies in memory. kept: of keepShadows(),
-/// for pictures of one scene at several poses (poseScene()), one after another; they have the same bits as
-/// without it, sooner. Throws likewise, and what `take` throws.
+/// for pictures of one scene at several poses (poseScene()), one after another. It saves time and changes no
+/// bit. Throws likewise, and what `take` throws.
 Stats render(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
              const std::shared_ptr<KeptShadows>& kept = nullptr);
 

@@ -18,14 +18,14 @@ namespace luciole {
 
 enum class Wrap : std::int32_t { kRepeat, kMirroredRepeat, kClampToEdge };  // as wide as vector lanes
 
-/// Which levels of a texture's mip chain a pixel that holds several texels mixes.
+/// The levels of a texture's mip chain that are sampled where a pixel covers several texels.
 enum class Mips : std::uint8_t {
-  kBlended,  ///< the two that are nearest in size, by their distance
+  kBlended,  ///< the two nearest in size, interpolated
   kNearest,  ///< the nearest
   kNone,     ///< the finest one
 };
 
-/// How a material looks a texture up. `texture` indexes Scene::textures; -1: no texture.
+/// A material's texture, and how it is sampled. `texture` indexes Scene::textures; -1: no texture.
 struct TextureUse {
   int texture = -1;
   Wrap wrap_u = Wrap::kRepeat;
@@ -63,13 +63,14 @@ struct Material {
   TextureUse alpha_map = {};  ///< opacity: its alpha where it has one that varies, else its red (OBJ map_d)
   float alpha = 1.0f;         ///< constant opacity, multiplied with the maps' and the vertex colour's alpha
   float alpha_cutoff = 0.0f;  ///< a sample whose opacity is below it is a hole; 0: everything is opaque
-  /// What a camera sees is dithered by the opacity instead (raster/blend.hpp): alpha_cutoff is for shadows
-  /// alone.
+  /// For cameras the surface is dithered by its opacity: a sample shows it or not, so that the share of
+  /// samples that do is the opacity. alpha_cutoff holds for shadows alone.
   bool blended = false;
   bool double_sided = false;        ///< otherwise back faces are culled
   bool colored_emission = false;    ///< vertex colours multiply the emission too
   std::optional<Model> model = {};  ///< how it reflects light; none: as the picture's settings say
-  /// What `specular` and `shininess`, which are of Phong's model, stand for. See takeFacets().
+  /// The microfacets that `specular` and `shininess`, which are of Phong's model, approximate. See
+  /// takeFacets().
   std::optional<Facets> facets = {};
 };
 
@@ -81,12 +82,11 @@ struct Mesh {
   std::vector<glm::vec3> normals = {};  ///< unit, never missing: loaders make them
   std::vector<glm::vec2> uvs = {};  ///< optional; v grows downwards: (0,0) is the picture's top left corner
   std::vector<glm::vec2> emission_uvs = {};  ///< optional; emission maps use these instead of `uvs`
-  /// Optional; where red of a normal map points, unit, and in w the side of green: ±1 × cross(normal,
-  /// tangent) points up in the picture. All zero at vertices that have none; addTangents() gives those that
-  /// need one.
+  /// Optional; the direction of a normal map's red, unit, and in w the side of green: ±1 × cross(normal,
+  /// tangent) points up in the picture. All zero at vertices that have none: normals there aren't bent.
   std::vector<glm::vec4> tangents = {};
   std::vector<glm::vec2> normal_uvs = {};  ///< optional; normal maps use these instead of `uvs`
-  /// Optional; light maps are laid out by these instead of `uvs`. May be any numbers: see lightMapUvs().
+  /// Optional; light maps are laid out by these instead of `uvs`. They may be any numbers.
   std::vector<glm::vec2> lightmap_uvs = {};
   std::vector<glm::vec4> colors = {};  ///< optional; linear RGBA that multiplies the material's
   std::vector<glm::uvec3> triangles = {};
@@ -102,7 +102,7 @@ struct Object {
   std::uint32_t mesh = 0;
   glm::dmat4 object_to_world{1.0};
   int material = -1;      ///< replaces the material of every triangle of the mesh, unless -1
-  std::string name = {};  ///< may be empty, or that of several
+  std::string name = {};  ///< may be empty; need not be unique
 };
 
 enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot };
@@ -141,8 +141,8 @@ struct Light {
   /// The light's size, which gives its shadow a penumbra and changes nothing else. 0: a sharp shadow.
   double radius = 0.0;      ///< point and spot: of a sphere, metres
   double half_angle = 0.0;  ///< directional: half its angular diameter, radians, 0 to π/4
-  std::uint32_t group = 0;  ///< of those whose light --light-groups keeps apart: indexes Scene::light_groups
-  std::string name = {};    ///< may be empty, or that of several
+  std::uint32_t group = 0;  ///< in Scene::light_groups; see RenderSettings::light_groups
+  std::string name = {};    ///< may be empty; need not be unique
 
   bool operator==(const Light&) const = default;
 };
@@ -169,10 +169,9 @@ struct Camera {
   double half_height = 1.0;           ///< metres, orthographic only
   double near = 0.1;                  ///< metres, > 0
   double far = 1000.0;                ///< metres, > near; of a perspective camera it may be infinite
-  /// What it goes round where it is told to, and about which way, of any length: see render --orbit.
-  std::optional<glm::dvec3> target =
-      {};  ///< what it looks at, where the file says it or the scene was framed
-  glm::dvec3 up{0.0, 1.0, 0.0};
+  /// The point that it looks at, world, metres; empty: not known. Cameras that orbit go around it.
+  std::optional<glm::dvec3> target = {};
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< upwards, world, of any length but 0; the axis of an orbit
 };
 
 /// Everything a picture is made of: the output of the loaders, and the input of every later stage.
@@ -185,7 +184,7 @@ struct Scene {
   std::vector<std::string> missing_textures = {};
   /// glTF extensions that a file uses and that are not supported, each once. There is a warning of each.
   std::vector<std::string> ignored_extensions = {};
-  std::vector<std::string> variants = {};    ///< of a glTF file, see loadGltf()
+  std::vector<std::string> variants = {};    ///< of a glTF file: names of KHR_materials_variants
   std::vector<std::string> animations = {};  ///< of a glTF file: their names, or indices where they have none
   std::vector<Texture> textures = {};
   std::vector<Material> materials = {};
@@ -198,11 +197,11 @@ struct Scene {
   glm::vec3 background{0.0f};
   glm::vec3 ambient{0.0f};  ///< the light model's global ambient light
   Fog fog = {};
-  bool says_light = false;   ///< its file says what lights it, even if that is nothing: see completeScene()
-  bool adds_camera = false;  ///< its file has no camera: this one was chosen, see completeScene()
-  bool adds_lights = false;  ///< its file says nothing of light: these lights were chosen
+  bool says_light = false;   ///< the file has lights, or asks for none
+  bool adds_camera = false;  ///< completeScene() added a camera, because the file has none
+  bool adds_lights = false;  ///< completeScene() added lights, because the file says nothing about light
   bool lighting = true;      ///< false: every surface shows its emission + diffuse colour unlit
-  Animation animation = {};  ///< what moves: poseScene() sets cameras, lights, objects and meshes by it
+  Animation animation = {};  ///< by which poseScene() sets cameras, lights, objects and meshes
 };
 
 /// Which of a glTF file's choices a scene shows.
@@ -211,14 +210,14 @@ struct GltfChoice {
   std::string animation{};  ///< the only one that runs, by its name or counted from 0; "": all run together
 };
 
-/// The models that materials choose whose surfaces the scene has. O(triangles) where a material chooses one.
+/// The models of the scene's surfaces. O(triangles) if any material has a model of its own.
 ModelChoices modelChoices(const Scene& scene);
 
-/// Gives materials that know their facets, and choose no model, the coefficients that Model::kCookTorrance
-/// takes: f0 as `specular`, and the `shininess` 2/α² − 2. For scenes that are shown by that model.
+/// Sets `specular` and `shininess` of materials with `facets` and no model of their own to what
+/// Model::kCookTorrance takes: f0, and 2/α² − 2. For scenes that are shown by that model.
 void takeFacets(Scene& scene);
 
-/// 0, 1, 2 …: every object of the scene, as the rasterizer wants them.
+/// The indices of all objects of the scene.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {
   std::vector<std::uint32_t> all(scene.objects.size());
   std::iota(all.begin(), all.end(), 0u);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -18,7 +19,7 @@ enum class Shading : std::uint8_t {
   kPhong,    ///< normals interpolated
 };
 
-/// How it is told whether a point is in a light's shadow.
+/// How shadows are computed.
 enum class ShadowMethod : std::uint8_t {
   kOff,
   kHard,       ///< by a map: the texel that the point falls into
@@ -26,14 +27,14 @@ enum class ShadowMethod : std::uint8_t {
   kSoft,       ///< by a map: a disc as wide as the penumbra that the light's size gives
   kExact,      ///< by the triangles themselves: whether one is between the point and the light's centre
   kSoftExact,  ///< likewise, for samples of the light's size: the share of them that the point sees
-  kAuto,       ///< for each light kExact or kHard: see shadowWays
+  kAuto,       ///< for each light kExact, or kHard if that is estimated to be at least twice as fast
 };
 
-/// Who tells whether points are in a light's shadow.
+/// How the shadows of a light are computed.
 enum class ShadowWay : std::uint8_t {
-  kNone,   ///< nobody: it casts none
-  kMap,    ///< its shadow map
-  kBeams,  ///< kernels/exact/beam_shadows.cl: exact
+  kNone,   ///< it casts none
+  kMap,    ///< by a shadow map
+  kBeams,  ///< exactly, by beams through a tree of triangles
 };
 
 /// How much shadow maps may take.
@@ -45,7 +46,7 @@ struct ShadowLimits {
 /// Texels a side: the fewest of a face, and the most that ShadowLimits::size may ask for.
 inline constexpr int kSmallestFace = 16, kLargestFace = 16384;
 
-/// Which lights a pixel is shaded by.
+/// The lights that a pixel is shaded by.
 enum class Culling : std::uint8_t {
   kNone,   ///< all
   kTiles,  ///< those that may reach its square of pixels
@@ -54,25 +55,23 @@ enum class Culling : std::uint8_t {
 /// How to light a G-buffer, apart from what the scene says.
 struct ShadeSettings {
   Model model = Model::kPhong;  ///< of surfaces that choose none
-  /// Surfaces have different models: G-buffers say which (GBuffer::model). See chooseModel().
+  /// Surfaces have different models: those of GBuffer::model. Set by render() and shade().
   bool material_models = false;
   Culling culling = Culling::kTiles;
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;
-  bool shadow_layer = false;  ///< also write how visible, on average, lights with shadows are
-  /// With ShadowMethod::kAuto the way of each light. Empty: a picture's are chosen by shadowWays, and where
-  /// no picture is known, all are exact.
+  bool shadow_layer = false;  ///< also write the mean visibility of lights that cast shadows
+  /// With ShadowMethod::kAuto the way of each light. Empty: render() and shade() choose.
   std::vector<ShadowWay> shadow_ways{};
-  int soft_samples =
-      16;             ///< of a light that has a size, with ShadowMethod::kSoftExact, 1 to kMostSoftSamples
-  int pcf_width = 2;  ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
+  int soft_samples = 16;  ///< for each light with a size, with ShadowMethod::kSoftExact, 1 to 1024
+  int pcf_width = 2;      ///< texels a side that ShadowMethod::kPcf weighs, 2 to 6; 2 is bilinear
   ShadowLimits shadow_limits{};
-  int log2_degree = 7;  ///< degrees of the polynomials in kernels/math.clh, which lists those to choose from
-  int exp2_degree = 6;
-  /// E, 0 to 1: lights may be stood for by clusters of them as long as each pixel's error stays below
+  int log2_degree = 7;  ///< of the polynomial that approximates log2, 3 to 9
+  int exp2_degree = 6;  ///< of the polynomial that approximates exp2, 2 to 7
+  /// E, 0 to 1: clusters of lights may be summed as one light, as long as each pixel's error stays below
   /// E·max(1, colour) in each channel. 0: each light is summed by itself.
   float light_error = 0;
-  /// Clusters stand for lights even where summing each is less work (clustersPay): to test and measure them.
+  /// Use clusters even where summing each light is estimated to be faster: for tests and measurements.
   bool always_clusters = false;
 };
 
@@ -81,39 +80,38 @@ struct Crop {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Extra layers of an EXR. aovTable() has a row for each, in this order.
+/// Extra layers of an EXR.
 enum class Aov : std::uint8_t {
   kPosition,
   kNormal,
   kDepth,
   kDiffuse,
   kMaterial,
-  // The parts of the picture's light, whose sum is the picture, as light_layers.hpp tells.
+  // Parts of the picture's light. The picture is their sum.
   kAmbient,  ///< ambient light: the scene's, and the lights' own
   kDiffuseLight,
   kSpecularLight,
   kEmission,  ///< and the background
   kFog,       ///< the fog's own colour
-  // What renderBands() alone knows, by surface_ids.hpp. Objects and materials are numbered as in the scene.
-  kObjectId,        ///< -1 where nothing is seen
-  kMaterialId,      ///< likewise
-  kCryptoObject,    ///< Cryptomatte: which objects cover how much of the pixel's samples
+  // Of pictures of a scene, not of a G-buffer.
+  kObjectId,        ///< index in Scene::objects; -1 for background
+  kMaterialId,      ///< index in Scene::materials; -1 for background
+  kCryptoObject,    ///< Cryptomatte: the objects of the pixel's samples and their coverage
   kCryptoMaterial,  ///< the same of materials
   kLightCount,      ///< lights in range of the pixel
   kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
                 ///< counted from the band's first pixel, so it depends on the band and the crop
   kShadow,
-  /// Bounds of the error, r g b, in the units of R G B, that lights that clusters stand for may make
-  /// (ShadeSettings::light_error): the mean over the samples. With Shading::kGouraud the largest of any
-  /// vertex.
+  /// Bounds of the error of clusters of lights (ShadeSettings::light_error), r g b in the units of R G B: the
+  /// mean over the samples. With Shading::kGouraud the largest of any vertex.
   kLightError,
   kShadingCount,  ///< points that were shaded for all samples of the pixel
   kCount
 };
 
-/// What of a pixel's samples is shaded.
+/// The samples of a pixel that are shaded.
 enum class SampleShading : std::uint8_t {
-  kShared,  ///< a point for those that see the same surface (SharedSamples)
+  kShared,  ///< one point for those that see the same surface, and each sample where light is uneven
   kAll,     ///< each of them, at its own place
 };
 
@@ -125,27 +123,30 @@ struct RenderSettings {
   SampleShading sample_shading = SampleShading::kShared;
   Shading shading = Shading::kPhong;
   ShadeSettings shade = {};
-  /// Layers. But for kLightError, kShadingCount, Cryptomattes and the parts of the light they show the first
-  /// sample, or the point that is shaded for it.
+  /// Layers. kLightError, kShadingCount, Cryptomattes and parts of the light are of all samples; the others
+  /// show the first sample, or the point that is shaded for it.
   std::vector<Aov> aovs = {};
-  /// Adds three channels for each group of lights that has any, and three for what no light gives: their sum
-  /// is the picture. Neither these nor parts of the light go with ShadeSettings::light_error, which is
-  /// ignored beside them, nor with Shading::kGouraud.
+  /// Adds three channels for each group of lights that has any, and three for the rest: ambient light,
+  /// emission, fog and background. Their sum is the picture. With these or with parts of the light,
+  /// ShadeSettings::light_error is ignored, and Shading::kGouraud is refused.
   bool light_groups = false;
   float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
   /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that
   /// the fog hides are drawn too: they look like the scene's background, but hide any other.
   bool alpha = false;
-  /// Also count, for the statistics, the lights that every pixel goes through and those in its range.
+  /// Also count, for the statistics, the lights in every pixel's list and those in its range.
   bool count_lights = false;
-  /// Rows that are rendered at a time, at most; 0: as bandHeight() says. The picture's colours don't depend
-  /// on it, with a light error as long as it is a multiple of kBinSize.
+  /// Rows that are rendered at a time, at most; 0: chosen by the memory that is left. The picture's colours
+  /// don't depend on it; with a light error only if it is a multiple of 64.
   int band_height = 0;
   /// Called after each pass over a band, if set: how many rows are done, of how many, in all passes together.
   std::function<void(int done, int rows)> on_pass = {};
   /// Called once if set and a picture has waited a second for its kernels to be compiled.
   std::function<void()> on_long_compile = {};
+
+  /// Whether `aovs` has this layer.
+  bool wants(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
 };
 
 }  // namespace luciole

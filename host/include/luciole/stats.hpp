@@ -39,7 +39,7 @@ enum class Stage : std::uint8_t {
   kWrite,
 };
 
-/// The stage's name in --stats, bench and scale.
+/// The stage's name in statsJson() and statsCsv().
 const char* stageName(Stage stage);
 
 /// Bounds of the error of light that clusters give (ShadeSettings::light_error), in all channels of all
@@ -50,15 +50,15 @@ struct LightErrorStats {
   std::uint64_t values = 0;
 };
 
-/// What one of several devices did for a picture.
+/// The part of a picture that one of several devices made.
 struct DeviceShare {
   DeviceDescription device = {};
-  std::uint64_t rows = 0;   ///< of the picture that it made
-  double milliseconds = 0;  ///< that it took for them
-  std::string error = {};   ///< why it was left out in the middle; empty: it wasn't
+  std::uint64_t rows = 0;   ///< that it made
+  double milliseconds = 0;  ///< of work on these rows
+  std::string error = {};   ///< why it dropped out; empty: it didn't
 };
 
-/// What a picture cost: the content of --stats.
+/// The statistics of a picture.
 struct Stats {
   std::string command = {};
   DeviceDescription device = {};
@@ -71,37 +71,37 @@ struct Stats {
   std::optional<double> measured_exposure = {};  ///< stops, if the picture's exposure was measured
   std::vector<std::pair<Stage, double>>
       stages;  ///< milliseconds, summed over the samples, in order of first use
-  /// Of the stages, those that ran in threads of their own beside others
+  /// Stages that ran in threads of their own, in parallel to others
   std::vector<Stage> beside = {};
   double began = 0;       ///< when the picture was begun, in milliseconds since the program's start
-  std::string hash = {};  ///< of the picture, see PictureHash; empty: nobody asked
+  std::string hash = {};  ///< SHA-256 of the picture's linear floats, in hexadecimal; empty: not computed
   std::vector<std::pair<std::string, std::uint64_t>> counts = {};
   std::vector<std::pair<std::string, double>> errors = {};  ///< by name, if the command measures any
-  LightErrorStats light_error = {};                         ///< without values where no light was stood for
+  LightErrorStats light_error = {};                         ///< without values if no clusters were used
   /// Bytes of OpenCL buffers for one sample of the largest band, including those in the host's arrays
   std::size_t device_bytes = 0;
   Traffic traffic = {};  ///< of the whole picture, compiling its kernels included
 };
 
-/// Milliseconds of a stage; 0 for one that did not run.
+/// Milliseconds of a stage; 0 if it did not run.
 double stageTime(const Stats& stats, Stage stage);
 
-/// A count of the statistics; 0 for one that isn't there.
+/// A count by its name; 0 if there is none.
 std::uint64_t countOf(const Stats& stats, std::string_view name);
 
-/// The JSON text that --stats writes. ended: when the picture was done, in milliseconds since the program's
-/// start. About time it says:
+/// The statistics as JSON. ended: when the picture was done, in milliseconds since the program's start.
+/// Times:
 /// - stages: how long each took, in milliseconds. Opening the device and compiling kernels run in threads of
 ///   their own beside other stages, so the sum may be more than the whole; "wait for …" is the time that the
-///   picture had to wait for them. wall_milliseconds of a stage: its share of the whole (see ownShare).
+///   picture had to wait for them. wall_milliseconds of a stage: its time, or 0 if it ran beside others.
 /// - picture_milliseconds: the whole, from the picture's beginning to its end. The first picture's beginning
 ///   is the program's start.
-/// - wall_milliseconds: from the program's start to the picture's end (see millisecondsSinceStart).
+/// - wall_milliseconds: from the program's start to the picture's end.
 /// - cold_start_milliseconds: opening the device and compiling the kernels.
 /// - kernels_compiled: how many kernels weren't in the cache: 0 if the start was a warm one, null if the
-///   platform doesn't tell (see kernelsCompiled).
+///   platform doesn't report it, as all but PoCL.
 /// - threads: those that the process has now. device.compute_units: see DeviceDescription.
-/// About memory it says:
+/// Memory:
 /// - peak_bytes: of the process, as the system counts it. device_bytes: see Stats.
 /// - uploaded_bytes, downloaded_bytes, made_bytes: see Traffic.
 std::string statsJson(const Stats& stats, double ended);

@@ -21,17 +21,17 @@ struct MipLevel {
   Texels texels = {};
 };
 
-/// What a texture's numbers mean.
+/// The meaning of a texture's numbers.
 enum class TextureKind : std::uint8_t {
   kColor,
   kNormals,  ///< directions as (x, y, z) · ½ + ½: x to the right, y up in the picture, z out of the surface
-  kBump,     ///< heights, of which makeNormals() makes kNormals; or a picture of normals called so
+  kBump,     ///< heights, which readers turn into kNormals; or normals in a map called a bump map
 };
 
 /// A filtered texture: levels[0] is the picture itself, each next level half the size, down to 1×1.
 /// Never empty once loaded.
 struct Texture {
-  std::string name = {};  ///< for messages: the file's path, or where it lies inside its glTF
+  std::string name = {};  ///< for messages: the file's path, or its place inside a glTF file
   std::vector<MipLevel> levels = {};
   bool alpha_varies = false;  ///< between the texels of levels[0]
   TextureKind kind = TextureKind::kColor;

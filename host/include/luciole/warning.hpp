@@ -4,14 +4,14 @@
 
 namespace luciole {
 
-/// What a file asks for and the picture won't show, or a fault of the file that was mended.
+/// A request of a file that the picture doesn't show, or a fault of the file that was repaired.
 struct Warning {
   std::string text = {};  ///< one line, which begins with the file's name
-  /// The same for warnings that differ in place and value alone, such as "unknown material". Of each kind a
-  /// terminal shows ten at most.
+  /// Equal for warnings that differ in place and value alone: "unknown material". The command line shows ten
+  /// of each kind.
   std::string kind = {};
   /// The file breaks its format's rules, and a value was taken that common viewers take; or a mesh's points
-  /// or lines aren't drawn. --strict makes it an error.
+  /// or lines aren't drawn. An error with LoadSettings::strict.
   bool repaired = false;
 };
 

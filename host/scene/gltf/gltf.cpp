@@ -13,12 +13,12 @@
 #include "base/did_you_mean.hpp"
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
-#include "luciole/pose.hpp"
 #include "scene/gltf/gltf_animation.hpp"
 #include "scene/gltf/gltf_model.hpp"
 #include "scene/gltf/gltf_nodes.hpp"
 #include "scene/gltf/gltf_objects.hpp"
 #include "scene/light_groups.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {
@@ -33,12 +33,12 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
       element(model, model.file.cameras, node.camera, nodePlace(placed.node), "camera");
   const std::string place = fmt::format("cameras[{}]", node.camera);
   const auto leaveOut = [&](const std::string& what) {
-    repaired(model, place, what + "; left out", "camera");
+    warnRepaired(model, place, what + "; left out", "camera");
   };
   Camera camera;
   camera.name = source.name.empty() ? node.name : source.name;
   const std::string fault = attachCamera(placed.to_world, camera);
-  if (!fault.empty()) return leftOut(model, nodePlace(placed.node), fault + "; left out", "camera");
+  if (!fault.empty()) return warnLeftOut(model, nodePlace(placed.node), fault + "; left out", "camera");
   camera.orthographic = source.orthographic;
   camera.far = source.far.value_or(std::numeric_limits<double>::infinity());
   camera.near = source.near.value_or(0);
@@ -47,8 +47,8 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
     if (!source.ymag) return leaveOut("has no ymag");
     if (!(camera.half_height > 0)) return leaveOut("ymag is 0");
     if (*source.ymag < 0)
-      repaired(model, place, fmt::format("ymag is {}, taken for {}", *source.ymag, camera.half_height),
-               "ymag");
+      warnRepaired(model, place, fmt::format("ymag is {}, taken for {}", *source.ymag, camera.half_height),
+                   "ymag");
     if (!source.far) return leaveOut("has no zfar");
     if (!std::isfinite(camera.far) || !(camera.far > std::max(camera.near, 0.0)))
       return leaveOut(fmt::format("zfar is {}, expected more than znear {}", camera.far, camera.near));
@@ -60,7 +60,7 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
     if (!(camera.fov_y > 0 && camera.fov_y < kPi))
       return leaveOut(fmt::format("yfov is {}, expected one between 0 and pi", camera.fov_y));
     if (!(camera.far > std::max(camera.near, 0.0))) {
-      repaired(
+      warnRepaired(
           model, place,
           fmt::format("zfar is {}, expected more than znear {}; taken for infinite", camera.far, camera.near),
           "zfar");
@@ -70,12 +70,13 @@ void addCamera(const GltfModel& model, const PlacedNode& placed, Scene& scene) {
   if (!(camera.near > 0)) {
     const double near = std::isfinite(camera.far) ? kNearOfFar * camera.far : 1e-3;
     const std::string what = source.near ? fmt::format("znear is {}", camera.near) : "has no znear";
-    repaired(model, place, fmt::format("{}, taken for {:.6g}", what, near), "znear");
+    warnRepaired(model, place, fmt::format("{}, taken for {:.6g}", what, near), "znear");
     camera.near = near;
   }
   const char* const type = camera.orthographic ? "orthographic" : "perspective";
   if (source.type != type)
-    repaired(model, place, fmt::format("type is '{}', taken for {}", forMessage(source.type), type), "type");
+    warnRepaired(model, place, fmt::format("type is '{}', taken for {}", forMessage(source.type), type),
+                 "type");
   if (placed.moving >= 0)
     scene.animation.attached_cameras.push_back({static_cast<std::uint32_t>(scene.cameras.size()),
                                                 static_cast<std::uint32_t>(placed.moving), placed.since});
@@ -90,7 +91,7 @@ std::uint32_t groupOf(const GltfModel& model, int node, const GltfLight& light, 
     if (!name) continue;
     const std::string fault = faultOfGroupName(*name);
     if (fault.empty()) return lightGroupNumber(*name, groups, scene);
-    leftOut(model, nodePlace(node), fmt::format("extras.group: {}; left out", fault), "group");
+    warnLeftOut(model, nodePlace(node), fmt::format("extras.group: {}; left out", fault), "group");
   }
   return 0;
 }
@@ -102,20 +103,20 @@ bool setCone(const GltfModel& model, const GltfLight& source, const std::string&
   light.falloff = SpotFalloff::kCone;
   light.cutoff = source.outer_cone;
   if (!(light.cutoff > 0)) {
-    repaired(model, place, fmt::format("outerConeAngle is {}, expected more than 0; left out", light.cutoff),
-             "cone");
+    warnRepaired(model, place,
+                 fmt::format("outerConeAngle is {}, expected more than 0; left out", light.cutoff), "cone");
     return false;
   }
   if (light.cutoff > kPi / 2) {
     // π/2 as a decimal may have been rounded up.
     if (light.cutoff > kPi / 2 + 1e-5)
-      repaired(model, place, fmt::format("outerConeAngle is {}, taken for pi/2", light.cutoff), "cone");
+      warnRepaired(model, place, fmt::format("outerConeAngle is {}, taken for pi/2", light.cutoff), "cone");
     light.cutoff = kPi / 2;
   }
   if (inner < 0 || inner > source.outer_cone) {
-    const double mended = inner < 0 ? 0 : light.cutoff;
-    repaired(model, place, fmt::format("innerConeAngle is {}, taken for {}", inner, mended), "cone");
-    inner = mended;
+    const double repaired = inner < 0 ? 0 : light.cutoff;
+    warnRepaired(model, place, fmt::format("innerConeAngle is {}, taken for {}", inner, repaired), "cone");
+    inner = repaired;
   }
   // Programs write inner = outer for a sharp edge; Light::inner_cone must be below the cutoff.
   light.inner_cone = std::min(inner, light.cutoff * (1 - 1e-6));
@@ -134,22 +135,23 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   Light light;
   glm::vec3 color(1);
   if (!source.color.empty() && source.color.size() != 3)
-    repaired(model, place, fmt::format("color has {} numbers, expected 3", source.color.size()), "color");
+    warnRepaired(model, place, fmt::format("color has {} numbers, expected 3", source.color.size()), "color");
   for (std::size_t i = 0; i < std::min<std::size_t>(source.color.size(), 3); ++i) {
     if (source.color[i] < 0)
-      repaired(model, place, fmt::format("color has {}, taken for 0", source.color[i]), "negative light");
+      warnRepaired(model, place, fmt::format("color has {}, taken for 0", source.color[i]), "negative light");
     color[static_cast<int>(i)] = static_cast<float>(std::max(source.color[i], 0.0));
   }
   if (source.intensity < 0)
-    repaired(model, place, fmt::format("intensity is {}, taken for 0", source.intensity), "negative light");
+    warnRepaired(model, place, fmt::format("intensity is {}, taken for 0", source.intensity),
+                 "negative light");
   light.diffuse = light.specular = color * static_cast<float>(std::max(source.intensity, 0.0) / kPi);
   if (!std::isfinite(light.diffuse.x + light.diffuse.y + light.diffuse.z))
     failGltf(model, place, "color and intensity are too large");
   if (source.type != "directional" && source.type != "point" && source.type != "spot")
-    repaired(model, place,
-             fmt::format("type is '{}', expected point, directional or spot{}", forMessage(source.type),
-                         kind("directional") || kind("point") || kind("spot") ? "" : "; left out"),
-             "light type");
+    warnRepaired(model, place,
+                 fmt::format("type is '{}', expected point, directional or spot{}", forMessage(source.type),
+                             kind("directional") || kind("point") || kind("spot") ? "" : "; left out"),
+                 "light type");
   if (kind("directional")) {
     light.kind = LightKind::kDirectional;
   } else if (kind("point") || kind("spot")) {
@@ -158,7 +160,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
     if (source.range && static_cast<float>(*source.range) > 0)
       light.range = static_cast<float>(*source.range);
     else if (source.range)
-      repaired(model, place, fmt::format("range is {}, taken for infinite", *source.range), "range");
+      warnRepaired(model, place, fmt::format("range is {}, taken for infinite", *source.range), "range");
     if (kind("spot") && !setCone(model, source, place, light)) return;
   } else {
     return;
@@ -166,7 +168,7 @@ void addLight(const GltfModel& model, const PlacedNode& placed, LightGroupNumber
   const std::string fault = attachLight(placed.to_world, light);
   // What moves may have a scale of 0 for a while, and is kept.
   if (placed.moving < 0 && !fault.empty())
-    return leftOut(model, nodePlace(placed.node), fault + "; left out", "light");
+    return warnLeftOut(model, nodePlace(placed.node), fault + "; left out", "light");
   light.group = groupOf(model, placed.node, source, groups, scene);
   const std::string& node_name = model.file.nodes[placed.node].name;
   light.name = node_name.empty() ? source.name : node_name;
@@ -216,8 +218,8 @@ void loadGltf(const std::string& path, Scene& scene, const GltfChoice& choice,
   if (!choice.variant.empty()) model.variant = findVariant(path, scene.variants, choice.variant);
   if (!choice.animation.empty()) model.animation = findAnimation(path, scene.animations, choice.animation);
   for (const std::string& extension : ignoredExtensions(model)) {
-    leftOut(model, "extensionsUsed", fmt::format("'{}' is not supported and left out", forMessage(extension)),
-            "extension");
+    warnLeftOut(model, "extensionsUsed",
+                fmt::format("'{}' is not supported and left out", forMessage(extension)), "extension");
     std::vector<std::string>& all = scene.ignored_extensions;
     if (std::find(all.begin(), all.end(), extension) == all.end()) all.push_back(extension);
   }

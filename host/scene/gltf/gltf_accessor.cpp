@@ -100,7 +100,7 @@ Elements baseElements(const GltfModel& model, int index, int components, const s
   if (gltfComponentSize(accessor.type) == 0)
     failGltf(model, here, fmt::format("componentType {} is not one of glTF's", accessor.type));
   if (accessor.count == 0) {
-    repaired(model, here, "count is 0, expected at least 1", "count 0");
+    warnRepaired(model, here, "count is 0, expected at least 1", "count 0");
     return {{}, 0, 0, accessor.type, components};
   }
   if (accessor.view >= 0)

@@ -24,9 +24,9 @@ Interpolation interpolationOf(const GltfModel& model, const std::string& name, b
   if (name == "STEP") return Interpolation::kStep;
   if (name == "LINEAR") return linear;
   if (name == "CUBICSPLINE") return Interpolation::kCubic;
-  repaired(model, place,
-           fmt::format("interpolation '{}' is none of LINEAR, STEP, CUBICSPLINE", forMessage(name)),
-           "interpolation");
+  warnRepaired(model, place,
+               fmt::format("interpolation '{}' is none of LINEAR, STEP, CUBICSPLINE", forMessage(name)),
+               "interpolation");
   if (equalIgnoringCase(name, "STEP")) return Interpolation::kStep;
   return equalIgnoringCase(name, "CUBICSPLINE") ? Interpolation::kCubic : linear;
 }
@@ -41,10 +41,11 @@ std::vector<std::size_t> orderOfTimes(const GltfModel& model, const std::vector<
     if (!std::isfinite(time)) failGltf(model, place, "a time is not finite");
     if (is_fine && !(time >= 0 && time > before)) {
       is_fine = false;
-      repaired(model, place,
-               before < 0 ? fmt::format("time {}: expected rising times from 0 on", time)
-                          : fmt::format("time {} after {}: expected rising times from 0 on", time, before),
-               "times");
+      warnRepaired(model, place,
+                   before < 0
+                       ? fmt::format("time {}: expected rising times from 0 on", time)
+                       : fmt::format("time {} after {}: expected rising times from 0 on", time, before),
+                   "times");
     }
     before = time;
   }
@@ -56,14 +57,14 @@ std::vector<std::size_t> orderOfTimes(const GltfModel& model, const std::vector<
 }
 
 /// Makes no turn of a quaternion that is 0. Warns of the first one of a sampler whose length isn't 1.
-void mendRotation(const GltfModel& model, const std::string& place, std::size_t key, bool& is_unit,
-                  glm::dvec4& quaternion) {
+void repairRotation(const GltfModel& model, const std::string& place, std::size_t key, bool& is_unit,
+                    glm::dvec4& quaternion) {
   const double length = glm::length(quaternion);
   if (is_unit && !isUnitLength(length)) {
     is_unit = false;
-    repaired(model, place,
-             fmt::format("output {}: a rotation of length {}, expected unit quaternions", key, length),
-             "rotation");
+    warnRepaired(model, place,
+                 fmt::format("output {}: a rotation of length {}, expected unit quaternions", key, length),
+                 "rotation");
   }
   if (!(length > 0)) quaternion = {0, 0, 0, 1};
 }
@@ -113,7 +114,7 @@ std::vector<Curve> readSampler(const GltfModel& model, const GltfKeys& sampler, 
         key.slope_in = vectorAt(3 * i) / frame_rate;
         key.slope_out = vectorAt(3 * i + 2) / frame_rate;
       }
-      if (target.is_rotation) mendRotation(model, place, i, is_unit, key.value);
+      if (target.is_rotation) repairRotation(model, place, i, is_unit, key.value);
       if (interpolation == Interpolation::kSlerp) key.value = glm::normalize(key.value);
       curve.keys.push_back(key);
     }
@@ -127,7 +128,7 @@ std::optional<Target> targetOf(const GltfModel& model, const GltfChannel& channe
   if (path == "translation" || path == "scale") return Target{};
   if (path == "rotation") return Target{.is_rotation = true, .count = 4};
   if (path != "weights") {
-    repaired(
+    warnRepaired(
         model, place,
         fmt::format("path '{}' is none of translation, rotation, scale, weights; left out", forMessage(path)),
         "path");
@@ -136,7 +137,7 @@ std::optional<Target> targetOf(const GltfModel& model, const GltfChannel& channe
   const int mesh = model.file.nodes[std::size_t(channel.node)].mesh;
   const std::size_t count = mesh < 0 ? 0 : targetCount(model, mesh);
   if (count == 0) {
-    repaired(model, place, "moves weights of a node without morph targets; left out", "weights");
+    warnRepaired(model, place, "moves weights of a node without morph targets; left out", "weights");
     return {};
   }
   return Target{.is_weights = true, .count = count};

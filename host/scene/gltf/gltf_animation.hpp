@@ -22,8 +22,8 @@ inline bool movesNode(const NodeCurves& curves) {
 }
 
 /// Reads the animations of a glTF file into curves over frames (frame 1 is time 0, at animation.frame_rate).
-/// Returns the curves of each animated node by its index. Where several run together and two move
-/// the same part of a node, the first one counts. Throws InputError for invalid animations.
+/// Returns the curves of each animated node by its index. If several animations move the same property of a
+/// node, the first one counts. Throws InputError for invalid animations.
 std::map<int, NodeCurves> readGltfAnimations(const GltfModel& model, Animation& animation);
 
 }  // namespace luciole

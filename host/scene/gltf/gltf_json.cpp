@@ -53,7 +53,7 @@ class ObjectReader {
   std::string name() const {
     const GltfJson* found = find("name");
     if (!found || found->is_string()) return text("name");
-    repaired(model_, placeOf("name"), "is no text; left out", "name");
+    warnRepaired(model_, placeOf("name"), "is no text; left out", "name");
     return "";
   }
 
@@ -174,8 +174,8 @@ class ObjectReader {
     const double index = numberOf(value, name);
     if (index != std::floor(index)) fail(name, fmt::format("{}, expected a whole number", index));
     if (index < 0)
-      repaired(model_, placeOf(name), fmt::format("{} is nothing's number; left out", index),
-               "negative index");
+      warnRepaired(model_, placeOf(name), fmt::format("{} is nothing's number; left out", index),
+                   "negative index");
     // One that no file can have is refused where it is looked up.
     return index < 0 ? -1 : index < 1e9 ? static_cast<int>(index) : 1'000'000'000;
   }
@@ -461,10 +461,10 @@ GltfJson parseJson(std::string_view text, const GltfModel& model) {
       throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(error)));
     try {
       GltfJson json = GltfJson::parse(valid);
-      repaired(model, "its JSON",
-               isUtf8(text) ? "has escapes of half a letter; taken for Latin-1 or U+FFFD"
-                            : "is not UTF-8; other bytes are taken for Latin-1",
-               "text");
+      warnRepaired(model, "its JSON",
+                   isUtf8(text) ? "has escapes of half a letter; taken for Latin-1 or U+FFFD"
+                                : "is not UTF-8; other bytes are taken for Latin-1",
+                   "text");
       return json;
     } catch (const GltfJson::exception& second) {
       throw InputError(fmt::format("{}: is not valid JSON: {}", model.path, parserWords(second)));
@@ -479,8 +479,8 @@ void parseGltf(std::string_view text, GltfModel& model) {
     if (text.find_first_not_of(std::string_view("\0 \t\r\n", 5), zero) != std::string_view::npos)
       throw InputError(
           fmt::format("{}: is not valid JSON: byte {} is 0, expected UTF-8", model.path, zero + 1));
-    repaired(model, "its JSON", fmt::format("ends in {} zeros, expected blanks", text.size() - zero),
-             "zeros");
+    warnRepaired(model, "its JSON", fmt::format("ends in {} zeros, expected blanks", text.size() - zero),
+                 "zeros");
     text = text.substr(0, zero);
   }
   checkNesting(model, text);

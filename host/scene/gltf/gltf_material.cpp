@@ -26,7 +26,7 @@ struct Pictures {
   std::map<int, Texture> decoded;
   std::map<int, int> in_scene;
   std::map<int, int> normals_in_scene;
-  std::set<int> told_samplers;  ///< whose faults are known
+  std::set<int> warned_samplers;  ///< whose faults are known
 };
 
 /// The index of a texture's picture; -1 where there is no texture, or none that can be read.
@@ -39,15 +39,15 @@ int imageOf(const GltfModel& model, int texture, const std::string& place) {
 }
 
 /// Warns of a texture whose picture only an extension names that is not supported.
-void tellOfNoSource(const GltfModel& model, int texture) {
+void warnOfNoSource(const GltfModel& model, int texture) {
   const GltfTexture& entry = model.file.textures[std::size_t(texture)];
   std::string extension = "no";
   if (entry.extensions.is_object() && !entry.extensions.empty())
     extension = fmt::format("only a {}", forMessage(entry.extensions.begin().key()));
-  leftOut(model, fmt::format("textures[{}]", texture),
-          fmt::format("has {} picture{}; drawn without", extension,
-                      extension == "no" ? "" : ", which is not supported"),
-          "texture source");
+  warnLeftOut(model, fmt::format("textures[{}]", texture),
+              fmt::format("has {} picture{}; drawn without", extension,
+                          extension == "no" ? "" : ", which is not supported"),
+              "texture source");
 }
 
 Pictures decodePictures(const GltfModel& model, const std::vector<int>& materials, Scene& scene) {
@@ -62,7 +62,7 @@ Pictures decodePictures(const GltfModel& model, const std::vector<int>& material
           glossy.diffuse.texture, glossy.specular_glossiness.texture}) {
       const int image = imageOf(model, texture, gltfMaterialPlace(index));
       if (image >= 0) pictures.decoded.try_emplace(image);
-      if (image < 0 && texture >= 0 && without_source.insert(texture).second) tellOfNoSource(model, texture);
+      if (image < 0 && texture >= 0 && without_source.insert(texture).second) warnOfNoSource(model, texture);
     }
   }
   std::vector<int> images;
@@ -106,8 +106,9 @@ void setSampler(const GltfModel& model, int index, bool tell, TextureUse& use) {
     for (const int one : numbers)
       if (*number == one) return one;
     if (tell)
-      repaired(model, fmt::format("samplers[{}]", index),
-               fmt::format("{} is {}, none of glTF's; taken for the default", member, *number), "sampler");
+      warnRepaired(model, fmt::format("samplers[{}]", index),
+                   fmt::format("{} is {}, none of glTF's; taken for the default", member, *number),
+                   "sampler");
     return 0;
   };
   const auto wrapOf = [&](const std::optional<double>& number, const char* member) {
@@ -146,14 +147,14 @@ TextureUse textureUse(const GltfModel& model, int texture, const std::string& pl
   use.texture = entry->second;
   const int sampler = model.file.textures[std::size_t(texture)].sampler;
   if (sampler < 0) return use;
-  const bool tell = pictures.told_samplers.insert(sampler).second;
+  const bool tell = pictures.warned_samplers.insert(sampler).second;
   if (std::size_t(sampler) < model.file.samplers.size())
     setSampler(model, sampler, tell, use);
   else if (tell)
-    repaired(model, fmt::format("textures[{}]", texture),
-             fmt::format("refers to sampler {}, but the file has {} of them; taken for the default", sampler,
-                         model.file.samplers.size()),
-             "no sampler");
+    warnRepaired(model, fmt::format("textures[{}]", texture),
+                 fmt::format("refers to sampler {}, but the file has {} of them; taken for the default",
+                             sampler, model.file.samplers.size()),
+                 "no sampler");
   return use;
 }
 
@@ -187,7 +188,7 @@ double within(const GltfModel& model, double value, double least, double most, c
               const char* name) {
   const double clamped = std::clamp(value, least, most);
   if (clamped != value)
-    repaired(model, place, fmt::format("{} is {}, taken for {}", name, value, clamped), name);
+    warnRepaired(model, place, fmt::format("{} is {}, taken for {}", name, value, clamped), name);
   return clamped;
 }
 
@@ -196,7 +197,8 @@ glm::dvec4 factor(const GltfModel& model, const std::vector<double>& values, int
                   const std::string& place, const char* name, double most = 1) {
   glm::dvec4 result(otherwise);
   if (!values.empty() && values.size() != std::size_t(count))
-    repaired(model, place, fmt::format("{} has {} numbers, expected {}", name, values.size(), count), name);
+    warnRepaired(model, place, fmt::format("{} has {} numbers, expected {}", name, values.size(), count),
+                 name);
   for (int i = 0; i < count && std::size_t(i) < values.size(); ++i)
     result[i] = within(model, values[std::size_t(i)], 0, most, place, name);
   return result;
@@ -283,9 +285,9 @@ double cutoffOf(const GltfModel& model, const GltfMaterial& source, const std::s
   for (const char* name : {"MASK", "BLEND"})
     if (equalIgnoringCase(source.alpha_mode, name)) mode = name;
   if (source.alpha_mode != mode)
-    repaired(model, place,
-             fmt::format("alphaMode is '{}', taken for {}", forMessage(source.alpha_mode), mode),
-             "alphaMode");
+    warnRepaired(model, place,
+                 fmt::format("alphaMode is '{}', taken for {}", forMessage(source.alpha_mode), mode),
+                 "alphaMode");
   if (mode == std::string_view("BLEND")) return 0.5;
   if (mode == std::string_view("OPAQUE")) return 0;
   return within(model, source.alpha_cutoff, 0, std::numeric_limits<double>::max(), place, "alphaCutoff");

@@ -60,12 +60,12 @@ std::vector<glm::uvec3> readTriangles(const GltfModel& model, const GltfPrimitiv
     ++restarts;
   }
   if (restarts > 0)
-    repaired(model, place,
-             fmt::format("{} of its indices are {}, but it has only {} vertices; taken for ends of runs",
-                         restarts, restart, vertices),
-             "restart");
+    warnRepaired(model, place,
+                 fmt::format("{} of its indices are {}, but it has only {} vertices; taken for ends of runs",
+                             restarts, restart, vertices),
+                 "restart");
   else if (primitive.mode == kGltfTriangles && order.size() % 3 != 0)
-    repaired(model, place, fmt::format("{} corners, expected a multiple of 3", order.size()), "corners");
+    warnRepaired(model, place, fmt::format("{} corners, expected a multiple of 3", order.size()), "corners");
   std::vector<glm::uvec3> triangles;
   auto begin = order.begin();
   while (restarts > 0) {
@@ -87,10 +87,10 @@ std::vector<Vector> readAttribute(const GltfModel& model, const GltfPrimitive& p
   std::vector<Vector> values = readVectors<Vector>(model, found->second, place + "." + name);
   if (values.empty() || values.size() == vertices) return values;
   const bool is_longer = values.size() > vertices;
-  repaired(model, place,
-           fmt::format("{} has {} elements for {} vertices; {}", name, values.size(), vertices,
-                       is_longer ? "the last are left out" : "drawn as if without"),
-           "elements");
+  warnRepaired(model, place,
+               fmt::format("{} has {} elements for {} vertices; {}", name, values.size(), vertices,
+                           is_longer ? "the last are left out" : "drawn as if without"),
+               "elements");
   values.resize(is_longer ? vertices : 0);
   return values;
 }
@@ -133,42 +133,42 @@ void makeFlat(Mesh& mesh) {
   mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
 }
 
-/// Numbers of an attribute that are mended, told in one warning.
-class Mended {
+/// Counts the repaired elements of an attribute, for one warning.
+class RepairCounter {
  public:
   void add(std::size_t element) {
     if (count_++ == 0) first_ = element;
   }
-  /// what: of which `place` has some, and what was done.
-  void tell(const GltfModel& model, const std::string& place, const char* what) const {
+  /// Warns if any element was repaired. what: the elements' fault, and what was done.
+  void warn(const GltfModel& model, const std::string& place, const char* what) const {
     if (count_ > 0)
-      repaired(model, place, fmt::format("{} elements, {} the first, {}", count_, first_, what), what);
+      warnRepaired(model, place, fmt::format("{} elements, {} the first, {}", count_, first_, what), what);
   }
 
  private:
   std::size_t count_ = 0, first_ = 0;
 };
 
-/// Gives vectors with a number that isn't finite a value that is as if they weren't there.
+/// Replaces vectors with a number that isn't finite by `otherwise`, the value of a missing one. Warns.
 template <typename Vector>
 void repairNumbers(const GltfModel& model, const Vector& otherwise, const std::string& place,
                    std::vector<Vector>& vectors) {
-  Mended mended;
+  RepairCounter not_finite;
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     bool is_finite = true;
     for (int c = 0; c < Vector::length(); ++c) is_finite = is_finite && std::isfinite(vectors[i][c]);
     if (is_finite) continue;
     vectors[i] = otherwise;
-    mended.add(i);
+    not_finite.add(i);
   }
-  mended.tell(model, place, "with a number that is not finite; drawn as if without");
+  not_finite.warn(model, place, "with a number that is not finite; drawn as if without");
 }
 
 /// Normalizes normals. Those without a direction become the angle-weighted mean of the faces around them.
 void repairNormals(const GltfModel& model, const std::string& place, Mesh& mesh) {
   // Those of 8 bits are as long as 1 ± √3 / 254.
   constexpr double kMostOff = 0.01;
-  Mended not_unit, without_direction;
+  RepairCounter not_unit, without_direction;
   std::vector<glm::vec3> from_faces;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
     const double length = glm::length(glm::dvec3(mesh.normals[i]));
@@ -181,8 +181,8 @@ void repairNormals(const GltfModel& model, const std::string& place, Mesh& mesh)
       without_direction.add(i);
     }
   }
-  not_unit.tell(model, place, "not of length 1; made so");
-  without_direction.tell(model, place, "without a direction; taken from the faces");
+  not_unit.warn(model, place, "not of length 1; made so");
+  without_direction.warn(model, place, "without a direction; taken from the faces");
 }
 
 /// The material of a primitive in the chosen variant.
@@ -210,8 +210,9 @@ std::vector<glm::vec2> uvsOf(const GltfModel& model, const GltfPrimitive& primit
   const std::string name = fmt::format("TEXCOORD_{}", use.set);
   auto uvs = readAttribute<glm::vec2>(model, primitive, name, vertices, place);
   if (!primitive.attributes.count(name))
-    repaired(model, place,
-             fmt::format("has no {}, which a texture of its material wants; drawn with 0 0", name), "no uvs");
+    warnRepaired(model, place,
+                 fmt::format("has no {}, which a texture of its material wants; drawn with 0 0", name),
+                 "no uvs");
   uvs.resize(vertices, glm::vec2(0));
   repairNumbers(model, glm::vec2(0), place + "." + name, uvs);
   if (use.matrix != glm::dmat2(1) || use.offset != glm::dvec2(0))
@@ -251,19 +252,19 @@ Mesh readPrimitive(const GltfModel& model, const GltfPrimitive& primitive, const
                    RestShape* rest) {
   Mesh mesh;
   if (primitive.mode > kGltfFan || primitive.mode < 0) {
-    repaired(model, place, fmt::format("mode {} is not one of glTF's; left out", primitive.mode), "mode");
+    warnRepaired(model, place, fmt::format("mode {} is not one of glTF's; left out", primitive.mode), "mode");
     return mesh;
   }
   if (primitive.mode < kGltfTriangles) {
-    repaired(model, place,
-             fmt::format("mode {} is of {}, which are not drawn; left out", primitive.mode,
-                         primitive.mode == 0 ? "points" : "lines"),
-             "points and lines");
+    warnRepaired(model, place,
+                 fmt::format("mode {} is of {}, which are not drawn; left out", primitive.mode,
+                             primitive.mode == 0 ? "points" : "lines"),
+                 "points and lines");
     return mesh;
   }
   const auto position = primitive.attributes.find("POSITION");
   if (position == primitive.attributes.end()) {
-    leftOut(model, place, "has no POSITION; left out", "no positions");  // glTF permits it
+    warnLeftOut(model, place, "has no POSITION; left out", "no positions");  // glTF permits it
     return mesh;
   }
   mesh.positions = readVectors<glm::vec3>(model, position->second, place + ".POSITION");
@@ -339,7 +340,7 @@ Mesh readGltfMesh(const GltfModel& model, int index, std::vector<int>& materials
   mesh.name = source.name;
   const std::string place = fmt::format("meshes[{}]", index);
   if (source.primitives.empty())
-    repaired(model, place, "has no primitives, expected at least one", "no primitives");
+    warnRepaired(model, place, "has no primitives, expected at least one", "no primitives");
   for (std::size_t i = 0; i < source.primitives.size(); ++i) {
     const GltfPrimitive& primitive = source.primitives[i];
     const std::string here = fmt::format("{}.primitives[{}]", place, i);

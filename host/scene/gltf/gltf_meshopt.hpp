@@ -4,9 +4,9 @@
 
 namespace luciole {
 
-/// Decodes the buffer views that EXT_meshopt_compression compresses into GltfModel::decoded. Throws
-/// InputError for ones that are cut short, or whose sizes contradict each other or their data; nothing is
-/// allocated for sizes that the data can't hold.
+/// Decodes the buffer views compressed by EXT_meshopt_compression into GltfModel::decoded. Throws InputError
+/// for truncated ones, and for sizes that contradict each other or their data. Checks sizes before it
+/// allocates.
 void decodeMeshopt(GltfModel& model);
 
 }  // namespace luciole

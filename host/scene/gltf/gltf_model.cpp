@@ -94,7 +94,8 @@ std::vector<std::string> variantNames(const GltfModel& model) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const GltfJson& name = memberOf(list[i], "name");
     if (!name.is_string())
-      repaired(model, fmt::format("{}[{}]", place, i), fmt::format("has no name, called '{}'", i), "variant");
+      warnRepaired(model, fmt::format("{}[{}]", place, i), fmt::format("has no name, called '{}'", i),
+                   "variant");
     names.push_back(name.is_string() ? name.get<std::string>() : std::to_string(i));
   }
   return names;
@@ -119,11 +120,13 @@ int indexOf(const GltfJson& value) {
   return number >= 0 && number < 1e9 ? static_cast<int>(number) : -1;
 }
 
-void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind) {
+void warnRepaired(const GltfModel& model, const std::string& place, const std::string& what,
+                  const char* kind) {
   model.warnings->push_back({fmt::format("{}: {}: {}", model.path, place, what), kind, true});
 }
 
-void leftOut(const GltfModel& model, const std::string& place, const std::string& what, const char* kind) {
+void warnLeftOut(const GltfModel& model, const std::string& place, const std::string& what,
+                 const char* kind) {
   model.warnings->push_back({fmt::format("{}: {}: {}", model.path, place, what), kind});
 }
 

@@ -13,16 +13,16 @@
 
 namespace luciole {
 
-/// A parsed glTF file. Its content is not validated: any index in it may be out of range.
+/// A parsed glTF file, not validated: any index in it may be out of range.
 struct GltfModel {
   std::string path;
   std::vector<Warning>* warnings = nullptr;  ///< where warnings go; never null
   GltfFile file{};
   std::deque<std::string> kept{};  ///< the bytes that buffers and images refer to
-  /// What buffer views hold that are compressed, by their index (decodeMeshopt(), decodeDraco()).
+  /// The content of compressed buffer views, by their index (decodeMeshopt(), decodeDraco()).
   std::map<int, std::vector<std::byte>> decoded{};
-  int variant = -1;    ///< which of variantNames() materials are of; −1: the primitives' own
-  int animation = -1;  ///< which of the file's runs; −1: all
+  int variant = -1;    ///< the chosen one of variantNames(); −1: the primitives' default materials
+  int animation = -1;  ///< the only animation that runs; −1: all run
 };
 
 /// The names of the file's variants (KHR_materials_variants); those without one are called by their number,
@@ -58,10 +58,11 @@ const GltfJson& memberOf(const GltfJson& value, const char* name);
 int indexOf(const GltfJson& value);
 
 /// Adds a warning that the file breaks the format's rules: "path: place: what". `kind`: as Warning has it.
-void repaired(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
+void warnRepaired(const GltfModel& model, const std::string& place, const std::string& what,
+                  const char* kind);
 
-/// Adds a warning of what isn't shown though the file may ask for it.
-void leftOut(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
+/// Adds a warning of content that isn't shown.
+void warnLeftOut(const GltfModel& model, const std::string& place, const std::string& what, const char* kind);
 
 /// Throws InputError "path: place: what".
 [[noreturn]] void failGltf(const GltfModel& model, const std::string& place, const std::string& what);

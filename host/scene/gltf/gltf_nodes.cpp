@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "luciole/pose.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {
@@ -32,15 +32,15 @@ LocalTransform localTransform(const GltfModel& model, int index) {
     for (int i = 0; i < 16; ++i) local.matrix[i / 4][i % 4] = node.matrix[std::size_t(i)];
     const glm::dvec4 last_row(local.matrix[0].w, local.matrix[1].w, local.matrix[2].w, local.matrix[3].w);
     if (last_row != glm::dvec4(0, 0, 0, 1)) {
-      repaired(model, nodePlace(index),
-               fmt::format("matrix has {} {} {} {} as last row, taken for 0 0 0 1", last_row.x, last_row.y,
-                           last_row.z, last_row.w),
-               "last row");
+      warnRepaired(model, nodePlace(index),
+                   fmt::format("matrix has {} {} {} {} as last row, taken for 0 0 0 1", last_row.x,
+                               last_row.y, last_row.z, last_row.w),
+                   "last row");
       for (int i = 0; i < 4; ++i) local.matrix[i].w = i == 3 ? 1 : 0;
     }
     if (!node.translation.empty() || !node.rotation.empty() || !node.scale.empty())
-      repaired(model, nodePlace(index), "has a matrix, and parts beside it, which are left out",
-               "matrix and parts");
+      warnRepaired(model, nodePlace(index), "has a matrix, and parts beside it, which are left out",
+                   "matrix and parts");
     return local;
   }
   for (int i = 0; has(node.translation, 3, "translation") && i < 3; ++i)
@@ -49,8 +49,8 @@ LocalTransform localTransform(const GltfModel& model, int index) {
     local.rotation[i] = node.rotation[std::size_t(i)];
   for (int i = 0; has(node.scale, 3, "scale") && i < 3; ++i) local.scale[i] = node.scale[std::size_t(i)];
   if (const double length = glm::length(local.rotation); !isUnitLength(length)) {
-    repaired(model, nodePlace(index),
-             fmt::format("rotation is of length {}, expected a unit quaternion", length), "rotation");
+    warnRepaired(model, nodePlace(index),
+                 fmt::format("rotation is of length {}, expected a unit quaternion", length), "rotation");
     if (!(length > 0)) local.rotation = {0, 0, 0, 1};
   }
   local.matrix = placementByQuaternion(local.translate, local.rotation, local.scale);
@@ -144,10 +144,11 @@ std::vector<int> parentsOf(const GltfModel& model, const std::vector<int>& roots
       if (child < 0 || std::size_t(child) >= nodes.size() || !is_root[child])
         useChild(child, parent);
       else
-        repaired(model, nodePlace(child),
-                 fmt::format("is the scene's and nodes[{}]'s, which is not in the scene; drawn without that",
-                             parent),
-                 "parent");
+        warnRepaired(
+            model, nodePlace(child),
+            fmt::format("is the scene's and nodes[{}]'s, which is not in the scene; drawn without that",
+                        parent),
+            "parent");
     }
   }
   return parents;
@@ -181,9 +182,9 @@ void placeTree(const GltfModel& model, int root, bool shown, bool with_hidden,
     const auto animated = curves.find(next.node);
     if (animated != curves.end() && movesNode(animated->second)) {
       if (local.is_matrix) {
-        repaired(model, nodePlace(next.node),
-                 "has a matrix and is animated; it is taken apart into translation, rotation and scale",
-                 "animated matrix");
+        warnRepaired(model, nodePlace(next.node),
+                     "has a matrix and is animated; it is taken apart into translation, rotation and scale",
+                     "animated matrix");
         takeApart(local);
       }
       MovingNode moving = movingNode(local, animated->second, animation);

@@ -11,12 +11,12 @@
 
 namespace luciole {
 
-/// A node with its place in the world.
+/// A node with its world transform.
 struct PlacedNode {
   int node = 0;
   glm::dmat4 to_world{1.0};  ///< without animation
   int moving = -1;           ///< the node of Animation::nodes that it is attached to; -1: none
-  glm::dmat4 since{1.0};     ///< from the node's space to that of `moving`, or to world space
+  glm::dmat4 since{1.0};     ///< from the node's space to that of `moving`, or to world space if −1
   bool shown = true;         ///< false: only skins may need it
 };
 
@@ -30,7 +30,7 @@ std::string nodePlace(int node);
 /// also those that are, and the trees of joints outside the scene. Nodes that curves move are added to the
 /// animation. Throws InputError unless the nodes form trees (roots without a parent, other nodes with at most
 /// one), and where a transform isn't finite. What nodes have beside a matrix, last rows of matrices and
-/// rotations that aren't unit are mended, each with a warning.
+/// rotations that aren't unit are repaired, each with a warning.
 std::vector<PlacedNode> placedNodes(const GltfModel& model, const std::map<int, NodeCurves>& curves,
                                     Animation& animation);
 

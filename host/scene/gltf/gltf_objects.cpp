@@ -10,11 +10,12 @@
 #include <utility>
 
 #include "base/machine_memory.hpp"
-#include "luciole/pose.hpp"
+#include "scene/deform.hpp"
 #include "scene/gltf/gltf_accessor.hpp"
 #include "scene/gltf/gltf_material.hpp"
 #include "scene/gltf/gltf_mesh.hpp"
 #include "scene/gltf/gltf_rest.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {
@@ -43,7 +44,7 @@ std::vector<glm::dmat4> instancesOf(const GltfModel& model, int index) {
   const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
                            scales = read("SCALE", 3);
   if (count == 0) {
-    repaired(model, place, "has none of TRANSLATION, ROTATION, SCALE; drawn once", "no instances");
+    warnRepaired(model, place, "has none of TRANSLATION, ROTATION, SCALE; drawn once", "no instances");
     return {glm::dmat4(1.0)};
   }
   std::vector<glm::dmat4> instances;
@@ -56,9 +57,10 @@ std::vector<glm::dmat4> instancesOf(const GltfModel& model, int index) {
     for (int c = 0; c < 3 && !scales.empty(); ++c) scale[c] = scales[3 * i + std::size_t(c)];
     if (const double length = glm::length(rotation); !isUnitLength(length)) {
       if (is_unit)
-        repaired(model, place,
-                 fmt::format("instance {}: rotation is of length {}, expected unit quaternions", i, length),
-                 "rotation");
+        warnRepaired(
+            model, place,
+            fmt::format("instance {}: rotation is of length {}, expected unit quaternions", i, length),
+            "rotation");
       is_unit = false;
       if (!(length > 0)) rotation = {0, 0, 0, 1};
     }
@@ -230,8 +232,8 @@ void addGltfObjects(const GltfModel& model, const std::vector<PlacedNode>& nodes
     element(model, model.file.meshes, node.mesh, nodePlace(placed.node), "mesh");
     const bool has_skin = skinOf(model, placed.node) >= 0;
     if (node.skin >= 0 && !has_skin)
-      repaired(model, nodePlace(placed.node),
-               "has a skin, but its mesh no JOINTS_0 and WEIGHTS_0; drawn without", "no joints");
+      warnRepaired(model, nodePlace(placed.node),
+                   "has a skin, but its mesh no JOINTS_0 and WEIGHTS_0; drawn without", "no joints");
     glm::dmat4 frame(1.0);
     const int mesh = isDeformed(source, placed.node) ? addDeforming(source, placed, scene, frame)
                                                      : addRigid(source, node.mesh, scene);

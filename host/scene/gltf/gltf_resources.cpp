@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/base64.hpp"
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
 #include "scene/find_file.hpp"
@@ -50,46 +50,6 @@ std::string withoutEscapes(std::string_view uri) {
     if (low >= 0) i += 2;
   }
   return text;
-}
-
-/// The digits' values; 64: none.
-constexpr std::array<std::uint8_t, 256> base64Values() {
-  std::array<std::uint8_t, 256> values{};
-  values.fill(64);
-  for (std::uint8_t i = 0; i < 26; ++i) {
-    values['A' + i] = i;
-    values['a' + i] = static_cast<std::uint8_t>(26 + i);
-  }
-  for (std::uint8_t i = 0; i < 10; ++i) values['0' + i] = static_cast<std::uint8_t>(52 + i);
-  values['+'] = values['-'] = 62;
-  values['/'] = values['_'] = 63;
-  return values;
-}
-
-/// The bytes of base64's text, in which blanks and ends of lines may lie; nothing where it is no such text.
-std::optional<std::string> fromBase64(std::string_view text) {
-  static constexpr std::array<std::uint8_t, 256> kValues = base64Values();
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
-  int digits = 0;
-  bool has_ended = false;
-  for (const char c : text) {
-    const std::uint8_t value = kValues[static_cast<unsigned char>(c)];
-    if (value < 64 && !has_ended) {
-      bits = bits << 6 | value;
-      if (++digits % 4 != 0) continue;
-      bytes += {static_cast<char>(bits >> 16), static_cast<char>(bits >> 8), static_cast<char>(bits)};
-    } else if (c == '=') {
-      has_ended = true;
-    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\n') {
-      return {};
-    }
-  }
-  if (digits % 4 == 1) return {};
-  if (digits % 4 == 2) bytes += static_cast<char>(bits >> 4);
-  if (digits % 4 == 3) bytes += {static_cast<char>(bits >> 10), static_cast<char>(bits >> 2)};
-  return bytes;
 }
 
 bool isData(std::string_view uri) { return uri.size() >= 5 && equalIgnoringCase(uri.substr(0, 5), "data:"); }
@@ -164,7 +124,7 @@ void findBuffer(std::size_t index, std::string_view binary, const SearchFolders&
   GltfBuffer& buffer = model.file.buffers[index];
   const std::string place = fmt::format("buffers[{}]", index);
   if (buffer.uri && buffer.uri->empty()) {
-    repaired(model, place, "uri is '', taken for none", "empty uri");
+    warnRepaired(model, place, "uri is '', taken for none", "empty uri");
     buffer.uri.reset();
   }
   if (!buffer.uri) {
@@ -196,10 +156,11 @@ void checkLengths(const GltfModel& model) {
     if (!fits(view, buffer.bytes.size()))
       misses[std::size_t(view.buffer)] = true;
     else if (!fits(view, buffer.length))
-      repaired(model, fmt::format("bufferViews[{}]", i),
-               fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
-                           view.length, view.offset, buffer.length),
-               "view past byteLength");
+      warnRepaired(
+          model, fmt::format("bufferViews[{}]", i),
+          fmt::format("{} bytes from {} on reach past its buffer's byteLength {}, but not past its data",
+                      view.length, view.offset, buffer.length),
+          "view past byteLength");
   }
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const GltfBuffer& buffer = buffers[i];
@@ -209,7 +170,7 @@ void checkLengths(const GltfModel& model) {
                       what = fmt::format("byteLength is {}, but there are only {} bytes", buffer.length,
                                          buffer.bytes.size());
     if (misses[i]) failGltf(model, place, what);
-    repaired(model, place, what, "byteLength");
+    warnRepaired(model, place, what, "byteLength");
   }
 }
 
@@ -236,8 +197,8 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
   if (bytes.size() < kHeader + kChunkHeader) fail("it is cut short");
   if (wordAt(bytes, 4) != 2) fail(fmt::format("version {}, expected 2", wordAt(bytes, 4)));
   if (wordAt(bytes, 8) != bytes.size())
-    repaired(model, "its header", fmt::format("length is {}, the file's {}", wordAt(bytes, 8), bytes.size()),
-             "GLB length");
+    warnRepaired(model, "its header",
+                 fmt::format("length is {}, the file's {}", wordAt(bytes, 8), bytes.size()), "GLB length");
   const bool knows_its_end = wordAt(bytes, 8) == bytes.size();
   GltfParts parts;
   bool has_json = false;
@@ -248,15 +209,15 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
     const bool is_json = kind == kJsonChunk && !has_json, is_binary = kind == kBinChunk;
     if (is_json && length > bytes.size() - begin)
       fail(fmt::format("its JSON has {} bytes, but only {} follow", length, bytes.size() - begin));
-    if (is_json && place != kHeader) repaired(model, "its JSON chunk", "is not the first", "GLB order");
+    if (is_json && place != kHeader) warnRepaired(model, "its JSON chunk", "is not the first", "GLB order");
     // One that is cut short is refused where a buffer needs more.
     if (is_json) parts.json = bytes.substr(begin, length);
     if (is_binary && parts.binary.empty()) parts.binary = bytes.substr(begin, length);
     has_json = has_json || is_json;
     place = begin + length;
     if (length % 4 == 0 || place > bytes.size() || !(is_json || is_binary)) continue;
-    repaired(model, is_json ? "its JSON chunk" : "its BIN chunk",
-             fmt::format("{} bytes, expected a multiple of 4", length), "GLB padding");
+    warnRepaired(model, is_json ? "its JSON chunk" : "its BIN chunk",
+                 fmt::format("{} bytes, expected a multiple of 4", length), "GLB padding");
     const std::size_t padded = (place + 3) / 4 * 4;
     if (!startsChunk(bytes, place, kBinChunk) &&
         (startsChunk(bytes, padded, kBinChunk) || padded == bytes.size()))
@@ -264,8 +225,8 @@ GltfParts splitGltf(std::string_view bytes, const GltfModel& model) {
   }
   if (!has_json) fail("it has no JSON chunk");
   if (knows_its_end && place != bytes.size())
-    repaired(model, "its chunks", fmt::format("end at byte {}, the file at {}", place, bytes.size()),
-             "GLB length");
+    warnRepaired(model, "its chunks", fmt::format("end at byte {}, the file at {}", place, bytes.size()),
+                 "GLB length");
   return parts;
 }
 

@@ -13,15 +13,14 @@ struct GltfParts {
   std::string_view json, binary;
 };
 
-/// Cuts a file's bytes into its parts. Lengths, paddings and the order of a GLB's chunks are mended, each
+/// Cuts a file's bytes into its parts. Lengths, paddings and the order of a GLB's chunks are repaired, each
 /// with a warning, and unknown chunks left out. Throws InputError.
 GltfParts splitGltf(std::string_view bytes, const GltfModel& model);
 
-/// Finds what the file's buffers hold: the BIN chunk, data in their URI, or files beside the glTF file or in
-/// the folders `search` (see findFile). Throws InputError where a file isn't found, and where a buffer view
-/// misses data; what no view needs may be missing, with a warning. Finds the files of the images, and the
-/// data of those that have it in their URI; where there is none, GltfImage::file and GltfImage::bytes stay
-/// empty.
+/// Loads the content of the file's buffers: the BIN chunk, data in their URI, or files beside the glTF file
+/// or in the folders `search` (see findFile). Throws InputError if a file isn't found, or a buffer view lacks
+/// data; missing data that no view needs gets a warning. Finds the files of images, or the data in their URI;
+/// of missing images GltfImage::file and GltfImage::bytes stay empty.
 void findResources(std::string_view binary, const std::vector<std::string>& search, GltfModel& model);
 
 }  // namespace luciole

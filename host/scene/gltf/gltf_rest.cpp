@@ -75,9 +75,10 @@ std::vector<InfluenceSet> readInfluenceSets(const GltfModel& model, const GltfPr
         }
       }
     if (negative > 0)
-      repaired(model, fmt::format("{}.{}", place, weights_name),
-               fmt::format("{} are negative, the first of element {}; taken for 0", negative, first_negative),
-               "negative weights");
+      warnRepaired(
+          model, fmt::format("{}.{}", place, weights_name),
+          fmt::format("{} are negative, the first of element {}; taken for 0", negative, first_negative),
+          "negative weights");
     sets.push_back(std::move(set));
   }
 }
@@ -143,9 +144,10 @@ void appendRest(const GltfModel& model, const GltfPrimitive& primitive, const Me
     rest.first_influence.push_back(static_cast<std::uint32_t>(rest.influence_joints.size()));
   }
   if (off > 0)
-    repaired(model, place + ".WEIGHTS_0",
-             fmt::format("{} elements have another sum than 1, {} the first; scaled to it", off, first_off),
-             "sums of weights");
+    warnRepaired(
+        model, place + ".WEIGHTS_0",
+        fmt::format("{} elements have another sum than 1, {} the first; scaled to it", off, first_off),
+        "sums of weights");
 }
 
 void checkInfluences(const GltfModel& model, const RestShape& rest, std::size_t joints,
@@ -178,8 +180,8 @@ void checkWeights(const GltfModel& model) {
   const auto check = [&](const std::vector<double>& weights, int mesh, const char* list, std::size_t index) {
     const std::size_t count = weights.empty() ? 0 : targetCount(model, mesh);
     if (!weights.empty() && weights.size() != count)
-      repaired(model, fmt::format("{}[{}]", list, index),
-               fmt::format("has {} weights for {} morph targets", weights.size(), count), "weights");
+      warnRepaired(model, fmt::format("{}[{}]", list, index),
+                   fmt::format("has {} weights for {} morph targets", weights.size(), count), "weights");
   };
   for (std::size_t i = 0; i < model.file.meshes.size(); ++i) {
     const GltfMesh& mesh = model.file.meshes[i];
@@ -187,9 +189,10 @@ void checkWeights(const GltfModel& model) {
     const std::size_t count = targetCount(model, static_cast<int>(i));
     for (const GltfPrimitive& primitive : mesh.primitives) {
       if (primitive.targets.size() == count) continue;
-      repaired(model, fmt::format("meshes[{}]", i),
-               fmt::format("its primitives have {} and {} morph targets", count, primitive.targets.size()),
-               "targets");
+      warnRepaired(
+          model, fmt::format("meshes[{}]", i),
+          fmt::format("its primitives have {} and {} morph targets", count, primitive.targets.size()),
+          "targets");
       break;
     }
   }

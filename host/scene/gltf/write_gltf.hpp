@@ -14,8 +14,8 @@ struct GltfTriangles {
   std::vector<glm::uvec3> corners;  ///< counter-clockwise from the front
 };
 
-/// A glTF 2.0 asset as it is put together: its JSON, but for what follows from the other members, and the
-/// bytes of its one buffer.
+/// A glTF 2.0 asset under construction: its JSON, without what writeGltf() adds from the other members, and
+/// the bytes of its one buffer.
 struct GltfDocument {
   nlohmann::ordered_json root;
   /// JSON of the nodes, with commas between. As text: there may be a million, and as values they'd take ten
@@ -25,7 +25,7 @@ struct GltfDocument {
   std::string bytes;
 };
 
-/// A length as the file has it: whole millimetres, which take few digits.
+/// A length in metres, rounded to whole millimetres, so that the file needs few digits.
 double millimetres(double metres);
 
 /// Appends a node. Returns its index.
@@ -35,7 +35,8 @@ int addNode(const std::string& json, GltfDocument& document);
 /// `triangles` must have a vertex.
 nlohmann::ordered_json addTriangles(const GltfTriangles& triangles, GltfDocument& document);
 
-/// Appends a PNG's bytes to the buffer, and a texture of it that ends at its edges. Returns the texture.
+/// Appends a PNG's bytes to the buffer, and a texture of it that is clamped at its edges. Returns the
+/// texture.
 int addPngTexture(const std::string& png, GltfDocument& document);
 
 /// Throws InputError unless the path's name ends in .glb or .gltf, or is "-".

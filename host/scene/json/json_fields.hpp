@@ -71,9 +71,9 @@ std::uint64_t readCount(const JsonNode& node, std::uint64_t largest);
 /// A boolean, and a text.
 bool readBool(const JsonNode& node);
 std::string readText(const JsonNode& node);
-/// The path of the file that is named, see findFile(); where there is none, where it was expected first.
+/// The path of the named file, see findFile(). If there is none, the first path that was tried.
 std::string pathOf(const JsonNode& node, const SearchFolders& where);
-/// Why no file can be read there, or "".
+/// The reason why no file can be read at the path, or "".
 std::string faultOfPath(const std::string& path);
 /// The same of a file that exists. Throws InputError.
 std::string readPath(const JsonNode& node, const SearchFolders& where);

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "luciole/pose.hpp"
 #include "scene/json/json_keys.hpp"
 #include "scene/json/light_list.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

@@ -13,8 +13,8 @@ namespace luciole {
 /// false) is checked but not added. groups: of the scene. Throws InputError.
 void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene);
 
-/// Reads an element of "light_fields", and the file that it may name which is looked for as findFile() does.
-/// Throws InputError.
+/// Reads an element of "light_fields", and the file that it may name, found as by findFile(). Throws
+/// InputError.
 LightField readLightField(const JsonNode& node, const SearchFolders& where, LightGroupNumbers& groups,
                           Scene& scene);
 

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "luciole/pose.hpp"
 #include "luciole/primitives.hpp"
 #include "scene/json/json_keys.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/lights/light_field.hpp"
 #include "scene/load_textures.hpp"
 #include "scene/models.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

@@ -7,13 +7,13 @@
 
 namespace luciole {
 
-/// Reads "materials" and "objects" of a Luciole scene, `top` being the whole file, with the meshes and
-/// textures they name, each loaded once however often it is named. Their files are
-/// looked for as findFile() does. Missing pictures are noted in Scene::missing_textures. Throws InputError.
+/// Reads "materials" and "objects" of a Luciole scene with the meshes and textures that they name, each file
+/// once. top: the whole file. Files are found as by findFile(). Missing pictures go into
+/// Scene::missing_textures. Throws InputError.
 void readObjects(const JsonNode& top, const SearchFolders& where, Scene& scene);
 
-/// Reads what a node of "materials" says over a material: what it doesn't say stays. An ambient coefficient
-/// that equals the diffuse one follows it. Textures are added, and not decoded. Throws InputError.
+/// Sets the members of a material that an element of "materials" has. An ambient coefficient that equals the
+/// diffuse one stays equal. Textures are added, not decoded. Throws InputError.
 void readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene, Material& material);
 
 }  // namespace luciole

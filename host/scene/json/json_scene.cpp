@@ -15,11 +15,11 @@
 #include "base/picture_size.hpp"
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
-#include "luciole/pose.hpp"
 #include "scene/json/json_fields.hpp"
 #include "scene/json/json_keys.hpp"
 #include "scene/json/json_light.hpp"
 #include "scene/json/json_object.hpp"
+#include "scene/posing.hpp"
 
 namespace luciole {
 namespace {

@@ -17,15 +17,13 @@ struct SceneFile {
   std::vector<LightField> light_fields;  ///< not among the scene's lights yet
 };
 
-/// Reads a Luciole scene, from standard input for "-", and every mesh and texture it names. Throws InputError
-/// "file: place: what is wrong".
-/// Files that aren't where it says are looked for in `search`, too.
-/// changes: made to what the file says; all of them, or InputError.
+/// Reads a Luciole scene, from standard input for "-", and every mesh and texture that it names. search: more
+/// folders for these files. changes: applied to the file's JSON; throws InputError if one of them can't be.
+/// Throws InputError "file: place: what is wrong".
 SceneFile loadJsonScene(const std::string& path, const std::vector<std::string>& search = {},
                         std::vector<SceneChange> changes = {});
 
-/// The same of a file's text. `file` is its name for messages; the files it names are looked for as
-/// findFile() does.
+/// The same of a file's text. `file` is its name for messages; the files it names are found as by findFile().
 SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where,
                          std::vector<SceneChange> changes = {});
 

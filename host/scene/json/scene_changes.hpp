@@ -8,7 +8,7 @@
 #include "scene/find_file.hpp"
 #include "scene/json/json_fields.hpp"
 
-// Places of a scene that get another value, as --set has them.
+// Changes of single values of a scene, for the option --set.
 namespace luciole {
 
 /// A member of an object by its key; an element of an array by its number, or by its "name".
@@ -17,7 +17,7 @@ struct ChangeStep {
   std::size_t index = JsonNode::kNoIndex;  ///< else the key says it
 };
 
-/// What is set to what.
+/// A value for a place of a scene.
 struct SceneChange {
   std::string text;  ///< as typed
   std::vector<ChangeStep> place;
@@ -25,31 +25,32 @@ struct SceneChange {
   bool is_made = false;
 };
 
-/// Where the PATH of "PATH=VALUE" ends: its = that isn't in a ["name"]. Throws InputError where it is no
-/// PATH, which names the option.
+/// The length of PATH in "PATH=VALUE": up to the first = outside of ["name"]. Throws InputError, naming the
+/// option, if there is none.
 std::size_t placeLength(const std::string& text, const std::string& option);
 
 /// Reads texts PATH=VALUE. A PATH is keys by dots, elements as [0], and keys with dots of their own as
 /// ["a.b"]; VALUE is JSON, or else a text as it stands. Throws InputError.
 std::vector<SceneChange> readChanges(const std::vector<std::string>& texts);
 
-/// Makes the changes inside of a member of "lights" or "cameras", or in its place. Throws InputError for a
-/// place that isn't there.
+/// Applies the changes to a member of "lights" or "cameras" and returns it. Throws InputError for a place
+/// that doesn't exist.
 Json changedMember(const JsonNode& node, std::vector<SceneChange>& changes);
 
-/// Makes the other changes of a scene file, whose lights and cameras may be left out. All but the last key of
-/// a place must be there. Changes of materials that the file doesn't have are left. Throws InputError.
+/// Applies the other changes to a scene file. `top` may lack lights and cameras. All but the last key of a
+/// place must exist. Changes of materials that the file doesn't define are left for changeMaterials(). Throws
+/// InputError.
 void changeScene(Json& top, const std::string& file, std::vector<SceneChange>& changes);
 
-/// Makes changes of a mesh file's materials (materials.NAME.KEY or materials[0].KEY) that aren't made yet.
-/// Textures are decoded. Throws InputError where there is no such material.
+/// Applies the remaining changes to materials of mesh files (materials.NAME.KEY or materials[0].KEY). Decodes
+/// textures. Throws InputError if there is no such material.
 void changeMaterials(std::vector<SceneChange>& changes, const SearchFolders& where, Scene& scene);
 
-/// Makes changes of a mesh file's scene: of lights (lights[0].KEY or lights.NAME.KEY), and of what surrounds
-/// it: ambient, background, fog and lighting. Throws InputError for others.
+/// Applies changes to the scene of a mesh file: to lights (lights[0].KEY or lights.NAME.KEY), ambient,
+/// background, fog and lighting. Throws InputError for others.
 void changeLoaded(std::vector<SceneChange>& changes, Scene& scene);
 
-/// Throws InputError for a change that isn't made: there is nothing in its place. known: what there is.
+/// Throws InputError for a change whose place doesn't exist. known: the names that exist there.
 void refuseChange(const SceneChange& change, const std::string& file, const std::vector<std::string>& known);
 
 }  // namespace luciole

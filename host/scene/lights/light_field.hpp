@@ -23,9 +23,9 @@ enum class FieldShape : std::uint8_t {
   kList,      ///< the first `count` of `list`
 };
 
-/// Point lights spread at random, or a list of any lights. The same seed gives the same lights on every
+/// Point lights at random positions, or a list of any lights. The same seed gives the same lights on every
 /// machine, to the bit, and a smaller count gives the first lights of a larger one. Positions don't depend on
-/// the looks (colours, intensities, ranges).
+/// colours, intensities and ranges.
 struct LightField {
   std::uint64_t count = 0;
   std::uint64_t seed = 0;
@@ -42,9 +42,9 @@ struct LightField {
   std::vector<glm::dvec3>
       points;               ///< curve: two or more. Catmull-Rom, uniform; ends as if it went on straight
   std::vector<Light> list;  ///< at least `count` lights
-  bool as_listed = false;   ///< list: no look but `group` changes its lights, nor does `shadow`
-  // Looks. A list's lights have their own colours, and their own ranges and attenuations unless these give
-  // some.
+  bool as_listed = false;   ///< list: of the members below only `group` changes its lights
+  // Appearance. A list's lights have their own colours, and their own ranges and attenuations unless given
+  // here.
   std::vector<glm::vec3> colors{glm::vec3(1.0f)};  ///< each light picks one; never empty
   glm::vec2 intensity{1.0f};                       ///< multiplies the colour; uniform from x to y
   glm::vec2 range{
@@ -53,10 +53,10 @@ struct LightField {
   /// If > 0, ranges are those of rangeForCutoff instead. With an attenuation of (0,0,1) a light has faded to
   /// this value there.
   double cutoff = 0.0;
-  /// Lights reach everywhere and fade with the square of the distance. Their intensity is such that other
-  /// places of the field (see fieldPlaces()) get as much light on average as from lights with the range of
-  /// kUsualDensity, whatever the count. Then `range`, `attenuation` and `cutoff` must be as here. Not for
-  /// kList.
+  /// Lights have an infinite range and fade with the square of the distance. Their intensity is chosen so
+  /// that other places of the field (see fieldPlaces()) get as much light on average as from lights with the
+  /// range of kUsualDensity, for any count. Then `range`, `attenuation` and `cutoff` must have their
+  /// defaults. Not for kList.
   bool no_range = false;
   bool shadow = false;
   std::uint32_t group = 0;  ///< as in Light
@@ -80,8 +80,8 @@ LightField fieldInBox(FieldShape shape, const Bounds& box);
 /// MachineError where they don't fit into memory. O(count), and O(triangles) for kSurface.
 void expandLightField(const LightField& field, Scene& scene);
 
-/// Places at which a field's density and brightness are measured: those that kMeasuredPlaces lights of the
-/// next seed would have, world space, metres. Not for FieldShape::kList. Throws as expandLightField.
+/// Points at which a field's density and brightness are measured: the positions of kMeasuredPlaces lights of
+/// the next seed, world space, metres. Not for FieldShape::kList. Throws as expandLightField.
 std::vector<glm::dvec3> fieldPlaces(const LightField& field, const Scene& scene);
 
 /// Enough places for a mean that is right to a few percent.

@@ -44,7 +44,7 @@ struct MtlSource {
   }
   /// Says once a file that something is ignored.
   void ignore(const std::string& thing, const std::string& what) const {
-    if (!reading.told.insert({entry.file, thing}).second) return;
+    if (!reading.reported.insert({entry.file, thing}).second) return;
     reading.scene.warnings.push_back({at(what), "ignored " + thing});
   }
 };
@@ -56,8 +56,8 @@ std::string inSmallLetters(std::string_view word) {
   return small;
 }
 
-/// Statements that are read, those that are told to be ignored, and those that are known and change nothing
-/// here.
+/// Statements that are read, those that are reported to be ignored, and those that are known and change
+/// nothing here.
 constexpr std::string_view kRead[] = {"ka",    "kd",   "ks",   "ke",       "ns", "illum", "map_kd", "map_ke",
                                       "map_d", "norm", "bump", "map_bump", "d",  "tr",    "map_ka"};
 constexpr std::string_view kIgnoredMaps[] = {"map_ks", "map_ns",   "disp",    "map_disp", "decal",

@@ -12,9 +12,8 @@ namespace luciole {
 /// make one object only. Returns the index of the first mesh. Throws InputError. Material colours are taken
 /// as linear, vertex colours as sRGB. Missing normals are smooth within a smoothing group, of all objects
 /// together, and everywhere in a file without any "s". Triangles that face away from the file's normals are
-/// reversed. Where the .mtl or a material is missing, there is a warning and the default material is used.
-/// Materials are double-sided. Lines, points and curves are left out. Files that aren't where it says are
-/// looked for in the folders `search`, too (see findFile).
+/// reversed. A missing .mtl or material gets a warning and the default material. Materials are double-sided.
+/// Lines, points and curves are left out. search: more folders for files (see findFile).
 std::uint32_t loadObj(const std::string& path, Scene& scene, const std::vector<std::string>& search = {});
 
 }  // namespace luciole

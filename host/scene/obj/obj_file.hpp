@@ -30,7 +30,7 @@ struct ObjPart {
   bool is_object;    ///< o, rather than g
 };
 
-/// The surfaces of an OBJ file. Every number is finite, every index is in range.
+/// The surfaces of an OBJ file. Every number is finite and every index in range.
 struct ObjFile {
   std::vector<glm::vec3> positions;
   /// One a position, or none at all. As written, but at least 0; those of positions without one are −1.
@@ -46,13 +46,14 @@ struct ObjFile {
   std::vector<Warning> warnings;            ///< what was repaired or left out: one of each kind
 };
 
-/// Reads the statements v, vt, vn, f (fo), o, g, s, usemtl and mtllib in any case, and leaves out all others,
-/// with a warning for elements that are no faces and one for what is unknown. In a file without any "s", all
-/// faces are of smoothing group 1. Texture coordinates that are no numbers are 0, such normals (0,0,0). A
-/// face that refers to a texture coordinate or a normal that isn't there has none, and one of fewer than 3
-/// corners is left out; each kind of these with one warning of its first place and its number. Throws
-/// InputError naming the line where a position is no number or isn't there. O(bytes of the file), on all
-/// cores: parts of about `part_bytes` are read at the same time, and the result doesn't depend on it.
+/// Reads the statements v, vt, vn, f (fo), o, g, s, usemtl and mtllib, in any case. Leaves out all others,
+/// with a warning for elements that aren't faces and one for unknown statements. In a file without any "s",
+/// all faces are of smoothing group
+/// 1. Repairs, with one warning for each kind that has the first line and the count: texture coordinates that
+/// aren't numbers become 0, such normals (0,0,0); a face whose texture coordinate or normal doesn't exist has
+/// none; a face of fewer than 3 corners is left out. Throws InputError naming the line if a position isn't a
+/// number or doesn't exist. O(bytes of the file), on all cores: parts of about `part_bytes` are read in
+/// parallel; the result doesn't depend on it.
 ObjFile readObjFile(const std::string& path, std::size_t part_bytes = std::size_t(1) << 20);
 
 }  // namespace luciole

@@ -25,11 +25,11 @@ std::string_view takeLine(std::string_view& rest);
 /// several lines.
 std::string_view takeStatement(std::string_view& rest, std::string& joined, int& lines);
 
-/// What stands before a comment. The # of "1.#IND", as some programs write what is no number, begins none.
+/// The words before a comment. The # of "1.#IND", which some programs write for NaN, begins none.
 std::string_view withoutComment(std::string_view words);
 
-/// A name without a comment behind it: a # between blanks, or a blank and the end. With `any_word` a word
-/// that begins with # begins one, too, such as that of "wood #brown"; there are names like that.
+/// A name without a trailing comment, which begins with # as a word of its own. With `any_word` any word that
+/// begins with # begins a comment, as in "wood #brown", which may be a name, too.
 std::string_view nameWithoutComment(std::string_view name, bool any_word = false);
 
 /// A name without quotes around it.

@@ -14,7 +14,7 @@ namespace luciole {
 namespace {
 
 /// The largest |x|, |y|, |z| in the tree: its root's boxes hold all of it.
-float4 mostOf(const TriangleTree& tree) {
+float4 largestCoordinates(const TriangleTree& tree) {
   float most[3] = {0, 0, 0};
   const bool is_node = tree.root >= 0;
   const float* rows = is_node ? tree.nodes.data() : tree.blocks.data();
@@ -36,7 +36,7 @@ BeamFrame frameOf(const BeamArguments& arguments) {
   frame.to_tree_x = rowOf(beams.view_to_tree, 0);
   frame.to_tree_y = rowOf(beams.view_to_tree, 1);
   frame.to_tree_z = rowOf(beams.view_to_tree, 2);
-  frame.tree_most = beams.tree_most;
+  frame.tree_most = beams.largest_coordinates;
   frame.tree_scale = beams.tree->scale;
   frame.tree_root = beams.tree->root;
   frame.tiles = uint(arguments.plane_stride / kTilePixels);
@@ -45,8 +45,8 @@ BeamFrame frameOf(const BeamArguments& arguments) {
   return frame;
 }
 
-/// Counts the pairs of pixels and lights of a size that no ray decides. receivers: of each entry, how many of
-/// its pixels the light may reach.
+/// Counts the pairs with lights of a size that are decided without rays. receivers: for each entry the number
+/// of its pixels that the light may reach.
 void countDecided(const PairBits& receivers, std::size_t entries, PairShadows& pairs) {
   for (std::size_t entry = 0; entry < entries; ++entry) {
     if (receivers[entry] == 0) continue;
@@ -67,7 +67,7 @@ void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<co
   beams.tree = std::move(tree);
   beams.masks = std::move(masks);
   beams.view_to_tree = glm::mat3(glm::dmat3(camera.camera_to_world));
-  beams.tree_most = mostOf(*beams.tree);
+  beams.largest_coordinates = largestCoordinates(*beams.tree);
   beams.soft_samples = soft_samples;
   if (soft_samples > 0) beams.samples = makeLightSamples();
   beams.nodes = borrowed(device, beams.tree->nodes);
@@ -82,8 +82,8 @@ void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<co
 }
 
 BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams) {
-  // A light farther away shines from a direction, because a beam's numbers would overflow. One larger than
-  // any distance between places that beams know is as large as that: they are inside it.
+  // A light farther away becomes directional, because a beam's numbers would overflow. Radii are clamped to
+  // the largest distance between points of the tree's space: larger lights contain all points anyway.
   constexpr double kFarthest = 0x1p40;
   const TriangleTree& tree = *beams.tree;
   BeamLight result{};

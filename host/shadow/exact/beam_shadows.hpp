@@ -19,13 +19,13 @@ namespace luciole {
 /// of its tile.
 using PairBits = std::vector<uint, ArrayAllocator<uint>>;
 
-/// What exact shadows need of a picture's scene, on the host and on the device. Buffers are borrowed from the
-/// members before them, so it can't be copied.
+/// The triangle tree and samples of exact shadows, on the host and on the device. Buffers are borrowed from
+/// the members before them, so it can't be copied.
 struct BeamScene {
   std::shared_ptr<const TriangleTree> tree;
   std::shared_ptr<const HoleMasks> masks;  ///< null where no triangle has holes
   glm::mat3 view_to_tree{1.0f};            ///< a rotation
-  float4 tree_most{};                      ///< the largest |x|, |y|, |z| in the tree
+  float4 largest_coordinates{};            ///< the largest |x|, |y|, |z| in the tree
   int soft_samples = 0;                    ///< of each light of a size; 0: none has one
   std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
   Buffer<const float> nodes, blocks;
@@ -46,7 +46,7 @@ struct BeamScene {
 void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
                   std::shared_ptr<const HoleMasks> masks, int soft_samples, BeamScene& beams);
 
-/// A light in the tree's space. casts: whether beams tell of its shadow.
+/// A light in the tree's space. casts: its shadow is computed by beams.
 BeamLight beamLight(const Light& light, bool casts, const BeamScene& beams);
 
 struct BeamArguments {
@@ -64,18 +64,17 @@ struct BeamArguments {
 /// The exact shadows of all entries of the lists; without lists of each tile and light, tile by tile.
 struct PairShadows {
   PairBits lit;
-  PairBits unsure;  ///< rays decide (tracePairs). Empty where no triangle has holes and no light a size
+  PairBits unsure;  ///< to be decided by tracePairs(). Empty if no triangle has holes and no light a size
   /// With lights of a size only, by tracePairs(): for each word of `unsure` the index of its first bit's
   /// share; and the share of the light, in [0, 1], that reaches each unsure pair.
   PairBits first_share;
   std::vector<float, ArrayAllocator<float>> shares;
-  /// Pairs of pixels and lights of a size that no ray decides: all of the light reaches them, or nothing.
+  /// Pairs with lights of a size that are decided without rays: fully lit, or fully dark.
   std::uint64_t soft_lit = 0, soft_dark = 0;
 };
 
 /// Launches kernels/exact/beam_shadows.cl and waits for it. defines: of featuresFor(kForBeams). Throws
-/// MachineError, also
-/// if the words don't fit into memory or there are 2²⁹ entries or more.
+/// MachineError, also if the words don't fit into memory or there are 2²⁹ entries or more.
 PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const BeamArguments& arguments);
 
 }  // namespace luciole

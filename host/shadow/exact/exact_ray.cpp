@@ -22,18 +22,19 @@ struct Lights {
   glm::vec3 start;
   std::span<const float4> place;
   bool at_infinity;
-  /// The way to each from the start, or the direction: rows of kLanes. Lanes without a light are like the
-  /// first one.
-  std::array<Lanes3, kMostSoftSamples / kLanes> ways;
-  std::array<std::uint32_t, kMostSoftSamples / kLanes>
-      left;  ///< bits of those that nothing is known to block
+  /// From the start to each light, or towards a directional one; rows of kLanes. Unused lanes repeat the
+  /// first light.
+  std::array<Lanes3, kMostSoftSamples / kLanes> directions;
+  /// A bit for each light, clear once a triangle is known to block it.
+  std::array<std::uint32_t, kMostSoftSamples / kLanes> unblocked;
   std::size_t rows;
-  glm::dvec3 low, high;            ///< bounds of all ways
+  glm::dvec3 low, high;            ///< bounds of all directions
   glm::dvec3 middle, half_widths;  ///< the same box, rounded outwards
 };
 
-/// The ways are differences of floats, right to 2⁻⁵³ of themselves.
-void see(const glm::vec3& start, std::span<const float4> places, Lights& lights) {
+/// Sets the directions, differences of floats that are right to 2⁻⁵³ of themselves, and their bounds. Sets
+/// all lights unblocked.
+void setLights(const glm::vec3& start, std::span<const float4> places, Lights& lights) {
   lights.start = start;
   lights.place = places;
   lights.at_infinity = places[0].w == 0;
@@ -45,12 +46,12 @@ void see(const glm::vec3& start, std::span<const float4> places, Lights& lights)
     const std::size_t first = row * kLanes, count = std::min<std::size_t>(places.size() - first, kLanes);
     for (std::size_t i = 0; i < kLanes; ++i) {
       const float4& place = places[i < count ? first + i : 0];
-      const glm::dvec3 way = glm::dvec3(place.x, place.y, place.z) - from;
-      for (int axis = 0; axis < 3; ++axis) lights.ways[row][axis][i] = way[axis];
-      lights.low = glm::min(lights.low, way);
-      lights.high = glm::max(lights.high, way);
+      const glm::dvec3 direction = glm::dvec3(place.x, place.y, place.z) - from;
+      for (int axis = 0; axis < 3; ++axis) lights.directions[row][axis][i] = direction[axis];
+      lights.low = glm::min(lights.low, direction);
+      lights.high = glm::max(lights.high, direction);
     }
-    lights.left[row] = (1u << count) - 1;
+    lights.unblocked[row] = (1u << count) - 1;
   }
   lights.low -= 0x1p-50 * glm::abs(lights.low);
   lights.high += 0x1p-50 * glm::abs(lights.high);
@@ -65,25 +66,26 @@ std::uint32_t bitsOf(const std::array<int, kLanes>& lanes) {
   return bits;
 }
 
-/// Bit i: child i's box may meet the hull of the start and the lights: the places start + t·way, 0 ≤ t ≤ 1,
-/// without an end for lights at infinity, of all ways between `low` and `high`. No box that it meets is left
-/// out: t has three roundings on its way (a difference, the reciprocal, the product; `low` and `high` have
-/// theirs outwards), each below 2⁻⁵³ of it. So the greatest t at which the hull has come to a slab, and the
-/// least at which it has left one, are right to 2⁻⁵⁰ of themselves, and 2⁻⁴⁹ is allowed for either.
+/// Bit i is set if child i's box may intersect the hull of the start and the lights: the points
+/// start + t·direction for all directions between `low` and `high`, with 0 ≤ t ≤ 1, or t ≥ 0 for lights at
+/// infinity. This is the slab test of rays, for an interval of directions. It is conservative: t has three
+/// roundings (a difference, the reciprocal, the product; `low` and `high` are rounded outwards), each below
+/// 2⁻⁵³ of it. So the greatest t at which the hull enters a slab, and the least at which it leaves one, are
+/// right to 2⁻⁵⁰ of themselves, and 2⁻⁴⁹ is allowed for either.
 std::uint32_t childrenIn(const Lights& lights, const float* box) {
   Lane enter, leave;
   std::array<int, kLanes> meets;
   enter.fill(0);
   leave.fill(lights.at_infinity ? std::numeric_limits<double>::infinity() : 1);
   for (int i = 0; i < kLanes; ++i) meets[i] = box[i] <= box[kLanes + i];
-  // t·way ≥ bound − from, of boxes' lower bounds and the highest ways; turned around for the others.
-  const auto cut = [&](const float* bounds, double from, double way, double sign) {
-    if (way == 0) {
+  // t·direction ≥ bound − from, for lower bounds and the highest direction; sign = −1 for the opposite.
+  const auto cut = [&](const float* bounds, double from, double direction, double sign) {
+    if (direction == 0) {
       for (int i = 0; i < kLanes; ++i) meets[i] &= sign * (double(bounds[i]) - from) <= 0;
       return;
     }
-    const double inverse = 1 / way;
-    if (sign * way > 0) {
+    const double inverse = 1 / direction;
+    if (sign * direction > 0) {
       for (int i = 0; i < kLanes; ++i) enter[i] = std::max(enter[i], (double(bounds[i]) - from) * inverse);
     } else {
       for (int i = 0; i < kLanes; ++i) leave[i] = std::min(leave[i], (double(bounds[i]) - from) * inverse);
@@ -101,7 +103,7 @@ std::uint32_t childrenIn(const Lights& lights, const float* box) {
   return bitsOf(meets);
 }
 
-/// How far the start lies from the planes of a block's triangles, on the side that their normals point to.
+/// Signed distances of the start from the planes of a block's triangles, positive on the normals' side.
 std::array<float, kLanes> heightsOver(const float* planes, const glm::vec3& start) {
   std::array<float, kLanes> heights;
   for (int i = 0; i < kLanes; ++i)
@@ -116,13 +118,13 @@ float4 cornerOf(const float* block, int corner, int slot) {
   return {rows[0], rows[kLanes], rows[2 * kLanes], 0};
 }
 
-/// The sign of the volume between p, q, r and the light: the side of the light on which these three turn.
+/// The sign of the volume of the tetrahedron of p, q, r and the light.
 int sideOf(const float4& light, bool at_infinity, const float4& p, const float4& q, const float4& r) {
   return at_infinity ? orientation_along(q, r, p, light) : orientation(p, q, r, light);
 }
 
-/// Whether the start lies behind the triangle, which isn't seen edge-on from the light and has that side of
-/// it, in its cone, or on the cone's rim.
+/// Whether the start lies in the cone from the light through the triangle, rim included, and the light is on
+/// the side `side` of the triangle's plane.
 bool isInCone(const float4& light, bool at_infinity, const std::array<float4, 3>& corners,
               const glm::vec3& at, int side) {
   if (sideOf(light, at_infinity, corners[0], corners[1], corners[2]) != side) return false;
@@ -132,9 +134,9 @@ bool isInCone(const float4& light, bool at_infinity, const std::array<float4, 3>
   return true;
 }
 
-/// The weights of the corners where the ray meets the triangle: each is the volume between light, start and
-/// the other two corners, as in kernels/exact/blockers.clh: without loss for a small triangle far from the
-/// light.
+/// Barycentric weights of the point where the ray to a light intersects the triangle. Each is the volume of
+/// the tetrahedron of light, start and the other two corners, as in kernels/exact/blockers.clh, in a form
+/// that doesn't cancel for a small triangle far from the light.
 glm::dvec3 weightsOf(const Lights& lights, const float4& light, const std::array<float4, 3>& corners) {
   const glm::dvec3 place(light.x, light.y, light.z), start(lights.start);
   const glm::dvec3 origin = lights.at_infinity ? start : place,
@@ -146,15 +148,16 @@ glm::dvec3 weightsOf(const Lights& lights, const float4& light, const std::array
     const glm::dvec3 &x = from[(i + 1) % 3], &y = from[(i + 2) % 3];
     weights[i] = glm::dot(glm::cross(x + y, y - x), along);
   }
-  // All have the sign of the largest, or it is rounding's.
+  // A weight of another sign than the sum is rounding.
   const double sum = weights.x + weights.y + weights.z;
   weights = glm::max(sum < 0 ? -weights : weights, glm::dvec3(0));
   const double total = weights.x + weights.y + weights.z;
   return total > 0 ? weights / total : glm::dvec3(1.0 / 3);
 }
 
-/// The signs of determinants, as functions of the way s to a light, with corners relative to the start and
-/// σ the side on which the start is: a triangle of that side blocks if
+/// Determinants whose signs decide whether a triangle blocks a light, as linear functions of the direction s
+/// to the light. Corners a, b, c are relative to the start, and σ is the side of the triangle's plane on
+/// which the start lies. It blocks if
 ///   Mᵢ·s ≥ 0 of each edge xy, Mᵢ = −σ·x × y, and σ·V + ΣMᵢ·s > 0, V = det(a, b, c); without V at infinity.
 /// These are σ times the determinants of kernels/exact/exact_sign.h, expanded at the start. In double
 /// precision, u = 2⁻⁵³, each has products of three factors: of differences that round by u and are at most
@@ -172,8 +175,9 @@ Volumes volumesOf(const Lights& lights, const std::array<float4, 3>& corners, in
   for (int i = 0; i < 3; ++i)
     from[i] = glm::dvec3(corners[i].x, corners[i].y, corners[i].z) - glm::dvec3(lights.start);
   const glm::dvec3 sizes = glm::max(glm::abs(from[0]), glm::max(glm::abs(from[1]), glm::abs(from[2])));
-  const glm::dvec3 ways = glm::max(glm::abs(lights.low), glm::abs(lights.high));
-  const double most = std::max({sizes.x, sizes.y, sizes.z}), far = std::max({ways.x, ways.y, ways.z});
+  const glm::dvec3 lengths = glm::max(glm::abs(lights.low), glm::abs(lights.high));
+  const double most = std::max({sizes.x, sizes.y, sizes.z}),
+               far = std::max({lengths.x, lengths.y, lengths.z});
   for (int i = 0; i < 3; ++i) volumes.edge[i] = -double(side) * glm::cross(from[i], from[(i + 1) % 3]);
   volumes.all = volumes.edge[0] + volumes.edge[1] + volumes.edge[2];
   volumes.start = lights.at_infinity ? 0 : -glm::dot(volumes.edge[0], from[2]);
@@ -182,8 +186,8 @@ Volumes volumesOf(const Lights& lights, const std::array<float4, 3>& corners, in
   return volumes;
 }
 
-/// Bits of a block's triangles that may block a light. heights: of the start over their planes. All numbers
-/// are those of Volumes, and what is within the box of ways is added to their errors.
+/// Bits of a block's triangles that may block any of the lights. heights: of the start over their planes. The
+/// numbers are those of Volumes, with the extent of the directions' box added to their errors.
 std::uint32_t trianglesIn(const Lights& lights, const float* rows, const std::array<float, kLanes>& heights) {
   const glm::dvec3 start(lights.start), middle = lights.middle, half = lights.half_widths;
   const double far =
@@ -217,10 +221,10 @@ std::uint32_t trianglesIn(const Lights& lights, const float* rows, const std::ar
   return bitsOf(may);
 }
 
-/// Takes from the lights that are left those that a triangle blocks. height: of the start over its plane.
+/// Clears the bits of the unblocked lights that a triangle blocks. height: of the start over its plane.
 /// Returns whether it blocks any.
-bool block(const TriangleTree& tree, std::size_t block, int slot, float height, const HoleTest& is_hole,
-           Lights& lights) {
+bool testTriangle(const TriangleTree& tree, std::size_t block, int slot, float height,
+                  const HoleTest& is_hole, Lights& lights) {
   const float* const rows = &tree.blocks[block * kBlockRows * kLanes];
   const std::array<float4, 3> corners{cornerOf(rows, 0, slot), cornerOf(rows, 1, slot),
                                       cornerOf(rows, 2, slot)};
@@ -229,40 +233,40 @@ bool block(const TriangleTree& tree, std::size_t block, int slot, float height, 
       side)
     return false;
   const Volumes volumes = volumesOf(lights, corners, side);
-  const bool hollow = (tree.block_bits[block] >> (16 + slot) & 1) != 0;
+  const bool has_holes = (tree.block_bits[block] >> (16 + slot) & 1) != 0;
   bool any = false;
   for (std::size_t row = 0; row < lights.rows; ++row) {
-    if (lights.left[row] == 0) continue;
-    const Lanes3& ways = lights.ways[row];
+    if (lights.unblocked[row] == 0) continue;
+    const Lanes3& directions = lights.directions[row];
     std::array<int, kLanes> may, certain;
     for (int i = 0; i < kLanes; ++i) {
       const auto along = [&](const glm::dvec3& m) {
-        return m.x * ways[0][i] + m.y * ways[1][i] + m.z * ways[2][i];
+        return m.x * directions[0][i] + m.y * directions[1][i] + m.z * directions[2][i];
       };
       const double edges = std::min({along(volumes.edge[0]), along(volumes.edge[1]), along(volumes.edge[2])});
       const double all = volumes.start + along(volumes.all);
       may[i] = (edges >= -volumes.edge_error) & (all >= -volumes.all_error);
       certain[i] = (edges > volumes.edge_error) & (all > volumes.all_error);
     }
-    const std::uint32_t sure = bitsOf(certain) & lights.left[row];
-    std::uint32_t blocked = bitsOf(may) & lights.left[row];
-    for (std::uint32_t left = hollow ? blocked : blocked & ~sure; left != 0; left &= left - 1) {
-      const int bit = std::countr_zero(left);
+    const std::uint32_t sure = bitsOf(certain) & lights.unblocked[row];
+    std::uint32_t blocked = bitsOf(may) & lights.unblocked[row];
+    for (std::uint32_t unsure = has_holes ? blocked : blocked & ~sure; unsure != 0; unsure &= unsure - 1) {
+      const int bit = std::countr_zero(unsure);
       const float4& light = lights.place[row * kLanes + std::size_t(bit)];
       const bool hides =
           (sure >> bit & 1) != 0 || isInCone(light, lights.at_infinity, corners, lights.start, side);
-      if (!hides || (hollow && is_hole(tree.triangles[block * kLanes + std::size_t(slot)],
-                                       weightsOf(lights, light, corners))))
+      if (!hides || (has_holes && is_hole(tree.triangles[block * kLanes + std::size_t(slot)],
+                                          weightsOf(lights, light, corners))))
         blocked &= ~(1u << bit);
     }
-    lights.left[row] &= ~blocked;
+    lights.unblocked[row] &= ~blocked;
     any |= blocked != 0;
   }
   return any;
 }
 
 /// The same for all triangles of a block.
-bool blockAll(const TriangleTree& tree, std::size_t number, const HoleTest& is_hole, Lights& lights) {
+bool testBlock(const TriangleTree& tree, std::size_t number, const HoleTest& is_hole, Lights& lights) {
   const float* const rows = &tree.blocks[number * kBlockRows * kLanes];
   const glm::vec3& start = lights.start;
   const std::array<float, kLanes> heights = heightsOver(rows + int(kPlaneRows) * kLanes, start);
@@ -275,14 +279,15 @@ bool blockAll(const TriangleTree& tree, std::size_t number, const HoleTest& is_h
   bool any = false;
   for (; bits != 0; bits &= bits - 1) {
     const int slot = std::countr_zero(bits);
-    any |= block(tree, number, slot, heights[slot], is_hole, lights);
+    any |= testTriangle(tree, number, slot, heights[slot], is_hole, lights);
   }
   return any;
 }
 
-std::size_t countLeft(const Lights& lights) {
+std::size_t unblockedCount(const Lights& lights) {
   std::size_t count = 0;
-  for (std::size_t row = 0; row < lights.rows; ++row) count += std::size_t(std::popcount(lights.left[row]));
+  for (std::size_t row = 0; row < lights.rows; ++row)
+    count += std::size_t(std::popcount(lights.unblocked[row]));
   return count;
 }
 
@@ -291,9 +296,9 @@ std::size_t countLeft(const Lights& lights) {
 std::size_t countUnblocked(const TriangleTree& tree, const glm::vec3& start, std::span<const float4> places,
                            const HoleTest& is_hole, std::optional<std::size_t>& likely) {
   Lights lights;
-  see(start, places, lights);
-  const std::optional<std::size_t> asked = likely;
-  if (asked && blockAll(tree, *asked, is_hole, lights) && countLeft(lights) == 0) return 0;
+  setLights(start, places, lights);
+  const std::optional<std::size_t> first = likely;
+  if (first && testBlock(tree, *first, is_hole, lights) && unblockedCount(lights) == 0) return 0;
   std::array<int, kMaxTreeDepth*(kLanes - 1) + 1> stack;
   int size = 0;
   stack[size++] = tree.root;
@@ -301,9 +306,9 @@ std::size_t countUnblocked(const TriangleTree& tree, const glm::vec3& start, std
     const int reference = stack[--size];
     if (reference < 0) {
       const std::size_t number = ~unsigned(reference);
-      if (asked == number || !blockAll(tree, number, is_hole, lights)) continue;
+      if (first == number || !testBlock(tree, number, is_hole, lights)) continue;
       likely = number;
-      if (countLeft(lights) == 0) return 0;
+      if (unblockedCount(lights) == 0) return 0;
       continue;
     }
     const auto node = std::size_t(reference);
@@ -311,7 +316,7 @@ std::size_t countUnblocked(const TriangleTree& tree, const glm::vec3& start, std
          bits &= bits - 1)
       stack[size++] = tree.children[node * kLanes + std::size_t(std::countr_zero(bits))];
   }
-  return countLeft(lights);
+  return unblockedCount(lights);
 }
 
 bool isBlocked(const TriangleTree& tree, const glm::vec3& start, const BeamLight& light,

@@ -16,29 +16,29 @@
 namespace luciole {
 namespace {
 
-/// What masks can address.
+/// The most texels that masks can address.
 constexpr std::size_t kMostTexels = std::size_t(1) << 31;
 /// Limits, in texels, of what kernels/exact/hole_masks.clh may compute a place from.
 constexpr double kMostPlace = 0x1p16, kMostCoordinate = 0x1p20;
 
-/// How much opacities may be off. A lookup mixes texels twice, with three roundings each: it exceeds them by
-/// 6·2⁻²⁴ < 2⁻²¹ of the largest, 1, at most. encodeSrgb is no steeper than 12.92, and adds 4·2⁻²⁴ of its own;
-/// factors round by 2⁻²⁴ each. All is below 2⁻¹⁷ + 2⁻²⁰.
+/// Upper bound of the error of opacities. A lookup interpolates texels twice, with three roundings each, so
+/// it exceeds them by 6·2⁻²⁴ < 2⁻²¹ at most. encodeSrgb has a slope of 12.92 at most and adds 4·2⁻²⁴; factors
+/// round by 2⁻²⁴ each. The sum is below 2⁻¹⁷ + 2⁻²⁰.
 constexpr float kMargin = 0x1p-16f;
 
-/// How much a mask's values may be off: ½, and what the kernel's rounding adds.
+/// Upper bound of the error of a mask's values: ½, plus the kernel's rounding.
 constexpr float kValueMargin = 0.5f + 0x1p-10f;
 
-unsigned char judge(float opacity, float factor, float cutoff) {
+unsigned char classify(float opacity, float factor, float cutoff) {
   const float margin = kMargin * std::max(1.0f, factor);
   return opacity >= cutoff + margin ? kSolid : opacity < cutoff - margin ? kHole : kMixed;
 }
 
-/// How the opacity of a material depends on where one looks.
+/// How the opacity of a material varies over surfaces.
 struct MaterialHoles {
   unsigned char untextured = kMixed;  ///< on meshes without uvs
-  unsigned char all = kMixed;         ///< on others, if it is the same all over
-  const TextureUse* map = nullptr;    ///< what it varies by, if it has a mask
+  unsigned char all = kMixed;         ///< on others, if it is constant
+  const TextureUse* map = nullptr;    ///< the map of its mask; null: it has none
   int channel = 0;                    ///< of the map: 3, or 0 for the code of a grey one
   float factor = 0;                   ///< multiplies the map
   float solid_from = std::numeric_limits<float>::infinity(), hole_to = -solid_from;  ///< as HoleTriangle
@@ -48,7 +48,7 @@ struct MaterialHoles {
 MaterialHoles holesOf(const Scene& scene, const Material& material) {
   MaterialHoles holes;
   const float cutoff = material.alpha_cutoff;
-  holes.untextured = judge(material.alpha, material.alpha, cutoff);
+  holes.untextured = classify(material.alpha, material.alpha, cutoff);
   holes.factor = material.alpha;
   if (material.diffuse_map.texture >= 0) {
     const Texture& diffuse = scene.textures[std::size_t(material.diffuse_map.texture)];
@@ -65,7 +65,7 @@ MaterialHoles holesOf(const Scene& scene, const Material& material) {
   }
   // Masks are made for texels that are mixed.
   if (holes.map && holes.map->nearest_magnified) return holes.map = nullptr, holes;
-  if (!holes.map) holes.all = judge(holes.factor, holes.factor, cutoff);
+  if (!holes.map) holes.all = classify(holes.factor, holes.factor, cutoff);
   return holes;
 }
 
@@ -74,14 +74,14 @@ float valueOf(int code, int channel) {
   return channel == 3 ? float(code) / 65535.0f : linearOfSrgb16()[std::size_t(code)];
 }
 
-/// The first of the codes 0 to 65535 for which `is` doesn't hold, which holds for all before it and none
-/// after; 65536 if it holds for all.
-template <class Is>
-int firstWithout(const Is& is) {
+/// The first of the codes 0 to 65535 for which `holds` is false; 65536 if there is none. `holds` must be true
+/// for all codes before it and false for all after it.
+template <class Holds>
+int firstFailing(const Holds& holds) {
   int first = 0, end = 65536;
   while (first < end) {
     const int middle = (first + end) / 2;
-    if (is(middle))
+    if (holds(middle))
       first = middle + 1;
     else
       end = middle;
@@ -91,12 +91,12 @@ int firstWithout(const Is& is) {
 
 /// Sets solid_from and hole_to: the opacity grows with the code.
 void setThresholds(float cutoff, MaterialHoles& holes) {
-  const auto verdictOf = [&](int code) {
+  const auto classOf = [&](int code) {
     const float value = valueOf(code, holes.channel);
-    return judge(holes.factor * (holes.channel == 3 ? value : encodeSrgb(value)), holes.factor, cutoff);
+    return classify(holes.factor * (holes.channel == 3 ? value : encodeSrgb(value)), holes.factor, cutoff);
   };
-  const int solid = firstWithout([&](int code) { return verdictOf(code) != kSolid; });
-  const int holed = firstWithout([&](int code) { return verdictOf(code) == kHole; });
+  const int solid = firstFailing([&](int code) { return classOf(code) != kSolid; });
+  const int holed = firstFailing([&](int code) { return classOf(code) == kHole; });
   if (solid < 65536) holes.solid_from = 255.0f * valueOf(solid, holes.channel) + kValueMargin;
   if (holed > 0) holes.hole_to = 255.0f * valueOf(holed - 1, holes.channel) - kValueMargin;
 }
@@ -152,7 +152,7 @@ std::vector<std::atomic<bool>> usedMaterials(const Scene& scene) {
 }
 
 /// Fills the masks of all materials in use that have one.
-std::vector<MaterialHoles> judgeMaterials(const Scene& scene, AlignedArray<unsigned char>& texels) {
+std::vector<MaterialHoles> classifyMaterials(const Scene& scene, AlignedArray<unsigned char>& texels) {
   const std::vector<std::atomic<bool>> used = usedMaterials(scene);
   std::vector<MaterialHoles> all(scene.materials.size());
   std::size_t count = 0;
@@ -194,16 +194,16 @@ std::vector<char> opaqueColors(const Scene& scene) {
   return opaque;
 }
 
-/// A coordinate of a triangle's corners on a mask, in texels: of corner a, and from there to b and to c.
-struct Places {
+/// A texture coordinate of a triangle, in texels of a mask: at corner a, and the differences to b and to c.
+struct MaskCoordinates {
   double a, ab, ac;
   double largest;  ///< |coordinate|, or infinity if one isn't finite
 };
 
-Places placesOf(const std::array<double, 3>& uv, int size, Wrap wrap) {
+MaskCoordinates maskCoordinates(const std::array<double, 3>& uv, int size, Wrap wrap) {
   const std::array<double, 3> at{uv[0] * size, uv[1] * size, uv[2] * size};
   const double period = wrap == Wrap::kRepeat ? size : 2.0 * size;
-  Places places{at[0], at[1] - at[0], at[2] - at[0], 0};
+  MaskCoordinates places{at[0], at[1] - at[0], at[2] - at[0], 0};
   if (wrap != Wrap::kClampToEdge) places.a -= period * std::floor(at[0] / period);
   for (const double place : at)
     places.largest = std::max(places.largest, std::isfinite(place) ? std::abs(place) : INFINITY);
@@ -216,10 +216,11 @@ HoleTriangle holeTriangle(const Scene& scene, const Mesh& mesh, const glm::uvec3
   if (!holes.map) return result;
   const MipLevel& mip = scene.textures[std::size_t(holes.map->texture)].levels.front();
   const auto along = [&](int axis, int size, Wrap wrap) {
-    return placesOf({mesh.uvs[corners[0]][axis], mesh.uvs[corners[1]][axis], mesh.uvs[corners[2]][axis]},
-                    size, wrap);
+    return maskCoordinates(
+        {mesh.uvs[corners[0]][axis], mesh.uvs[corners[1]][axis], mesh.uvs[corners[2]][axis]}, size, wrap);
   };
-  const Places x = along(0, mip.width, holes.map->wrap_u), y = along(1, mip.height, holes.map->wrap_v);
+  const MaskCoordinates x = along(0, mip.width, holes.map->wrap_u),
+                        y = along(1, mip.height, holes.map->wrap_v);
   const double largest = std::max(x.largest, y.largest);
   if (largest > kMostCoordinate) return result;
   const double extent = std::max({1.0, std::abs(x.ab), std::abs(x.ac), std::abs(y.ab), std::abs(y.ac)});
@@ -249,7 +250,7 @@ static_assert(int(Wrap::kRepeat) == kWrapRepeat && int(Wrap::kMirroredRepeat) ==
 
 HoleMasks makeHoleMasks(const Scene& scene, const TriangleTree& tree) {
   HoleMasks masks;
-  const std::vector<MaterialHoles> materials = judgeMaterials(scene, masks.texels);
+  const std::vector<MaterialHoles> materials = classifyMaterials(scene, masks.texels);
   const std::vector<char> opaque = opaqueColors(scene);
   const PlacedTriangles placed = placeTriangles(scene, tree.origin, tree.scale);
   struct Place {

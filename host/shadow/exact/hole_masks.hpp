@@ -8,16 +8,15 @@
 
 namespace luciole {
 
-/// Where triangles with holes are solid and where they aren't, as far as that is known without a lookup: see
-/// kernels/exact/hole_masks.clh.
+/// Textures that classify points of triangles with holes as solid, hole or unknown, without an exact lookup:
+/// see kernels/exact/hole_masks.clh.
 struct HoleMasks {
-  /// Of each mask its rows: 255 times each texel's alpha, or linear red where a grey map's code is the
-  /// opacity.
+  /// The rows of each mask: 255 times each texel's opacity, alpha or the code of a grey map.
   AlignedArray<unsigned char> texels;
   AlignedArray<HoleTriangle> triangles;  ///< of the bits of holes in block_bits, by block and slot
   AlignedArray<uint> first_triangle;     ///< of each block
-  /// TriangleTree::block_bits. Without the bits of triangles that are hole all over, and without the bits of
-  /// holes of those that are solid all over.
+  /// TriangleTree::block_bits, but with unused slots for triangles that are holes everywhere, and without the
+  /// bits of holes for those that are solid everywhere.
   AlignedArray<uint> block_bits;
 };
 

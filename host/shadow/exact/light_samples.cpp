@@ -36,7 +36,7 @@ std::uint32_t hashed(std::uint32_t bits) {
 std::vector<LightSample> makeLightSamples() {
   std::vector<LightSample> samples(kLightSamples);
   for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    // Amid the squares of the finest grid.
+    // In the middle of the cells of the finest grid.
     const double angle = (secondDimension(i) + 0.5) / kLightSamples * 2 * std::numbers::pi;
     samples[i] = {float((reversed(i) + 0.5) / kLightSamples), float(std::cos(angle)), float(std::sin(angle))};
   }
@@ -75,7 +75,8 @@ bool placeSamples(const BeamLight& light, const glm::vec3& start, std::span<cons
     if (directional) {
       at = cosine_to * axis + sine_to * across;
     } else {
-      // From the middle: the ray passes it at `beside`, and enters the sphere `before` that.
+      // `beside`: the distance of the ray from the centre; `before`: from there back to where it enters the
+      // sphere.
       const double beside = distance * sine_to,
                    before = std::sqrt(std::max(size * size - beside * beside, 0.0));
       at = place - (beside * sine_to + before * cosine_to) * axis +

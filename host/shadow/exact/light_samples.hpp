@@ -8,15 +8,15 @@
 
 namespace luciole {
 
-/// A place on what is seen of a light of a size, by solid angle from its middle (share 0) to its rim (1), at
-/// an angle.
+/// A sample of the disc that a light of a size shows, in polar coordinates: `share` is the share of the solid
+/// angle inside its circle, 0 at the middle and 1 at the rim; cosine and sine are those of its azimuth.
 struct LightSample {
   float share, cosine, sine;
 };
 
-/// kLightSamples places, of which every run of 2ᵐ, from a multiple of it on, is spread as evenly as can be: a
-/// (0, m, 2)-net in base 2 (H. Niederreiter 1987), by I. Sobol's first two dimensions (1967). So runs of
-/// `samples` each are patterns for points, and those of many points together fill what the patterns leave.
+/// The first kLightSamples points of I. Sobol's sequence (1967) in two dimensions. Each run of 2ᵐ of them
+/// that begins at a multiple of 2ᵐ is a (0, m, 2)-net in base 2 (H. Niederreiter 1987). So a run of `samples`
+/// is a pattern of low discrepancy, and the patterns of many points together are, too.
 std::vector<LightSample> makeLightSamples();
 inline constexpr int kLightSamples = 1 << 16;
 /// Samples of a light from a point, at most.
@@ -28,10 +28,10 @@ inline constexpr int kMostSoftSamples = 1024;
 std::span<const LightSample> patternOf(std::span<const LightSample> all, int samples, const glm::vec3& start,
                                        std::uint32_t light);
 
-/// Where a light of a size has its samples, as seen from a point: as BeamLight::place, on the near side of
-/// its sphere, or a direction to a directional light. They are spread evenly over the cone in which the light
-/// is seen, by solid angle. `to` has the length of `pattern`. Returns false where the point is inside the
-/// light; then all of it is visible.
+/// Sets the samples of a light of a size for a point: positions on the near side of its sphere, or directions
+/// to a directional light, as BeamLight::place. They are uniform by solid angle in the cone in which the
+/// light is seen. `to` has the length of `pattern`. Returns false if the point is inside the light: then all
+/// of it is visible.
 bool placeSamples(const BeamLight& light, const glm::vec3& start, std::span<const LightSample> pattern,
                   std::span<float4> to);
 

@@ -58,14 +58,13 @@ HostLists downloadLists(OpenedDevice& device, const LightLists& lists, std::size
   return result;
 }
 
-/// Bits of a word's pixels that lie in an entry's squares. Others are never shaded with its light.
+/// Bits of a word's pixels in an entry's squares. Other pixels are never shaded with its light.
 uint listedPixels(uint squares, std::size_t word) {
   const uint of_word = squares >> SQUARE_OF_PIXEL(word * 32);
   return ((of_word & 1) != 0 ? 0xffffu : 0) | ((of_word & 2) != 0 ? 0xffff0000u : 0);
 }
 
-/// Leaves of the unsure pairs those that shading asks for, and says where the share of each word's first one
-/// goes. Returns the number of shares.
+/// Clears the bits of unsure pairs that aren't shaded, and sets first_share. Returns the number of shares.
 std::size_t placeShares(const HostLists& lists, std::size_t tiles, PairShadows& shadows) {
   std::vector<std::size_t> first(tiles + 1);
   const auto forWords = [&](std::size_t tile, const auto& word_of_entry) {
@@ -95,7 +94,7 @@ std::size_t placeShares(const HostLists& lists, std::size_t tiles, PairShadows& 
   return first[tiles];
 }
 
-/// What pairs share on a thread.
+/// The state of a thread.
 struct Tracer {
   const BeamScene& beams;
   const LightSet& lights;
@@ -104,7 +103,7 @@ struct Tracer {
   std::array<float4, kMostSoftSamples> places{};
 
   /// The share of a light, by its index on the device, that reaches a start point.
-  float visible(const glm::vec3& start, std::uint32_t index, TracedPairs& traced) {
+  float visibility(const glm::vec3& start, std::uint32_t index, TracedPairs& traced) {
     const BeamLight& light = lights.beam_lights[index];
     ++traced.pairs;
     std::span<float4> to(places.data(), 1);
@@ -146,7 +145,7 @@ TracedPairs tracePairs(OpenedDevice& device, const Scene& scene, const BeamScene
         for (uint left = shadows.unsure[at]; left != 0; left &= left - 1) {
           const int bit = std::countr_zero(left);
           const std::size_t pixel = tile * kTilePixels + word * 32 + std::size_t(bit);
-          const float visible = tracer.visible(startPoint(beams, gbuffer, pixel), light, traced[tile]);
+          const float visible = tracer.visibility(startPoint(beams, gbuffer, pixel), light, traced[tile]);
           if (soft)
             shadows.shares[share++] = visible;
           else if (visible > 0)

@@ -5,12 +5,6 @@
 
 namespace luciole {
 
-std::uint64_t countTriangles(const Scene& scene) {
-  std::uint64_t count = 0;
-  for (const Object& object : scene.objects) count += scene.meshes[object.mesh].triangles.size();
-  return count;
-}
-
 PlacedTriangles placeTriangles(const Scene& scene, const glm::dvec3& origin, double scale) {
   PlacedTriangles placed{scene, origin, scale, {0}};
   for (const Object& object : scene.objects)

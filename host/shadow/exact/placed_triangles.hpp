@@ -17,9 +17,6 @@ struct PlacedTriangles {
   std::vector<std::uint32_t> first;  ///< of each object its first triangle, and then the count of all
 };
 
-/// Triangles of all objects.
-std::uint64_t countTriangles(const Scene& scene);
-
 /// Places at most 2³² − 1 triangles.
 PlacedTriangles placeTriangles(const Scene& scene, const glm::dvec3& origin, double scale);
 

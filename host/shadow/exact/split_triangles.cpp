@@ -14,7 +14,7 @@ namespace luciole {
 namespace {
 
 constexpr std::uint32_t kMostBins = 32;
-/// Triangles that a task takes. Sets of fewer are divided by one thread.
+/// Triangles of a task. Smaller sets are divided by one thread.
 constexpr std::uint32_t kChunk = 1 << 14;
 
 using QuadInt = std::int32_t __attribute__((vector_size(16)));
@@ -27,9 +27,9 @@ struct SplitBins {
 /// Twice the centre of a box.
 Quad centreOf(const TriangleBox& box) { return box.low - box.minus_high; }
 
-/// Which bin a centre c falls into: the whole part of (c − low) · scale, on each axis. That is less than
-/// `count`, as the three roundings on the way add less than what 1 − 2⁻²⁰ leaves free. Axes on which centres
-/// lie too close have one bin.
+/// Maps a centre c to a bin on each axis: ⌊(c − low) · scale⌋. That is less than `count`: `scale` has a
+/// factor 1 − 2⁻²⁰, which exceeds the three roundings. An axis on which all centres lie too close has one
+/// bin.
 struct SplitGrid {
   std::uint32_t count;
   Quad low, scale;
@@ -95,7 +95,7 @@ void findSplit(const SplitGrid& grid, const SplitBins& bins, int axis, Split& be
   const auto& box = bins.box[axis];
   const auto& count = bins.count[axis];
   std::array<QuadBox, kMostBins> behind;
-  std::array<float, kMostBins> cost;  // of what lies behind bin i
+  std::array<float, kMostBins> cost;  // of the bins after bin i
   QuadBox sum;
   std::uint32_t n = 0;
   for (std::uint32_t i = grid.count - 1; i > 0; --i) {

@@ -10,13 +10,13 @@
 namespace luciole {
 namespace {
 
-/// From this many nodes above it on, a node's triangles are divided in halves. A half of b blocks has at most
-/// ⌈b/2⌉, and the largest of the parts is divided first, so a child has at most ⌈b/16⌉. 2²⁷ triangles are 2²³
-/// blocks, and 6 levels divide them into single ones.
+/// From this depth on a node's triangles are divided in halves, which bounds the depth. A half of b blocks
+/// has at most ⌈b/2⌉, and the largest part is divided first, so a child has at most ⌈b/16⌉. 2²⁷ triangles are
+/// 2²³ blocks, and 6 levels divide them into single ones.
 constexpr int kHalvingDepth = 24;
 static_assert(kHalvingDepth + 6 <= kMaxTreeDepth);
 
-/// Nodes with fewer triangles are grown by one thread.
+/// Nodes with fewer triangles are built by one thread.
 constexpr std::uint32_t kTask = 1 << 12;
 
 /// Where a child's triangles lie, as in TriangleSet, and the node that divides them if they aren't a block.
@@ -31,9 +31,9 @@ struct Branch {
   std::array<Child, kTreeWidth> children;
 };
 
-/// Whether b rather than a is divided next: the one whose box is met more often; in halves, the larger.
-/// Blocks never are.
-bool comesBefore(const TriangleSet& a, const TriangleSet& b, bool halving) {
+/// Whether b rather than a is divided next: the one of larger surface area, which more rays hit; in halves,
+/// of more triangles. Single blocks are never divided.
+bool isSplitFirst(const TriangleSet& a, const TriangleSet& b, bool halving) {
   if (a.size() <= kTreeWidth || b.size() <= kTreeWidth || halving) return a.size() < b.size();
   const float area_a = halfArea(a.box), area_b = halfArea(b.box);
   return area_a != area_b ? area_a < area_b : a.size() < b.size();
@@ -46,13 +46,13 @@ std::unique_ptr<Branch> grow(const TriangleSet& all, int depth, TriangleBoxes (&
   while (count < kTreeWidth) {
     const auto largest =
         std::max_element(sets.begin(), sets.begin() + count,
-                         [&](const auto& a, const auto& b) { return comesBefore(a, b, halving); });
+                         [&](const auto& a, const auto& b) { return isSplitFirst(a, b, halving); });
     if (largest->size() <= kTreeWidth) break;
     std::tie(*largest, sets[count]) =
         halving ? splitInHalves(*largest, arrays) : splitByArea(*largest, arrays);
     ++count;
   }
-  // A walk takes the last child first: blocks before nodes, as they may settle at once what it asks.
+  // A walk visits the last child first: blocks before nodes, because a block may end the walk.
   std::stable_sort(sets.begin(), sets.begin() + count,
                    [](const TriangleSet& a, const TriangleSet& b) { return a.size() > b.size(); });
   auto branch = std::make_unique<Branch>();
@@ -81,7 +81,7 @@ void addCounts(const Child& child, Counts& counts) {
   for (int i = 0; i < child.branch->count; ++i) addCounts(child.branch->children[i], counts);
 }
 
-/// Numbers nodes and blocks in the order of a walk that goes to the first child first.
+/// Numbers nodes and blocks depth first.
 int number(const Child& child, TriangleTree& tree, Counts& next, std::vector<const Child*>& blocks) {
   if (!child.branch) {
     blocks[next.blocks] = &child;

@@ -5,8 +5,9 @@
 
 namespace luciole {
 
-/// Divides triangles by their boxes, at least one: fills `children`, `triangles`, the used bits of
-/// `block_bits`, and `root`. `boxes` is used up. No way from the root has more than kMaxTreeDepth nodes.
+/// Builds the tree's structure from the boxes of one triangle or more: fills `children`, `triangles`, the
+/// used bits of `block_bits`, and `root`. Consumes `boxes`. No path from the root has more than kMaxTreeDepth
+/// nodes.
 void growTopology(TriangleBoxes boxes, TriangleTree& tree);
 
 }  // namespace luciole

@@ -9,6 +9,7 @@
 
 #include "base/machine_memory.hpp"
 #include "luciole/error.hpp"
+#include "scene/count_triangles.hpp"
 #include "shadow/exact/placed_triangles.hpp"
 #include "shadow/exact/triangle_topology.hpp"
 
@@ -68,7 +69,7 @@ TriangleBoxes boxesOf(const PlacedTriangles& placed) {
   return boxes;
 }
 
-/// Normal and offset; all 0 where the corners, exact or rounded, have no orientation or not the same plane.
+/// Normal and offset; all 0 if the exact or the rounded corners are collinear, or have opposite orientations.
 glm::vec4 planeOf(const std::array<glm::dvec3, 3>& exact, const std::array<glm::vec3, 3>& rounded) {
   const glm::dvec3 normal = glm::cross(exact[1] - exact[0], exact[2] - exact[0]);
   const glm::dvec3 a = rounded[0];
@@ -148,7 +149,7 @@ bool isPlacedFor(const Scene& scene, const glm::dvec3& origin, const TriangleTre
   return tree.origin == origin && tree.scale == scaleFor(scene, origin);
 }
 
-double areaOfBoxes(const TriangleTree& tree) {
+double boxArea(const TriangleTree& tree) {
   double area = 0;
   for (std::size_t i = 0; i < tree.children.size(); ++i) {
     if (tree.children[i] == 0) continue;
@@ -168,7 +169,7 @@ void refitTriangleTree(const Scene& scene, const glm::dvec3& origin, TriangleTre
   std::vector<FloatBox> block_boxes(tree.block_bits.size());
   tbb::parallel_for(std::size_t(0), block_boxes.size(),
                     [&](std::size_t i) { block_boxes[i] = fillBlock(placed, i, tree); });
-  // One thread does: there are some hundred times as many triangles as nodes.
+  // By one thread: there are a hundred times as many triangles as nodes.
   std::vector<FloatBox> node_boxes(tree.children.size() / kTreeWidth);
   for (std::size_t node = node_boxes.size(); node-- > 0;) {
     for (int i = 0; i < kTreeWidth; ++i) {

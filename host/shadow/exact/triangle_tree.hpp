@@ -25,8 +25,8 @@ using AlignedArray = std::vector<T, RawArrayAllocator<T>>;
 /// float((world − origin) · scale).
 struct TriangleTree {
   glm::dvec3 origin{0.0};  ///< world
-  /// A power of two: 1 unless a coordinate may be beyond 2⁴⁰, else such that those of triangles and lights
-  /// aren't. So products of three are finite.
+  /// A power of two that keeps coordinates of triangles and lights within 2⁴⁰, so that products of three are
+  /// finite. Mostly 1.
   float scale = 1;
   AlignedArray<float> nodes;   ///< kNodeRows · kTreeWidth a node (kernels/shared.h)
   AlignedArray<int> children;  ///< kTreeWidth a node
@@ -43,15 +43,15 @@ struct TriangleTree {
 /// number. Throws MachineError where memory doesn't suffice, and for more than 2²⁷ triangles.
 TriangleTree buildTriangleTree(const Scene& scene, const glm::dvec3& origin);
 
-/// Whether coordinates relative to this origin, scaled as the scene's lights and objects ask for, are the
-/// tree's. O(vertices).
+/// Whether the tree has this origin and the scale that the scene's lights and objects need. O(vertices).
 bool isPlacedFor(const Scene& scene, const glm::dvec3& origin, const TriangleTree& tree);
 
-/// The sum of the areas of all children's boxes, in the tree's space: about how much a walk meets.
-double areaOfBoxes(const TriangleTree& tree);
+/// The sum of the surface areas of all children's boxes, in the tree's space: proportional to the expected
+/// number of boxes that a ray intersects.
+double boxArea(const TriangleTree& tree);
 
-/// Moves the tree to another pose of the same scene and another origin: what boxes are of and what blocks
-/// hold stays. O(n), on all cores.
+/// Refits the tree to another pose of the same scene and another origin: recomputes boxes, corners and
+/// planes, and keeps the structure. O(n), on all cores.
 void refitTriangleTree(const Scene& scene, const glm::dvec3& origin, TriangleTree& tree);
 
 }  // namespace luciole

@@ -10,7 +10,7 @@
 namespace luciole {
 namespace {
 
-/// How much farther a cascade reaches than the one before.
+/// The ratio of the reaches of successive cascades.
 constexpr double kCascadeRatio = 3.0;
 
 /// A sphere around the part of a view from `near` to `far` metres ahead.
@@ -35,8 +35,8 @@ Sphere sphereAround(const View& view, double near, double far) {
     for (const glm::dvec3& p : part) radius = std::max(radius, glm::distance(p, middle));
     return radius;
   };
-  // The centre lies on the axis, equally far from the near and the far corners. In a wide view that point
-  // lies beyond the far plane; then it is the centre of the far corners.
+  // The centre of the smallest sphere is the point of the view axis at equal distances from the near and the
+  // far corners. In a wide view that is beyond the far plane; then it is the middle of the far corners.
   const glm::dvec3 a = middleOf(0), b = middleOf(4);
   const double length2 = glm::dot(b - a, b - a);
   const double near2 = glm::dot(part[0] - a, part[0] - a), far2 = glm::dot(part[4] - b, part[4] - b);

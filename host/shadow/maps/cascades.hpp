@@ -11,7 +11,7 @@ namespace luciole {
 /// The most cascades of a directional light.
 constexpr int kCascades = 4;
 
-/// Metres. Takes the place of 0 where a scene is a single point. Scene files can't have smaller lengths.
+/// Metres. Replaces the size 0 of a scene that is a single point. Scene files can't have smaller lengths.
 constexpr double kSmallestLength = 1e-18;
 
 /// World space, metres.

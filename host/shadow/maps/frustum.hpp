@@ -16,13 +16,13 @@ using Corners = std::array<glm::dvec3, 8>;
 /// The corners of an axis-aligned box.
 Corners boxCorners(const Bounds& box);
 
-/// The view volume, whatever the crop; its axes are those of normalized device coordinates. Depth is
-/// reversed, so corners 0 to 3 lie on the far plane and i + 4 on the near plane before i. Of a view without
-/// end that plane is taken for `farthest` metres away.
+/// The corners of a view's frustum, without its crop. Axes are those of normalized device coordinates with
+/// reversed depth: corners 0 to 3 lie on the far plane, and corner i + 4 on the near plane in front of corner
+/// i. An infinite far plane is replaced by one at `farthest` metres.
 Corners viewCorners(const View& view, double farthest);
 
-/// The intersection of two hexahedra, as points whose convex hull it is. Points may repeat; there are none
-/// where the hexahedra don't intersect.
+/// Points whose convex hull is the intersection of two hexahedra. Points may repeat. None: they don't
+/// intersect.
 std::vector<glm::dvec3> commonCorners(const Corners& a, const Corners& b);
 
 /// The planes around the part of space that a view's crop shows: left, right, bottom, top, near, far. World

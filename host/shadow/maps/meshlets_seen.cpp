@@ -35,7 +35,7 @@ bool mayMatter(const glm::dmat4& world_to_clip, const glm::ivec2& size, const Wa
     last = glm::max(last, place);
     nearest = std::max(nearest, clip.z / clip.w);
   }
-  // Places beside a face may be outside the range of an int.
+  // Coordinates far outside the face may overflow an int.
   first = glm::clamp(first, glm::dvec2(-2.0 * kBinSize), glm::dvec2(size + 2 * kBinSize));
   last = glm::clamp(last, glm::dvec2(-2.0 * kBinSize), glm::dvec2(size + 2 * kBinSize));
   // A texel more on each side for snapping, and a float's rounding of depth.

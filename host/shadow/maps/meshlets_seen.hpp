@@ -10,7 +10,7 @@
 
 namespace luciole {
 
-/// The bins of a view's crop, and what of them to draw.
+/// The bins of a view's crop, and the depth to which each is drawn.
 struct WantedBins : BinGrid {
   std::vector<float> farthest;  ///< one a bin, row by row: as in rasterizeDepth
 };

@@ -15,13 +15,15 @@
 
 namespace luciole {
 
-/// A face as it is drawn.
+/// A face for drawing.
 struct PlannedFace {
   std::uint32_t light;  ///< index into Scene::lights
   View view;            ///< of the whole face, from the light
-  glm::ivec2 first{0};  ///< of the rectangle of texels that memory holds; whole bins but for the face's rim
+  glm::ivec2 first{
+      0};  ///< first texel of the rectangle in memory, which has whole bins except at the face's rim
   glm::ivec2 count{0};  ///< of the rectangle; 0: nothing is drawn yet
-  std::vector<float> farthest;  ///< one a bin of the face: drawn down to this depth; infinity: not drawn
+  std::vector<float>
+      farthest;  ///< for each bin the reversed depth down to which it is drawn; infinity: it isn't
 };
 
 /// The shadow maps of a scene for one camera: a plan of all faces, and texels only where lookups need them.
@@ -36,8 +38,8 @@ struct ShadowMaps {
   std::vector<ShadowFace> faces;
   std::vector<PlannedFace> planned;
   std::vector<ShadowTexel, RawArrayAllocator<ShadowTexel>> texels;
-  /// Lookups follow that reach a little farther than those before. So bins are drawn down to half of the
-  /// reversed depth that is needed, and rectangles have a bin to spare on each side.
+  /// More passes follow, whose lookups reach a little farther. So bins are drawn down to half of the reversed
+  /// depth that is needed, and rectangles have a margin of one bin, to avoid drawing them twice.
   bool expects_more = false;
   ShadowMethod method = ShadowMethod::kOff;
   Meshlets meshlets;
@@ -46,10 +48,10 @@ struct ShadowMaps {
   std::uint64_t reduced_lights = 0;  ///< lights whose maps are coarser than wanted, for lack of memory
 };
 
-/// Plans the maps of all lights with a shadow, or if `ways` aren't empty, of those whose way is kMap; draws
-/// nothing. The plan is for the camera's whole picture,
-/// whatever the crop. See cascadeSpheres for what maps cover and chooseSizes for how fine they are. Throws
-/// MachineError where even the coarsest maps exceed limits.bytes.
+/// Plans the maps of all lights with a shadow or, if `ways` isn't empty, of those whose way is kMap. Draws
+/// nothing. The plan is for the camera's whole picture, without its crop: cascadeSpheres() says what the maps
+/// cover, and chooseSizes() how fine they are. Throws MachineError if even the coarsest maps exceed
+/// limits.bytes.
 ShadowMaps planShadowMaps(const Scene& scene, const View& camera_view, ShadowMethod method,
                           const ShadowLimits& limits, std::span<const ShadowWay> ways = {});
 

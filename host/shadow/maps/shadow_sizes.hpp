@@ -16,10 +16,9 @@ struct ShadowSizes {
 };
 
 /// Chooses the sizes of all lights' faces. Directional lights get as many texels as the limits allow. For
-/// other lights a texel halfway to their reach is about as large as a pixel of the whole picture there,
-/// whatever the crop. Where that exceeds
-/// limits.bytes all faces get coarser alike, down to kSmallestFace texels a side. Throws MachineError if even
-/// that is too much.
+/// other lights a texel halfway to their reach is about as large as a pixel of the whole picture there. If
+/// that exceeds limits.bytes, all faces are scaled down by one factor, to kSmallestFace texels a side at the
+/// least. Throws MachineError if even that is too much.
 ShadowSizes chooseSizes(const Scene& scene, const PlanInput& input, const ShadowLimits& limits);
 
 }  // namespace luciole

@@ -37,13 +37,13 @@ View squareView(const glm::dmat4& world_to_view, const glm::dmat4& projection, i
   return view;
 }
 
-/// Texels around the one that a lookup falls into which it may read, on a face with this border. Where it
-/// reads that one alone, rounding may still make it the next.
-int readAround(int border, ShadowMethod method) {
+/// The distance in texels from the texel of a lookup to those that it may read, on a face with this border.
+/// It is at least 1, because rounding may select the next texel.
+int lookupRadius(int border, ShadowMethod method) {
   return method == ShadowMethod::kPcf || method == ShadowMethod::kSoft ? border : 1;
 }
 
-/// A face to which nothing is drawn yet.
+/// A face without texels.
 ShadowFace emptyFace(double scale, const glm::dvec2& middle, int size, int border) {
   ShadowFace face{};
   face.scale = float(scale);
@@ -57,7 +57,7 @@ ShadowFace emptyFace(double scale, const glm::dvec2& middle, int size, int borde
 PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
   // The axes depend on the light alone, so that texels stay where they are while the camera turns.
   const glm::dmat4 world_to_light = lookAlong(glm::dvec3(0), light.direction, glm::dvec3(0, 1, 0));
-  double low = 1e300, high = -1e300;  // everything between what is seen and the light casts
+  double low = 1e300, high = -1e300;  // depths of all that is seen, and of all casters in front of it
   for (const glm::dvec3& corner : boxCorners(input.bounds)) {
     const double towards = (world_to_light * glm::dvec4(corner, 1)).z;
     low = std::min(low, towards);
@@ -99,7 +99,7 @@ PlannedMap planParallel(const Light& light, const PlanInput& input, int size) {
   planned.lookup.depth_scale = float(depth_a_metre * depth_a_metre);
   planned.lookup.depth_offset = float(depth_a_metre);
   planned.lookup.penumbra_scale = float(std::tan(light.half_angle) / depth_a_metre);
-  planned.lookup.filter_radius = float(readAround(border, input.method));
+  planned.lookup.filter_radius = float(lookupRadius(border, input.method));
   planned.lookup.kind = kParallelMap;
   return planned;
 }
@@ -115,7 +115,7 @@ void addFace(const Light& light, const PlanInput& input, const glm::dmat4& world
   planned.lookup.depth_scale = float(projection[3][2]);
   planned.lookup.depth_offset = float(-projection[2][2]);
   planned.lookup.penumbra_scale = float(light.radius / projection[3][2]);
-  planned.lookup.filter_radius = float(readAround(border, input.method));
+  planned.lookup.filter_radius = float(lookupRadius(border, input.method));
   planned.views.push_back(squareView(world_to_light, projection, size));
   planned.faces.push_back(emptyFace(scale, {half, half}, size, border));
 }

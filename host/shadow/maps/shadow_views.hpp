@@ -12,7 +12,7 @@
 
 namespace luciole {
 
-/// What maps are planned for. It refers to the camera's view.
+/// The input of planning maps. It refers to the camera's view.
 struct PlanInput {
   const View& camera;
   ShadowMethod method;
@@ -21,7 +21,7 @@ struct PlanInput {
   std::span<const ShadowWay> ways = {};  ///< of each light; empty: all lights with a shadow have maps
 };
 
-/// What a light's map shows: a cascade a face of a directional light, a cone, or the six sides of a cube.
+/// A light's map: a face for each cascade of a directional light, for a cone, or for the six sides of a cube.
 struct PlannedMap {
   ShadowMap lookup{};             ///< but for its faces' indices
   std::vector<ShadowFace> faces;  ///< for lookups: nothing is drawn yet
@@ -34,8 +34,8 @@ bool usesCubeMap(const Light& light);
 /// How many faces a light's map has, at most.
 int facesOf(const Light& light);
 
-/// Width in texels of the border of a face of `size` texels a side, border included: as far around its place
-/// as a lookup may read. For soft shadows that is an eighth of what the face shows, at most 64 texels;
+/// The width in texels of the border of a face of `size` texels a side, border included: how far around its
+/// point a lookup may read. For soft shadows it is an eighth of the face without border, at most 64 texels;
 /// otherwise 4.
 int borderOf(int size, ShadowMethod method);
 

@@ -7,15 +7,16 @@
 
 namespace luciole {
 
-/// A profile to be turned around the y axis: radius and height of its points, in metres. Its front is on the
-/// right of the way from point to point: outside where that leads up, above where it leads inwards.
+/// A profile of a surface of revolution around the y axis: radius and height of its points, in metres. The
+/// front is on the right when going from point to point: the outside when going up, the top when going
+/// inwards.
 struct Profile {
   std::vector<glm::dvec2> points;
-  bool smooth = false;  ///< its corners are rounded by normals
+  bool smooth = false;  ///< normals are smooth across its corners
 };
 
-/// How a profile is turned: from step `first` to step `last` of `steps` that make a full turn, from +x
-/// towards +z.
+/// The arc of a surface of revolution: from step `first` to step `last` of the `steps` of a full turn, from
+/// +x towards +z.
 struct Turn {
   int steps = 32;  ///< a power of two, at least 4
   int first = 0, last = 32;

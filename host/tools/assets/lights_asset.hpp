@@ -15,10 +15,9 @@ inline constexpr std::uint64_t kMostAssetLights = 1'000'000;
 /// area. Every lamp is seen as a ball of its colour. The picture is about as bright for every count, with a
 /// radiance of 1 shown as white. The same bits for the same seed on every machine. 1 ≤ count ≤
 /// kMostAssetLights.
-///
-/// It has nothing but glTF's core and that extension. Lamps are nodes that share their mesh: a light needs a
-/// node of its own anyway, so EXT_mesh_gpu_instancing would save none, and where a viewer doesn't know it,
-/// all balls but one would be gone, or as a required extension the whole file.
+/// It uses only glTF's core and that extension. Lamps are nodes that share their mesh.
+/// EXT_mesh_gpu_instancing would save no nodes, since each light needs one, and viewers without it would show
+/// a single ball, or no file at all.
 GltfDocument lightsAsset(std::uint64_t count, std::uint64_t seed);
 
 }  // namespace luciole

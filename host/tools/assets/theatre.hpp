@@ -10,14 +10,14 @@ namespace luciole {
 // An open-air theatre, y up, in metres: rows of seats around a round stage with a temple on it, columns along
 // the top, cypresses and paving where the audience comes in. It is looked at from there.
 
-/// Where lamps may be: a disc of this radius around the y axis.
+/// The radius of the disc around the y axis in which lamps may be.
 inline constexpr double kTheatreRadius = 37.0;
-/// The radius of the temple's roof, and the height that lamps below it keep.
+/// The radius of the temple's roof, and the largest height of lamps below it.
 inline constexpr double kTempleRadius = 6.6, kTempleRoom = 4.4;
 /// The eye of the file's camera.
 inline constexpr glm::dvec3 kTheatreEye{0.0, 12.0, 47.0};
 
-/// Something tall that stands on the ground: a circle around it, as x, z and radius.
+/// An obstacle that stands on the ground: its bounding circle, as x, z and radius.
 struct Standing {
   glm::dvec2 center;
   double radius;
@@ -26,8 +26,8 @@ struct Standing {
 /// The columns, pedestals and trees.
 std::vector<Standing> standingThings();
 
-/// The height of the ground at x, z, and how far it is to the middle of the row there, along the radius
-/// outwards; 0 where there are no rows.
+/// The height of the ground at x, z, and the distance along the radius, outwards, to the middle of the row
+/// there; 0 outside of the rows.
 struct Ground {
   double height, to_middle;
 };

@@ -65,7 +65,7 @@ Ended runToEnd(const std::string& program, std::vector<std::string> arguments,
     posix_spawn_file_actions_addopen(&streams, stream, "/dev/null", O_RDWR, 0);
   posix_spawn_file_actions_adddup2(&streams, message[1], STDERR_FILENO);
   pid_t child = 0;
-  auto lock = undisturbed();
+  auto lock = holdSignals();
   const int error = posix_spawn(&child, program.c_str(), &streams, nullptr, pointersTo(arguments).data(),
                                 pointersTo(environment).data());
   posix_spawn_file_actions_destroy(&streams);

@@ -5,10 +5,9 @@
 
 namespace luciole {
 
-/// Measures culling and shading alone on the G-buffer of the input, whose planes and lights are ready before
-/// the clock starts; at its end stand float colours. Beside it, in the same rounds: the roof, which computes
-/// as many pairs with nothing to load or to wait for (tests/kernels/roof.cl), and a copy that moves as many
-/// bytes. Throws MachineError.
+/// Measures culling and shading alone, from prepared planes and lights to float colours, on the G-buffer of
+/// the input. Beside it, in the same rounds: the roof, which computes as many pairs with nothing to load or
+/// to wait for (tests/kernels/roof.cl), and a copy that moves as many bytes. Throws MachineError.
 SpeedTable measureGivenGBuffer(const SpeedInput& input);
 
 }  // namespace luciole

@@ -104,8 +104,8 @@ bool takesTooLong(const LitStage& stage, float light_error) {
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), false};
   const double pixels = double(gbuffer.picture_size.x) * gbuffer.picture_size.y;
   return double(stage.scene.lights.size()) * pixels > kMostExactPairs &&
-         !standsForLights(stage.scene, cameraView(gbuffer.camera, gbuffer.picture_size), surfaces,
-                          settingsFor(light_error).shade);
+         !usesLightClusters(stage.scene, cameraView(gbuffer.camera, gbuffer.picture_size), surfaces,
+                            settingsFor(light_error).shade);
 }
 
 /// How the picture with this error keeps its bounds; nothing where no light is stood for.
@@ -116,7 +116,7 @@ std::optional<KeptBounds> judge(OpenedDevice& device, const LitStage& stage,
   Stats stats;
   const Image picture = shadeGBuffer(device, stage.scene, stage.gbuffer, settings, stats);
   if (stats.light_error.values == 0) return std::nullopt;
-  return judgeBounds(picture, settings.exposure, stage.judged, truth);
+  return measureBounds(picture, settings.exposure, stage.judged, truth);
 }
 
 std::vector<SpeedCell> boundCells(const std::optional<KeptBounds>& kept) {

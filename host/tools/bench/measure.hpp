@@ -22,8 +22,9 @@ struct BenchRow {
   Variant variant;
   Repeated time{};          ///< milliseconds
   ImageDifference error{};  ///< from the truth, linear units
-  double brightest = 0;  ///< the truth's largest value, to which relative errors are relative unless it is 0
-  bool front = false;    ///< on the Pareto front, in a group that has one truth
+  double brightest =
+      0;               ///< the reference's largest value, by which relative errors are divided unless it is 0
+  bool front = false;  ///< on the Pareto front, in a group that has one truth
 };
 
 struct BenchGroup {

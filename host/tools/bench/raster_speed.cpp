@@ -10,6 +10,7 @@
 #include "lighting/stats.hpp"
 #include "raster/rasterize.hpp"
 #include "render/render.hpp"
+#include "scene/count_triangles.hpp"
 #include "tools/bench/speed_scenes.hpp"
 
 namespace luciole {
@@ -34,12 +35,6 @@ double depthMilliseconds(const Scene& scene, glm::ivec2 size) {
   return millisecondsOf([&] { rasterizeDepth(scene, meshlets, all, view, {}, texels); });
 }
 
-std::uint64_t triangleCount(const Scene& scene) {
-  std::uint64_t count = 0;
-  for (const Object& object : scene.objects) count += scene.meshes[object.mesh].triangles.size();
-  return count;
-}
-
 }  // namespace
 
 SpeedTable measureRasterizer(const SpeedInput& input) {
@@ -49,7 +44,7 @@ SpeedTable measureRasterizer(const SpeedInput& input) {
   const int threads = std::min(tbb::info::default_concurrency(), int(threadCount()));
   SpeedTable table{.name = "rasterizer",
                    .measured = fmt::format("{}, {} triangles, by one thread and by {}", scene.name,
-                                           triangleCount(scene), threads),
+                                           countTriangles(scene), threads),
                    .columns = {{"milliseconds", "ms", 1},
                                {"one_thread_milliseconds", "one thread, ms", 1},
                                {"times_one_thread", "times one thread", 2}}};

@@ -7,8 +7,8 @@
 
 namespace luciole {
 
-/// Compares shadows with rays. For every method and size of maps: what getting ready and telling the shadows
-/// cost, how many pairs of a pixel and a light are wrong, and what Embree takes for the same pairs. Measures
+/// Compares shadows with rays. For every method and size of maps: the times of preparation and of the
+/// shadows, the number of wrong pairs of a pixel and a light, and Embree's time for the same pairs. Measures
 /// the scene given, with one sample and with several, alone and as frames of a moving camera, or
 /// makeShadowScenes() and some halls (makeLampHall) if there is none. Throws MachineError.
 SpeedTable measureShadowErrors(const SpeedInput& input);

@@ -41,8 +41,8 @@ TracedShadows traceTruth(const Scene& scene, const RayScene& rays, const GBuffer
 /// rays. Many threads call it at once.
 using TexelSide = std::function<double(std::uint32_t light, const glm::dvec3& world_point)>;
 
-/// The longest way along the light's rays back to the plane in nearEdges(), in texels. On surfaces whose
-/// slope to the rays is less than 1/20 a texel covers more than any map could get right.
+/// The largest distance along the light's rays back to the plane in nearEdges(), in texels. On surfaces at a
+/// slope of less than 1/20 to the rays a texel covers more than any map can resolve.
 inline constexpr double kLongestWayBack = 20;
 
 /// For each pair, 1 if the truth changes within a texel of it, so that no map can be expected to get it
@@ -61,12 +61,12 @@ struct ShadowErrors {
   std::uint64_t wrongly_dark = 0;   ///< of `lit`
   std::uint64_t wrongly_lit = 0;    ///< of `dark`
   std::uint64_t edges = 0, wrong_edges = 0;
-  double brighter = 0;  ///< the sum of visibility less truth over all pairs
+  double brighter = 0;  ///< the sum over all pairs of visibility minus truth
   bool operator==(const ShadowErrors&) const = default;
 };
 
-/// Counts the errors of a shadow map. An element for each pair: lit by traceTruth(), edge by nearEdges(), and
-/// visibility, the share of the light that the map lets through. From 0.5 on the map counts as saying lit.
+/// Counts the errors of a shadow map. For each pair: lit by traceTruth(), edge by nearEdges(), and the map's
+/// visibility in [0, 1], where 0.5 and more count as lit.
 ShadowErrors judge(std::span<const std::uint8_t> lit, std::span<const std::uint8_t> edge,
                    std::span<const float> visibility);
 

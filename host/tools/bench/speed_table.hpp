@@ -20,7 +20,7 @@ struct NoValue {
   std::string why{};  ///< for people
 };
 
-/// A figure that would take too long to measure, reckoned from others.
+/// A figure that would take too long to measure, extrapolated from others.
 struct Estimate {
   double value = 0;
 };
@@ -46,7 +46,7 @@ struct SpeedTable {
   std::string measured;  ///< in a sentence, for people
   std::vector<SpeedColumn> columns;
   std::vector<SpeedRow> rows{};
-  std::vector<std::string> failures{};  ///< promises that the program broke, a line each, for people
+  std::vector<std::string> failures{};  ///< violated guarantees of the program, a line each, for people
 };
 
 }  // namespace luciole

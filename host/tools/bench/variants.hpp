@@ -33,7 +33,7 @@ enum class TruthShadows : std::uint8_t {
 struct VariantGroup {
   std::string name;
   std::string chosen_by{};      ///< the name in --only; several groups may share one
-  std::string measured{};       ///< what its times contain and what its errors are from, for people
+  std::string measured{};       ///< the content of its times and the reference of its errors, for people
   std::vector<Stage> stages{};  ///< stages whose times count (see Stats::stages); empty: all but compiling
   bool samples = false;         ///< whole pictures, anti-aliased, rather than one G-buffer lit
   TruthShadows shadows = TruthShadows::kNone;

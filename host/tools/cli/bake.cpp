@@ -13,9 +13,9 @@
 #include "image/srgb.hpp"
 #include "luciole/error.hpp"
 #include "raster/lift.hpp"
+#include "raster/surface_ids.hpp"
 #include "raster/texture_space.hpp"
 #include "render/render.hpp"
-#include "render/surface_ids.hpp"
 #include "scene/bounds.hpp"
 #include "scene/gltf/write_gltf.hpp"
 #include "shade/features.hpp"
@@ -83,7 +83,7 @@ Camera bakeCamera(const Scene& scene, std::uint32_t object, const std::vector<do
 }
 
 /// Takes from surfaces what depends on where they are seen from, or what colour they are.
-void leaveLight(const BakeOptions& options, GBuffer& gbuffer) {
+void keepLightOnly(const BakeOptions& options, GBuffer& gbuffer) {
   if (options.eye.empty()) std::fill(gbuffer.specular.begin(), gbuffer.specular.end(), 0.0f);
   if (!options.irradiance) return;
   for (Plane* color : {&gbuffer.diffuse, &gbuffer.ambient}) std::fill(color->begin(), color->end(), 1.0f);
@@ -100,13 +100,13 @@ std::vector<std::uint8_t> shownTexels(const GBuffer& gbuffer) {
 }
 
 /// Throws InputError where charts lie on each other; tells of texels where they touch.
-void judgeOverlap(const BakeOptions& options, const TextureSpace& space) {
+void checkOverlap(const BakeOptions& options, const TextureSpace& space) {
   const std::string some = fmt::format("{} of {} texels of {} lie in more than one triangle",
                                        space.overlapping, space.covered, options.object);
   if (double(space.overlapping) > kMostOverlap * double(space.covered))
     throw InputError(some +
                      ": its charts overlap, expected texture coordinates of which no two places share one");
-  if (space.overlapping > 0 && !options.quiet) tellWarning(some);
+  if (space.overlapping > 0 && !options.quiet) reportWarning(some);
 }
 
 /// The map as sRGB codes of its share of the brightest, which is returned.
@@ -166,10 +166,10 @@ void bake(CommandContext& context, BakeOptions& options) {
                                   .lift = hasBentCorners(scene),
                                   .model = traits.models.to_ulong() > 1});
   });
-  judgeOverlap(options, space);
-  leaveLight(options, space.gbuffer);
+  checkOverlap(options, space);
+  keepLightOnly(options, space.gbuffer);
   ProgressLine progress(options.quiet);
-  settings.on_long_compile = tellsCompiling(progress);
+  settings.on_long_compile = compileReporter(progress);
   Image map = shadeGBuffer(context.device, scene, space.gbuffer, settings, stats);
   progress.clear();
   logDevice(context.device.description);

@@ -87,7 +87,7 @@ int bench(const BenchOptions& options) {
   for (const SpeedTable& table : result.speed) {
     for (const std::string& failure : table.failures) {
       status = kDifferent;
-      tellError(failure, status);
+      reportError(failure, status);
     }
   }
   return status;

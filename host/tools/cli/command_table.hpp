@@ -7,10 +7,10 @@
 
 namespace luciole {
 
-/// What the value of an option may be, for those who complete it.
+/// The kind of an option's value, for completion.
 enum class ValueKind {
   kNone,    ///< there is none: a flag
-  kWord,    ///< a number, or what nobody can list
+  kWord,    ///< a number, or other text without a list of choices
   kChoice,  ///< one of OptionEntry::choices
   kScene,   ///< a scene file
   kFile     ///< any file or folder

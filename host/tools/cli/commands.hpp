@@ -15,28 +15,28 @@ namespace luciole {
 /// failed (MachineError).
 enum ExitStatus { kDone = 0, kDifferent = 1, kWrongInput = 2, kMachineFailed = 3 };
 
-/// What the program and a command know of each other.
+/// The state that the program and a command share.
 struct CommandContext {
   std::string command_line;          ///< as typed, for metadata and statistics
-  int status = kDone;                ///< where the command leaves the exit status
+  int status = kDone;                ///< the exit status, set by the command
   OpenedDevice device{};             ///< for the command to open; the end of the process closes it
   std::list<OpenedDevice> others{};  ///< that --device all opens beside it
 };
 
-/// To be called in a catch block. Writes to standard error what is wrong, as a line or an event (see
-/// event_log.hpp), and returns the exit status for the exception. frame: the one that failed, of several.
-int tellFailure(std::optional<int> frame = std::nullopt);
+/// Call it in a catch block. Writes the exception's message to standard error, as a line or an event (see
+/// event_log.hpp), and returns its exit status. frame: the one that failed, of several.
+int reportFailure(std::optional<int> frame = std::nullopt);
 
-/// Writes to standard error what is wrong, as a line or an event. status: the exit status that it leads to.
-void tellError(const std::string& message, int status);
+/// Writes an error to standard error, as a line or an event. status: the exit status that it leads to.
+void reportError(const std::string& message, int status);
 
 /// Writes a warning to standard error, as a line or an event.
-void tellWarning(const std::string& text);
-/// Lines for people: of each kind of warning ten at most, in order, then how many more there are, which the
-/// option lists.
+void reportWarning(const std::string& text);
+/// Lines for people: the first ten warnings of each kind, then the number of others, with the option that
+/// lists them.
 std::vector<std::string> shownWarnings(const std::vector<Warning>& warnings, const std::string& option);
 /// Writes a scene's warnings to standard error: the lines above, or all of them as events.
-void tellWarnings(const std::vector<Warning>& warnings);
+void reportWarnings(const std::vector<Warning>& warnings);
 
 // Each adds a command to the program. The command's work runs while the command line is parsed, if it is
 // named there, and throws InputError and MachineError.

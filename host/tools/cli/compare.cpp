@@ -129,10 +129,10 @@ void compareTwo(const CompareOptions& options, CommandContext& context) {
   if (std::none_of(outputs.begin(), outputs.end(), [](const std::string* path) { return *path == "-"; }))
     printFigures(d);
   if (!isOver(options, d)) return;
-  tellError(d.nonfinite > 0 ? fmt::format("{} values of one picture or both are not finite", d.nonfinite)
-                            : fmt::format("max_abs {:.6g} at ({}, {}) is over --max-abs {}", d.max_abs,
-                                          d.worst_pixel[0], d.worst_pixel[1], *options.max_abs),
-            kDifferent);
+  reportError(d.nonfinite > 0 ? fmt::format("{} values of one picture or both are not finite", d.nonfinite)
+                              : fmt::format("max_abs {:.6g} at ({}, {}) is over --max-abs {}", d.max_abs,
+                                            d.worst_pixel[0], d.worst_pixel[1], *options.max_abs),
+              kDifferent);
   context.status = kDifferent;
 }
 
@@ -235,9 +235,9 @@ void compareSequences(const CompareOptions& options, CommandContext& context) {
   const auto over = std::count_if(compared.begin(), compared.end(),
                                   [&](const ComparedFrame& one) { return isOver(options, one.difference); });
   if (over == 0) return;
-  tellError(fmt::format("{} of {} frames over --max-abs {}; {}", over, compared.size(), *options.max_abs,
-                        worstLine(worst)),
-            kDifferent);
+  reportError(fmt::format("{} of {} frames over --max-abs {}; {}", over, compared.size(), *options.max_abs,
+                          worstLine(worst)),
+              kDifferent);
   context.status = kDifferent;
 }
 

@@ -16,7 +16,7 @@ namespace luciole {
 namespace {
 
 /// Checks a device and prints what its bits are. Returns whether they are those of every other.
-bool tellBits(const std::string& selector) {
+bool printBits(const std::string& selector) {
   OpenedDevice device;
   ArithmeticCheck arithmetic;
   std::string picture;
@@ -54,7 +54,7 @@ void addDevicesCommand(CLI::App& app, CommandContext& context) {
       if (!*is_checked || (!selector->empty() && i != chosen)) continue;
       std::fflush(stdout);  // before a driver that may fail
       try {
-        if (!tellBits(selector->empty() ? std::to_string(i) : *selector)) context.status = kDifferent;
+        if (!printBits(selector->empty() ? std::to_string(i) : *selector)) context.status = kDifferent;
       } catch (const MachineError& error) {
         fmt::print("     bits: unknown, {}\n", error.what());
         if (context.status == kDone) context.status = kMachineFailed;

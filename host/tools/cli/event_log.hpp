@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-/// What an event tells besides its time and name, in this order.
+/// The fields of an event besides its time and name, in order.
 using EventFields = nlohmann::ordered_json;
 
 /// Writes to standard error by as few system calls as it takes, one as a rule, so that the lines of several
@@ -16,8 +16,8 @@ void writeError(std::string_view text) noexcept;
 /// Adds the option --log to a command.
 CLI::Option* addLogOption(CLI::App& command);
 
-/// Whether a command line has --log json. Asked before it is parsed, so that what is wrong with it is an
-/// event, too.
+/// Whether a command line has --log json. Called before it is parsed, so that errors of parsing are events,
+/// too.
 bool asksForEvents(int argument_count, char** arguments);
 
 /// From here on standard error gets events alone, each a line of JSON; see logEvent().
@@ -30,10 +30,11 @@ bool logsEvents();
 /// text that are no UTF-8 become U+FFFD. Without an event log it does nothing.
 void logEvent(const char* name, const EventFields& fields = EventFields::object());
 
-/// Writes the last event, `end`, with the status that the process will have. Later ones wait for good.
+/// Writes the last event, `end`, with the status that the process will have. Later calls of logEvent() block
+/// for ever.
 void logEnd(int status) noexcept;
 
-/// Milliseconds as events tell them: to the microsecond.
+/// Milliseconds rounded to the microsecond, as in events.
 double eventMilliseconds(double milliseconds);
 
 /// Writes the event `error` of a process that ends at once, taking no memory.

@@ -8,11 +8,11 @@
 
 namespace luciole {
 
-/// By which runs that are at work at one time share frames, so that each is made once: a run claims a frame
-/// before it makes it. Claims are locks on the frame's byte of a hidden file beside the frames,
-/// `.PATTERN.lock`, which the kernel, or the file server, gives back however a run ends.
-/// The byte is set when the frame was made, so that runs that come later see it, too. The last run to end
-/// removes the file. What killed runs left counts for nothing, and goes when the next run ends.
+/// Divides frames among concurrent runs, so that each is rendered once: a run claims a frame before it
+/// renders it. Claims are locks on the frame's byte of a hidden file beside the frames, `.PATTERN.lock`,
+/// which the kernel or the file server releases however a run ends. The byte is set when the frame was made,
+/// so that runs that come later see it, too. The last run to end removes the file. What killed runs left
+/// counts for nothing, and goes when the next run ends.
 class FrameClaims {
  public:
   /// pattern: of the frames' files, see hashPattern(), in a folder that exists. Throws InputError if the lock

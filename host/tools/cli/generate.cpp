@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/write_file.hpp"
+#include "load/no_light_warning.hpp"
 #include "luciole/error.hpp"
 #include "luciole/load_scene.hpp"
 #include "raster/visible_points.hpp"
@@ -145,8 +146,8 @@ void generateLights(const LightsOptions& options) {
   std::vector<glm::dvec3> seen;
   if (!options.scene.empty()) {
     scene = loadScene(options.scene, 1, options.load);
-    std::erase(scene.warnings, nothingLights(scene));
-    tellWarnings(scene.warnings);
+    std::erase(scene.warnings, noLightWarning(scene));
+    reportWarnings(scene.warnings);
     scene.lights.clear();
     seen = visiblePoints(scene, scene.cameras.front(), scene.size.value_or(glm::ivec2(1280, 720)),
                          kMeasuredPlaces, 0);

@@ -205,7 +205,7 @@ void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
 
 /// For how many of the lights clusters may stand (--light-error), and why not for the others.
 void addLightUses(const Scene& scene, const ShadeSettings& settings, Report& report) {
-  const auto counts = countReasons(scene.lights, lightUse(settings));
+  const auto counts = countReasons(scene.lights, clusterConditions(settings));
   Json& json = report.json["lights"];
   json["clusterable"] = counts[std::size_t(ExactReason::kNone)];
   json["exact"] = Json::object();

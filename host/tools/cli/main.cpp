@@ -61,21 +61,21 @@ const CLI::App& findCommand(CLI::App& app, const std::string& name) {
 
 }  // namespace
 
-void luciole::tellError(const std::string& message, int status) {
+void luciole::reportError(const std::string& message, int status) {
   if (logsEvents())
     logEvent("error", {{"message", message}, {"status", status}});
   else
     writeError(fmt::format("luciole: {}\n", message));
 }
 
-int luciole::tellFailure(std::optional<int> frame) {
+int luciole::reportFailure(std::optional<int> frame) {
   const auto fail = [&](const std::string& message, int status) {
     if (!frame)
-      tellError(message, status);
+      reportError(message, status);
     else if (logsEvents())
       logEvent("frame_failed", {{"frame", *frame}, {"message", message}, {"status", status}});
     else
-      tellError(fmt::format("frame {}: {}", *frame, message), status);
+      reportError(fmt::format("frame {}: {}", *frame, message), status);
     return status;
   };
   try {
@@ -95,7 +95,7 @@ int luciole::tellFailure(std::optional<int> frame) {
   }
 }
 
-void luciole::tellWarning(const std::string& text) {
+void luciole::reportWarning(const std::string& text) {
   if (logsEvents())
     logEvent("warning", {{"message", text}});
   else
@@ -115,11 +115,11 @@ std::vector<std::string> luciole::shownWarnings(const std::vector<Warning>& warn
   return lines;
 }
 
-void luciole::tellWarnings(const std::vector<Warning>& warnings) {
+void luciole::reportWarnings(const std::vector<Warning>& warnings) {
   if (logsEvents())
-    for (const Warning& warning : warnings) tellWarning(warning.text);
+    for (const Warning& warning : warnings) reportWarning(warning.text);
   else
-    for (const std::string& line : shownWarnings(warnings, "--stats")) tellWarning(line);
+    for (const std::string& line : shownWarnings(warnings, "--stats")) reportWarning(line);
 }
 
 namespace {
@@ -230,8 +230,8 @@ int flushOutput(int status) {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
   if (status == kWrongInput || status == kMachineFailed) return status;
-  tellError(fmt::format("standard output: can't write{}", errno ? ": " + systemReason() : ""),
-            kMachineFailed);
+  reportError(fmt::format("standard output: can't write{}", errno ? ": " + systemReason() : ""),
+              kMachineFailed);
   return kMachineFailed;
 }
 
@@ -283,14 +283,14 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
     return app.exit(success);  // --help and --version
   } catch (const CLI::ParseError&) {
     const std::string unexpected = describeUnexpected(app);
-    if (unexpected.empty()) return tellFailure();
+    if (unexpected.empty()) return reportFailure();
     if (logsEvents())
       logEvent("error", {{"message", "luciole" + unexpected}, {"status", kWrongInput}});
     else
       writeError(fmt::format("luciole{}\n", unexpected));
     return kWrongInput;
   } catch (const std::exception&) {
-    return tellFailure();
+    return reportFailure();
   }
 }
 
@@ -307,7 +307,7 @@ extern "C" void abort() noexcept {
 
 int main(int argument_count, char** arguments) {
   openStandardStreams();
-  saveAddresses();
+  limitMallocArenas();
   CommandContext context{joinedArguments(argument_count, arguments)};
   if (asksForEvents(argument_count, arguments)) startEventLog();
   awaitSignals();

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/base64.hpp"
 #include "base/dump_utf8.hpp"
 #include "base/embedded_files.hpp"
 #include "base/page_text.hpp"

@@ -33,7 +33,7 @@ std::string checkDevice(OpenedDevice& device) {
   }
 }
 
-constexpr const char* kTellsAll = " (luciole devices --check tells all)";
+constexpr const char* kCheckHint = " (luciole devices --check tells all)";
 
 /// A device that --device all may mean.
 struct Candidate {
@@ -79,12 +79,12 @@ std::list<Sharer> openAllDevices(const PictureOptions& options, CommandContext& 
       continue;
     }
     if (!what.empty() && options.require_exact) throw MachineError("--require-exact: " + what);
-    if (!what.empty()) told.push_back(what + kTellsAll);
+    if (!what.empty()) told.push_back(what + kCheckHint);
     sharers.push_back({candidate.device});
   }
   if (sharers.empty()) throw MachineError(candidates.front().failure);
   if (!options.quiet)
-    for (const std::string& warning : told) tellWarning(warning);
+    for (const std::string& warning : told) reportWarning(warning);
   return sharers;
 }
 
@@ -96,7 +96,7 @@ void startCheckedDevice(const PictureOptions& options, CommandContext& context) 
                 const std::string difference = checkDevice(context.device);
                 if (difference.empty()) return;
                 if (require) throw MachineError("--require-exact: " + difference);
-                if (!quiet) tellWarning(difference + kTellsAll);
+                if (!quiet) reportWarning(difference + kCheckHint);
               });
 }
 

@@ -9,16 +9,16 @@
 
 namespace luciole {
 
-/// Opens the device that --device names in a thread of its own (see startDevice), which also looks whether it
-/// computes as every device should. If not, it warns, or with --require-exact throws MachineError.
+/// Opens the device that --device names in a thread of its own (see startDevice), which also checks its
+/// arithmetic. If not, it warns, or with --require-exact throws MachineError.
 void startCheckedDevice(const PictureOptions& options, CommandContext& context);
 
-/// The same, and the devices that make the picture: the one, or with --device all every one that can be
-/// opened and computes as it should, open already. Those that are left out are told. Throws MachineError, for
+/// The same for all devices that render the picture: one, or with --device all every device that can be
+/// opened and whose arithmetic is right; these are open on return. Warns of others. Throws MachineError, for
 /// all devices if none is left.
 std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context);
 
-/// In an event log, tells which device is used.
+/// Writes the used device to the event log.
 void logDevice(const DeviceDescription& device);
 
 }  // namespace luciole

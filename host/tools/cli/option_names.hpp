@@ -4,7 +4,7 @@
 
 namespace luciole {
 
-/// A message of the library with the options of the command line in the place of the fields that it names:
+/// A message of the library with the names of fields replaced by options of the command line:
 /// "settings.crop: 1,2,3,4: ..." becomes "--crop 1,2,3,4: ...".
 std::string withOptionNames(std::string message);
 

@@ -6,7 +6,7 @@
 
 #include "luciole/scene.hpp"
 
-// render --orbit: the camera goes once round what it looks at.
+// render --orbit: the camera makes a full turn around its target.
 namespace luciole {
 
 struct Orbit {
@@ -19,13 +19,11 @@ void addOrbitOption(CLI::App& command, Orbit& orbit);
 /// The frames that --frames says; without it those of the turn.
 std::string framesOf(const std::string& typed, const Orbit& orbit);
 
-/// For an orbit finds the scene's middle, for cameras without a target, and leaves the scene posed for the
-/// frame.
+/// With an orbit sets its middle, for cameras without a target. Poses the scene at the frame.
 void setMiddle(Scene& scene, int frame, Orbit& orbit);
 
-/// A camera, as the scene has it at a frame, turned for that frame: at frame 1 it is itself, and from one to
-/// the next its azimuth grows by 360° / frames, about its `up` through its target. Without a target that is
-/// the point ahead of it that is nearest to the scene's middle.
+/// A camera of the scene at a frame, rotated about its `up` through its target by (frame − 1) · 360° /
+/// frames. Without a target it uses the point ahead that is nearest to the scene's middle.
 Camera orbiting(const Camera& camera, const Orbit& orbit, int frame);
 
 }  // namespace luciole

@@ -416,7 +416,7 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
                       {"milliseconds", eventMilliseconds(milliseconds)}});
   if (modelOf(options) == Model::kCookTorrance) takeFacets(scene);
   castShadows(options, scene);
-  if (!options.quiet) tellWarnings(scene.warnings);
+  if (!options.quiet) reportWarnings(scene.warnings);
   return scene;
 }
 
@@ -430,7 +430,7 @@ Scene openLitScene(const std::string& path, double frame, const PictureOptions& 
            "that falls between their corners is lost; divide them, or take --shading phong",
            scene.name, width),
        "gouraud"});
-  if (!options.quiet) tellWarning(scene.warnings.back().text);
+  if (!options.quiet) reportWarning(scene.warnings.back().text);
   return scene;
 }
 
@@ -446,7 +446,7 @@ void warnOfDither(Scene& scene, const PictureOptions& options) {
       {fmt::format("{}: {}{}: blended by dithering, one sample a pixel; more --samples smooth it", scene.name,
                    what, others),
        "dithered"});
-  if (!options.quiet) tellWarning(scene.warnings.back().text);
+  if (!options.quiet) reportWarning(scene.warnings.back().text);
 }
 
 std::vector<Aov> aovsOf(const PictureOptions& options) {

@@ -14,8 +14,8 @@
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "lighting/light_layers.hpp"
 #include "luciole/error.hpp"
-#include "render/light_layers.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
@@ -156,7 +156,7 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
       "{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
       "--exposure, or take 32-bit floats and a lossless --compression",
       options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
-  if (!options.quiet) tellWarning(stats.warnings.back());
+  if (!options.quiet) reportWarning(stats.warnings.back());
 }
 
 void reportLightError(const PictureOptions& options, Stats& stats) {
@@ -165,7 +165,7 @@ void reportLightError(const PictureOptions& options, Stats& stats) {
   stats.warnings.push_back(fmt::format(
       "--light-error {}: floats can't promise it for this picture; the least that they can is {:.3g}",
       options.light_error, 1.05 * stats.light_error.least));
-  if (!options.quiet) tellWarning(stats.warnings.back());
+  if (!options.quiet) reportWarning(stats.warnings.back());
 }
 
 bool showsAov(const PictureOptions& options) {

@@ -18,14 +18,14 @@ namespace luciole {
 /// file (.obj, .gltf, .glb), whose lights may be of any strength, in a picture of integers.
 bool measuresExposure(const PictureOptions& options, const std::string& scene_path);
 
-/// What the options say of the picture's file, apart from what part of which view it shows.
+/// The options of the picture's file, without camera, size and crop.
 WriteOptions fileOptions(const PictureOptions& options);
 
 /// Throws InputError where the trace or the hash would be written into another file of the picture's.
 void checkOtherOutputs(const PictureOptions& options);
 
-/// Checks before any work what can be wrong with the output: extension, folder, layers, tone, and what else
-/// the format has no place for. Throws InputError.
+/// Checks the output's options before any work: extension, folder, layers, tone, and others that the format
+/// doesn't support. Throws InputError.
 void checkOutput(const PictureOptions& options);
 
 /// The same for `what`, a file of data ("a G-buffer"), which no compression may change.
@@ -41,10 +41,10 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
 /// the file. limited: as writeImage returns.
 void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
 
-/// Warns if bounds of --light-error are larger than allowed, because floats can't promise so little.
+/// Warns if bounds of --light-error are larger than allowed, because rounding of floats exceeds it.
 void reportLightError(const PictureOptions& options, Stats& stats);
 
-/// Whether the picture's file has no place for layers and shows the one that --aov names.
+/// Whether the file's format has no layers, so that it shows the one that --aov names.
 bool showsAov(const PictureOptions& options);
 
 /// That layer among the channels of a picture that was made with it.
@@ -66,7 +66,7 @@ void writeAov(const PictureOptions& options, const Image& picture, const Stats& 
 /// device: null if none was used.
 Metadata pictureMetadata(const Stats& stats, const OpenedDevice* device);
 
-/// The statistics of a picture that is begun now, after others.
+/// The initial statistics of a picture that begins now, after others.
 Stats laterStats(const std::string& command);
 
 /// Writes the statistics to the file that --stats names, if any. Unless --quiet, writes a line to standard

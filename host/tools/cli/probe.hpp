@@ -9,10 +9,10 @@
 
 namespace luciole {
 
-/// What makes a pixel of the picture of these settings, as text: its surface, what each light adds by the
-/// reference, in double precision and with shadows by ray, the brightest first, and the sum so far; fog; and
-/// beside the sum the colour that the device makes, whose bits are those of the whole picture. Throws
-/// InputError for a pixel outside of the picture and for Gouraud shading, which lights no pixels.
+/// The terms of a pixel's colour as text: its surface; the contribution of each light, the brightest first,
+/// by the reference in double precision and with shadow rays, with the sum so far; fog; and beside the sum
+/// the device's colour, with the bits of the whole picture. Throws InputError for a pixel outside of the
+/// picture and for Gouraud shading, which lights no pixels.
 std::string probeText(OpenedDevice& device, const Scene& scene, RenderSettings settings,
                       const glm::ivec2& pixel);
 

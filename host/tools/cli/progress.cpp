@@ -35,7 +35,7 @@ void ProgressLine::show(const std::string& what, std::size_t done, std::size_t t
   put(line);
 }
 
-void ProgressLine::tell(const std::string& what) {
+void ProgressLine::showBusy(const std::string& what) {
   if (logsEvents()) {
     EventFields fields;
     if (frame) fields["frame"] = *frame;
@@ -58,8 +58,8 @@ void ProgressLine::clear() {
   writeError("\r\x1b[K");
 }
 
-std::function<void()> tellsCompiling(ProgressLine& progress) {
-  return [&progress] { progress.tell("compiling kernels"); };
+std::function<void()> compileReporter(ProgressLine& progress) {
+  return [&progress] { progress.showBusy("compiling kernels"); };
 }
 
 std::string duration(double seconds) {

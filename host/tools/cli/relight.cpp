@@ -20,9 +20,9 @@
 #include "image/light_names.hpp"
 #include "image/picture_hash.hpp"
 #include "luciole/error.hpp"
+#include "raster/surface_ids.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
-#include "render/surface_ids.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/light_groups.hpp"
 #include "tools/cli/commands.hpp"
@@ -173,7 +173,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   if (adds) settings.exposure = 0;
   logEvent("frame_begun", {{"frame", frame}});
   ProgressLine progress(options.quiet);
-  settings.on_long_compile = tellsCompiling(progress);
+  settings.on_long_compile = compileReporter(progress);
   Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
   progress.clear();
   logDevice(device.description);
@@ -200,7 +200,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   reportStats(options, stats, frame);
 }
 
-void tellNotes(const std::vector<std::string>& notes, bool quiet) {
+void reportNotes(const std::vector<std::string>& notes, bool quiet) {
   for (const std::string& note : notes) {
     const std::string line = withOptionNames(note);
     if (logsEvents())
@@ -229,7 +229,7 @@ void relight(CommandContext& context, RelightOptions& options) {
   if (scene.adds_lights) throw InputError(options.scene + ": no lights, expected a scene that has some");
   GBufferInput input = timed(stats, Stage::kReadGBuffer,
                              [&] { return readGBuffer(options.input, requestOf(options, scene)); });
-  tellNotes(input.notes, options.quiet);
+  reportNotes(input.notes, options.quiet);
   if (options.add) leaveLightAlone(scene, input.gbuffer);
   if (options.add && options.light_groups) input.color = withGroups(input.color, options.input);
   lightAndWrite(context, options, scene, options.scene, input.gbuffer, std::move(input.color), frame, stats);

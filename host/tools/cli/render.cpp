@@ -17,10 +17,10 @@
 #include "luciole/error.hpp"
 #include "luciole/gbuffer_file.hpp"
 #include "luciole/pose.hpp"
+#include "raster/surface_ids.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
 #include "render/share_picture.hpp"
-#include "render/surface_ids.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/frame_claims.hpp"
@@ -73,7 +73,7 @@ std::vector<std::optional<double>> chooseExposures(OpenedDevice& device, Scene& 
   ProgressLine progress(options.quiet);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     RenderSettings settings = settingsAt(frame, pictures[i], scene, options.orbit);
-    settings.on_long_compile = tellsCompiling(progress);
+    settings.on_long_compile = compileReporter(progress);
     exposures[i] = measureExposure(device, scene, settings, stats);
   }
   progress.clear();
@@ -101,7 +101,8 @@ void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOpt
   renderShared(sharers, scene, settings, take, stats, keeps);
   if (!options.quiet)
     for (const DeviceShare& share : stats.shares)
-      if (!share.error.empty()) tellWarning(fmt::format("{}; the other devices made its rows", share.error));
+      if (!share.error.empty())
+        reportWarning(fmt::format("{}; the other devices made its rows", share.error));
   if (hash) stats.hash = hash->hex();
   reportLightError(options, stats);
 }
@@ -126,7 +127,7 @@ void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const Picture
                    const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
   settings = withExposure(settings, stats);
   settings.on_pass = on_pass;
-  settings.on_long_compile = tellsCompiling(progress);
+  settings.on_long_compile = compileReporter(progress);
   OpenedDevice* const device = sharers.front().device;
   if (showsAov(options)) {
     ShownLayer shown;
@@ -184,7 +185,7 @@ std::vector<int> framesToMake(const RenderOptions& options, const std::vector<in
 }
 
 /// Tells how many of the frames were left to other runs.
-void tellShared(const RenderOptions& options, std::size_t others, std::size_t all) {
+void reportShared(const RenderOptions& options, std::size_t others, std::size_t all) {
   if (others == 0) return;
   if (logsEvents())
     logEvent("shared", {{"frames_of_other_runs", others}, {"frames", all}});
@@ -235,7 +236,7 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
       }
     } catch (const std::exception&) {
       progress.clear();
-      const int why = tellFailure(frame);
+      const int why = reportFailure(frame);
       if (status == kDone) status = why;
       if (film) return false;
       failed.push_back(frame);
@@ -259,10 +260,10 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
       make(frame, frames.size() - 1);
   }
   progress.clear();
-  tellShared(options, others, frames.size());
+  reportShared(options, others, frames.size());
   if (!failed.empty())
-    tellError(fmt::format("{} of {} frames failed: {}", failed.size(), frames.size(), listFrames(failed)),
-              status);
+    reportError(fmt::format("{} of {} frames failed: {}", failed.size(), frames.size(), listFrames(failed)),
+                status);
   return status;
 }
 
@@ -421,7 +422,7 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
     PictureOptions picture = cameras.front();
     picture.quiet = options.quiet;
     RenderSettings settings = settingsAt(frame, picture, scene, one.orbit);
-    settings.on_long_compile = tellsCompiling(progress);
+    settings.on_long_compile = compileReporter(progress);
     if (i == 0 && measuresExposure(options, options.scene))
       exposure = measureExposure(*sharers.front().device, scene, settings, stats);
     stats.measured_exposure = exposure;

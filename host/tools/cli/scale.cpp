@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/write_file.hpp"
+#include "load/no_light_warning.hpp"
 #include "luciole/error.hpp"
 #include "luciole/gbuffer_file.hpp"
 #include "tools/cli/commands.hpp"
@@ -62,14 +63,14 @@ int writeResults(const ScaleResults& results, const std::string& folder, const s
   if (!quiet) fmt::print("{}", scaleTable(summary));
   const bool is_lacking = is_all && !summary.incomplete.empty();
   if (is_lacking)
-    tellError(fmt::format("{}: {} of {} points are not complete: {}", folder, summary.incomplete.size(),
-                          summary.description.points.size(), listPoints(summary.incomplete)),
-              kDifferent);
+    reportError(fmt::format("{}: {} of {} points are not complete: {}", folder, summary.incomplete.size(),
+                            summary.description.points.size(), listPoints(summary.incomplete)),
+                kDifferent);
   else if (!summary.incomplete.empty() && !quiet)
     fmt::print(stderr, "{}: {} of {} points are done; luciole scale merge joins the shards'\n", folder,
                summary.description.points.size() - summary.incomplete.size(),
                summary.description.points.size());
-  for (const std::string& violation : summary.violations) tellError(violation, kDifferent);
+  for (const std::string& violation : summary.violations) reportError(violation, kDifferent);
   return summary.violations.empty() && !is_lacking ? kDone : kDifferent;
 }
 
@@ -90,8 +91,8 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   else
     scene.cameras = {gbuffer->camera};
   if (modelOf(options.picture) == Model::kCookTorrance) takeFacets(scene);
-  std::erase(scene.warnings, nothingLights(scene));
-  if (!options.picture.quiet) tellWarnings(scene.warnings);
+  std::erase(scene.warnings, noLightWarning(scene));
+  if (!options.picture.quiet) reportWarnings(scene.warnings);
   ScaleExperiment experiment = planExperiment(command, options, scene, std::move(gbuffer));
   if (experiment.too_exact > 0 && !options.picture.quiet)
     writeError(fmt::format(

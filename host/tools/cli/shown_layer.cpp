@@ -111,14 +111,8 @@ std::vector<std::string> namesOfRole(const std::string& role) {
   std::vector<std::string> names;
   const auto known = kRoles.find(role);
   if (known == kRoles.end()) return names;
-  for (const Layout& layout : layouts()) {
-    const std::string all = layout.*known->second;
-    for (std::size_t begin = 0; begin < all.size();) {
-      const std::size_t end = std::min(all.find('|', begin), all.size());
-      names.push_back(all.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
+  for (const Layout& layout : layouts())
+    for (const std::string_view name : splitNames(layout.*known->second)) names.emplace_back(name);
   return names;
 }
 

@@ -20,9 +20,8 @@ struct ShownLayer {
 /// part with a name have it before theirs.
 std::vector<ShownLayer> shownLayers(const std::vector<PicturePart>& parts);
 
-/// The layer of that name: as it is, or after a dot at the end of a longer one, case ignored, or by what it
-/// holds: position, normal, depth ... Without a name the colours, or the only layer. Throws InputError
-/// "where:
+/// The layer of that name: its whole name, its part after a dot (case ignored), or its role: position,
+/// normal, depth ... Without a name the colours, or the only layer. Throws InputError "where:
 /// ..." that lists the layers.
 ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::string& name,
                           const std::string& where);

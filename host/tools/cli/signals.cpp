@@ -27,7 +27,7 @@ std::mutex ending;
   const int status = 128 + signal;
   if (!logsEvents() && isatty(STDERR_FILENO)) writeError("\r\x1b[K");  // the line of progress
   try {
-    tellError(fmt::format("ended by SIG{}", sigabbrev_np(signal)), status);
+    reportError(fmt::format("ended by SIG{}", sigabbrev_np(signal)), status);
   } catch (const std::exception&) {  // no memory
   }
   logEnd(status);

@@ -10,7 +10,7 @@
 
 namespace luciole {
 
-/// An operation of which a device gives other bits than the standard fixes, by the first case that shows it.
+/// An operation whose result on a device differs from the standard's, with the first case that shows it.
 struct WrongOperation {
   std::string name;
   Operands operands;
@@ -30,25 +30,25 @@ std::vector<WrongOperation> wrongOperations(std::span<const Operands> cases,
 /// A line that says what is wrong: "a / b of a = 1, b = 3 and c = 0 gives 0.3333333 (0x3eaaaaaa), not ...".
 std::string describe(const WrongOperation& wrong);
 
-/// What a device makes of hardOperands().
+/// A device's results for hardOperands().
 struct ArithmeticCheck {
   std::vector<std::string> wrong;  ///< a line for each operation that is (see describe())
-  /// Of all results, NaNs and denormals made one: two devices with the same one compute alike.
+  /// Of all results, with one NaN and denormals flushed: devices with the same hash compute alike.
   std::string sha256;
 };
 
 /// Runs every operation that kernels are made of on the device. Throws MachineError.
 ArithmeticCheck checkArithmetic(OpenedDevice& device);
 
-/// The same, without running anything where this version of the program has checked this device with this
-/// driver and these lanes before: luciole/checks in the user's cache remembers. Throws MachineError.
+/// The same, from luciole/checks in the user's cache if this version of the program has checked this device
+/// with this driver and these lanes before. Throws MachineError.
 ArithmeticCheck knownArithmetic(OpenedDevice& device);
 
 /// The PictureHash of a small picture that the device makes of a scene of its own: lights of all kinds,
 /// highlights, fog and culling, without shadows. Throws MachineError.
 std::string checkPicture(OpenedDevice& device);
 
-/// What checkPicture() gives on a device that computes as the standard says.
+/// The result of checkPicture() on a device that conforms to the standard.
 extern const char* const kCheckedPicture;
 
 }  // namespace luciole

@@ -7,8 +7,8 @@
 
 namespace luciole {
 
-/// The pixels of a picture that are compared with the truth: one at random in each cell of side × side
-/// pixels, so that they show where in the picture errors are.
+/// The pixels of a picture that are compared with the reference: a random one in each cell of side × side
+/// pixels, so that they cover the whole picture.
 struct CheckedPixels {
   int side = 1;
   glm::ivec2 cells{0};

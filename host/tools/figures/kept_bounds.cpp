@@ -20,8 +20,8 @@ double meanOf(double sum, std::uint64_t count) { return count > 0 ? sum / double
 
 }  // namespace
 
-KeptBounds judgeBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
-                       std::span<const glm::dvec3> truth) {
+KeptBounds measureBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
+                         std::span<const glm::dvec3> truth) {
   const std::size_t stride = picture.channels.size();
   const auto channel = [&](const char* name) {
     return std::size_t(std::find(picture.channels.begin(), picture.channels.end(), name) -

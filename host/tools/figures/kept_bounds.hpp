@@ -9,13 +9,13 @@
 
 namespace luciole {
 
-/// How a picture keeps the bounds of its error (Aov::kLightError). A value is a channel of a pixel that shows
-/// a surface. Bounds and errors are shares of the larger of 1 and the colour, both before exposure, as
-/// ShadeSettings::light_error is.
+/// Statistics of the bounds of a picture's error (Aov::kLightError), and of actual errors. A value is a
+/// channel of a pixel that shows a surface. Bounds and errors are shares of the larger of 1 and the colour,
+/// both before exposure, as ShadeSettings::light_error is.
 struct KeptBounds {
   double max_bound = 0, mean_bound = 0;  ///< of all values of the picture
   double max_error = 0, mean_error = 0;  ///< of those whose truth is known
-  double max_used = 0, mean_used = 0;    ///< of these, error over bound: at most 1 where the bounds hold
+  double max_used = 0, mean_used = 0;    ///< of these, error divided by bound: at most 1 if the bounds hold
   std::uint64_t values = 0;              ///< whose truth is known
   std::uint64_t violations = 0;          ///< of these, how many are wrong by more than their bound
 };
@@ -28,10 +28,10 @@ inline constexpr std::pair<const char*, double KeptBounds::*> kBoundFigures[] = 
 inline constexpr std::pair<const char*, std::uint64_t KeptBounds::*> kBoundCounts[] = {
     {"bounded_values", &KeptBounds::values}, {"violations", &KeptBounds::violations}};
 
-/// Holds a picture with the channels R G B and light_error.R, .G and .B, of one sample a pixel, against the
+/// Compares a picture with the channels R G B and light_error.R, .G and .B, of one sample a pixel, with the
 /// truth. exposure: the picture's, in stops. truth: the linear R G B of each of `pixels` in double, at that
 /// exposure. Pixels whose bounds are all 0 show no surface and are left out. O(pixels of the picture).
-KeptBounds judgeBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
-                       std::span<const glm::dvec3> truth);
+KeptBounds measureBounds(const Image& picture, float exposure, std::span<const glm::ivec2> pixels,
+                         std::span<const glm::dvec3> truth);
 
 }  // namespace luciole

@@ -41,7 +41,7 @@ LabelPlace beside(const glm::dvec2& point, const glm::dvec2& size, double distan
   LabelPlace place;
   place.text = around(point + way * distance + glm::clamp(way * 1.5, -1.0, 1.0) * size / 2.0, size);
   place.leader = {point, glm::clamp(point, place.text.low, place.text.high)};
-  place.is_led_to = glm::distance(place.leader.from, place.leader.to) > kLead;
+  place.has_leader = glm::distance(place.leader.from, place.leader.to) > kLead;
   return place;
 }
 
@@ -64,7 +64,7 @@ LabelPlace movedInside(LabelPlace place, const Rectangle& area) {
   const glm::dvec2 size = place.text.high - place.text.low;
   place.text.low = glm::clamp(place.text.low, area.low, glm::max(area.low, area.high - size));
   place.text.high = place.text.low + size;
-  place.is_led_to = false;
+  place.has_leader = false;
   return place;
 }
 
@@ -110,12 +110,12 @@ std::vector<LabelPlace> placeLabels(const std::vector<Label>& labels, double fon
                         [&](const Rectangle& other) { return overlap(place.text, other); }) &&
            std::none_of(lines.begin(), lines.end(),
                         [&](const Segment& line) { return overlap(text, line); }) &&
-           (!place.is_led_to || std::none_of(placed.begin(), placed.end(), [&](const LabelPlace& other) {
+           (!place.has_leader || std::none_of(placed.begin(), placed.end(), [&](const LabelPlace& other) {
              return overlap(grown(other.text, kLineRoom), place.leader);
            }));
   };
   const auto leadsClearly = [&](const LabelPlace& place) {
-    if (!place.is_led_to) return true;
+    if (!place.has_leader) return true;
     const Segment leader = withoutStart(place.leader, kMarker);
     return std::none_of(labels.begin(), labels.end(),
                         [&](const Label& other) {
@@ -137,7 +137,7 @@ std::vector<LabelPlace> placeLabels(const std::vector<Label>& labels, double fon
     if (!clear) clear = any;
     placed.push_back(clear.value_or(movedInside(beside(label.point, size, kNearest, 0), area)));
     taken.push_back(grown(placed.back().text, kTextRoom));
-    if (placed.back().is_led_to) lines.push_back(placed.back().leader);
+    if (placed.back().has_leader) lines.push_back(placed.back().leader);
   }
   return placed;
 }

@@ -18,7 +18,7 @@ struct Segment {
 };
 bool overlap(const Rectangle& rectangle, const Segment& segment);
 
-/// The room that a line of text of this size takes, in pixels.
+/// The size of a line of text of this font size, in pixels.
 glm::dvec2 textSize(const std::string& text, double font_size);
 
 /// The name of a point.
@@ -27,10 +27,10 @@ struct Label {
   std::string text;
 };
 
-/// Where a label's text is. Far from its point, a line, the leader, leads to it.
+/// The position of a label's text. A text far from its point has a leader, a line from the point.
 struct LabelPlace {
   Rectangle text;
-  bool is_led_to = false;
+  bool has_leader = false;
   Segment leader;
 };
 

@@ -9,7 +9,7 @@
 
 namespace luciole {
 
-/// Called now and then, if set: `done` of `total` steps of `what`.
+/// A progress report, if set: `done` of `total` steps of `what`.
 using OnProgress = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
 
 /// The figures of a row of an experiment: figures[i] holds figure i of every round, in order.

@@ -247,7 +247,7 @@ std::string drawLabels(const PlotPanel& panel, const Frame& frame) {
       placeLabels(labels, kFont, taken, lines, {frame.area.low + 3.0, frame.area.high - 3.0});
   for (std::size_t i = 0; i < places.size(); ++i) {
     const LabelPlace& place = places[i];
-    if (place.is_led_to) leaders += lineBetween(place.leader.from, place.leader.to);
+    if (place.has_leader) leaders += lineBetween(place.leader.from, place.leader.to);
     texts += textAt((place.text.low + place.text.high) / 2.0, Anchor::kMiddle, labels[i].text);
   }
   if (texts.empty()) return "";

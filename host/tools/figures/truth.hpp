@@ -6,7 +6,7 @@
 
 namespace luciole {
 
-/// The picture that others are compared with, channels R G B.
+/// A reference picture, channels R G B.
 struct Truth {
   Image image;
   /// Estimate of its own mean absolute error; 0: only float's rounding, 2⁻²⁴ of each value.

@@ -9,8 +9,8 @@
 
 #include "kernels/shared.h"
 #include "render/memory.hpp"
-#include "render/shadow_ways.hpp"
 #include "shade/clustered_light.hpp"
+#include "shade/shadow_ways.hpp"
 #include "tools/info/scene_info.hpp"
 
 namespace luciole {
@@ -85,7 +85,7 @@ MeanLights meanLights(const Scene& scene, const View& view, const std::vector<Se
   };
   if (points.empty() || !scene.lighting) return {};
   const bool culled = features.has(Feature::kLightLists), by_facing = !features.has(Feature::kLightAmbient);
-  const LightUse use = lightUse(settings);
+  const ClusterConditions use = clusterConditions(settings);
   const bool clustered = features.has(Feature::kClusteredLights);
   const double tests = double(points.size()) * double(scene.lights.size());
   const std::size_t step = std::size_t(std::ceil(std::max(tests / kMostTests, 1.0)));

@@ -5,17 +5,17 @@
 
 namespace luciole {
 
-/// How much there is to do for a picture.
+/// The work of a picture, estimated.
 struct PictureWork {
   double pixels = 0;
   int samples = 1;
-  int passes = 1;             ///< in which they are rasterized: one for all where they share points
+  int passes = 1;             ///< of rasterization over the samples: one for all if they share points
   int bands = 1;              ///< in which they are rasterized, see bandHeight
   double shadings = 1;        ///< points that are shaded for a pixel, if it is covered
   double triangles = 0;       ///< drawn
   double mesh_triangles = 0;  ///< loaded
   double texels = 0;          ///< loaded
-  double decoded_texels = 0;  ///< of these, decoded at the same time: a texture a thread
+  double decoded_texels = 0;  ///< the most that are decoded at the same time, a texture a thread
   double textured = 0;        ///< pixels that show a surface of a scene with textures
   bool frames_scene = false;  ///< a camera or lights are chosen, by rays
   double lights = 0;
@@ -33,7 +33,7 @@ struct PictureWork {
   double shadow_map_bytes = 0;  ///< of the texels drawn
 };
 
-/// What the planned picture would be. Deterministic. O(vertices), and up to 10⁸ tests of lights, in parallel.
+/// The work of the planned picture. Deterministic. O(vertices), and up to 10⁸ tests of lights, in parallel.
 /// Throws as renderBands does.
 PictureWork pictureWork(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan);
 

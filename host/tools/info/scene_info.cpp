@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/count_triangles.hpp"
+
 namespace luciole {
 namespace {
 
@@ -39,7 +41,7 @@ LightCounts lightCounts(const Scene& scene) {
 
 SceneInfo sceneInfo(const Scene& scene) {
   SceneInfo info;
-  for (const Object& object : scene.objects) info.triangles += scene.meshes[object.mesh].triangles.size();
+  info.triangles = countTriangles(scene);
   for (const Mesh& mesh : scene.meshes) {
     info.mesh_triangles += mesh.triangles.size();
     info.meshes += !mesh.triangles.empty();

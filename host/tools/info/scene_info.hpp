@@ -15,12 +15,12 @@ struct LightCounts {
   std::size_t everywhere = 0;  ///< of all kinds: those whose range is infinite
 };
 
-/// The first and the last frame at which something that moves has a key.
+/// The first and the last frame with a key.
 struct KeyFrames {
   double first = 0, last = 0;
 };
 
-/// What is in a scene, in numbers.
+/// Numbers about a scene.
 struct SceneInfo {
   std::uint64_t triangles = 0;       ///< as drawn: an object has those of its mesh
   std::uint64_t mesh_triangles = 0;  ///< as stored: each mesh once

@@ -221,7 +221,7 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   check.list_map =
       write(listMap(picture.width, picture.height, layerOf(picture, "list_length")), "-lists.png");
   if (boundsTheTruth(bench.experiment, stats)) {
-    check.bounds = judgeBounds(picture, settings.exposure, bench.checked.pixels, truth.colors);
+    check.bounds = measureBounds(picture, settings.exposure, bench.checked.pixels, truth.colors);
     check.bound_map = write(boundMap(picture.width, picture.height, largestBounds(picture)), "-bounds.png");
   }
   return check;

@@ -28,7 +28,8 @@ struct ScaleAxis {
   bool operator==(const ScaleAxis&) const = default;
 };
 
-/// The value of an axis whose option doesn't apply to the point, because another axis's takes its place.
+/// The value of an axis whose option doesn't apply to the point, because an option of another axis replaces
+/// it.
 inline constexpr const char* kNotThis = "-";
 /// The axis of ShadeSettings::light_error.
 inline constexpr const char* kLightErrorAxis = "light-error";
@@ -40,7 +41,8 @@ struct ScalePoint {
   bool operator==(const ScalePoint&) const = default;
 };
 
-/// What an experiment is, apart from the machine that runs it. Equal descriptions mean the same experiment.
+/// The definition of an experiment, without the machine that runs it. Equal descriptions mean the same
+/// experiment.
 struct ScaleDescription {
   std::string version;                                        ///< of this program
   std::string scene;                                          ///< its file
@@ -60,7 +62,7 @@ struct ScaleTask {
   /// The range of all lights is chosen so that, on average, so many reach a point that the camera sees. 0:
   /// the range is the field's.
   double density = 0;
-  /// Then the range is taken away, and the lights are as bright as with it on average (removeRanges).
+  /// After that ranges are removed, and the lights are as bright on average as before (removeRanges).
   bool no_range = false;
 };
 
@@ -68,15 +70,15 @@ struct ScaleExperiment {
   ScaleDescription description;
   std::vector<ScaleTask> tasks;    ///< one for each of description.points
   std::vector<LightField> fields;  ///< with at least as many lights as any point
-  /// What is lit in place of the scene's surfaces. Then the tasks' settings have its size and camera.
+  /// Replaces the scene's surfaces. The tasks' settings then have its size and camera.
   std::optional<GBuffer> gbuffer{};
   std::size_t check_pixels = 1024;  ///< about how many pixels are compared with the reference
   std::uint64_t seed = 0;           ///< chooses these pixels
   int truth_samples = 1;            ///< samples a pixel that make the truth
-  std::size_t too_exact = 0;        ///< points that aren't there because every light one by one takes long
+  std::size_t too_exact = 0;        ///< points that were left out because summing each light takes too long
 };
 
-/// What is measured only once for a point: the error of its picture, and counts.
+/// The results of a point that are measured once: the error of its picture, and counts.
 struct PointCheck {
   std::uint64_t pairs_evaluated = 0;  ///< of a pixel and a light, or a cluster that stands for lights
   std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
@@ -100,7 +102,7 @@ struct PointRun {
   std::uint64_t peak_bytes = 0;  ///< the most that the process had resident during the run
 };
 
-/// What is known of a point.
+/// The results of a point so far.
 struct PointRecord {
   std::optional<PointCheck> check;
   std::map<int, PointRun> runs;  ///< by repeat, counted from 0
@@ -111,7 +113,7 @@ std::string pointName(const ScaleDescription& description, const ScalePoint& poi
 
 class ScaleLog;
 
-/// A point that the machine can't do, and why.
+/// A point that failed, and the reason.
 struct ScaleFailure {
   std::string point, reason;
 };

@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/base64.hpp"
 #include "base/csv.hpp"
 #include "base/dump_utf8.hpp"
 #include "base/page_text.hpp"

@@ -14,7 +14,7 @@ std::string scaleCsv(const ScaleSummary& summary);
 /// with c's confidence interval, or the reason why there is no fit.
 std::string growthJson(const ScaleSummary& summary);
 
-/// What the page shows (see page.js), as JSON that contains the pictures in `folder`, up to 64 MiB of them.
+/// The data of the page (see page.js) as JSON, with the pictures in `folder`, up to 64 MiB of them.
 /// command: the command line of the experiment. Throws InputError for a picture that isn't a file in the
 /// folder.
 std::string pageData(const ScaleSummary& summary, const std::string& folder, const std::string& command);

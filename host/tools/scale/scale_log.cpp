@@ -362,7 +362,7 @@ void ScaleLog::appendLine(const std::string& line) {
     if (count < 0) throw MachineError(fmt::format("{}{}: {}", folder_, kFile, systemReason()));
     written += std::size_t(count);
   }
-  if (again([&] { return fsync(descriptor_); }) != 0)
+  if (retryInterrupted([&] { return fsync(descriptor_); }) != 0)
     throw MachineError(fmt::format("{}{}: {}", folder_, kFile, systemReason()));
 }
 

@@ -22,7 +22,7 @@ struct PointSummary {
   std::vector<StageSummary> stages;  ///< in the order in which they ran
   PointCheck check;
   std::uint64_t device_bytes = 0, peak_bytes = 0;  ///< the most of any run
-  std::string truth;  ///< what `check` compares it with, see truthName(): errors compare if it is equal
+  std::string truth;  ///< see truthName(): errors of points can be compared if it is equal
   /// On the Pareto front (see paretoFront) of the points with this truth and the same number of lights.
   bool front = false;
 };

@@ -6,9 +6,9 @@
 
 namespace luciole {
 
-/// What the point's picture is compared with, in words: "shadows by rays, model toon". Points with the same
-/// number of lights and the same words approximate the same picture, so their errors compare; those of others
-/// don't. Empty if only the way to make the picture is varied.
+/// The reference of the point's picture in words: "shadows by rays, model toon". Only points with the same
+/// number of lights and the same words have the same reference, so that their errors can be compared. Empty
+/// if all points of the experiment have the same.
 std::string truthName(const ScaleDescription& description, const ScalePoint& point);
 
 }  // namespace luciole

@@ -8,8 +8,7 @@
 
 namespace luciole {
 
-/// What the values of a layer are, and with that how they are made into colours. Codes are sRGB's, from 0 to
-/// 1.
+/// The meaning of a layer's values, which decides their colours. Codes are sRGB's, from 0 to 1.
 enum class LayerKind : std::uint8_t {
   kColor,   ///< three: linear light, as it is; one: grey
   kVector,  ///< three. Unit vectors have the codes v·½ + ½, as normal maps do; positions run from 0 to 1
@@ -22,7 +21,7 @@ enum class LayerKind : std::uint8_t {
 
 struct LayerPicture {
   Image image;                     ///< linear R G B; of the layer's size but with a scale bar
-  std::vector<std::string> notes;  ///< lines that say what its colours mean where it doesn't itself
+  std::vector<std::string> notes;  ///< lines that explain the colours, unless the picture has a scale
 };
 
 /// A layer as a picture to look at. layer: its channels alone, in their order. name: for the scale bar and

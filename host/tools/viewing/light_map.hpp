@@ -10,7 +10,7 @@
 
 namespace luciole {
 
-/// A face of a light's shadow map: what each of its texels sees.
+/// A face of a light's shadow map as distances.
 struct LightFace {
   std::string name;  ///< "" of a cone; "positive_x" ... of a cube; "cascade0" ... of a directional light
   std::string up;    ///< the axis of the world that is up in it, such as "y"; "" where none is

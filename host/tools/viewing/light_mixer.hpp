@@ -7,10 +7,10 @@
 
 #include "luciole/image.hpp"
 
-// Pictures made anew from the layers of their groups of lights, without shading again.
+// Relights pictures by weighting the layers of their groups of lights, without shading again.
 namespace luciole {
 
-/// What a group's light is multiplied by: r g b, linear.
+/// A factor of a group's light: r g b, linear.
 struct GroupFactor {
   std::string group;
   glm::vec3 factor{1.0f};
@@ -20,8 +20,8 @@ struct GroupFactor {
 /// channels. Throws InputError, also where there is none.
 std::vector<GroupFactor> lightGroupsOf(const std::string& path);
 
-/// The layers of an EXR's groups of lights alone, channels as the file calls them; no channels where it has
-/// no such layers. Throws InputError and MachineError.
+/// The layers of an EXR's groups of lights alone, with the file's channel names; no channels if it has no
+/// such layers. Throws InputError and MachineError.
 Image readLightGroups(const std::string& path);
 
 /// The sum of an EXR's groups times their factors, and its A where it has one: summed in double, so within

@@ -23,7 +23,7 @@ TEST(KeptBounds, AreSharesOfTheLargerOfOneAndTheColor) {
   const Image picture = rowOf({{0.5f, 0.25f}, {4.0f, 0.5f}, {0.0f, 0.0f}});
   const std::vector<glm::ivec2> pixels{{0, 0}, {1, 0}};
   const std::vector<glm::dvec3> truth{glm::dvec3(0.625), glm::dvec3(4.5, 4.0, 4.0)};
-  const KeptBounds kept = judgeBounds(picture, 0, pixels, truth);
+  const KeptBounds kept = measureBounds(picture, 0, pixels, truth);
   EXPECT_EQ(kept.max_bound, 0.25);
   EXPECT_EQ(kept.mean_bound, (0.25 + 0.5 / 4) / 2) << "the last pixel shows no surface";
   EXPECT_EQ(kept.max_error, 0.125);
@@ -37,7 +37,7 @@ TEST(KeptBounds, AreSharesOfTheLargerOfOneAndTheColor) {
 TEST(KeptBounds, AreSharesBeforeExposure) {
   // A stop brighter: 2 is what was 1.
   const KeptBounds kept =
-      judgeBounds(rowOf({{1.0f, 0.5f}}), 1, std::vector{glm::ivec2(0)}, std::vector{glm::dvec3(0.75)});
+      measureBounds(rowOf({{1.0f, 0.5f}}), 1, std::vector{glm::ivec2(0)}, std::vector{glm::dvec3(0.75)});
   EXPECT_EQ(kept.max_bound, 0.25);
   EXPECT_EQ(kept.max_error, 0.125);
   EXPECT_EQ(kept.max_used, 0.5);
@@ -47,7 +47,7 @@ TEST(KeptBounds, CountEachChannelThatIsWrongByMoreAndWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<glm::ivec2> pixels{{0, 0}, {1, 0}, {2, 0}};
   const std::vector<glm::dvec3> truth{glm::dvec3(0.5, 0.7501, 0.2499), glm::dvec3(nan, 1, 1), glm::dvec3(9)};
-  const KeptBounds kept = judgeBounds(rowOf({{0.5f, 0.25f}, {1.0f, 0.5f}, {0.0f, 0.0f}}), 0, pixels, truth);
+  const KeptBounds kept = measureBounds(rowOf({{0.5f, 0.25f}, {1.0f, 0.5f}, {0.0f, 0.0f}}), 0, pixels, truth);
   EXPECT_EQ(kept.violations, 3u);
   EXPECT_EQ(kept.values, 6u);
   EXPECT_GT(kept.max_used, 1);
@@ -56,14 +56,14 @@ TEST(KeptBounds, CountEachChannelThatIsWrongByMoreAndWhatIsNoNumber) {
 TEST(KeptBounds, ATruthBeyondTheLargestFloatEndsThere) {
   const float most = std::numeric_limits<float>::max();
   const KeptBounds kept =
-      judgeBounds(rowOf({{most, 1.0f}}), 0, std::vector{glm::ivec2(0)}, std::vector{glm::dvec3(1e300)});
+      measureBounds(rowOf({{most, 1.0f}}), 0, std::vector{glm::ivec2(0)}, std::vector{glm::dvec3(1e300)});
   EXPECT_EQ(kept.violations, 0u);
   EXPECT_EQ(kept.max_error, 0);
 }
 
 TEST(KeptBounds, OfAPictureWithoutSurfacesAreNone) {
   const KeptBounds kept =
-      judgeBounds(rowOf({{0.5f, 0.0f}}), 0, std::vector{glm::ivec2(0)}, std::vector{glm::dvec3(0.5)});
+      measureBounds(rowOf({{0.5f, 0.0f}}), 0, std::vector{glm::ivec2(0)}, std::vector{glm::dvec3(0.5)});
   EXPECT_EQ(kept.max_bound, 0);
   EXPECT_EQ(kept.mean_bound, 0);
   EXPECT_EQ(kept.mean_used, 0);

@@ -30,7 +30,7 @@ TEST(PlaceLabels, CrowdedPointsGetTextsThatOverlapNothing) {
     for (const glm::dvec2& point : points)
       EXPECT_FALSE(overlap(text, Rectangle{point - 1.0, point + 1.0})) << i;
     for (std::size_t j = 0; j < places.size(); ++j)
-      if (j != i && places[j].is_led_to) {
+      if (j != i && places[j].has_leader) {
         EXPECT_FALSE(overlap(text, places[j].leader)) << i << " and " << j;
       }
   }
@@ -42,7 +42,7 @@ TEST(PlaceLabels, ATextHasTheSizeOfItsCharactersAndLiesNearItsPoint) {
   // Corners of up to 512 pixels round by 2⁻⁴⁵ in each of some four operations.
   EXPECT_NEAR(glm::distance(label.text.high - label.text.low, textSize("name", 12)), 0, 1e-12);
   EXPECT_LT(glm::distance(glm::clamp(point, label.text.low, label.text.high), point), 15);
-  EXPECT_FALSE(label.is_led_to);
+  EXPECT_FALSE(label.has_leader);
 }
 
 TEST(PlaceLabels, WithoutRoomEveryTextStillHasAPlaceInside) {

@@ -10,39 +10,40 @@
 
 namespace luciole {
 
-/// How much a light's shadows would be to do, in a whole picture. Estimated in O(1) from the light's reach,
-/// the scene's bounds and the view; nothing is drawn for it.
+/// The work of a light's shadows in a whole picture, estimated in O(1) from the light's reach, the scene's
+/// bounds and the view.
 struct ShadowWork {
-  double points = 0;     ///< that are shaded in the light's reach
+  double points = 0;     ///< shaded points in the light's reach
   double triangles = 0;  ///< in its reach
   double faces = 0;      ///< of its map
   double texels = 0;     ///< of its map
 };
 
-/// Milliseconds of a scene's shadows by either way, about, on kEstimateMachine.
+/// Estimated milliseconds of a scene's shadows by either way, on two cores of an AMD EPYC of 2024.
 struct ShadowCosts {
-  double tree = 0;              ///< of the triangle tree, which all beams share
-  double plan = 0;              ///< of what all maps share
+  double tree = 0;              ///< of the triangle tree, for all beams
+  double plan = 0;              ///< of planning all maps
   std::vector<double> beams{};  ///< of each light; 0 for those without shadows
   std::vector<double> maps{};
 };
 
-/// The points that are shaded for a pixel that shows a surface, about. shared: see sharesSamples.
+/// The estimated number of shaded points of a pixel that shows a surface. shared: samples of the same surface
+/// share a point.
 double shadedPoints(const Scene& scene, glm::ivec2 size, int samples, bool shared);
 
 /// The work of each light with a shadow; zeros for others. view: of the whole picture, whatever its crop.
 std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double points_a_pixel,
                                    const ShadowLimits& limits);
 
-/// triangles: of the scene; holes: textures have some, through which rays must look.
+/// triangles: of the scene. holes: some materials have holes, which take rays.
 ShadowCosts shadowCosts(double triangles, bool holes, std::span<const ShadowWork> work);
 
-/// The cheapest way of each light that casts shadows, where maps' times count kMapsPayFrom times.
+/// The cheapest way of each light that casts shadows, with the times of maps multiplied by kMapsPayFrom.
 std::vector<ShadowWay> cheapestWays(const ShadowCosts& costs, const std::vector<bool>& casts);
 
-/// The way of each light by ShadowMethod::kAuto: beams, which are exact, unless maps are at least
-/// kMapsPayFrom times as fast. No time is measured and the crop doesn't matter, so the same scene and
-/// settings give the same ways everywhere. Where not even the coarsest maps fit into limits.bytes all are
+/// The way of each light with ShadowMethod::kAuto: beams, which are exact, unless maps are estimated to be at
+/// least kMapsPayFrom times as fast. Nothing is timed and the crop doesn't matter, so the same scene and
+/// settings give the same ways on every machine. If not even the coarsest maps fit into limits.bytes all are
 /// beams. view, points_a_pixel, limits: see shadowWork. O(vertices + lights).
 std::vector<ShadowWay> shadowWays(const Scene& scene, const View& view, double points_a_pixel,
                                   const ShadowLimits& limits);

@@ -6,25 +6,27 @@
 #include <vector>
 
 #include "lights/light_set.hpp"
-#include "render/render.hpp"
+#include "luciole/scene.hpp"
+#include "luciole/settings.hpp"
+#include "shade/features.hpp"
 
-// Layers that hold a part of a picture's light each, so that their sum is the picture: one for each group of
-// lights and one for what no light gives, or one for each of Phong's terms. The picture's G-buffer is lit
-// once for each, by the kernels that light it, with what isn't in the layer left out of lights and frame.
+// Layers of light, whose sum is the picture: one for each group of lights and one for the rest, or one for
+// each of Phong's terms. Each is lit by the picture's kernels, with the colours that aren't in the layer set
+// to black.
 namespace luciole {
 
 struct LightLayer {
   std::string name;                         ///< its channels are name + "R", "G" and "B"
-  std::optional<std::uint32_t> group = {};  ///< whose lights it has; of none: see all_lights
+  std::optional<std::uint32_t> group = {};  ///< the group of its lights; empty: none, or all_lights
   bool all_lights = false;                  ///< it has the lights of all groups
-  bool light_ambient = true, diffuse = true, specular = true;  ///< what of these lights' colours
+  bool light_ambient = true, diffuse = true, specular = true;  ///< which colours of its lights it has
   bool ambient = false;                                        ///< the scene's ambient light
   bool emission = false;
   bool fog = false;         ///< the fog's own colour; all light is seen through the fog
-  bool background = false;  ///< where nothing is seen
+  bool background = false;  ///< Scene::background
 };
 
-/// Layers of groups at most: more channels than any program reads.
+/// The most layers of groups.
 inline constexpr std::size_t kMostLightGroups = 4096;
 
 /// Whether the settings ask for such layers.
@@ -35,19 +37,19 @@ bool wantsLightLayers(const RenderSettings& settings);
 /// Throws InputError for more than kMostLightGroups groups.
 std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& settings);
 
-/// A layer, and what it is lit by.
+/// A layer, its program's features and its lights.
 struct LitLayer {
   LightLayer layer;
   FeatureSet features;
   LightSet lights;
 };
 
-/// These layers of a picture whose lighting is prepared. features: of the picture. Lights keep their shadow
-/// maps and the place of their samples.
+/// Prepares layers of a picture. lights, features: the picture's. Lights keep their shadow maps and the
+/// pattern of their soft shadows' samples.
 std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const LightSet& lights,
                                     const FeatureSet& features, std::vector<LightLayer> layers);
 
-/// The features to light a layer with, of those that its picture has.
+/// The features of a layer's program, of a picture with these features.
 FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer);
 
 }  // namespace luciole

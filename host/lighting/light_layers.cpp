@@ -1,4 +1,4 @@
-#include "render/light_layers.hpp"
+#include "lighting/light_layers.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,12 @@
 
 #include "image/light_names.hpp"
 #include "luciole/error.hpp"
-#include "render/assemble.hpp"
 #include "scene/light_groups.hpp"
 
 namespace luciole {
 namespace {
 
-/// The parts that the settings may ask for, named as kLightParts has them.
+/// A part of a picture's light by its AOV.
 struct LightPart {
   Aov aov;
   LightLayer layer;
@@ -34,7 +33,7 @@ std::vector<LightPart> lightParts() {
 
 void darken(float4& color) { color.x = color.y = color.z = 0; }
 
-/// What lights a layer. chosen: its lights, by their places in the picture's, in its order.
+/// The light set of a layer. chosen: indices of its lights in the picture's set, ascending.
 LightSet layerLights(OpenedDevice& device, const LightSet& lights, std::span<const std::uint32_t> chosen,
                      const LightLayer& layer) {
   LightSet set;
@@ -60,7 +59,7 @@ LightSet layerLights(OpenedDevice& device, const LightSet& lights, std::span<con
 bool wantsLightLayers(const RenderSettings& settings) {
   const std::vector<LightPart> parts = lightParts();
   return settings.light_groups || std::any_of(parts.begin(), parts.end(), [&](const LightPart& part) {
-           return wants(settings, part.aov);
+           return settings.wants(part.aov);
          });
 }
 
@@ -84,7 +83,7 @@ std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& se
                       .background = true});
   }
   for (LightPart& part : lightParts())
-    if (wants(settings, part.aov)) layers.push_back(std::move(part.layer));
+    if (settings.wants(part.aov)) layers.push_back(std::move(part.layer));
   return layers;
 }
 

@@ -1,4 +1,4 @@
-#include "render/count_picture.hpp"
+#include "lighting/count_picture.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -14,11 +14,11 @@
 namespace luciole {
 namespace {
 
-/// Adds to the statistics how far the light of clusters may be wrong.
+/// Adds the bounds of the error of clustered light to Stats::light_error.
 void countLightErrors(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
   const std::size_t n = gbuffer.pixels();
-  const auto add = [&](const tbb::blocked_range<std::size_t>& some, LightErrorStats bounds) {
-    for (std::size_t i = some.begin(); i < some.end(); ++i) {
+  const auto add = [&](const tbb::blocked_range<std::size_t>& range, LightErrorStats bounds) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (!std::isfinite(gbuffer.position[i + 2 * n])) continue;
       for (int c = 0; c < 3; ++c) {
         const double bound = lit.light_error[i + c * n];
@@ -63,7 +63,7 @@ void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lig
   if (!(settings.light_error > 0) || !scene.lighting) return;
   addCount(stats, "lights_stood_for", lighting.lights.clusters.lights);
   addCount(stats, "lights_exact", scene.lights.size() - lighting.lights.clusters.lights);
-  const auto counts = countReasons(scene.lights, lightUse(settings));
+  const auto counts = countReasons(scene.lights, clusterConditions(settings));
   for (std::size_t reason = 1; reason < counts.size(); ++reason)
     if (counts[reason] > 0)
       addCount(stats, std::string("lights_exact_by_") + exactReasonName(ExactReason(reason)), counts[reason]);
@@ -104,7 +104,7 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats
   addCount(stats, "pixel_lights_in_range", static_cast<std::uint64_t>(in_range));
 }
 
-void countTriangles(const RasterCounts& counts, Stats& stats) {
+void addRasterCounts(const RasterCounts& counts, Stats& stats) {
   addCount(stats, "triangles_submitted", counts.submitted);
   addCount(stats, "triangles_back_facing", counts.back_facing);
   addCount(stats, "triangles_outside", counts.outside);

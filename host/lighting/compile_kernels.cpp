@@ -1,4 +1,4 @@
-#include "render/compile_kernels.hpp"
+#include "lighting/compile_kernels.hpp"
 
 #include <chrono>
 #include <limits>
@@ -38,12 +38,13 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
                ignored);
 }
 
-std::future<double> startCompiling(OpenedDevice& device, const PicturePlan& plan) {
-  return std::async(std::launch::async, [&device, &plan] {
+std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
+                                   const ShadeSettings& settings) {
+  return std::async(std::launch::async, [&device, &programs, &settings] {
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
-    for (const FeatureSet& features : plan.programs) compileKernels(device, features, plan.shade);
+    for (const FeatureSet& features : programs) compileKernels(device, features, settings);
     return endStage(Stage::kCompileKernels, begin);
   });
 }

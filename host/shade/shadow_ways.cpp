@@ -1,17 +1,18 @@
-#include "render/shadow_ways.hpp"
+#include "shade/shadow_ways.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "scene/bounds.hpp"
+#include "scene/count_triangles.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "shadow/maps/shadow_views.hpp"
 
 namespace luciole {
 namespace {
 
-/// The share of the picture that shows what lies in a sphere, from the square around it; world space.
+/// The share of the picture covered by a sphere's bounding square; world space.
 double shareSeen(const View& view, const glm::dvec3& middle, double radius) {
   const glm::dvec3 at(view.world_to_view * glm::dvec4(middle, 1));
   const bool perspective = view.projection[3][3] == 0;
@@ -33,7 +34,7 @@ double shareSeen(const View& view, const glm::dvec3& middle, double radius) {
   return share;
 }
 
-/// The share of the bounds that lies in the box around a sphere.
+/// The share of the bounds' volume inside a sphere's bounding box.
 double shareReached(const Bounds& bounds, const glm::dvec3& middle, double radius) {
   double share = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -46,19 +47,12 @@ double shareReached(const Bounds& bounds, const glm::dvec3& middle, double radiu
   return share;
 }
 
-double triangleCount(const Scene& scene) {
-  double triangles = 0;
-  for (const Object& object : scene.objects) triangles += double(scene.meshes[object.mesh].triangles.size());
-  return triangles;
-}
-
 }  // namespace
 
 double shadedPoints(const Scene& scene, glm::ivec2 size, int samples, bool shared) {
   if (!shared) return samples;
-  // Of samples that share points there are more a pixel the more triangles it sees, and uneven pixels take
-  // all.
-  return std::min(double(samples), 1.3 + 4 * triangleCount(scene) / (double(size.x) * size.y));
+  // A pixel has more points the more triangles it sees, and pixels of uneven light shade all samples.
+  return std::min(double(samples), 1.3 + 4 * double(countTriangles(scene)) / (double(size.x) * size.y));
 }
 
 std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double points_a_pixel,
@@ -69,7 +63,8 @@ std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double 
   ShadowLimits unbounded = limits;
   unbounded.bytes = std::numeric_limits<std::size_t>::max();
   const ShadowSizes sizes = chooseSizes(scene, input, unbounded);
-  const double points = points_a_pixel * view.size.x * view.size.y, triangles = triangleCount(scene);
+  const double points = points_a_pixel * view.size.x * view.size.y;
+  const auto triangles = double(countTriangles(scene));
   double texels = 0;
   for (std::size_t i = 0; i < work.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -108,7 +103,7 @@ ShadowCosts shadowCosts(double triangles, bool holes, std::span<const ShadowWork
 
 std::vector<ShadowWay> cheapestWays(const ShadowCosts& costs, const std::vector<bool>& casts) {
   std::vector<ShadowWay> ways(casts.size(), ShadowWay::kNone);
-  // What beams save over maps, whose times count kMapsPayFrom times, with each light on its better way.
+  // The time that beams save over maps alone, with each light on its better way.
   double saved = -costs.tree;
   bool any_map = false;
   for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -130,8 +125,8 @@ std::vector<ShadowWay> shadowWays(const Scene& scene, const View& view, double p
   const std::vector<ShadowWork> work = shadowWork(scene, view, points_a_pixel, limits);
   const bool holes = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& material) { return material.alpha_cutoff > 0; });
-  std::vector<ShadowWay> ways = cheapestWays(shadowCosts(triangleCount(scene), holes, work), casts);
-  // Beams take no memory a light.
+  std::vector<ShadowWay> ways = cheapestWays(shadowCosts(double(countTriangles(scene)), holes, work), casts);
+  // Beams take no memory for each light.
   double bytes = 0;
   for (std::size_t i = 0; i < ways.size(); ++i)
     if (ways[i] == ShadowWay::kMap)

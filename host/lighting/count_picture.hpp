@@ -7,29 +7,30 @@
 #include "lighting/stats.hpp"
 #include "raster/rasterize.hpp"
 
-// What a picture's statistics count.
+// The counts of Stats::counts, by the names that --stats gives them.
 namespace luciole {
 
 /// Adds to a count, which begins at 0.
 void addCount(Stats& stats, const std::string& name, std::uint64_t count);
 
-/// Adds what clusters of lights cost a pass.
+/// Adds the counts of a pass of kernels/clusters/clustered_light.cl.
 void countClusters(const ClusteredLightCounts& counts, Stats& stats);
 
-/// Says how many lights clusters stand for, and why not for the others. Nothing where that wasn't asked for.
+/// Adds the numbers of lights in clusters and of those summed by themselves, these by ExactReason. Adds
+/// nothing if ShadeSettings::light_error is 0.
 void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lighting& lighting,
                     Stats& stats);
 
 /// Pixels that show a surface.
 std::uint64_t coveredPixels(const GBuffer& gbuffer);
 
-/// Adds a pass that lit the G-buffer. counted: whether lit.evaluated was counted.
+/// Adds the counts of a pass that lit the G-buffer. counted: lit.evaluated is known.
 void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats);
 
-/// Adds what became of the triangles.
-void countTriangles(const RasterCounts& counts, Stats& stats);
+/// Adds the rasterizer's counts of triangles.
+void addRasterCounts(const RasterCounts& counts, Stats& stats);
 
-/// Says how many lights cast shadows, and by what.
+/// Adds the numbers of lights that cast shadows, by exact shadows and by maps, and the size of the maps.
 void countShadows(const Lighting& lighting, Stats& stats);
 
 }  // namespace luciole

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "image/cryptomatte.hpp"
-#include "render/surface_ids.hpp"
+#include "raster/surface_ids.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {

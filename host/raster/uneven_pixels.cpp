@@ -1,4 +1,4 @@
-#include "render/uneven_pixels.hpp"
+#include "raster/uneven_pixels.hpp"
 #include "kernels/shared.h"
 
 #include <tbb/parallel_for.h>
@@ -15,7 +15,7 @@ struct PointsInRow {
   std::size_t before, here, after;
 };
 
-/// How uneven one component is: at most this, in units of the colour.
+/// The unevenness of one component, in units of the colour.
 float unevenness(const PointsInRow& row, const float* color, const float* reflectance) {
   const float before = reflectance[row.before], here = reflectance[row.here], after = reflectance[row.after];
   const float lit = color[row.here];
@@ -25,19 +25,18 @@ float unevenness(const PointsInRow& row, const float* color, const float* reflec
   return std::abs(0.5f * (color[row.before] * (here / before) + color[row.after] * (here / after)) - lit);
 }
 
-/// Whether two neighbouring points, by their places in the planes, show a surface that goes on from one to
-/// the other: it turns by less than 26 degrees, and the way between them leaves neither of their planes
-/// by 30.
-bool goesOn(const GBuffer& gbuffer, std::size_t a, std::size_t b) {
+/// Whether two neighbouring points, by their places in the planes, lie on a continuous surface: their normals
+/// differ by less than 26°, and the line between them is within 30° of both tangent planes.
+bool isContinuous(const GBuffer& gbuffer, std::size_t a, std::size_t b) {
   const std::size_t stride = gbuffer.pixels();
   const auto vectorAt = [&](const Plane& group, std::size_t i) {
     return glm::vec3(group[i], group[i + stride], group[i + 2 * stride]);
   };
   const glm::vec3 of_a = vectorAt(gbuffer.normal, a), of_b = vectorAt(gbuffer.normal, b);
-  const glm::vec3 way = vectorAt(gbuffer.position, b) - vectorAt(gbuffer.position, a);
-  const float most = 0.5f * glm::length(way);
-  return glm::dot(of_a, of_b) > 0.9f && std::abs(glm::dot(of_a, way)) <= most &&
-         std::abs(glm::dot(of_b, way)) <= most;
+  const glm::vec3 step = vectorAt(gbuffer.position, b) - vectorAt(gbuffer.position, a);
+  const float most = 0.5f * glm::length(step);
+  return glm::dot(of_a, of_b) > 0.9f && std::abs(glm::dot(of_a, step)) <= most &&
+         std::abs(glm::dot(of_b, step)) <= most;
 }
 
 /// Rows of a picture's pixels from left to right.
@@ -65,10 +64,10 @@ void readRow(const GBuffer& gbuffer, const Plane& color, int y, PixelRow& row) {
   }
 }
 
-/// Sets `suspect` to 0 for the pixels of a row, from x = first up to end, that are even whatever the surfaces
-/// of their neighbours: those whose neighbours on either side are at most as far as allowed from them, both
-/// together, with 1 % to spare for rounding. Where a reflectance is 0 the light is not a number, and the
-/// pixel is suspect.
+/// A quick test without surfaces: sets `suspect` to 0 for the pixels of a row, from x = first up to end,
+/// whose two neighbours along each axis differ from them by less than allowed, summed up, with 1 % to spare
+/// for rounding. These are even. Where a reflectance is 0 the light is not a number, and the pixel is
+/// suspect.
 void findSuspects(const PixelRow& above, const PixelRow& row, const PixelRow& below, int first, int end,
                   std::uint8_t* suspect) {
   std::fill(suspect + first, suspect + end, std::uint8_t(0));
@@ -104,7 +103,8 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
   const auto is_uneven = [&](const glm::ivec2& pixel, const glm::ivec2& step) {
     const std::size_t here = gbuffer.index(pixel.x, pixel.y);
     const auto same_surface = [&](const glm::ivec2& other) {
-      return objectAt(other) == objectAt(pixel) && goesOn(gbuffer, here, gbuffer.index(other.x, other.y));
+      return objectAt(other) == objectAt(pixel) &&
+             isContinuous(gbuffer, here, gbuffer.index(other.x, other.y));
     };
     const bool before = same_surface(pixel - step), after = same_surface(pixel + step);
     if (!before && !after) return false;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "image/light_names.hpp"
+#include "lighting/light_layers.hpp"
 #include "luciole/error.hpp"
-#include "render/light_layers.hpp"
 #include "render_json.hpp"
 
 namespace luciole::test {

@@ -1,4 +1,4 @@
-#include "render/shadow_ways.hpp"
+#include "shade/shadow_ways.hpp"
 #include "render/plan.hpp"
 
 #include <gmock/gmock.h>
