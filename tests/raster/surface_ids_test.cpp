@@ -25,7 +25,7 @@ constexpr const char* kThings =
               {"primitive": "box", "translate": [0, 0.5, 2], "material": "glass"}, {"name": "ground", "primitive": "cone", "translate": [2, 0, 0]},
               {"primitive": "box", "translate": [-40, 0.5, -70], "scale": 20}]})";
 
-const std::vector<Aov> kAll{Aov::kObjectId, Aov::kMaterialId, Aov::kCryptoObject, Aov::kCryptoMaterial};
+const std::vector<Aov> kSurfaceIds{Aov::kObjectId, Aov::kMaterialId, Aov::kCryptoObject, Aov::kCryptoMaterial};
 
 std::size_t channelOf(const Image& image, const std::string& name) {
   return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin());
@@ -55,7 +55,7 @@ TEST(SurfaceIds, MattesCoverWhatIsCoveredAndChangeNoPicture) {
     settings.sample_shading = shading;
     settings.alpha = true;
     const Image plain = picture(scene, settings);
-    settings.aovs = kAll;
+    settings.aovs = kSurfaceIds;
     const Image image = picture(scene, settings);
     const std::size_t step = image.channels.size();
     for (std::size_t i = 0; i < plain.pixels.size() / 4; ++i) {
@@ -71,7 +71,7 @@ TEST(SurfaceIds, MattesCoverWhatIsCoveredAndChangeNoPicture) {
 TEST(SurfaceIds, NumbersAreThoseOfTheNamesThatCoverAPixelOfOneSample) {
   const Scene scene = sceneFromJson(kThings);
   RenderSettings settings = settingsFor(scene, {130, 90});
-  settings.aovs = kAll;
+  settings.aovs = kSurfaceIds;
   const Image image = picture(scene, settings);
   const std::vector<std::string> objects = objectNames(scene), materials = materialNames(scene);
   const std::size_t step = image.channels.size();
@@ -92,7 +92,7 @@ TEST(SurfaceIds, NumbersAreThoseOfTheNamesThatCoverAPixelOfOneSample) {
 TEST(SurfaceIds, AreTheSameInBandsAndCrops) {
   const Scene scene = sceneFromJson(kThings);
   RenderSettings settings = settingsFor(scene, {130, 150});
-  settings.aovs = kAll;
+  settings.aovs = kSurfaceIds;
   settings.samples = 4;
   settings.band_height = 1 << 20;
   const Image whole = picture(scene, settings);
