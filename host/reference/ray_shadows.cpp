@@ -21,10 +21,10 @@ LightCone lightCone(const Light& light, const glm::dvec3& point) {
     const double half = std::sin(light.half_angle / 2);
     return {-glm::normalize(light.direction), 2 * half * half, std::numeric_limits<double>::infinity()};
   }
-  const glm::dvec3 way = light.position - point;
-  const double distance = glm::length(way), sine = std::min(light.radius / distance, 1.0);
+  const glm::dvec3 to_center = light.position - point;
+  const double distance = glm::length(to_center), sine = std::min(light.radius / distance, 1.0);
   // Equals 1 − √(1 − s²), but keeps the digits of a small s.
-  return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine)), distance};
+  return {to_center / distance, sine * sine / (1 + std::sqrt(1 - sine * sine)), distance};
 }
 
 /// The distance to a sphere's surface along a ray. distance: to its middle; cosine: of the angle between the

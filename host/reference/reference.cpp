@@ -49,10 +49,10 @@ double spotEffect(const Light& light, double cosine) {
 
 Incoming incomingLight(const Light& light, const glm::dvec3& position) {
   if (light.kind == LightKind::kDirectional) return {unitOrZero(-light.direction), 1.0};
-  const glm::dvec3 way = light.position - position;
-  const double distance = glm::length(way);
-  if (distance >= light.range) return {unitOrZero(way), 0.0};
-  Incoming incoming{unitOrZero(way), attenuation(light, distance) * rangeWindow(light, distance)};
+  const glm::dvec3 to_light_center = light.position - position;
+  const double distance = glm::length(to_light_center);
+  if (distance >= light.range) return {unitOrZero(to_light_center), 0.0};
+  Incoming incoming{unitOrZero(to_light_center), attenuation(light, distance) * rangeWindow(light, distance)};
   if (light.kind == LightKind::kSpot)
     incoming.share *= spotEffect(light, glm::dot(-incoming.to_light, unitOrZero(light.direction)));
   return incoming;

@@ -56,10 +56,10 @@ bool placeSamples(const BeamLight& light, const glm::vec3& start, std::span<cons
   const glm::dvec3 place(light.place.x, light.place.y, light.place.z);
   const bool directional = light.place.w == 0;
   const double size = light.size;
-  const glm::dvec3 way = directional ? place : place - glm::dvec3(start);
-  const double distance = glm::length(way);
+  const glm::dvec3 to_light = directional ? place : place - glm::dvec3(start);
+  const double distance = glm::length(to_light);
   if (!directional && distance <= size) return false;
-  const glm::dvec3 axis = way / distance;
+  const glm::dvec3 axis = to_light / distance;
   // Any two axes across it: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
   const double sign = std::copysign(1.0, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
   const glm::dvec3 right(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);

@@ -69,7 +69,8 @@ TriangleBoxes boxesOf(const PlacedTriangles& placed) {
   return boxes;
 }
 
-/// Normal and offset; all 0 if the exact or the rounded corners are collinear, or have opposite orientations.
+/// Unit normal of the exact corners, with the orientation of the rounded ones, and offset. All 0 if either
+/// are collinear, or their normals are perpendicular.
 glm::vec4 planeOf(const std::array<glm::dvec3, 3>& exact, const std::array<glm::vec3, 3>& rounded) {
   const glm::dvec3 normal = glm::cross(exact[1] - exact[0], exact[2] - exact[0]);
   const glm::dvec3 a = rounded[0];
