@@ -389,17 +389,21 @@ TEST(CullKernels, BoxesOfAFloatsLastBitHoldTheirPoints) {
 TEST(CullKernels, ListsGrowAsLongAsTheyMust) {
   Random random(9);
   const Points points = randomPoints(6, random);
-  const std::vector<ShadeLight> lights(20001, pointLight({0, 0, 0}, INFINITY));
-  for (const int lanes : kAllLanes) {
-    const Lists lists = cullWith(lanes, points, lights, 8, kByCone);
-    for (int tile = 0; tile < 6; ++tile)
-      for (int list = 0; list < kSquaresPerTile; ++list) {
-        const int at = tile * kSquaresPerTile + list;
-        ASSERT_EQ(lists.starts[at + 1] - lists.starts[at], list == 0 && tile != 1 ? 20001u : 0u)
-            << lanes << " lanes";
-      }
-    for (std::size_t entry = 0; entry < lists.list.size(); ++entry)
-      ASSERT_EQ(lists.list[entry], entry % 20001);
+  // As many as counting keeps, one more, twice as many, and far more.
+  for (const cl_uint count :
+       {cl_uint(kFoundPerTile), cl_uint(kFoundPerTile + 1), cl_uint(2 * kFoundPerTile), 20001u}) {
+    const std::vector<ShadeLight> lights(count, pointLight({0, 0, 0}, INFINITY));
+    for (const int lanes : kAllLanes) {
+      SCOPED_TRACE(testing::Message() << count << " lights, " << lanes << " lanes");
+      const Lists lists = cullWith(lanes, points, lights, 8, kByCone);
+      for (int tile = 0; tile < 6; ++tile)
+        for (int list = 0; list < kSquaresPerTile; ++list) {
+          const int at = tile * kSquaresPerTile + list;
+          ASSERT_EQ(lists.starts[at + 1] - lists.starts[at], list == 0 && tile != 1 ? count : 0u);
+        }
+      for (std::size_t entry = 0; entry < lists.list.size(); ++entry)
+        ASSERT_EQ(lists.list[entry], entry % count);
+    }
   }
 }
 
