@@ -25,7 +25,8 @@ constexpr const char* kThings =
               {"primitive": "box", "translate": [0, 0.5, 2], "material": "glass"}, {"name": "ground", "primitive": "cone", "translate": [2, 0, 0]},
               {"primitive": "box", "translate": [-40, 0.5, -70], "scale": 20}]})";
 
-const std::vector<Aov> kSurfaceIds{Aov::kObjectId, Aov::kMaterialId, Aov::kCryptoObject, Aov::kCryptoMaterial};
+const std::vector<Aov> kSurfaceIds{Aov::kObjectId, Aov::kMaterialId, Aov::kCryptoObject,
+                                   Aov::kCryptoMaterial};
 
 std::size_t channelOf(const Image& image, const std::string& name) {
   return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin());
