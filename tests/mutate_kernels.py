@@ -55,6 +55,7 @@ MAPS = ("maps", "ShadowMaps.*:*HoveringSquare*")
 SOFT = ("exact", "*SoftEdge*")
 EXACT_SHADOWS = ("pictures", "*ShadowMethods.PictureIsTheSame*/Exact")
 BEAMS = ("exact", "BeamShadows.*")
+LIGHT_RAYS = ("exact", "LightRays.*")
 SOFT_BEAMS = ("exact", "SoftExact.AgreeWith*")
 SOFT_PICTURES = ("pictures", "*ShadowMethods.PictureIsTheSame*/SoftExact:SoftExact.Of*")
 FAR_FIELD = ("kernels", "FarFieldKernels.*")
@@ -85,6 +86,9 @@ TESTS = {
     "shade/fog.clh": [FOG, CLOSED_FORM, PICTURES],
     "clusters/highlights.clh": [HIGHLIGHTS, SHINY],
     "exact/hole_masks.clh": [("pictures", "HoleMasks.*")],
+    "exact/light_rays.cl": [LIGHT_RAYS],
+    "exact/ray_starts.cl": [LIGHT_RAYS],
+    "exact/rays.clh": [LIGHT_RAYS],
     "lanes.clh": [MATH, FALLOFF, PHONG, SHADE, NEEDED],
     "clusters/light_clusters.clh": [HORIZON, FAR_FIELD, CLUSTERED],
     "lights/light_tree.clh": [CULL, EXACT, PICTURES, SHADE_TILES],
@@ -347,8 +351,8 @@ MUTANTS = {
     "exact/beam_points.clh": [
         Mutant("cluster->whole = whole", "cluster->whole = true"),
         Mutant("tile->pixel[to] = (uchar)(first_pixel + next)", "tile->pixel[to] = (uchar)(first_pixel + spare)"),
-        Mutant("s = scale3(turned(frame, p), (floatL)(frame->tree_scale))", "s = turned(frame, p)"),
-        Mutant("p.y = fma_lanes(up, n.y, p.y)", "p.y = p.to_tree_y"),
+        Mutant("return scale3(turned(frame, p), (floatL)(frame->tree_scale))", "return turned(frame, p)"),
+        Mutant("p.y = fma_lanes(lift, n.y, p.y)", "p.y = p.y"),
         Mutant("POINT_ERROR * ((abs_lanes(s.x) + abs_lanes(s.y)) + abs_lanes(s.z))", "0.0f * s.to_tree_x"),
         Mutant("POINT_ERROR * (1.0f - 0x1p-20f) * least", "POINT_ERROR * (1.0f - 0x1p-20f) * most"),
         Mutant("POINT_ERROR * (1.0f + 0x1p-20f) * most", "0.0f"),
@@ -560,6 +564,52 @@ MUTANTS = {
         Mutant("(floatL)(4.0f)) + series_tail(k))", "(floatL)(4.0f)))"),
         Mutant("term[kFieldBound] += error", "term[kFieldBound] += 0.5f * error"),
         Mutant("term[kFieldWeight] += weight", "term[kFieldWeight] += 0.0f * weight"),
+    ],
+    "exact/light_rays.cl": [
+        Mutant("last->width[to] = width", "last->width[to] = 0.0f"),
+        Mutant("side_of_light(blocks, reference, light) == (height > 0.0f ? 1 : -1)", "side_of_light(blocks, reference, light) != 0"),
+        Mutant("edges_hold(blocks, reference, light, start) &&", "true &&"),
+        Mutant("is_before(blocks, reference, light, start)", "true"),
+        Mutant("!blocks_exactly(scene->blocks, reference, light, start)", "false"),
+        Mutant("if (opacity == kSolid) return lane", "return lane"),
+        Mutant("*unsure |= opacity == kMixed", "*unsure |= false"),
+        Mutant("if (found.sure & within) return true", "if (found.may & within) return true"),
+        Mutant("if (!(holes >> lane & 1)) remember_triangle", "remember_triangle"),
+        Mutant("sure = found.sure & within & ~holes", "sure = found.sure & within"),
+        Mutant("walk->width = greater(", "walk->width = lesser("),
+        Mutant("walk->left ^= 1u << child", "walk->left = 0"),
+        Mutant("if (walk.left) {", "if (false) {"),
+        Mutant("(i < count ? i : count - 1)", "i", same="a ray that isn't there is aimed, and not traced"),
+        Mutant("if (HOLES && open)", "if (false)"),
+        Mutant("if (first % 32 == 0 && first + kTreeWidth < end) continue", "if (first % 32 == 0) continue"),
+    ],
+    "exact/ray_starts.cl": [
+        Mutant("starts + stride + at, start.y", "starts + stride + at, start.x"),
+        Mutant("LIFT ? load_lanes(lift + at) : (floatL)(0.0f)", "(floatL)(0.0f)"),
+    ],
+    "exact/rays.clh": [
+        Mutant("VALUE_ROUNDING (96.0f * 0x1p-24f)", "VALUE_ROUNDING 0.0f"),
+        Mutant("VALUE_ROUNDING2 (1024.0f * 0x1p-48f)", "VALUE_ROUNDING2 0.0f"),
+        Mutant("far = max_lanes(far, from + of_tree)", "far = 0.0f"),
+        Mutant("0x1p-22f * abs_lanes(from) + 0x1p-36f * all", "-0x1p-22f * abs_lanes(from) + 0x1p-36f * all"),
+        Mutant("abs_lanes(from) + 0x1p-36f * all * abs_lanes(inverse[axis])", "abs_lanes(from)"),
+        Mutant("enter <= leave * (1.0f + 0x1p-20f)", "enter < leave"),
+        Mutant("leave = g->end[i]", "leave = FAR_END", same="boxes beyond a light are visited for nothing"),
+        Mutant("leave = g->end[i]", "leave = 1.0f"),
+        Mutant("TURNED(start, ahead, k + 1)", "TURNED(start, ahead, k)"),
+        Mutant("inverse_ahead * TURNED(way, ahead, k + 1)", "inverse_ahead * TURNED(way, ahead, k + 2)"),
+        Mutant("abs_lanes(way[axis]) > longest ?", "abs_lanes(way[axis]) < longest ?"),
+        Mutant("longest >= least ? VALUE_ROUNDING2", "longest >= 0.0f ? VALUE_ROUNDING2"),
+        Mutant("max_lanes((floatL)(g->tolerance[i]), planes->rounding)", "planes->rounding"),
+        Mutant("max_lanes((floatL)(g->tolerance[i]), planes->rounding)", "(floatL)(g->tolerance[i])"),
+        Mutant("< 0 ? edges->least : -edges->most", ">= 0 ? edges->least : -edges->most"),
+        Mutant("offset = parallel ? (floatL)(0.0f) : planes->offset", "offset = planes->offset"),
+        Mutant("beyond & near & (inside", "beyond & (inside"),
+        Mutant("(inside >= -rounding) & (light <= clear)", "(inside >= rounding) & (light <= clear)"),
+        Mutant("(inside > 3.0f * rounding) & (light < -clear)", "(inside >= -rounding) & (light < -clear)"),
+        Mutant("(inside > 3.0f * rounding) & (light < -clear)", "(inside > 3.0f * rounding) & (light < clear)"),
+        Mutant("(inside >= -rounding) & (light <= clear)", "(inside >= -rounding) & (light <= -clear)"),
+        Mutant("opacity_at(masks, block, slot, holes, edges, rounding) : kMixed", "kMixed : kMixed"),
     ],
     "exact/hole_masks.clh": [
         Mutant("float b = quotient(edges[2], sum), c", "float b = quotient(edges[1], sum), c"),

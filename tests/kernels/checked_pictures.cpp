@@ -2,10 +2,13 @@
 //
 //   checked_pictures NUMBER    one of the pictures, any number
 //   checked_pictures clustersL a picture by clusters of lights, L pixels side by side
+//   checked_pictures raysL     rays from a G-buffer to lights, L boxes and triangles side by side
 //   checked_pictures MISTAKE   a kernel of mistake_probe.cl
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <glm/gtc/matrix_transform.hpp>
+#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +19,7 @@
 #include "raster/view.hpp"
 #include "scene/models.hpp"
 #include "shade/clustered_light.hpp"
+#include "shadow/exact/light_rays.hpp"
 #include "tools/bench/pair_visibility.hpp"
 
 namespace luciole::test {
@@ -140,6 +144,56 @@ bool lightByClusters(int lanes) {
   return std::any_of(light.begin(), light.end(), [](float value) { return value > 0; });
 }
 
+/// Returns whether nothing blocks some of the rays, and something others.
+bool traceRays(int lanes) {
+  OpenedDevice device;
+  openChecked(lanes, device);
+  Random random(static_cast<unsigned>(lanes));
+  const Camera camera = randomCamera(random);
+  Scene scene;
+  addObjects(camera, scene);
+  BeamScene beams;
+  prepareBeams(
+      device, camera,
+      std::make_shared<const TriangleTree>(buildTriangleTree(scene, glm::dvec3(camera.camera_to_world[3]))),
+      nullptr, 0, beams);
+  const GBuffer gbuffer = randomGBuffer(camera, kWidth, kHeight, 0.3, random);
+  std::vector<BeamLight> lights;
+  std::vector<LightRay> rays;
+  for (uint i = 0; i < 75; ++i) {
+    Light light;
+    light.kind = i % 5 == 0 ? LightKind::kDirectional : LightKind::kPoint;
+    light.direction = random.direction();
+    light.position = camera.camera_to_world * glm::dvec4(10.0 * random.direction(), 1);
+    lights.push_back(beamLight(light, true, beams));
+    rays.push_back({i % 40, i});
+  }
+  std::vector<uint> lit(wordsForRays(rays.size()));
+  FeatureSet features;
+  const std::string defines = featureDefines(features);
+  const Buffer<float> starts = makeBuffer<float>(device, 3 * gbuffer.pixels());
+  rayStarts(device, defines,
+            {.plane_stride = gbuffer.pixels(),
+             .position = borrowed(device, gbuffer.position),
+             .normal = borrowed(device, gbuffer.normal),
+             .lift = {},
+             .beams = beams},
+            starts);
+  const Buffer<uint> lit_buffer = makeBuffer<uint>(device, lit.size());
+  traceLightRays(device, defines,
+                 {.rays = borrowed(device, rays),
+                  .ray_count = rays.size(),
+                  .starts = starts,
+                  .start_stride = gbuffer.pixels(),
+                  .lights = borrowed(device, lights),
+                  .beams = beams},
+                 lit_buffer, {});
+  download(device, lit_buffer, lit);
+  int count = 0;
+  for (const uint word : lit) count += std::popcount(word);
+  return count > 0 && count < int(rays.size());
+}
+
 void makeMistake(const char* mistake) {
   OpenedDevice device;
   openChecked(1, device);
@@ -160,6 +214,8 @@ int main(int, char** words) {
   } else if (constexpr std::string_view kClusters = "clusters";
              word.substr(0, kClusters.size()) == kClusters) {
     return luciole::test::lightByClusters(word.back() - '0') ? 0 : 1;
+  } else if (word.substr(0, 4) == "rays") {
+    return luciole::test::traceRays(word.back() - '0') ? 0 : 1;
   } else {
     luciole::test::makeMistake(words[1]);
   }

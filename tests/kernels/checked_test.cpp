@@ -69,6 +69,8 @@ std::set<std::string> kernelsToRun(int picture) {
     names = allKernels();
     names.erase("shade_tiles");
     names.erase("clustered_light");
+    names.erase("light_rays");  // of no picture: CheckedRays
+    names.erase("ray_starts");
     names.erase("check_arithmetic");  // of no picture: cli/check_device_test.cpp
     if (picture == 3) {
       names.erase("pair_visibility");
@@ -97,6 +99,15 @@ TEST_P(CheckedClusters, HaveNoReports) {
   EXPECT_EQ(runChecked("clusters" + std::to_string(GetParam()), false).reports, "");
 }
 
+class CheckedRays : public testing::TestWithParam<int> {};
+
+TEST_P(CheckedRays, HaveNoReports) {
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
+  // The program fails where all rays are lit, or none.
+  EXPECT_EQ(runChecked("rays" + std::to_string(GetParam()), false).reports, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, CheckedRays, testing::Values(1, 4, 8), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Lanes, CheckedClusters, testing::Values(1, 4, 8), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 18), testing::PrintToStringParamName());
 

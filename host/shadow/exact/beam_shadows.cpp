@@ -9,6 +9,7 @@
 #include "cl/launch.hpp"
 #include "kernels/shared.h"
 #include "luciole/error.hpp"
+#include "shadow/exact/beam_frame.hpp"
 
 namespace luciole {
 namespace {
@@ -26,23 +27,6 @@ float4 largestCoordinates(const TriangleTree& tree) {
         axis = std::max(axis, value);
       }
   return {most[0], most[1], most[2], 0};
-}
-
-float4 rowOf(const glm::mat3& matrix, int row) { return {matrix[0][row], matrix[1][row], matrix[2][row], 0}; }
-
-BeamFrame frameOf(const BeamArguments& arguments) {
-  const BeamScene& beams = arguments.beams;
-  BeamFrame frame{};
-  frame.to_tree_x = rowOf(beams.view_to_tree, 0);
-  frame.to_tree_y = rowOf(beams.view_to_tree, 1);
-  frame.to_tree_z = rowOf(beams.view_to_tree, 2);
-  frame.tree_most = beams.largest_coordinates;
-  frame.tree_scale = beams.tree->scale;
-  frame.tree_root = beams.tree->root;
-  frame.tiles = uint(arguments.plane_stride / kTilePixels);
-  frame.plane_stride = uint(arguments.plane_stride);
-  frame.light_count = uint(arguments.lights.count);
-  return frame;
 }
 
 /// Counts the pairs with lights of a size that are decided without rays. receivers: for each entry the number
@@ -121,9 +105,11 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
   const Buffer<uint> lit = borrowedForOutput(device, result.lit),
                      unsure = borrowedForOutput(device, result.unsure),
                      received = borrowedForOutput(device, receivers);
+  BeamFrame frame = beamFrame(beams, arguments.plane_stride);
+  frame.light_count = uint(arguments.lights.count);
   Kernel kernel = makeKernel(device, "exact/beam_shadows.cl", "beam_shadows", defines);
   launch(device, kernel,
-         {{"frame", frameOf(arguments)},
+         {{"frame", frame},
           {"position", arguments.position},
           {"normal", arguments.normal},
           {"lift", arguments.lift},

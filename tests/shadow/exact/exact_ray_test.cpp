@@ -12,19 +12,6 @@
 namespace luciole::test {
 namespace {
 
-BeamLight lightAt(const glm::vec3& xyz, float w) {
-  BeamLight light{};
-  light.place = {xyz.x, xyz.y, xyz.z, w};
-  return light;
-}
-BeamLight pointAt(const glm::vec3& place) { return lightAt(place, 1); }
-BeamLight towards(const glm::vec3& direction) { return lightAt(direction, 0); }
-
-bool neverAsked(std::uint32_t triangle, const glm::dvec3&) {
-  ADD_FAILURE() << "triangle " << triangle << " is solid";
-  return true;
-}
-
 TriangleTree treeOver(const std::vector<Triangle>& triangles, std::uint32_t material = 0) {
   return buildTriangleTree(looseScene(triangles, material), glm::dvec3(0));
 }

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <random>
 #include <vector>
 
+#include "kernels/shared.h"
 #include "luciole/scene.hpp"
 
-// Scenes of triangles that share no corners, for tests of the tree over them.
+// Scenes of triangles that share no corners, for tests of the tree over them, and lights for rays among them.
 namespace luciole::test {
 
 using Triangle = std::array<glm::vec3, 3>;
@@ -41,6 +44,20 @@ inline std::vector<Triangle> randomTriangles(int count, float size, unsigned see
     triangles.push_back({middle + size * vector(), middle + size * vector(), middle + size * vector()});
   }
   return triangles;
+}
+
+inline BeamLight lightAt(const glm::vec3& xyz, float w) {
+  BeamLight light{};
+  light.place = {xyz.x, xyz.y, xyz.z, w};
+  return light;
+}
+inline BeamLight pointAt(const glm::vec3& place) { return lightAt(place, 1); }
+inline BeamLight towards(const glm::vec3& direction) { return lightAt(direction, 0); }
+
+/// A HoleTest of scenes without holes.
+inline bool neverAsked(std::uint32_t triangle, const glm::dvec3&) {
+  ADD_FAILURE() << "triangle " << triangle << " is solid";
+  return true;
 }
 
 }  // namespace luciole::test
