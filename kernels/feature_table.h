@@ -28,19 +28,20 @@
   X(Soft, SOFT, "soft shadows", "shadow lookups as wide as the light's size makes them", 0)                  \
   X(Exact, EXACT, "exact shadows", "shadows known for each pixel and light beforehand", kForBeams)           \
   X(SoftExact, SOFT_EXACT, "soft exact shadows", "exact shadows of samples of lights of a size", kForBeams)  \
-  X(Holes, HOLES, "holes", "textures with holes, through which light shines", kForBeams)                     \
+  X(Holes, HOLES, "holes", "textures with holes, through which light shines", kForBeams | kForSampling)      \
   X(Lift, LIFT, "lifted shadows", "shadow tests that start on the smooth surface above a facet",             \
-    kForLookups | kForBeams)                                                                                 \
+    kForLookups | kForBeams | kForSampling)                                                                  \
   X(NormalMaps, NORMAL_MAPS, "normal maps",                                                                  \
-    "lights behind a surface, which a bent normal may face, are not seen", 0)                                \
-  X(FogLinear, FOG_LINEAR, "linear fog", "(end - z) / (end - start)", kForFog | kForClusters)                \
-  X(FogExp, FOG_EXP, "exp fog", "exp(-density z)", kForFog | kForClusters)                                   \
-  X(FogExp2, FOG_EXP2, "exp2 fog", "exp(-(density z)^2)", kForFog | kForClusters)                            \
+    "lights behind a surface, which a bent normal may face, are not seen", kForSampling)                     \
+  X(FogLinear, FOG_LINEAR, "linear fog", "(end - z) / (end - start)", kForFog | kForClusters | kForSampling) \
+  X(FogExp, FOG_EXP, "exp fog", "exp(-density z)", kForFog | kForClusters | kForSampling)                    \
+  X(FogExp2, FOG_EXP2, "exp2 fog", "exp(-(density z)^2)", kForFog | kForClusters | kForSampling)             \
   X(FogPerChannel, FOG_PER_CHANNEL, "fog per channel", "a density for each colour channel",                  \
-    kForFog | kForClusters)                                                                                  \
-  X(FogRadial, FOG_RADIAL, "radial fog", "fog by distance instead of depth", kForFog | kForClusters)         \
+    kForFog | kForClusters | kForSampling)                                                                   \
+  X(FogRadial, FOG_RADIAL, "radial fog", "fog by distance instead of depth",                                 \
+    kForFog | kForClusters | kForSampling)                                                                   \
   X(ParallelView, PARALLEL_VIEW, "parallel view", "an orthographic camera's constant view vector",           \
-    kForClusters)                                                                                            \
+    kForClusters | kForSampling)                                                                             \
   X(LightLists, LIGHT_LISTS, "light lists",                                                                  \
     "lists of the lights that matter to a few pixels, instead of all lights", kForLookups | kForBeams)       \
   X(LongSums, LONG_SUMS, "long sums", "more lights than float adds up one by one", 0)                        \
@@ -49,6 +50,10 @@
     "clusters that stand for lights, with a bound of the error", kForClusters)                               \
   X(ClusteredHighlights, CLUSTERED_HIGHLIGHTS, "clustered highlights",                                       \
     "highlights of clusters that stand for lights", kForClusters)                                            \
+  X(SampledLights, SAMPLED_LIGHTS, "sampled lights",                                                         \
+    "lights with shadows that are sampled, with an interval of the error", kForSampling)                     \
+  X(SampledHighlights, SAMPLED_HIGHLIGHTS, "sampled highlights", "highlights of lights that are sampled",    \
+    kForSampling)                                                                                            \
   X(MaterialModels, MATERIAL_MODELS, "material models", "surfaces with models of their own", 0)
 
 #endif

@@ -318,10 +318,12 @@ typedef struct {
   ShadeFrame shade;
   uint light_count;   // of the tree of clusters
   uint levels;        // of that tree
-  float light_error;  // E > 0: a channel's bound shall be E·max(1, its light) at most
-  uint tiles_x;       // of the G-buffer
+  float light_error;  // E > 0: a channel's bound shall be E·max(least_value, its light) at most
+  float least_value;
+  uint tiles_x;  // of the G-buffer
+  uint pad0, pad1, pad2;
 } ClusterFrame;
-SHARED_SIZE(ClusterFrame, 128);
+SHARED_SIZE(ClusterFrame, 144);
 
 #undef SHARED_SIZE
 #ifdef __cplusplus

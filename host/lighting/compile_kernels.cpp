@@ -29,7 +29,7 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     lighting.maps.host.bin_count = 1;
   }
   borrowMaps(device, lighting.maps);
-  if (features.has(Feature::kExact))
+  if (features.triangleTree())
     prepareBeams(device, {}, std::make_shared<const TriangleTree>(buildTriangleTree({}, {})), nullptr,
                  features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
   finishLightSet(device, lighting.lights);

@@ -9,13 +9,13 @@
 #include <limits>
 
 #include "kernels/shared.h"
-#include "lights/exact_reason.hpp"
+#include "lights/light_use.hpp"
 
 namespace luciole {
 namespace {
 
-/// Adds the bounds of the error of clustered light to Stats::light_error.
-void countLightErrors(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats) {
+/// Adds the intervals of the light to Stats::light_error.
+void countLightErrors(const GBuffer& gbuffer, const LitPlanes& lit, double least_value, Stats& stats) {
   const std::size_t n = gbuffer.pixels();
   const auto add = [&](const tbb::blocked_range<std::size_t>& range, LightErrorStats bounds) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -24,15 +24,17 @@ void countLightErrors(const GBuffer& gbuffer, const LitPlanes& lit, Stats& stats
         const double bound = lit.light_error[i + c * n];
         bounds.largest = std::max(bounds.largest, bound);
         bounds.sum += bound;
-        bounds.least = std::max(bounds.least, bound / std::max(1.0, double(lit.color[i + c * n])));
+        const double proven = bound - (lit.half_width.empty() ? 0.0 : double(lit.half_width[i + c * n]));
+        bounds.proven += proven;
+        bounds.least = std::max(bounds.least, proven / std::max(least_value, double(lit.color[i + c * n])));
       }
       bounds.values += 3;
     }
     return bounds;
   };
   const auto join = [](const LightErrorStats& a, const LightErrorStats& b) {
-    return LightErrorStats{std::max(a.largest, b.largest), a.sum + b.sum, std::max(a.least, b.least),
-                           a.values + b.values};
+    return LightErrorStats{std::max(a.largest, b.largest), a.sum + b.sum, a.proven + b.proven,
+                           std::max(a.least, b.least), a.values + b.values};
   };
   // The sum's order, and with it its last bits, doesn't depend on the threads.
   stats.light_error = join(stats.light_error, tbb::parallel_deterministic_reduce(
@@ -52,22 +54,31 @@ void addCount(Stats& stats, const std::string& name, std::uint64_t count) {
   stats.counts.emplace_back(name, count);
 }
 
-void countClusters(const ClusteredLightCounts& counts, Stats& stats) {
-  addCount(stats, "pixel_clusters_evaluated", counts.clusters);
-  addCount(stats, "pixel_clustered_lights_evaluated", counts.lights);
-  addCount(stats, "pixels_redone", counts.redone);
+void countStandIns(const LitPlanes& lit, Stats& stats) {
+  addCount(stats, "pixel_clusters_evaluated", lit.clustered.clusters);
+  addCount(stats, "pixel_clustered_lights_evaluated", lit.clustered.lights);
+  addCount(stats, "pixels_redone", lit.clustered.redone);
+  if (lit.half_width.empty()) return;
+  addCount(stats, "sampled_rays", lit.sampled.rays);
+  addCount(stats, "sampled_groups", lit.sampled.groups);
+  addCount(stats, "sampled_strata", lit.sampled.strata);
+  addCount(stats, "sampled_rounds", lit.sampled.rounds);
+  addCount(stats, "pixels_beyond_light_error", lit.sampled.missed);
 }
 
 void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lighting& lighting,
                     Stats& stats) {
   if (!(settings.light_error > 0) || !scene.lighting) return;
-  addCount(stats, "lights_stood_for", lighting.lights.clusters.lights);
-  addCount(stats, "lights_exact", scene.lights.size() - lighting.lights.clusters.lights);
-  const auto counts = countReasons(scene.lights, clusterConditions(settings));
-  for (std::size_t reason = 1; reason < counts.size(); ++reason)
-    if (counts[reason] > 0)
-      addCount(stats, std::string("lights_exact_by_") + exactReasonName(ExactReason(reason)), counts[reason]);
-  const std::size_t few = counts[0] - lighting.lights.clusters.lights;
+  const std::size_t clustered = lighting.lights.clusters.lights, sampled = lighting.lights.samples.lights;
+  addCount(stats, "lights_stood_for", clustered);
+  if (sampled > 0) addCount(stats, "lights_sampled", sampled);
+  addCount(stats, "lights_exact", scene.lights.size() - clustered - sampled);
+  const LightUseCounts counts = countUses(scene.lights, useConditions(settings));
+  for (std::size_t use = std::size_t(LightUse::kByModel); use < counts.size(); ++use)
+    if (counts[use] > 0)
+      addCount(stats, std::string("lights_exact_by_") + reasonName(LightUse(use)), counts[use]);
+  const std::size_t few = counts[std::size_t(LightUse::kClustered)] +
+                          counts[std::size_t(LightUse::kSampled)] - clustered - sampled;
   if (few > 0) addCount(stats, "lights_exact_as_few", few);
 }
 
@@ -82,15 +93,15 @@ std::uint64_t coveredPixels(const GBuffer& gbuffer) {
       std::plus<>());
 }
 
-void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats) {
+void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, double least_value, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   if (counted) addCount(stats, "pixel_lights_evaluated", lit.evaluated);
   if (lit.by_beams > 0) addCount(stats, "shadow_pairs_exact", lit.by_beams);
   if (lit.by_maps > 0) addCount(stats, "shadow_pairs_by_maps", lit.by_maps);
   addCount(stats, "list_entries", lit.list_entries);
   if (!lit.light_error.empty()) {
-    countClusters(lit.clustered, stats);
-    countLightErrors(gbuffer, lit, stats);
+    countStandIns(lit, stats);
+    countLightErrors(gbuffer, lit, least_value, stats);
   }
   if (lit.pairs.soft_lit + lit.pairs.soft_dark + lit.traced.soft > 0) {
     addCount(stats, "soft_pairs_lit", lit.pairs.soft_lit);

@@ -13,19 +13,20 @@ namespace luciole {
 /// Adds to a count, which begins at 0.
 void addCount(Stats& stats, const std::string& name, std::uint64_t count);
 
-/// Adds the counts of a pass of kernels/clusters/clustered_light.cl.
-void countClusters(const ClusteredLightCounts& counts, Stats& stats);
+/// Adds the counts of clusters and of sampled lights.
+void countStandIns(const LitPlanes& lit, Stats& stats);
 
-/// Adds the numbers of lights in clusters and of those summed by themselves, these by ExactReason. Adds
-/// nothing if ShadeSettings::light_error is 0.
+/// Adds the numbers of lights in clusters, of sampled ones and of those summed by themselves, these by
+/// LightUse. Adds nothing if ShadeSettings::light_error is 0.
 void countLightUses(const Scene& scene, const ShadeSettings& settings, const Lighting& lighting,
                     Stats& stats);
 
 /// Pixels that show a surface.
 std::uint64_t coveredPixels(const GBuffer& gbuffer);
 
-/// Adds the counts of a pass that lit the G-buffer. counted: lit.evaluated is known.
-void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, Stats& stats);
+/// Adds the counts of a pass that lit the G-buffer. counted: lit.evaluated is known. least_value:
+/// ShadeSettings::light_error_floor.
+void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, double least_value, Stats& stats);
 
 /// Adds the rasterizer's counts of triangles.
 void addRasterCounts(const RasterCounts& counts, Stats& stats);

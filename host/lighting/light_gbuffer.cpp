@@ -37,8 +37,9 @@ void computeExactShadows(const StageInput& input, LitPlanes& lit, Stats& stats) 
 }
 
 /// The bytes of the device's buffers for this G-buffer.
-std::size_t bytesOf(const StageInput& input, const ClusterLight& clusters, const LitPlanes& lit) {
-  const std::size_t floats = clusters.light.size() + lit.light_error.size() + lit.color.size();
+std::size_t bytesOf(const StageInput& input, const BoundedLight& bounded, const LitPlanes& lit) {
+  const std::size_t floats =
+      bounded.light.size() + lit.half_width.size() + lit.light_error.size() + lit.color.size();
   const std::size_t words =
       lit.pairs.lit.size() + lit.pairs.unsure.size() + lit.pairs.first_share.size() + lit.pairs.shares.size();
   return input.points.bytes + bytesOf(input.pass.lights) + input.lists.bytes + floats * sizeof(float) +
@@ -54,7 +55,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   const bool by_lists = features.has(Feature::kLightLists) && !by_tiles;
   const LightLists no_lists;
   LitPlanes lit;
-  ClusterLight clusters;
+  BoundedLight bounded;
   Points points = pointsOnDevice(device, pass.gbuffer, features, lighting.unlit);
   const StageInput input{device, scene, lighting, pass, points, by_lists ? lighting.lists : no_lists};
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
@@ -65,9 +66,11 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   ShadeFrame frame = pass.lights.frame;
   frame.plane_stride = static_cast<uint>(points.stride);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(lighting.maps.host.texels.size(), 1));
-  if (features.has(Feature::kClusteredLights)) {
-    clusters = timed(stats, Stage::kClusteredLight, [&] { return sumClusters(input, frame); });
-    points.buffers.emission = borrowed(device, clusters.light);
+  if (features.lightError()) {
+    bounded = timed(stats, Stage::kClusteredLight, [&] { return sumClusters(input, frame); });
+    if (features.has(Feature::kSampledLights))
+      timed(stats, Stage::kSampledLight, [&] { sampleLights(input, frame, bounded); });
+    points.buffers.emission = borrowed(device, bounded.light);
   }
   lit.color = std::move(pass.recycled);
   lit.color.resize(points.stride * (features.has(Feature::kOutputShadow) ? 4 : 3));
@@ -82,17 +85,19 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
   lit.list_entries = of_tiles.entries;
   lit.evaluated = of_tiles.pairs;
-  lit.clustered = clusters.counts;
-  lit.light_error = std::move(clusters.bound);
-  if (features.has(Feature::kClusteredLights) || lighting.vertex_error)
+  lit.clustered = bounded.cluster_counts;
+  lit.sampled = bounded.sample_counts;
+  lit.light_error = std::move(bounded.bound);
+  lit.half_width = std::move(bounded.half_width);
+  if (features.lightError() || lighting.vertex_error)
     boundVisibleLight(pass.gbuffer, frame, features,
-                      clusters.light.empty() ? pass.gbuffer.emission : clusters.light, lit.color,
+                      bounded.light.empty() ? pass.gbuffer.emission : bounded.light, lit.color,
                       lighting.vertex_error, lit.light_error);
   PixelCounts missing = pass.counts;
   missing.evaluated &= !by_tiles;
   if (missing.in_range || missing.evaluated || missing.list_length)
     timed(stats, Stage::kCountLights, [&] { countLights(input, missing, lighting.lists_in_range, lit); });
-  stats.device_bytes = std::max(stats.device_bytes, bytesOf(input, clusters, lit));
+  stats.device_bytes = std::max(stats.device_bytes, bytesOf(input, bounded, lit));
   return lit;
 }
 

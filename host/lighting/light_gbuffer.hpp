@@ -5,6 +5,7 @@
 #include "lighting/lighting.hpp"
 #include "luciole/gbuffer.hpp"
 #include "shade/clustered_light.hpp"
+#include "shade/sampled_light.hpp"
 #include "shadow/exact/pair_rays.hpp"
 
 namespace luciole {
@@ -19,9 +20,12 @@ struct PixelCounts {
 /// A lit G-buffer: planes of pixels() floats.
 struct LitPlanes {
   Plane color;  ///< r g b, then with Feature::kOutputShadow the shadow layer
-  /// Bounds of the error of `color` by clusters of lights, r g b; 0 for background. Empty without clusters.
+  /// Half widths of the intervals that hold `color`, r g b; 0 for background. Empty without clusters and
+  /// sampled lights.
   Plane light_error;
+  Plane half_width;  ///< the part of light_error that isn't proven; empty without sampled lights
   ClusteredLightCounts clustered;
+  SampledLightCounts sampled;
   Plane light_count;  ///< lights in range of each pixel, if asked for
   Plane list_length;  ///< lights in the list of each pixel's square, if asked for; without lists all lights
   std::uint64_t list_entries = 0;  ///< of Lighting::lists; without lists in memory, of the tile kernel

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "lights/exact_reason.hpp"
+#include "lights/light_use.hpp"
 
 namespace luciole {
 namespace {
@@ -43,12 +43,17 @@ LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::ve
   return buildLightClusters(lights);
 }
 
-/// The clusters of the lights without an ExactReason. highlights: surfaces have specular colours.
-ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
-                      const ShadeSettings& settings) {
+/// The lights of a use.
+std::vector<std::uint32_t> lightsOf(const Scene& scene, LightUse use, const ShadeSettings& settings) {
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
-    if (exactReason(scene.lights[i], clusterConditions(settings)) == ExactReason::kNone) chosen.push_back(i);
+    if (lightUse(scene.lights[i], useConditions(settings)) == use) chosen.push_back(i);
+  return chosen;
+}
+
+/// highlights: surfaces have specular colours.
+ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
+                      const std::vector<std::uint32_t>& chosen) {
   const bool one_color = std::all_of(chosen.begin(), chosen.end(), [&](std::uint32_t light) {
     return scene.lights[light].diffuse == scene.lights[light].specular;
   });
@@ -56,7 +61,17 @@ ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
   set.diffuse = clustersOf(scene, camera, chosen, &Light::diffuse);
   if (highlights && !one_color) set.specular = clustersOf(scene, camera, chosen, &Light::specular);
   set.lights = chosen.size();
-  set.light_error = settings.light_error;
+  return set;
+}
+
+SampledSet sampledSet(const Scene& scene, const Camera& camera, bool highlights, const BeamScene& beams,
+                      const std::vector<std::uint32_t>& chosen) {
+  SampledSet set{clusterSet(scene, camera, highlights, chosen)};
+  const LightClusters& clusters = set.diffuse;
+  set.places.resize(clusters.light_rows.size() / kLightFields);
+  forEachSlot(clusters, [&](std::size_t slot, std::size_t i) {
+    set.places[slot] = beamLight(scene.lights[chosen[clusters.order[i]]], true, beams).place;
+  });
   return set;
 }
 
@@ -64,14 +79,18 @@ ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
 void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& camera,
                      const ShadeSettings& settings, const Lighting& lighting, LightSet& set) {
   if (scene.lighting) {
-    const bool clustered = lighting.features.has(Feature::kClusteredLights);
-    if (clustered)
-      set.clusters =
-          clusterSet(scene, camera, lighting.features.has(Feature::kClusteredHighlights), settings);
-    if (set.clusters.lights < scene.lights.size()) set.order = spatialOrder(scene.lights);
-    if (clustered)
+    const FeatureSet& features = lighting.features;
+    if (features.has(Feature::kClusteredLights))
+      set.clusters = clusterSet(scene, camera, features.has(Feature::kClusteredHighlights),
+                                lightsOf(scene, LightUse::kClustered, settings));
+    if (features.has(Feature::kSampledLights))
+      set.samples = sampledSet(scene, camera, features.has(Feature::kSampledHighlights), lighting.beams,
+                               lightsOf(scene, LightUse::kSampled, settings));
+    if (set.clusters.lights + set.samples.lights < scene.lights.size())
+      set.order = spatialOrder(scene.lights);
+    if (features.lightError())
       std::erase_if(set.order, [&](std::uint32_t light) {
-        return exactReason(scene.lights[light], clusterConditions(settings)) == ExactReason::kNone;
+        return !isSummed(lightUse(scene.lights[light], useConditions(settings)), features);
       });
     set.lights = prepareLights(scene, set.order, camera, lighting.maps.host.map_of_light);
     if (lighting.features.has(Feature::kExact))
@@ -96,19 +115,24 @@ void prepareLighting(OpenedDevice& device, const Scene& scene, const Camera& cam
   lighting.unlit = !scene.lighting;
   lighting.lights.frame = makeFrame(scene, camera, settings);
   lighting.group_log2 = groupLog2(settings.tile_size);
+  lighting.samples = {.light_error = settings.light_error,
+                      .least_value = settings.light_error_floor,
+                      .deviations = deviationsOf(settings.confidence),
+                      .seed = settings.seed,
+                      .to_pixel = pixelsOf(view)};
   if (features.shadowMaps())
     timed(stats, Stage::kShadowMaps, [&] {
       lighting.maps.host =
           planShadowMaps(scene, view, settings.shadows, settings.shadow_limits, settings.shadow_ways);
       takeMaps(scene, *kept, lighting.maps.host);
     });
-  if (features.has(Feature::kExact))
+  if (features.triangleTree())
     timed(stats, Stage::kTriangleTree, [&] {
       updateTree(scene, glm::dvec3(camera.camera_to_world[3]), features.has(Feature::kHoles), *kept);
     });
   timed(stats, Stage::kWaitForDevice, [&] { awaitDevice(device); });
   timed(stats, Stage::kPrepareLights, [&] {
-    if (features.has(Feature::kExact))
+    if (features.triangleTree())
       prepareBeams(device, camera, kept->tree, features.has(Feature::kHoles) ? kept->masks : nullptr,
                    features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
     prepareLightSet(device, scene, camera, settings, lighting, lighting.lights);

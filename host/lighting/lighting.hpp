@@ -12,6 +12,7 @@
 #include "luciole/scene.hpp"
 #include "raster/view.hpp"
 #include "shade/features.hpp"
+#include "shade/sampled_light.hpp"
 #include "shadow/exact/beam_shadows.hpp"
 
 namespace luciole {
@@ -23,7 +24,8 @@ struct Lighting {
   unsigned group_log2 = 0;   ///< see CullArguments
   bool unlit = false;        ///< Scene::lighting is off: the diffuse colour takes the place of ambient
   MapScene maps;
-  BeamScene beams;  ///< with Feature::kExact only
+  BeamScene beams;  ///< with FeatureSet::triangleTree() only
+  SampleSettings samples;
   LightSet lights;
   LightLists lists;           ///< of the last G-buffer that was shaded by lists
   LightLists lists_in_range;  ///< lists by range alone, to count lights in range

@@ -6,10 +6,11 @@
 #include "lighting/draw_maps.hpp"
 #include "lighting/light_gbuffer.hpp"
 #include "shade/points.hpp"
+#include "shade/sampled_light.hpp"
 #include "shade/shade_tiles.hpp"
 
-// The five stages that light a G-buffer, in their order: cull, draw maps, decide beams, sum clusters, shade.
-// lightGBuffer() composes them. All throw MachineError.
+// The stages that light a G-buffer, in their order: cull, draw maps, decide beams, sum clusters, sample
+// lights, shade. lightGBuffer() composes them. All throw MachineError.
 namespace luciole {
 
 /// The input of all stages.
@@ -41,13 +42,21 @@ struct PairBuffers {
 };
 PairBuffers borrowPairs(OpenedDevice& device, const PairShadows& pairs);
 
-/// The light of clusters: planes r g b.
-struct ClusterLight {
+/// Light of clusters and of sampled lights: planes r g b, or empty where there are neither.
+struct BoundedLight {
   Plane light;  ///< as it leaves the surface, and the G-buffer's emission with it
-  Plane bound;  ///< upper bounds of each value's error, seen through the fog; 0 for background
-  ClusteredLightCounts counts;
+  Plane bound;  ///< half widths of each value's interval, seen through the fog; 0 for background
+  Plane
+      half_width;  ///< the part of `bound` that is sampled; the rest is proven. Empty without sampled lights
+  ClusteredLightCounts cluster_counts;
+  SampledLightCounts sample_counts;
 };
-ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame);
+
+/// The light of clusters, or 0 without any, and the emission.
+BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame);
+
+/// Adds the light of sampled lights, and their intervals.
+void sampleLights(const StageInput& input, const ShadeFrame& frame, BoundedLight& result);
 
 /// Shades by lists, or by all lights where there are none. image: out, see LitPlanes::color.
 void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,

@@ -18,14 +18,30 @@ namespace luciole {
 
 const char* stageName(Stage stage) {
   static constexpr const char* kNames[]{
-      "load scene",         "read G-buffer",   "open device",
-      "compile kernels",    "wait for device", "wait for kernels",
-      "measure exposure",   "triangle tree",   "prepare lights",
-      "gather vertices",    "rasterize",       "cull",
-      "find shadow texels", "shadow maps",     "beam shadows",
-      "shadow rays",        "clustered light", "shade",
-      "read back",          "resolve",         "count lights",
-      "check G-buffer",     "write",
+      "load scene",
+      "read G-buffer",
+      "open device",
+      "compile kernels",
+      "wait for device",
+      "wait for kernels",
+      "measure exposure",
+      "triangle tree",
+      "prepare lights",
+      "gather vertices",
+      "rasterize",
+      "cull",
+      "find shadow texels",
+      "shadow maps",
+      "beam shadows",
+      "shadow rays",
+      "clustered light",
+      "sampled light",
+      "shade",
+      "read back",
+      "resolve",
+      "count lights",
+      "check G-buffer",
+      "write",
   };
   static_assert(std::size(kNames) == std::size_t(Stage::kWrite) + 1);
   return kNames[std::size_t(stage)];
@@ -92,6 +108,7 @@ void addPart(const Stats& part, Stats& whole) {
   }
   whole.light_error.largest = std::max(whole.light_error.largest, part.light_error.largest);
   whole.light_error.sum += part.light_error.sum;
+  whole.light_error.proven += part.light_error.proven;
   whole.light_error.least = std::max(whole.light_error.least, part.light_error.least);
   whole.light_error.values += part.light_error.values;
   whole.device_bytes += part.device_bytes;
@@ -145,6 +162,7 @@ std::string statsJson(const Stats& stats, double ended) {
   if (const LightErrorStats& bounds = stats.light_error; bounds.values > 0)
     json["light_error"] = {{"largest", bounds.largest},
                            {"mean", bounds.sum / double(bounds.values)},
+                           {"proven_mean", bounds.proven / double(bounds.values)},
                            {"least_allowing", bounds.least}};
   json["memory"] = {{"peak_bytes", peakBytes()},
                     {"device_bytes", stats.device_bytes},
@@ -190,11 +208,26 @@ std::string statsCsv(const Stats& stats, double ended) {
   add("kernels_compiled", ifAny(kernelsCompiled(stats.device.platform)));
   for (int stage = 0; stage <= int(Stage::kWrite); ++stage)
     add(std::string(stageName(Stage(stage))) + " ms", text(stageTime(stats, Stage(stage))));
-  for (const char* count :
-       {"pixels_lit", "refined_pixels", "pixel_lights_evaluated", "pixel_lights_in_range", "list_entries",
-        "lights_stood_for", "pixel_clusters_evaluated", "pixel_clustered_lights_evaluated", "pixels_redone",
-        "shadow_lights_exact", "shadow_lights_by_maps", "shadow_pairs_exact", "shadow_pairs_by_maps",
-        "shadow_rays"})
+  for (const char* count : {"pixels_lit",
+                            "refined_pixels",
+                            "pixel_lights_evaluated",
+                            "pixel_lights_in_range",
+                            "list_entries",
+                            "lights_stood_for",
+                            "pixel_clusters_evaluated",
+                            "pixel_clustered_lights_evaluated",
+                            "pixels_redone",
+                            "lights_sampled",
+                            "sampled_rays",
+                            "sampled_groups",
+                            "sampled_strata",
+                            "sampled_rounds",
+                            "pixels_beyond_light_error",
+                            "shadow_lights_exact",
+                            "shadow_lights_by_maps",
+                            "shadow_pairs_exact",
+                            "shadow_pairs_by_maps",
+                            "shadow_rays"})
     add(count, text(countOf(stats, count)));
   const LightErrorStats& bounds = stats.light_error;
   const bool is_bounded = bounds.values > 0;

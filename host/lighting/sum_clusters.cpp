@@ -4,18 +4,27 @@
 #include "shade/seen_rounding.hpp"
 
 namespace luciole {
+namespace {
 
-ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
+/// The share of the allowed error that clusters may take where other lights are sampled.
+constexpr float kProvenShare = 0.25f;
+
+}  // namespace
+
+BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
   const GBuffer& gbuffer = input.pass.gbuffer;
   const FeatureSet& features = input.pass.features;
   const ClusterSet& clusters = input.pass.lights.clusters;
-  ClusterLight result;
+  BoundedLight result;
   result.light.resize(3 * input.points.stride);
   result.bound.resize(3 * input.points.stride);
-  {
+  if (features.has(Feature::kClusteredLights)) {
+    const SampleSettings& settings = input.lighting.samples;
+    // Samples take what the proof leaves, and most of the time.
+    const float share = features.has(Feature::kSampledLights) ? kProvenShare : 1.0f;
     const Buffer<float> light = borrowedForOutput(input.device, result.light),
                         bound = borrowedForOutput(input.device, result.bound);
-    result.counts = clusteredLight(
+    result.cluster_counts = clusteredLight(
         input.device, featureDefines(featuresFor(kForClusters, features)) + input.lighting.math_defines,
         {.frame = frame,
          .gbuffer = input.points.buffers,
@@ -23,7 +32,8 @@ ClusterLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
          .tiles_y = gbuffer.tiles_y,
          .clusters = clusters.diffuse,
          .highlights = clusters.specular.rows.empty() ? clusters.diffuse : clusters.specular,
-         .light_error = clusteredError(clusters.light_error, frame, features),
+         .light_error = clusteredError(share * settings.light_error, frame, features),
+         .least_value = settings.least_value,
          .light = light,
          .bound = bound});
     download(input.device, light, result.light);

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace luciole {
 namespace {
@@ -260,6 +261,7 @@ LightClusters buildLightClusters(std::span<const UnboundedLight> lights) {
         }
     });
   });
+  clusters.order = std::move(order);
   return clusters;
 }
 

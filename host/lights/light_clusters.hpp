@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -30,12 +31,24 @@ struct LightClusters {
   std::vector<float, RawArrayAllocator<float>> rows;
   unsigned levels =
       0;  ///< of the tree below its root; its 2^levels leaves hold up to kLeafLights lights each
+  std::vector<std::uint32_t> order;  ///< the lights' indices, leaf by leaf
 };
 
 /// Where the lights of node `index` of a level begin among `lights` lights. The nodes of a level share them
 /// evenly, so the tree is a function of their number alone.
 constexpr std::size_t clusterBegin(std::size_t lights, unsigned level, std::size_t index) {
   return (lights * index) >> level;
+}
+
+/// Calls visit(slot, number in LightClusters::order) for each light. Slots are counted through all rows of
+/// lights.
+template <class Visit>
+void forEachSlot(const LightClusters& clusters, const Visit& visit) {
+  for (std::size_t leaf = 0; leaf < std::size_t(1) << clusters.levels; ++leaf) {
+    const std::size_t begin = clusterBegin(clusters.lights, clusters.levels, leaf);
+    for (std::size_t i = begin; i < clusterBegin(clusters.lights, clusters.levels, leaf + 1); ++i)
+      visit(leaf * kLeafLights + (i - begin), i);
+  }
 }
 
 /// Builds the tree in O(n log n), in parallel: each node's lights are halved along the longest side of their

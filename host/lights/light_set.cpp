@@ -12,9 +12,11 @@ void finishLightSet(OpenedDevice& device, LightSet& set) {
 
 std::size_t bytesOf(const LightSet& set) {
   std::size_t floats = set.tree.planes.size();
-  for (const LightClusters* clusters : {&set.clusters.diffuse, &set.clusters.specular})
+  for (const LightClusters* clusters :
+       {&set.clusters.diffuse, &set.clusters.specular, &set.samples.diffuse, &set.samples.specular})
     floats += clusters->rows.size() + clusters->light_rows.size();
-  return set.lights.size() * sizeof(ShadeLight) + floats * sizeof(float);
+  return set.lights.size() * sizeof(ShadeLight) + floats * sizeof(float) +
+         set.samples.places.size() * sizeof(float4);
 }
 
 }  // namespace luciole

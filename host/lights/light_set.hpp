@@ -17,7 +17,12 @@ struct ClusterSet {
   LightClusters diffuse;
   LightClusters specular;  ///< the same by specular colours; empty if these equal the diffuse ones
   std::size_t lights = 0;  ///< number of lights in the clusters
-  float light_error = 0;   ///< see ShadeSettings
+};
+
+/// Lights that are sampled, with Feature::kSampledLights only.
+struct SampledSet : ClusterSet {
+  std::vector<float4, RawArrayAllocator<float4>>
+      places;  ///< BeamLight::place of each slot of a row of lights
 };
 
 /// The lights of a picture or of a layer of light, as kernels take them, with ambient light, fog and
@@ -30,6 +35,7 @@ struct LightSet {
   std::vector<BeamLight> beam_lights;  ///< one for each, with Feature::kExact only
   LightTree tree;
   ClusterSet clusters;
+  SampledSet samples;
   Buffer<const ShadeLight> light_buffer;
   Buffer<const float> tree_buffer;
   Buffer<const BeamLight> beam_buffer;

@@ -126,6 +126,10 @@ const std::array<AovRow, kAovCount>& aovTable() {
       {.aov = Aov::kLightError,
        .name = "light_error",
        .channels = {"light_error.R", "light_error.G", "light_error.B"}},
+      {.aov = Aov::kLightProof,
+       .name = "light_proof",
+       .channels = {"light_proof.R", "light_proof.G", "light_proof.B"},
+       .initial = 1.0f},
       {.aov = Aov::kShadingCount, .name = "shading_count", .channels = {"shading_count"}},
   }};
   return kTable;

@@ -122,8 +122,11 @@ void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettin
   const std::size_t n = gbuffer.pixels();
   const Plane& shadings = sums.shadings.empty() ? sums.covered : sums.shadings;
   const std::optional<std::size_t> count_channel = channelOf(image, settings, Aov::kShadingCount);
-  const std::optional<std::size_t> bound_channel =
-      sums.light_error.empty() ? std::nullopt : channelOf(image, settings, Aov::kLightError);
+  const bool is_bounded = !sums.light_error.empty();
+  const std::optional<std::size_t> bound_channel = is_bounded ? channelOf(image, settings, Aov::kLightError)
+                                                              : std::nullopt,
+                                   proof_channel = is_bounded ? channelOf(image, settings, Aov::kLightProof)
+                                                              : std::nullopt;
   const float scale = scaleOf(settings);
   // Each of n samples' products and sums rounds both colour and bound, and so do the factor and the product
   // with it: fewer than 2n + 3 roundings of 2⁻²⁴, of terms ≥ 0.
@@ -134,6 +137,11 @@ void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettin
     for (int c = 0; c < 3 && bound_channel; ++c) {
       const double bound = double(sums.light_error[place + c * n]) * scale;
       pixel[*bound_channel + c] = finiteColor(float((1 + rounding) * bound + rounding * double(pixel[c])));
+    }
+    for (int c = 0; c < 3 && proof_channel; ++c) {
+      const float width = sums.half_width.empty() ? 0.0f : sums.half_width[place + c * n],
+                  bound = sums.light_error[place + c * n];
+      pixel[*proof_channel + c] = bound > width ? 1 - width / bound : bound > 0 ? 0.0f : 1.0f;
     }
     if (count_channel) pixel[*count_channel] = shadings[place];
   });

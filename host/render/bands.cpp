@@ -83,7 +83,7 @@ struct BandMaker {
 /// shared no band may end within a bin. Bins are counted from the picture's corner, and other pixels' tiles
 /// from the crop's.
 BandLimits bandLimits(const PicturePlan& plan) {
-  const bool whole_bins = plan.shares_samples && plan.pixels.has(Feature::kClusteredLights);
+  const bool whole_bins = plan.shares_samples && plan.pixels.lightError();
   const int top = plan.view.crop_origin.y;
   return {plan.band_height, whole_bins ? 0 : top, top + plan.view.crop_size.y};
 }

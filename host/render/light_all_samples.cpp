@@ -65,13 +65,14 @@ struct SampleLister final : PointLister {
   }
 
   void take(LitPlanes lit) override {
-    countPass(drawn, lit, counts.evaluated, picture.stats);
+    countPass(drawn, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
     timed(picture.stats, Stage::kResolve, [&] {
       if (sample == 0)
         image = startPicture(drawn, lit, picture.settings, layerNames(picture),
                              std::move(picture.recycled.picture));
-      const std::size_t bounds = lit.light_error.size();
+      const std::size_t bounds = lit.light_error.size(), widths = lit.half_width.size();
       addPlane(std::move(lit.light_error), bounds, sums.light_error);
+      addPlane(std::move(lit.half_width), widths, sums.half_width);
       recycled = addPlane(std::move(lit.color), 3 * drawn.pixels(), sums.color);
       if (countsCovered(picture.settings)) countCovered(drawn, sums.covered);
       if (isLast()) setColors(drawn, sums, picture.settings, image);

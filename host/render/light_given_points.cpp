@@ -23,10 +23,10 @@ struct GivenLister final : PointLister {
   }
 
   void take(LitPlanes lit) override {
-    countPass(given, lit, counts.evaluated, picture.stats);
+    countPass(given, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
     timed(picture.stats, Stage::kResolve, [&] {
       image = startPicture(given, lit, picture.settings, layerNames(picture));
-      PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error)};
+      PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error), std::move(lit.half_width)};
       if (countsCovered(picture.settings)) countCovered(given, sums.covered);
       setColors(given, sums, picture.settings, image);
     });

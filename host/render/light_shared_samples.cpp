@@ -135,18 +135,17 @@ struct SharedLister final : PointLister {
   }
 
   void take(LitPlanes lit) override {
-    countPass(*gbuffer, lit, counts.evaluated, picture.stats);
+    countPass(*gbuffer, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
     timed(picture.stats, Stage::kResolve, [&] {
       if (points) {
-        addPoints(shared.gbuffer, *points, first_list, end_list, lit.color, lit.light_error,
-                  gathered.pixels(), sums);
+        addPoints(shared.gbuffer, *points, first_list, end_list, lit, gathered.pixels(), sums);
         return;
       }
       image = startPicture(shared.gbuffer, lit, picture.settings, layerNames(picture),
                            std::move(picture.recycled.picture));
       uneven = unevenPixels(sampled, shared, lit.color);
       removePoints(uneven, shared);
-      sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit.color), std::move(lit.light_error));
+      sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit));
     });
   }
 
@@ -154,9 +153,10 @@ struct SharedLister final : PointLister {
     timed(picture.stats, Stage::kResolve, [&] {
       PixelSums& sum = layer_sums[layer];
       if (points)
-        addPoints(shared.gbuffer, *points, first_list, end_list, color, {}, gathered.pixels(), sum);
+        addPoints(shared.gbuffer, *points, first_list, end_list, {.color = std::move(color)},
+                  gathered.pixels(), sum);
       else
-        sum.color = firstPoints(shared.gbuffer, shared.samples, std::move(color), {}).color;
+        sum.color = firstPoints(shared.gbuffer, shared.samples, {.color = std::move(color)}).color;
     });
   }
 
@@ -188,7 +188,7 @@ struct SharedLister final : PointLister {
 Image lightSharedSamples(ReadyPicture& picture, const View& band, RasterCounts& triangles) {
   const PicturePlan& plan = picture.plan;
   SampledView sampled = timed(picture.stats, Stage::kRasterize, [&] {
-    const Margin margin = plan.pixels.has(Feature::kClusteredLights) ? Margin::kTiles : Margin::kPixel;
+    const Margin margin = plan.pixels.lightError() ? Margin::kTiles : Margin::kPixel;
     return setupSamples(picture.scene, picture.objects, band, margin, picture.settings.samples,
                         picture.settings.shading, plan.planes, picture.vertex_colors);
   });

@@ -27,7 +27,7 @@ struct VertexLister final : PointLister {
   void take(LitPlanes lit) override {
     const std::size_t n = vertices.pixels();
     if (!lit.light_error.empty()) {
-      countClusters(lit.clustered, picture.stats);
+      countStandIns(lit, picture.stats);
       glm::vec3 largest(0.0f);
       for (std::size_t i = 0; i < lit.light_error.size(); ++i)
         largest[int(i / n)] = std::max(largest[int(i / n)], lit.light_error[i]);

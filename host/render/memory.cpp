@@ -5,7 +5,7 @@
 
 #include "base/machine_memory.hpp"
 #include "kernels/shared.h"
-#include "lights/exact_reason.hpp"
+#include "lights/light_use.hpp"
 #include "raster/bins.hpp"
 #include "render/aov_table.hpp"
 #include "render/assemble.hpp"
@@ -20,9 +20,10 @@ std::size_t roundUp(std::size_t value, std::size_t step) { return (value + step 
 std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan) {
   const PlaneSet& planes = plan.planes;
   const FeatureSet& features = plan.pixels;
-  // Clustered light adds 3 planes each of light, bounds and their sum.
-  const bool clustered = features.has(Feature::kClusteredLights);
-  const std::size_t gbuffer = 9 + (clustered ? 9 : 0) + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
+  // Light of clusters adds 3 planes each of light, bounds and their sum; sampled light 3 of half widths.
+  const std::size_t bounded =
+      (features.lightError() ? 9 : 0) + (features.has(Feature::kSampledLights) ? 3 : 0);
+  const std::size_t gbuffer = 9 + bounded + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
                               (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
@@ -37,10 +38,10 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   std::size_t assembling = gbuffer + lit + counted + channels + covered;
   for (const Aov aov : settings.aovs) assembling += std::size_t(aovRow(aov).computed_floats);
   if (settings.wants(Aov::kListLength)) ++assembling;
-  const ClusterConditions use = clusterConditions(plan.shade);
+  const UseConditions conditions = useConditions(plan.shade);
   const std::size_t everywhere =
       std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
-        return !std::isfinite(light.range) && !(clustered && exactReason(light, use) == ExactReason::kNone);
+        return !std::isfinite(light.range) && isSummed(lightUse(light, conditions), features);
       });
   const std::size_t lists = features.has(Feature::kLightLists)
                                 ? kListBytesPerPixel + sizeof(ListEntry) * everywhere / kTilePixels

@@ -8,18 +8,17 @@
 
 namespace luciole {
 
-PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, Plane lit,
-                      Plane light_error) {
+PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, LitPlanes lit) {
   const std::size_t n = layout.pixels();
-  PixelSums sums{std::move(lit), Plane(n), Plane(n), std::move(light_error)};
+  PixelSums sums{std::move(lit.color), Plane(n), Plane(n), std::move(lit.light_error),
+                 std::move(lit.half_width)};
   sums.color.resize(3 * n);
   tbb::parallel_for(0, layout.height, [&](int y) {
     const std::uint16_t* row = samples.data() + std::size_t(y) * layout.width;
     for (int x = 0; x < layout.width; ++x) {
       const std::size_t i = layout.index(x, y);
-      for (int c = 0; c < 3; ++c) sums.color[i + c * n] *= float(row[x]);
-      if (!sums.light_error.empty())
-        for (int c = 0; c < 3; ++c) sums.light_error[i + c * n] *= float(row[x]);
+      for (Plane* plane : {&sums.color, &sums.light_error, &sums.half_width})
+        for (int c = 0; c < 3 && !plane->empty(); ++c) (*plane)[i + c * n] *= float(row[x]);
       sums.covered[i] = float(row[x]);
       sums.shadings[i] = row[x] > 0 ? 1.0f : 0.0f;
     }
@@ -28,7 +27,7 @@ PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samp
 }
 
 void addPoints(const GBuffer& layout, const PointLists& points, std::size_t first_list, std::size_t end_list,
-               const Plane& lit, const Plane& light_error, std::size_t stride, PixelSums& sums) {
+               const LitPlanes& lit, std::size_t stride, PixelSums& sums) {
   const std::size_t n = layout.pixels();
   std::vector<std::size_t> first_places;  // of each list in the planes
   for (std::size_t list = first_list, tiles = 0; list < end_list; tiles += points.tiles(list++))
@@ -40,9 +39,12 @@ void addPoints(const GBuffer& layout, const PointLists& points, std::size_t firs
       const std::uint32_t width = std::uint32_t(layout.width);
       const std::size_t i = layout.index(int(point.pixel % width), int(point.pixel / width));
       const float samples = float(point.samples);
-      for (int c = 0; c < 3; ++c) sums.color[i + c * n] += samples * lit[place + c * stride];
-      if (!sums.light_error.empty())
-        for (int c = 0; c < 3; ++c) sums.light_error[i + c * n] += samples * light_error[place + c * stride];
+      const auto add = [&](const Plane& from, Plane& sum) {
+        for (int c = 0; c < 3 && !sum.empty(); ++c) sum[i + c * n] += samples * from[place + c * stride];
+      };
+      add(lit.color, sums.color);
+      add(lit.light_error, sums.light_error);
+      add(lit.half_width, sums.half_width);
       if (!sums.covered.empty()) sums.covered[i] += samples;
       if (!sums.shadings.empty()) sums.shadings[i] += 1.0f;
       ++place;

@@ -53,6 +53,18 @@ SurfaceTraits surfaceTraits(const GBuffer& gbuffer) {
           !gbuffer.unbent_normal.empty(), modelsOf(gbuffer)};
 }
 
+/// For each light whether it casts a shadow and isn't sampled.
+std::vector<bool> summedCasters(const Scene& scene, const ShadeSettings& settings,
+                                const StandIns& stand_ins) {
+  const UseConditions conditions = useConditions(settings);
+  std::vector<bool> casts(scene.lights.size());
+  for (std::size_t i = 0; i < casts.size(); ++i) {
+    const Light& light = scene.lights[i];
+    casts[i] = light.shadow && !(stand_ins.sampled && lightUse(light, conditions) == LightUse::kSampled);
+  }
+  return casts;
+}
+
 /// The part of a plan that is the same for a scene's picture and for a G-buffer. view: of the whole picture.
 /// points_a_pixel: see shadowWays.
 PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const SurfaceTraits& surfaces,
@@ -63,10 +75,11 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
   chooseModel(surfaces.models, plan.shade);
   plan.layers = lightLayers(scene, settings);
   if (!plan.layers.empty()) plan.shade.light_error = 0;
+  const StandIns stand_ins = standIns(scene, view, surfaces, plan.shade);
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
-    plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits);
-  plan.features = neededFeatures(scene, camera, surfaces, plan.shade,
-                                 usesLightClusters(scene, view, surfaces, plan.shade));
+    plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits,
+                                        summedCasters(scene, plan.shade, stand_ins));
+  plan.features = neededFeatures(scene, camera, surfaces, plan.shade, stand_ins);
   plan.pixels = plan.features;
   return plan;
 }
@@ -95,7 +108,7 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   }
   plan.planes = neededPlanes(plan.pixels);
   // The light of clusters has planes of its own.
-  if (plan.pixels.has(Feature::kClusteredLights)) plan.planes.emission = surfaces.emission;
+  if (plan.pixels.lightError()) plan.planes.emission = surfaces.emission;
   if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
   if (settings.wants(Aov::kMaterial))
     plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;

@@ -55,6 +55,8 @@ void validateShading(const ShadeSettings& shade, std::size_t lights) {
   checkRange("settings.shade.log2_degree", shade.log2_degree, 3, 9);
   checkRange("settings.shade.exp2_degree", shade.exp2_degree, 2, 7);
   checkRange("settings.shade.light_error", shade.light_error, 0.0f, 1.0f);
+  checkRange("settings.shade.light_error_floor", shade.light_error_floor, 1e-6f, 1.0f);
+  checkRange("settings.shade.confidence", shade.confidence, 0.5, 0.9999);
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& def
                            .light_count = uint(clusters.lights),
                            .levels = uint(clusters.levels),
                            .light_error = arguments.light_error,
+                           .least_value = arguments.least_value,
                            .tiles_x = uint(arguments.tiles_x)};
   const std::size_t runs = std::size_t((arguments.tiles_x + kClusterRun - 1) / kClusterRun);
   launch(device, kernel,

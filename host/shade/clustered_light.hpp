@@ -15,7 +15,8 @@ struct ClusteredLightArguments {
   int tiles_x, tiles_y;             ///< of the G-buffer
   const LightClusters& clusters;    ///< of diffuse light
   const LightClusters& highlights;  ///< the same lights by their specular colours; may be `clusters`
-  float light_error;                ///< E > 0: a channel's bound shall be E·max(1, its light) at most
+  float light_error;  ///< E > 0: a channel's bound shall be E·max(least_value, its light) at most
+  float least_value = 1;
   Buffer<float> light;  ///< out: planes r g b of what the lights give a pixel, as it leaves the surface
   Buffer<float> bound;  ///< out: planes r g b, upper bounds of their errors, seen through the fog
 };

@@ -10,13 +10,14 @@
 #include "scene/models.hpp"
 #include "scene/tangents.hpp"
 #include "shade/clustered_light.hpp"
+#include "shade/sampled_light.hpp"
 #include "shadow/maps/shadow_views.hpp"
 
 namespace luciole {
 
 #define FEATURE_ROW(name, define, shown, meaning, uses) FeatureRow{#define, shown, meaning, uses},
 #define MODEL_ROW(name, typed, shown, meaning, diffuse, specular) \
-  FeatureRow{"k" #name "Model", shown, meaning, kForClusters},
+  FeatureRow{"k" #name "Model", shown, meaning, kForClusters | kForSampling},
 const std::array<FeatureRow, kFeatureCount> kFeatureTable{{EACH_FEATURE(FEATURE_ROW, MODEL_ROW)}};
 #undef MODEL_ROW
 #undef FEATURE_ROW
@@ -60,19 +61,29 @@ ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& 
   return settings.shadow_ways.empty() ? ShadowWay::kBeams : settings.shadow_ways[light];
 }
 
-ClusterConditions clusterConditions(const ShadeSettings& settings) {
-  return {settings.material_models ? std::nullopt : std::optional(settings.model),
-          settings.shadows != ShadowMethod::kOff};
+UseConditions useConditions(const ShadeSettings& settings) {
+  return {settings.material_models ? std::nullopt : std::optional(settings.model), settings.shadows};
 }
 
-bool usesLightClusters(const Scene& scene, const View& view, SurfaceTraits surfaces,
-                       const ShadeSettings& settings) {
+StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                  const ShadeSettings& settings) {
+  if (!scene.lighting || !(settings.light_error > 0)) return {};
+  const LightUseCounts counts = countUses(scene.lights, useConditions(settings));
+  const std::size_t clustered = counts[std::size_t(LightUse::kClustered)],
+                    sampled = counts[std::size_t(LightUse::kSampled)];
+  StandIns stand_ins{clustered > 0, sampled > 0};
+  if (!settings.always_clusters) {
+    stand_ins.clustered = clustersAreFaster({clustered, settings.light_error, surfaces.specular}, view);
+    stand_ins.sampled = samplesAreFaster(sampled, settings);
+  }
   // Clusters know nothing of what stands behind a surface that a bent normal faces.
-  if (!scene.lighting || !(settings.light_error > 0) || surfaces.normal_maps) return false;
-  const auto counts = countReasons(scene.lights, clusterConditions(settings));
-  const std::size_t lights = counts[std::size_t(ExactReason::kNone)];
-  if (settings.always_clusters) return lights > 0;
-  return clustersAreFaster({lights, settings.light_error, surfaces.specular}, view);
+  stand_ins.clustered &= !surfaces.normal_maps;
+  return stand_ins;
+}
+
+bool isSummed(LightUse use, const FeatureSet& features) {
+  return !(use == LightUse::kClustered && features.has(Feature::kClusteredLights)) &&
+         !(use == LightUse::kSampled && features.has(Feature::kSampledLights));
 }
 
 namespace {
@@ -126,7 +137,7 @@ bool anyHoles(const Scene& scene) {
 }  // namespace
 
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
-                          const ShadeSettings& settings, bool clustered) {
+                          const ShadeSettings& settings, StandIns stand_ins) {
   FeatureSet features;
   features.set(Feature::kEmission, surfaces.emission);
   features.set(Feature::kParallelView, camera.orthographic);
@@ -136,14 +147,19 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     return features;
   }
 
-  bool any_specular = false, clusters_specular = false, any_exponent = false;
+  features.set(Feature::kClusteredLights, stand_ins.clustered);
+  features.set(Feature::kSampledLights, stand_ins.sampled);
+  const UseConditions conditions = useConditions(settings);
+  bool any_specular = false, clusters_specular = false, samples_specular = false, any_exponent = false;
   std::size_t summed = 0;  // lights that are summed by themselves
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const bool in_clusters =
-        clustered && exactReason(light, clusterConditions(settings)) == ExactReason::kNone;
-    (in_clusters ? clusters_specular : any_specular) |= light.specular != glm::vec3(0.0f);
-    if (in_clusters) continue;
+    const LightUse use = lightUse(light, conditions);
+    const bool summed_alone = isSummed(use, features);
+    (summed_alone                  ? any_specular
+     : use == LightUse::kClustered ? clusters_specular
+                                   : samples_specular) |= light.specular != glm::vec3(0.0f);
+    if (!summed_alone) continue;
     ++summed;
     addLight(light, features);
     addShadow(light, shadowWay(scene, i, settings), settings, features);
@@ -155,9 +171,9 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   features.set(Feature::kLightLists, settings.culling == Culling::kTiles && summed > 0);
   features.set(Feature::kLongSums, summed > kSumBlock);
 
-  features.set(Feature::kLift, surfaces.smooth && features.shadows());
+  features.set(Feature::kLift, surfaces.smooth && (features.shadows() || stand_ins.sampled));
   features.set(Feature::kNormalMaps, surfaces.normal_maps && !scene.lights.empty());
-  features.set(Feature::kHoles, features.has(Feature::kExact) && anyHoles(scene));
+  features.set(Feature::kHoles, features.triangleTree() && anyHoles(scene));
   features.set(Feature::kAmbient, scene.ambient != glm::vec3(0.0f) || features.has(Feature::kLightAmbient));
   features.set(Feature::kSpecular, surfaces.specular && any_specular);
 
@@ -168,10 +184,10 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
       if (surfaces.models[modelNumber(model)]) features.set(featureOf(model), lit);
   features.set(Feature::kMaterialModels, settings.material_models && lit);
 
-  // What clusters give a pixel reaches the shading kernels as light that the surface emits.
-  features.set(Feature::kClusteredLights, clustered);
+  // What clusters and samples give a pixel reaches the shading kernels as light that the surface emits.
   features.set(Feature::kClusteredHighlights, surfaces.specular && clusters_specular);
-  if (clustered) features.set(Feature::kEmission);
+  features.set(Feature::kSampledHighlights, surfaces.specular && samples_specular);
+  if (features.lightError()) features.set(Feature::kEmission);
   return features;
 }
 
@@ -186,6 +202,7 @@ FeatureSet featuresFor(FeatureUse use, const FeatureSet& features) {
 
 PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights) ||
+                      features.has(Feature::kSampledHighlights) ||
                       features.has(Feature::kOrenNayar),  // for the shininess
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),

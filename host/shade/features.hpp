@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/feature_table.h"
-#include "lights/exact_reason.hpp"
+#include "lights/light_use.hpp"
 #include "luciole/scene.hpp"
 #include "luciole/settings.hpp"
 #include "raster/rasterize.hpp"
@@ -23,10 +23,11 @@ inline constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::k
 
 /// The kernels that depend on a feature, besides those that shade pixels and vertices.
 enum FeatureUse : unsigned {
-  kForLookups = 1,   ///< kernels/maps/find_needed.cl
-  kForBeams = 2,     ///< kernels/exact/beam_shadows.cl
-  kForClusters = 4,  ///< kernels/clusters/clustered_light.cl
-  kForFog = 8,       ///< shading that applies fog to colours lit at vertices
+  kForLookups = 1,    ///< kernels/maps/find_needed.cl
+  kForBeams = 2,      ///< kernels/exact/beam_shadows.cl
+  kForClusters = 4,   ///< kernels/clusters/clustered_light.cl
+  kForFog = 8,        ///< shading that applies fog to colours lit at vertices
+  kForSampling = 16,  ///< kernels/sampled/sampled_light.cl
 };
 
 /// A row of kernels/feature_table.h.
@@ -52,6 +53,10 @@ class FeatureSet {
     return has(Feature::kParallelShadows) || has(Feature::kPerspectiveShadows) || has(Feature::kCubeShadows);
   }
   bool shadows() const { return shadowMaps() || has(Feature::kExact); }
+  /// Whether shadows are tested by the scene's triangles.
+  bool triangleTree() const { return has(Feature::kExact) || has(Feature::kSampledLights); }
+  /// Whether light comes with bounds of its error.
+  bool lightError() const { return has(Feature::kClusteredLights) || has(Feature::kSampledLights); }
   /// Bit i is that of row i of the table.
   std::uint64_t bits() const { return bits_.to_ullong(); }
 
@@ -86,18 +91,26 @@ void chooseModel(const ModelChoices& choices, ShadeSettings& settings);
 /// How a light's shadows are computed in a picture with these settings. light: its index in the scene.
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings);
 
-/// Whether a picture with these settings sums clusters of lights: if the settings allow an error, and there
-/// are enough lights without an ExactReason (clustersAreFaster). view: of the picture. O(lights).
-bool usesLightClusters(const Scene& scene, const View& view, SurfaceTraits surfaces,
-                       const ShadeSettings& settings);
+/// Whether a picture lets clusters stand for lights, and samples those that cast shadows.
+struct StandIns {
+  bool clustered = false, sampled = false;
+};
 
-/// The conditions of a picture under which a light may be in a cluster.
-ClusterConditions clusterConditions(const ShadeSettings& settings);
+/// Both only if the settings allow an error, and there are enough lights of such a use (clustersAreFaster,
+/// samplesAreFaster). view: of the picture. O(lights).
+StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
+                  const ShadeSettings& settings);
 
-/// The features that this scene's lights, fog and surfaces need, seen by this camera. clustered: as
-/// usesLightClusters() says.
+/// The properties of a picture that decide about its lights' uses.
+UseConditions useConditions(const ShadeSettings& settings);
+
+/// The features that this scene's lights, fog and surfaces need, seen by this camera. stand_ins:
+/// as standIns() says.
 FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTraits surfaces,
-                          const ShadeSettings& settings, bool clustered = false);
+                          const ShadeSettings& settings, StandIns stand_ins = {});
+
+/// Whether a light of this use is summed by itself in a picture with these features.
+bool isSummed(LightUse use, const FeatureSet& features);
 
 /// The subset of a program's features on which kernels of this use depend. Programs that differ in other
 /// features share these kernels.

@@ -119,9 +119,9 @@ std::vector<ShadowWay> cheapestWays(const ShadowCosts& costs, const std::vector<
 }
 
 std::vector<ShadowWay> shadowWays(const Scene& scene, const View& view, double points_a_pixel,
-                                  const ShadowLimits& limits) {
-  std::vector<bool> casts;
-  for (const Light& light : scene.lights) casts.push_back(light.shadow);
+                                  const ShadowLimits& limits, const std::vector<bool>& casts) {
+  if (std::find(casts.begin(), casts.end(), true) == casts.end())
+    return std::vector<ShadowWay>(casts.size(), ShadowWay::kNone);
   const std::vector<ShadowWork> work = shadowWork(scene, view, points_a_pixel, limits);
   const bool holes = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& material) { return material.alpha_cutoff > 0; });

@@ -44,9 +44,10 @@ std::vector<ShadowWay> cheapestWays(const ShadowCosts& costs, const std::vector<
 /// The way of each light with ShadowMethod::kAuto: beams, which are exact, unless maps are estimated to be at
 /// least kMapsPayFrom times as fast. Nothing is timed and the crop doesn't matter, so the same scene and
 /// settings give the same ways on every machine. If not even the coarsest maps fit into limits.bytes all are
-/// beams. view, points_a_pixel, limits: see shadowWork. O(vertices + lights).
+/// beams. view, points_a_pixel, limits: see shadowWork. casts: of each light whether it needs a way.
+/// O(vertices + lights).
 std::vector<ShadowWay> shadowWays(const Scene& scene, const View& view, double points_a_pixel,
-                                  const ShadowLimits& limits);
+                                  const ShadowLimits& limits, const std::vector<bool>& casts);
 
 inline constexpr double kMapsPayFrom = 2;
 

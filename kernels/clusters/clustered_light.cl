@@ -9,9 +9,9 @@
 //               → highlight_group:  walk_highlights (highlights.clh)
 //                                   → for each row: add_listed_highlights, then the series (lobe_series.clh)
 //
-// A group whose bound is above what is allowed, light_error·max(1, colour), is lit again with smaller errors
-// of each cluster. What was accepted steers the groups after it in the run. So a pixel's light is a function
-// of its run alone.
+// A group whose bound is above what is allowed, light_error·max(least_value, colour), is lit again with
+// smaller errors of each cluster. What was accepted steers the groups after it in the run. So a pixel's light
+// is a function of its run alone.
 #include "clusters/cut_clusters.clh"
 #include "clusters/far_field.clh"
 #include "clusters/highlights.clh"
@@ -56,11 +56,16 @@ typedef struct {
   uint stride;
 } Tile;
 
+// A channel's bound shall be error·max(least_value, its light) at most.
+typedef struct {
+  float error, least_value;
+} AllowedError;
+
 // What all tiles share.
 typedef struct {
   ShadeFrame frame;
   ClusterTree diffuse, specular;
-  float light_error;
+  AllowedError allowed;
 } Scene;
 
 // The share of the allowed error that is accepted of a cluster.
@@ -147,7 +152,7 @@ INLINE void take_pixels(const Tile* tile, intL* left, GroupPixels* pixels) {
 
 // What bounds the pixels from `first` to `end` of a group. colors: kDiffuse or kSpecular.
 INLINE PixelGroup bound_group(const GroupPixels* pixels, uint first, uint end, uint colors,
-                              float light_error) {
+                              AllowedError allowed) {
   // Find the middle of the boxes around places and normals.
   PixelGroup group;
   for (uint axis = 0; axis < 6; ++axis) {
@@ -178,7 +183,7 @@ INLINE PixelGroup bound_group(const GroupPixels* pixels, uint first, uint end, u
   group.radius = 1.00001f * square_root(radius2);
   group.spread = 1.00001f * square_root(spread2);
   group.thickness = thickness + 0x1p-20f * group.radius;
-  group.gain = quotient(brightest, light_error);
+  group.gain = quotient(brightest, allowed.error);
   return group;
 }
 
@@ -234,15 +239,16 @@ INLINE void add_listed(const ClusterWalk* walk, const GroupPixels* pixels, const
   }
 }
 
-INLINE floatL share_of(floatL light, floatL bound, float light_error) {
-  floatL share = quotient_lanes(bound, light_error * max_lanes(light, (floatL)(1.0f)));
+INLINE floatL share_of(floatL light, floatL bound, AllowedError allowed) {
+  floatL share = quotient_lanes(bound, allowed.error * max_lanes(light, (floatL)(allowed.least_value)));
   return share <= 1e30f ? share : (floatL)(1e30f);
 }
 
 // Writes the diffuse light and its bound of a group's pixels to `out`, six planes of a tile. cuts: how many
 // clusters were summed. Returns the largest share that a bound has of the error that is allowed.
 INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const PixelGroup* group,
-                          const RowSums* row_sums, uint cuts, float light_error, float out[6][kTilePixels]) {
+                          const RowSums* row_sums, uint cuts, AllowedError allowed,
+                          float out[6][kTilePixels]) {
   // Add up the series, and count the rounding of lights and of cut clusters.
   Field field;
   finish_field(sums, &field);
@@ -269,7 +275,7 @@ INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const Pixe
       // The factor is more than the rounding of sums of so many bounds. Colours, products and the sum of the
       // parts are rounded, too.
       bound[c] = fma_lanes((floatL)(0x1p-21f), light[c], 1.001f * albedo[c] * bound[c]);
-      worst = greater(worst, greatest_lane(share_of(light[c], bound[c], light_error)));
+      worst = greater(worst, greatest_lane(share_of(light[c], bound[c], allowed)));
     }
     for (uint lane = 0; lane < LANES && i + lane < pixels->count; ++lane)
       for (uint c = 0; c < 3; ++c) {
@@ -288,9 +294,9 @@ INLINE float next_share(float share, float worst) {
 }
 
 // Sets the diffuse light of a group's pixels in `out`.
-INLINE void light_group(GroupPixels* pixels, const ClusterTree* tree, float light_error, float* share,
+INLINE void light_group(GroupPixels* pixels, const ClusterTree* tree, AllowedError allowed, float* share,
                         float out[6][kTilePixels], Counts* counts) {
-  PixelGroup group = bound_group(pixels, 0, pixels->count, kDiffuse, light_error);
+  PixelGroup group = bound_group(pixels, 0, pixels->count, kDiffuse, allowed);
   if (!(group.gain > 0.0f)) return;
   for (uint tries = 1;; ++tries) {
     ClusterWalk walk;
@@ -316,7 +322,7 @@ INLINE void light_group(GroupPixels* pixels, const ClusterTree* tree, float ligh
     }
     counts->far_clusters += walk.far_clusters;
     // Accept the light, or try again with a smaller share.
-    float worst = finish_group(pixels, &sums, &group, row_sums, cuts, light_error, out);
+    float worst = finish_group(pixels, &sums, &group, row_sums, cuts, allowed, out);
     *share = next_share(*share, worst);
     if (worst <= 1.0f || tries == kMostTries) return;
     pixels->redone = true;
@@ -341,10 +347,10 @@ INLINE vec3L lobe_axis(const HighlightPixels* row, uint model) {
 
 // What bounds the highlights of the pixels from `first` to `end` of a group.
 INLINE HighlightGroup bound_highlights(const GroupPixels* pixels, uint first, uint end,
-                                       const ShadeFrame* frame, float light_error) {
+                                       const ShadeFrame* frame, AllowedError allowed) {
   // Bound places and normals.
   HighlightGroup group;
-  group.place = bound_group(pixels, first, end, kSpecular, light_error);
+  group.place = bound_group(pixels, first, end, kSpecular, allowed);
   group.exponent = pixels->exponent;
   group.model = frame->model;
   // Find the middle of the axes.
@@ -387,7 +393,7 @@ INLINE HighlightGroup bound_highlights(const GroupPixels* pixels, uint first, ui
 // the error that is allowed.
 INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, const ShadeFrame* frame,
                                LobeSums* sums, const HighlightGroup* group, const HighlightSums* row_sums,
-                               float light_error, float diffuse_light[6][kTilePixels],
+                               AllowedError allowed, float diffuse_light[6][kTilePixels],
                                float result[6][kHighlightPixels]) {
   // Add up the series, and count the rounding of lights.
   Lobes lobes;
@@ -419,7 +425,7 @@ INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, 
               bound_of_all = 1.00001f * (diffuse_light[3 + c][place] + of_bound + 0x1p-24f * all);
         result[c][i + lane - first] = all;
         result[3 + c][i + lane - first] = bound_of_all;
-        float share = quotient(bound_of_all, light_error * greater(all, 1.0f));
+        float share = quotient(bound_of_all, allowed.error * greater(all, allowed.least_value));
         worst = greater(worst, share <= 1e30f ? share : 1e30f);
       }
     }
@@ -429,9 +435,9 @@ INLINE float finish_highlights(const GroupPixels* pixels, uint first, uint end, 
 
 // Adds the highlights of a group's pixels from `first` to `end` to `out`.
 INLINE void highlight_group(const GroupPixels* pixels, uint first, uint end, const ShadeFrame* frame,
-                            const ClusterTree* tree, float light_error, float* share,
+                            const ClusterTree* tree, AllowedError allowed, float* share,
                             float out[6][kTilePixels], Counts* counts) {
-  HighlightGroup group = bound_highlights(pixels, first, end, frame, light_error);
+  HighlightGroup group = bound_highlights(pixels, first, end, frame, allowed);
   if (!(group.place.gain > 0.0f)) return;
   float result[6][kHighlightPixels];
   for (uint tries = 1;; ++tries) {
@@ -459,8 +465,7 @@ INLINE void highlight_group(const GroupPixels* pixels, uint first, uint end, con
     }
     counts->far_clusters += walk.far_clusters;
     // Accept the light, or try again with a smaller share.
-    float worst =
-        finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, light_error, out, result);
+    float worst = finish_highlights(pixels, first, end, frame, &sums, &group, row_sums, allowed, out, result);
     *share = next_share(*share, worst);
     if (worst <= 1.0f || tries == kMostTries) break;
     if (!pixels->redone && tries == 1) counts->redone += end - first;
@@ -493,13 +498,14 @@ INLINE void light_tile(const Tile* tile, const Scene* scene, Shares* shares, __g
     GroupPixels pixels;
     take_pixels(tile, left, &pixels);
     bool shines = CLUSTERED_HIGHLIGHTS && any_specular(&pixels);
-    light_group(&pixels, &scene->diffuse, shines ? DIFFUSE_SHARE * scene->light_error : scene->light_error,
-                &shares->diffuse, out, &counted);
+    AllowedError of_diffuse = scene->allowed;
+    if (shines) of_diffuse.error *= DIFFUSE_SHARE;
+    light_group(&pixels, &scene->diffuse, of_diffuse, &shares->diffuse, out, &counted);
     if (pixels.redone) counted.redone += pixels.count;
     if (shines)
       for (uint first = 0; first < pixels.count; first += kHighlightPixels)
         highlight_group(&pixels, first, min(first + kHighlightPixels, pixels.count), &scene->frame,
-                        &scene->specular, scene->light_error, &shares->specular, out, &counted);
+                        &scene->specular, scene->allowed, &shares->specular, out, &counted);
     any_left = 0;
     for (uint row = 0; row < kTileRows; ++row) any_left |= left[row];
   }
@@ -549,7 +555,7 @@ KERNEL void clustered_light(ClusterFrame frame, __global const float* position, 
   Scene scene = {frame.shade,
                  {rows, light_rows, frame.light_count, frame.levels},
                  {highlight_rows, highlight_light_rows, frame.light_count, frame.levels},
-                 frame.light_error};
+                 {frame.light_error, frame.least_value}};
   uint runs = (frame.tiles_x + kClusterRun - 1) / kClusterRun, item = get_global_id(0);
   uint column = item % runs * kClusterRun, first_tile = item / runs * frame.tiles_x + column;
   uint first = first_tile * kTilePixels;

@@ -209,7 +209,7 @@ TEST(LightError, AnErrorOfZeroOrFewLightsIsTheExactPictureWithBoundsOfZero) {
   Scene scene = sceneFromJson(manyLights(kEmits));
   RenderSettings settings = settingsFor(scene, {40, 30});
   const View view = cameraView(settings.camera, settings.size);
-  EXPECT_FALSE(usesLightClusters(scene, view, materialTraits(scene), settings.shade));
+  EXPECT_FALSE(standIns(scene, view, materialTraits(scene), settings.shade).clustered);
   scene.lights.resize(100);
   ASSERT_FALSE(clustersAreFaster({100, 1.0f / 256, false}, view));
   const Both both = renderBoth(scene, settings, false);

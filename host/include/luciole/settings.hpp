@@ -68,10 +68,16 @@ struct ShadeSettings {
   ShadowLimits shadow_limits{};
   int log2_degree = 7;  ///< of the polynomial that approximates log2, 3 to 9
   int exp2_degree = 6;  ///< of the polynomial that approximates exp2, 2 to 7
-  /// E, 0 to 1: clusters of lights may be summed as one light, as long as each pixel's error stays below
-  /// E·max(1, colour) in each channel. 0: each light is summed by itself.
+  /// E, 0 to 1: many lights need not be summed one by one, as long as each pixel's error stays below
+  /// E·max(light_error_floor, colour) in each channel. For lights without shadows the error is proven. Lights
+  /// that cast them are sampled, if their shadows aren't those of maps that were asked for: then the pixel's
+  /// interval holds with the probability `confidence`. 0: each light is summed by itself.
   float light_error = 0;
-  /// Use clusters even where summing each light is estimated to be faster: for tests and measurements.
+  float light_error_floor = 1;  ///< above 0; a small one makes light_error a share of the colour
+  double confidence = 0.99;     ///< 0.5 to 0.9999
+  std::uint32_t seed = 0;       ///< of the samples: each gives another error
+  /// Use clusters and samples even where summing each light is estimated to be faster: for tests and
+  /// measurements.
   bool always_clusters = false;
 };
 
@@ -102,9 +108,10 @@ enum class Aov : std::uint8_t {
   kListLength,  ///< lights in the list of the pixel's square, all lights if there are no lists. Squares are
                 ///< counted from the band's first pixel, so it depends on the band and the crop
   kShadow,
-  /// Bounds of the error of clusters of lights (ShadeSettings::light_error), r g b in the units of R G B: the
-  /// mean over the samples. With Shading::kGouraud the largest of any vertex.
+  /// Half widths of the intervals that hold the colour (ShadeSettings::light_error), r g b in the units of R
+  /// G B: the mean over the samples. With Shading::kGouraud the largest of any vertex.
   kLightError,
+  kLightProof,    ///< r g b: the share of kLightError that is proven; the rest has ShadeSettings::confidence
   kShadingCount,  ///< points that were shaded for all samples of the pixel
   kCount
 };

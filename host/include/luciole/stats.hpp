@@ -31,6 +31,7 @@ enum class Stage : std::uint8_t {
   kBeamShadows,
   kShadowRays,
   kClusteredLight,
+  kSampledLight,
   kShade,
   kReadBack,
   kResolve,
@@ -42,11 +43,13 @@ enum class Stage : std::uint8_t {
 /// The stage's name in statsJson() and statsCsv().
 const char* stageName(Stage stage);
 
-/// Bounds of the error of light that clusters give (ShadeSettings::light_error), in all channels of all
-/// points that were lit, in linear radiance before exposure.
+/// Half widths of the intervals of light by ShadeSettings::light_error, in all channels of all points that
+/// were lit, in linear radiance before exposure.
 struct LightErrorStats {
   double largest = 0, sum = 0;
-  double least = 0;  ///< the least E that would allow all of them: the largest of bound / max(1, colour)
+  double proven = 0;  ///< the sum of their proven parts
+  /// The least E that would allow all proven parts: the largest of them / max(light_error_floor, colour).
+  double least = 0;
   std::uint64_t values = 0;
 };
 
@@ -77,7 +80,7 @@ struct Stats {
   std::string hash = {};  ///< SHA-256 of the picture's linear floats, in hexadecimal; empty: not computed
   std::vector<std::pair<std::string, std::uint64_t>> counts = {};
   std::vector<std::pair<std::string, double>> errors = {};  ///< by name, if the command measures any
-  LightErrorStats light_error = {};                         ///< without values if no clusters were used
+  LightErrorStats light_error = {};                         ///< without values if each light was summed
   /// Bytes of OpenCL buffers for one sample of the largest band, including those in the host's arrays
   std::size_t device_bytes = 0;
   Traffic traffic = {};  ///< of the whole picture, compiling its kernels included

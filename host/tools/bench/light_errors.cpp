@@ -104,8 +104,9 @@ bool takesTooLong(const LitStage& stage, float light_error) {
   const SurfaceTraits surfaces{!gbuffer.specular.empty(), !gbuffer.emission.empty(), false};
   const double pixels = double(gbuffer.picture_size.x) * gbuffer.picture_size.y;
   return double(stage.scene.lights.size()) * pixels > kMostExactPairs &&
-         !usesLightClusters(stage.scene, cameraView(gbuffer.camera, gbuffer.picture_size), surfaces,
-                            settingsFor(light_error).shade);
+         !standIns(stage.scene, cameraView(gbuffer.camera, gbuffer.picture_size), surfaces,
+                   settingsFor(light_error).shade)
+              .clustered;
 }
 
 /// How the picture with this error keeps its bounds; nothing where no light is stood for.

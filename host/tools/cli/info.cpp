@@ -14,7 +14,7 @@
 #include "base/write_file.hpp"
 #include "gbuffer/camera_header.hpp"
 #include "image/layers.hpp"
-#include "lights/exact_reason.hpp"
+#include "lights/light_use.hpp"
 #include "luciole/error.hpp"
 #include "luciole/pose.hpp"
 #include "render/plan.hpp"
@@ -203,23 +203,26 @@ void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
             fmt::format("{} cast shadows, {} reach everywhere", lights.casting, lights.everywhere));
 }
 
-/// For how many of the lights clusters may stand (--light-error), and why not for the others.
+/// For how many of the lights clusters may stand and how many may be sampled (--light-error), and why not the
+/// others.
 void addLightUses(const Scene& scene, const ShadeSettings& settings, Report& report) {
-  const auto counts = countReasons(scene.lights, clusterConditions(settings));
+  const LightUseCounts counts = countUses(scene.lights, useConditions(settings));
+  const std::size_t clusterable = counts[std::size_t(LightUse::kClustered)],
+                    sampleable = counts[std::size_t(LightUse::kSampled)];
   Json& json = report.json["lights"];
-  json["clusterable"] = counts[std::size_t(ExactReason::kNone)];
+  json["clusterable"] = clusterable;
+  json["sampleable"] = sampleable;
   json["exact"] = Json::object();
   std::vector<std::string> reasons;
-  for (std::size_t i = 1; i < counts.size(); ++i) {
+  for (std::size_t i = std::size_t(LightUse::kByModel); i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
-    json["exact"][exactReasonName(ExactReason(i))] = counts[i];
-    reasons.push_back(fmt::format("{} by {}", counts[i], exactReasonName(ExactReason(i))));
+    json["exact"][reasonName(LightUse(i))] = counts[i];
+    reasons.push_back(fmt::format("{} by {}", counts[i], reasonName(LightUse(i))));
   }
   if (scene.lights.empty()) return;
-  addLine(
-      report, "",
-      fmt::format("clusters may stand for {} (--light-error){}{}", counts[std::size_t(ExactReason::kNone)],
-                  reasons.empty() ? "" : "; not: ", fmt::join(reasons, ", ")));
+  addLine(report, "",
+          fmt::format("clusters may stand for {} (--light-error), {} may be sampled{}{}", clusterable,
+                      sampleable, reasons.empty() ? "" : "; not: ", fmt::join(reasons, ", ")));
 }
 
 /// Two digits of a duration: "450 ms", "1.5 s", "12 min".

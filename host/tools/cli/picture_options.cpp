@@ -82,6 +82,10 @@ std::optional<double> exposureStops(const std::string& text) {
 }
 
 /// The share from 0 to 1 that a text names: a number, or a fraction such as 1/256. Nothing for another text.
+/// The values of which --light-error-relative is a share are at least this. Nabata and others (2016) judge
+/// their errors so.
+constexpr float kRelativeFloor = 0.05f;
+
 std::optional<float> typedShare(const std::string& text) {
   const char* const text_end = text.c_str() + text.size();
   double over = 0, under = 1;
@@ -288,22 +292,43 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
                     "half as many for each face of a point light's")
         ->check(CLI::Range(kSmallestFace, kLargestFace))
         ->capture_default_str();
+    const CLI::Validator is_share(
+        [](std::string& text) {
+          return typedShare(text)
+                     ? std::string()
+                     : fmt::format("expected a number or a fraction from 0 to 1, such as 1/256, got {}",
+                                   text);
+        },
+        "");
+    CLI::Option* const absolute =
+        command
+            .add_option_function<std::string>(
+                "--light-error",
+                [&options](const std::string& text) { options.light_error = *typedShare(text); },
+                "lights without range may be stood for by clusters of them, and where they cast shadows be "
+                "sampled, as long as no pixel is wrong by more than so much of the larger of 1 and itself: "
+                "from "
+                "0 (each light by itself) to 1, such as 1/256")
+            ->check(is_share)
+            ->default_str("0");
     command
         .add_option_function<std::string>(
-            "--light-error", [&options](const std::string& text) { options.light_error = *typedShare(text); },
-            "lights without range may be stood for by clusters of them, as long as no pixel is wrong by more "
-            "than so "
-            "much of the larger of 1 and itself: from 0 (each light by itself) to 1, such as 1/256")
-        ->check(CLI::Validator(
-            [](std::string& text) {
-              return typedShare(text)
-                         ? std::string()
-                         : fmt::format("expected a number or a fraction from 0 to 1, such as 1/256, got {}",
-                                       text);
-            },
-            ""))
-        ->default_str("0");
+            "--light-error-relative",
+            [&options](const std::string& text) { options.light_error_relative = *typedShare(text); },
+            fmt::format("as --light-error, but so much of the larger of {} and the pixel itself",
+                        kRelativeFloor))
+        ->check(is_share)
+        ->default_str("0")
+        ->excludes(absolute);
+    command
+        .add_option("--confidence", options.confidence,
+                    "with an error of lights that cast shadows: how often the interval that a pixel states "
+                    "holds, 0.5 to 0.9999")
+        ->check(CLI::Range(0.5, 0.9999))
+        ->capture_default_str();
     if (is_one_picture) {
+      command.add_option("--seed", options.seed, "of lights that are sampled: each gives other errors")
+          ->capture_default_str();
       command.add_flag(
           "--light-groups", options.light_groups,
           "extra layers of an EXR, whose sum is the picture: light_groups.NAME of the lights of each "
@@ -505,6 +530,12 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                                                              : ShadowMethod::kAuto;
   settings.shade.soft_samples = options.soft_samples;
   settings.shade.light_error = options.light_error;
+  if (options.light_error_relative > 0) {
+    settings.shade.light_error = options.light_error_relative;
+    settings.shade.light_error_floor = kRelativeFloor;
+  }
+  settings.shade.confidence = options.confidence;
+  settings.shade.seed = options.seed;
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;

@@ -31,6 +31,9 @@ struct PictureOptions {
   int tile = ShadeSettings{}.tile_size;
   std::string shadows = "auto";
   float light_error = ShadeSettings{}.light_error;
+  float light_error_relative = 0;  ///< instead of light_error, if above 0
+  double confidence = ShadeSettings{}.confidence;
+  std::uint32_t seed = ShadeSettings{}.seed;
   bool shadows_given = false;  ///< --shadows was typed
   std::string cast_shadows;    ///< empty: see openScene()
   int soft_samples = ShadeSettings{}.soft_samples;
@@ -62,7 +65,7 @@ enum OptionGroup : unsigned {
   kModelOptions = 4,  ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
   kShadeOptions =
       8,  ///< --culling, --tile, --shadows, --soft-samples, --pcf-width, --shadow-memory, --shadow-size,
-          ///< --light-error, --light-groups, --aov;
+          ///< --light-error, --light-error-relative, --confidence, --seed, --light-groups, --aov;
           ///< with kSampleOption also --samples-shading
   kDeviceOption = 16,  ///< --device
   kFrameOption = 32,   ///< --frames

@@ -109,8 +109,10 @@ void checkOutput(const PictureOptions& options) {
   layers.aovs = aovs;
   layers.light_groups = options.light_groups;
   if (wantsLightLayers(layers))
-    for (const auto& [is_given, what] : {std::pair{options.light_error > 0, "--light-error"},
-                                         std::pair{options.shading == "gouraud", "--shading gouraud"}})
+    for (const auto& [is_given, what] :
+         {std::pair{options.light_error > 0, "--light-error"},
+          std::pair{options.light_error_relative > 0, "--light-error-relative"},
+          std::pair{options.shading == "gouraud", "--shading gouraud"}})
       if (is_given)
         throw InputError(
             fmt::format("{}: layers of light add up to the picture only where each light is summed by itself "
@@ -160,12 +162,23 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
 }
 
 void reportLightError(const PictureOptions& options, Stats& stats) {
+  const bool relative = options.light_error_relative > 0;
+  const std::string option = relative ? fmt::format("--light-error-relative {}", options.light_error_relative)
+                                      : fmt::format("--light-error {}", options.light_error);
+  const auto warn = [&](const std::string& text) {
+    stats.warnings.push_back(option + ": " + text);
+    if (!options.quiet) reportWarning(stats.warnings.back());
+  };
   // A few roundings more than allowed are no reason to worry anybody.
-  if (!(stats.light_error.least > 1.000001 * options.light_error)) return;
-  stats.warnings.push_back(fmt::format(
-      "--light-error {}: floats can't promise it for this picture; the least that they can is {:.3g}",
-      options.light_error, 1.05 * stats.light_error.least));
-  if (!options.quiet) reportWarning(stats.warnings.back());
+  const float allowed = relative ? options.light_error_relative : options.light_error;
+  if (stats.light_error.least > 1.000001 * allowed)
+    warn(fmt::format("floats can't promise it for this picture; the least that they can is {:.3g}",
+                     1.05 * stats.light_error.least));
+  if (const std::uint64_t missed = countOf(stats, "pixels_beyond_light_error"); missed > 0)
+    warn(fmt::format(
+        "{} stayed beyond it at a confidence of {}: a larger error, or a smaller confidence, takes "
+        "fewer rays than there are",
+        missed == 1 ? "1 pixel" : fmt::format("{} pixels", missed), options.confidence));
 }
 
 bool showsAov(const PictureOptions& options) {

@@ -10,6 +10,7 @@
 #include "kernels/shared.h"
 #include "render/memory.hpp"
 #include "shade/clustered_light.hpp"
+#include "shade/sampled_light.hpp"
 #include "shade/shadow_ways.hpp"
 #include "tools/info/scene_info.hpp"
 
@@ -70,6 +71,9 @@ std::vector<SeenPoint> seenPoints(const Scene& scene, const RenderSettings& sett
   return points;
 }
 
+/// A ray takes as long as so many lights that are summed.
+constexpr double kRayWork = 100;
+
 /// How many lights there are on average for a point that is seen.
 struct MeanLights {
   double square = 0;                 ///< in the list of its square
@@ -77,7 +81,7 @@ struct MeanLights {
   double tile = 0;                   ///< in that of its tile
 };
 
-/// Clusters count as the lights that would be as much work.
+/// Clusters and samples count as the lights that would be as much work.
 MeanLights meanLights(const Scene& scene, const View& view, const std::vector<SeenPoint>& points,
                       const FeatureSet& features, const ShadeSettings& settings) {
   struct Counts {
@@ -85,7 +89,7 @@ MeanLights meanLights(const Scene& scene, const View& view, const std::vector<Se
   };
   if (points.empty() || !scene.lighting) return {};
   const bool culled = features.has(Feature::kLightLists), by_facing = !features.has(Feature::kLightAmbient);
-  const ClusterConditions use = clusterConditions(settings);
+  const UseConditions conditions = useConditions(settings);
   const bool clustered = features.has(Feature::kClusteredLights);
   const double tests = double(points.size()) * double(scene.lights.size());
   const std::size_t step = std::size_t(std::ceil(std::max(tests / kMostTests, 1.0)));
@@ -94,7 +98,7 @@ MeanLights meanLights(const Scene& scene, const View& view, const std::vector<Se
     const SeenPoint& point = points[i * step];
     for (std::size_t k = 0; k < scene.lights.size(); ++k) {
       const Light& light = scene.lights[k];
-      if (clustered && exactReason(light, use) == ExactReason::kNone) continue;
+      if (!isSummed(lightUse(light, conditions), features)) continue;
       if (culled && !reaches(light, point, point.tile, by_facing)) continue;
       ++counts[i].tile;
       if (culled && !reaches(light, point, point.square, by_facing)) continue;
@@ -112,9 +116,13 @@ MeanLights meanLights(const Scene& scene, const View& view, const std::vector<Se
     mean.tile += double(each.tile) / double(counts.size());
   }
   if (clustered)
-    mean.square += clusteredWork({countReasons(scene.lights, use)[0], settings.light_error,
-                                  features.has(Feature::kClusteredHighlights)},
+    mean.square += clusteredWork({countUses(scene.lights, conditions)[std::size_t(LightUse::kClustered)],
+                                  settings.light_error, features.has(Feature::kClusteredHighlights)},
                                  view);
+  if (features.has(Feature::kSampledLights))
+    mean.square +=
+        kRayWork *
+        sampledRays(countUses(scene.lights, conditions)[std::size_t(LightUse::kSampled)], settings);
   return mean;
 }
 

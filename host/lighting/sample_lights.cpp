@@ -1,0 +1,31 @@
+#include "lighting/stages.hpp"
+#include "shade/sampled_light.hpp"
+#include "shade/seen_rounding.hpp"
+
+namespace luciole {
+
+void sampleLights(const StageInput& input, const ShadeFrame& frame, BoundedLight& result) {
+  const FeatureSet& features = input.pass.features;
+  result.half_width.resize(3 * input.points.stride);
+  const Buffer<float> light = borrowedForOutput(input.device, result.light),
+                      bound = borrowedForOutput(input.device, result.bound),
+                      half_width = borrowedForOutput(input.device, result.half_width);
+  SampleSettings settings = input.lighting.samples;
+  settings.light_error = clusteredError(settings.light_error, frame, features);
+  result.sample_counts = sampledLight(
+      input.device, featureDefines(featuresFor(kForSampling, features)) + input.lighting.math_defines,
+      {.frame = frame,
+       .gbuffer = input.points.buffers,
+       .lights = input.pass.lights.samples,
+       .beams = input.lighting.beams,
+       .settings = settings,
+       .holes = features.has(Feature::kHoles),
+       .light = light,
+       .bound = bound,
+       .half_width = half_width});
+  download(input.device, light, result.light);
+  download(input.device, bound, result.bound);
+  download(input.device, half_width, result.half_width);
+}
+
+}  // namespace luciole

@@ -1,0 +1,148 @@
+#include "shade/sampled_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cl/launch.hpp"
+#include "kernels/sampled/sampled_light.h"
+
+namespace luciole {
+
+template <>
+constexpr std::string_view kernelTypeName<SampleFrame>() {
+  return "SampleFrame";
+}
+template <>
+constexpr std::string_view kernelTypeName<std::uint64_t>() {
+  return "ulong";
+}
+template <>
+constexpr std::string_view kernelTypeName<Stratum>() {
+  return "Stratum";
+}
+
+namespace {
+
+/// Rays a pixel that a group begins with: fewer need more rounds, more are too many where little is seen.
+constexpr uint kPilot = 256, kFinePilot = 512;
+/// Errors below take kFinePilot.
+constexpr float kFineError = 1.0f / 128;
+
+SampleFrame sampleFrame(const SampledLightArguments& arguments) {
+  const BeamScene& beams = arguments.beams;
+  const SampleSettings& settings = arguments.settings;
+  const glm::mat3& turn = beams.view_to_tree;
+  const auto row = [&](int i) { return float4{turn[0][i], turn[1][i], turn[2][i], 0}; };
+  SampleFrame frame{};
+  frame.shade = arguments.frame;
+  frame.to_tree_x = row(0);
+  frame.to_tree_y = row(1);
+  frame.to_tree_z = row(2);
+  frame.tree_most = beams.largest_coordinates;
+  frame.to_pixel = settings.to_pixel;
+  frame.tree_scale = beams.tree->scale;
+  frame.tree_root = beams.tree->root;
+  frame.light_count = uint(arguments.lights.lights);
+  frame.levels = uint(arguments.lights.diffuse.levels);
+  frame.light_error = settings.light_error;
+  frame.least_value = settings.least_value;
+  frame.deviations = float(settings.deviations);
+  frame.seed = settings.seed;
+  frame.tiles = arguments.frame.plane_stride / kTilePixels;
+  frame.pilot = settings.light_error < kFineError ? kFinePilot : kPilot;
+  return frame;
+}
+
+}  // namespace
+
+double deviationsOf(double confidence) {
+  // 2^-52 of 16 in 56 halvings.
+  double low = 0, high = 16;
+  for (int i = 0; i < 56; ++i) {
+    const double middle = (low + high) / 2;
+    (std::erf(middle * std::sqrt(0.5)) < confidence ? low : high) = middle;
+  }
+  return high;
+}
+
+float4 pixelsOf(const View& view) {
+  const double x = view.projection[0][0] * view.size.x / 2, y = view.projection[1][1] * view.size.y / 2;
+  return {float(x), float(-y), float(view.size.x) / 2, float(view.size.y) / 2};
+}
+
+SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines,
+                                const SampledLightArguments& arguments) {
+  Kernel kernel = makeKernel(device, "sampled/sampled_light.cl", "sampled_light", defines);
+  const SampleFrame frame = sampleFrame(arguments);
+  const BeamScene& beams = arguments.beams;
+  const GBufferBuffers& gbuffer = arguments.gbuffer;
+  const SampledSet& lights = arguments.lights;
+  const std::size_t items =
+      std::clamp<std::size_t>(device.description.compute_units, 1, std::max<std::size_t>(frame.tiles, 1));
+  const std::size_t strata_count = items * kMostStrata;
+  const Buffer<Stratum> strata = makeBuffer<Stratum>(device, strata_count);
+  const Buffer<uint> heap = makeBuffer<uint>(device, strata_count),
+                     free_values = makeBuffer<uint>(device, strata_count);
+  const Buffer<float> values = makeBuffer<float>(device, strata_count * kStratumValues);
+  const Buffer<std::uint64_t> unsure =
+      makeBuffer<std::uint64_t>(device, arguments.holes ? 2 * strata_count : 2);
+  std::vector<uint> zero(1), counts(kSampleCounts * std::max<std::size_t>(frame.tiles, 1));
+  const Buffer<uint> next_tile = borrowedForOutput(device, zero),
+                     counts_buffer = borrowedForOutput(device, counts);
+  const Buffer<const float> rows = borrowed(device, lights.diffuse.rows),
+                            light_rows = borrowed(device, lights.diffuse.light_rows);
+  const bool one_color = lights.specular.rows.empty();
+  launch(device, kernel,
+         {{"frame", frame},
+          {"position", gbuffer.position},
+          {"normal", gbuffer.normal},
+          {"diffuse", gbuffer.diffuse},
+          {"specular", gbuffer.specular},
+          {"lift", gbuffer.lift},
+          {"surface_normal", gbuffer.surface_normal},
+          {"rows", rows},
+          {"light_rows", light_rows},
+          {"specular_rows", one_color ? rows : borrowed(device, lights.specular.rows)},
+          {"specular_light_rows", one_color ? light_rows : borrowed(device, lights.specular.light_rows)},
+          {"places", borrowed(device, lights.places)},
+          {"nodes", beams.nodes},
+          {"children", beams.children},
+          {"blocks", beams.blocks},
+          {"block_bits", beams.block_bits},
+          {"hole_texels", beams.hole_texels},
+          {"hole_triangles", beams.hole_triangles},
+          {"first_hole_triangle", beams.first_hole_triangle},
+          {"strata", strata},
+          {"heap", heap},
+          {"free_values", free_values},
+          {"values", values},
+          {"unsure", unsure},
+          {"light", arguments.light},
+          {"bound", arguments.bound},
+          {"half_width", arguments.half_width},
+          {"counts", counts_buffer},
+          {"next_tile", next_tile}},
+         {.items = items, .group = 1});
+  download(device, counts_buffer, counts);
+  SampledLightCounts sums;
+  for (std::size_t at = 0; at < counts.size(); at += kSampleCounts) {
+    sums.rays += counts[at + kSampledRays];
+    sums.strata += counts[at + kSampledStrata];
+    sums.rounds += counts[at + kSampledRounds];
+    sums.groups += counts[at + kSampledGroups];
+    sums.missed += counts[at + kMissedPixels];
+  }
+  return sums;
+}
+
+double sampledRays(std::size_t lights, const ShadeSettings& settings) {
+  const double root = std::sqrt(double(lights));
+  return 256 + 0.5 * root / double(settings.light_error) * deviationsOf(settings.confidence) / 64;
+}
+
+bool samplesAreFaster(std::size_t lights, const ShadeSettings& settings) {
+  return lights > 0 && sampledRays(lights, settings) < double(lights);
+}
+
+}  // namespace luciole
