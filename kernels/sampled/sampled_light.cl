@@ -144,6 +144,9 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
   for (uint k = 0; k < kPicks; ++k) {
     uint picked = picks->light[side * kPicks + k], number = picked == kNoPick ? 0 : picked;
     float weight = picked == kNoPick ? 0.0f : picks->weight[side * kPicks + k];
+#ifdef PREFETCH
+    PREFETCH(sampling->places + number);
+#endif
     light[k] = clustered_light_of(&sampling->trees.diffuse, number);
     light[k].color *= weight;
     if (SAMPLED_HIGHLIGHTS) {
@@ -236,18 +239,23 @@ SHARED_WORK void sample_stratum(const Sampling* sampling, const SampledGroup* gr
   stratum.values = cut->free_count ? cut->free_values[--cut->free_count] : cut->values_count++;
   TreeNode node = {stratum.level, stratum.node};
   Picks picks;
-  uint4 turns = 0;
+  uint turn[2] = {0, 0};
   bool all = stratum.lights <= 2;
   if (all) {
     take_all(&sampling->trees.diffuse, &stratum, node, &picks);
   } else {
-    pick_lights(&sampling->trees, bounds, node, seed, &picks);
-    turns = hash4(seed ^ (uint4)(node.level, 0x9e3779b9u, node.node, 0u));
+    uint4 random = hash4(seed ^ (uint4)(node.level, 0x9e3779b9u, node.node, 0u));
+    turn[0] = random.x >> 16 & (kPicks - 1);
+    turn[1] = random.y >> 16 & (kPicks - 1);
+    uint used = 0;
+    for (uint i = 0; i < group->count; ++i)
+      used |= 1u << (group->pick[i] ^ turn[0]) | 1u << (kPicks + (group->pick[i] ^ turn[1]));
+    pick_lights(&sampling->trees, bounds, node, seed, used, &picks);
   }
   float given = 0.0f;
   for (uint side = 0; side < 2; ++side)
-    given += sample_half(sampling, group, &picks, side, (side ? turns.y : turns.x) >> 16 & (kPicks - 1),
-                         stratum.values, all ? MOST_LIGHT : MOST_SAMPLE, cut, queue);
+    given += sample_half(sampling, group, &picks, side, turn[side], stratum.values,
+                         all ? MOST_LIGHT : MOST_SAMPLE, cut, queue);
   stratum.unshadowed = quotient(given, (float)group->count);
   cut->strata[number] = stratum;
 }
