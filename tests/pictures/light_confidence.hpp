@@ -1,0 +1,240 @@
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "lights/light_tree.hpp"
+#include "pictures/light_certificate.hpp"
+#include "raster/opacity.hpp"
+#include "render/plan.hpp"
+#include "shade/points.hpp"
+#include "shadow/exact/light_rays.hpp"
+
+// What --light-error promises of lights that cast shadows, held against every light by exact rays and in
+// double precision.
+namespace luciole::test {
+
+/// Kinds of pixels in which sampling errs most.
+struct PixelKind {
+  bool penumbra = false;    ///< between a tenth and nine tenths of the light arrive
+  bool near_light = false;  ///< one light gives more than a tenth of what it gets
+  bool grazing = false;     ///< it is seen at more than 78 degrees
+};
+
+/// A scene with the light that truly leaves some of its pixels for the eye, fog included, before exposure.
+struct ShadowedTruth {
+  Scene scene;
+  Model model = Model::kPhong;
+  GBuffer gbuffer;
+  std::vector<glm::ivec2> pixels;
+  std::vector<glm::dvec3> radiance;  ///< of each of `pixels`
+  std::vector<PixelKind> kinds;
+};
+
+namespace truth {
+
+/// The scene's triangles, lights and points on the device.
+struct Rays {
+  const Scene& scene;
+  const GBuffer& gbuffer;
+  BeamScene beams;
+  FeatureSet features;
+  std::vector<BeamLight, RawArrayAllocator<BeamLight>> lights;
+  Plane starts;
+
+  Rays(OpenedDevice& device, const Scene& lit, const GBuffer& points) : scene(lit), gbuffer(points) {
+    const auto tree = std::make_shared<const TriangleTree>(
+        buildTriangleTree(scene, glm::dvec3(gbuffer.camera.camera_to_world[3])));
+    const bool holes = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                   [](const Material& material) { return material.alpha_cutoff > 0; });
+    features.set(Feature::kHoles, holes);
+    features.set(Feature::kLift, !gbuffer.lift.empty());
+    prepareBeams(device, gbuffer.camera, tree,
+                 holes ? std::make_shared<const HoleMasks>(makeHoleMasks(scene, *tree)) : nullptr, 0, beams);
+    for (const Light& light : scene.lights) lights.push_back(beamLight(light, true, beams));
+    const Points on_device = pointsOnDevice(device, gbuffer, features, false);
+    starts.resize(3 * gbuffer.pixels());
+    const Buffer<float> buffer = borrowedForOutput(device, starts);
+    rayStarts(device, featureDefines(features),
+              {.plane_stride = gbuffer.pixels(),
+               .position = on_device.buffers.position,
+               .normal = on_device.buffers.normal,
+               .lift = on_device.buffers.lift,
+               .beams = beams},
+              buffer);
+    download(device, buffer, starts);
+  }
+
+  /// A bit for each ray that nothing blocks.
+  std::vector<uint> trace(OpenedDevice& device,
+                          const std::vector<LightRay, RawArrayAllocator<LightRay>>& rays) {
+    std::vector<uint, RawArrayAllocator<uint>> lit(wordsForRays(rays.size())), unsure(lit.size(), 0);
+    const Buffer<uint> lit_buffer = borrowedForOutput(device, lit),
+                       unsure_buffer = borrowedForOutput(device, unsure);
+    traceLightRays(device, featureDefines(features),
+                   {borrowed(device, rays), rays.size(), borrowed(device, starts), gbuffer.pixels(),
+                    borrowed(device, lights), beams},
+                   lit_buffer, unsure_buffer);
+    download(device, lit_buffer, lit);
+    if (features.has(Feature::kHoles)) {
+      download(device, unsure_buffer, unsure);
+      const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
+      settleRays(
+          beams, rays, starts, lights,
+          [&](std::uint32_t triangle, const glm::dvec3& weights) {
+            const PlacedObject& object = objectOfTriangle(objects, triangle);
+            return isHoleAt(scene, object, triangle - object.first_triangle, weights);
+          },
+          unsure, lit);
+    }
+    return {lit.begin(), lit.end()};
+  }
+};
+
+}  // namespace truth
+
+/// Covered pixels of the scene's picture, spread evenly: all of them, or `most`. All lights count as casting
+/// exact shadows if they cast any.
+inline ShadowedTruth shadowedTruth(OpenedDevice& device, const Scene& scene, glm::ivec2 size,
+                                   std::size_t most, Model model = Model::kPhong) {
+  ShadowedTruth result;
+  result.scene = scene;
+  result.model = model;
+  // Rays to neighbours follow each other.
+  const std::vector<std::uint32_t> order = spatialOrder(scene.lights);
+  for (std::size_t i = 0; i < order.size(); ++i) result.scene.lights[i] = scene.lights[order[i]];
+  RenderSettings settings;
+  settings.size = size;
+  settings.camera = scene.cameras.front();
+  Stats stats;
+  result.gbuffer = rasterizeScene(nullptr, result.scene, settings, stats);
+  const GBuffer& gbuffer = result.gbuffer;
+  std::vector<glm::ivec2> covered;
+  for (const glm::ivec2& pixel : allPixels(size))
+    if (std::isfinite(gbuffer.position[gbuffer.index(pixel.x, pixel.y) + 2 * gbuffer.pixels()]))
+      covered.push_back(pixel);
+  const std::size_t count = std::min(most, covered.size());
+  for (std::size_t i = 0; i < count; ++i)
+    result.pixels.push_back(covered[(2 * i + 1) * covered.size() / (2 * count)]);
+  result.radiance.resize(count);
+  result.kinds.resize(count);
+  truth::Rays rays(device, result.scene, gbuffer);
+  // All terms of some pixels fit into memory.
+  const std::size_t batch = std::clamp<std::size_t>(4'000'000 / (scene.lights.size() + 1), 1, 256);
+  for (std::size_t first = 0; first < count; first += batch) {
+    const std::size_t end = std::min(first + batch, count);
+    std::vector<PixelTerms> terms(end - first);
+    tbb::parallel_for(first, end, [&](std::size_t i) {
+      terms[i - first] = *referenceTerms(result.scene, gbuffer, result.pixels[i], {.model = model});
+    });
+    std::vector<LightRay, RawArrayAllocator<LightRay>> asked;
+    for (std::size_t i = first; i < end; ++i)
+      for (const LightTerm& term : terms[i - first].lights)
+        if (term.visibility > 0 && result.scene.lights[term.light].shadow)
+          asked.push_back({uint(gbuffer.index(result.pixels[i].x, result.pixels[i].y)), uint(term.light)});
+    const std::vector<uint> lit = rays.trace(device, asked);
+    std::size_t ray = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const PixelTerms& of_pixel = terms[i - first];
+      glm::dvec3 light(0.0);
+      double all = 0, largest = 0, reached = 0;
+      for (const LightTerm& term : of_pixel.lights) {
+        bool is_lit = true;
+        if (term.visibility > 0 && result.scene.lights[term.light].shadow) {
+          is_lit = (lit[ray / 32] >> ray % 32 & 1) != 0;
+          ++ray;
+        }
+        const glm::dvec3 sum = term.sum();
+        const double weight = sum.x + sum.y + sum.z;
+        all += weight;
+        if (!is_lit) continue;
+        light += sum;
+        reached += weight;
+        largest = std::max(largest, weight);
+      }
+      const glm::dvec3 own = of_pixel.own + of_pixel.point.emission;
+      result.radiance[i] =
+          referenceFog(result.scene.fog, gbuffer.camera, of_pixel.point.position, own + light);
+      const glm::dvec3 to_eye =
+          glm::normalize(glm::dvec3(gbuffer.camera.camera_to_world[3]) - of_pixel.point.position);
+      result.kinds[i] = {reached > 0.1 * all && reached<0.9 * all, largest> 0.1 * reached,
+                         std::abs(glm::dot(of_pixel.point.normal, to_eye)) < 0.2};
+    }
+  }
+  return result;
+}
+
+/// How often intervals held.
+struct HeldShare {
+  std::size_t values = 0, held = 0, within = 0;  ///< within: the error asked for, whatever is stated
+  double share() const { return values > 0 ? double(held) / double(values) : 1; }
+  /// Half of the width of its own 95 % interval, if values were independent.
+  double margin() const {
+    const double p = share();
+    return values > 0 ? 1.96 * std::sqrt(p * (1 - p) / double(values)) : 1;
+  }
+};
+
+/// How a picture kept what its intervals state.
+struct ConfidenceCheck {
+  HeldShare all, penumbra, near_light, grazing;
+  double bias = 0;    ///< the mean of signed errors, as a share of those allowed
+  double rmse = 0;    ///< the root of the mean square of these shares
+  double width = 0;   ///< the mean of stated half widths as such shares
+  double proven = 0;  ///< the mean share of half widths that is proven
+  Stats stats;
+};
+
+/// Samples the pixels' lights within `shade.light_error`, and compares. Channels of a pixel err together, so
+/// each pixel counts once: by the channel of the largest radiance.
+inline ConfidenceCheck checkConfidence(OpenedDevice& device, const ShadowedTruth& truth,
+                                       ShadeSettings shade) {
+  RenderSettings settings;
+  settings.shade = shade;
+  settings.shade.shadows = ShadowMethod::kExact;
+  settings.shade.always_clusters = true;
+  settings.shade.model = truth.model;
+  settings.aovs = {Aov::kLightError, Aov::kLightProof};
+  ConfidenceCheck check;
+  const Image image = shadeGBuffer(device, truth.scene, truth.gbuffer, settings, check.stats);
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    const glm::ivec2 pixel = truth.pixels[i];
+    // Channels R G B light_error.R .G .B light_proof.R .G .B.
+    const float* value = &image.pixels[9 * (std::size_t(pixel.y) * image.width + pixel.x)];
+    const glm::dvec3& true_light = truth.radiance[i];
+    const int c = true_light.x >= true_light.y && true_light.x >= true_light.z ? 0
+                  : true_light.y >= true_light.z                               ? 1
+                                                                               : 2;
+    const double error = double(value[c]) - true_light[c], bound = value[3 + c];
+    const double allowed =
+        double(shade.light_error) * std::max(double(shade.light_error_floor), true_light[c]);
+    const auto count = [&](HeldShare& share) {
+      ++share.values;
+      share.held += std::abs(error) <= bound;
+      share.within += std::abs(error) <= allowed;
+    };
+    count(check.all);
+    if (truth.kinds[i].penumbra) count(check.penumbra);
+    if (truth.kinds[i].near_light) count(check.near_light);
+    if (truth.kinds[i].grazing) count(check.grazing);
+    check.bias += error / allowed;
+    check.rmse += error * error / (allowed * allowed);
+    check.width += bound / allowed;
+    check.proven += value[6 + c];
+  }
+  const double n = std::max<double>(double(truth.pixels.size()), 1);
+  check.bias /= n;
+  check.rmse = std::sqrt(check.rmse / n);
+  check.width /= n;
+  check.proven /= n;
+  return check;
+}
+
+}  // namespace luciole::test
