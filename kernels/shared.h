@@ -321,7 +321,7 @@ typedef struct {
   float light_error;  // E > 0: a channel's bound shall be E·max(least_value, its light) at most
   float least_value;
   uint tiles_x;  // of the G-buffer
-  uint pad0, pad1, pad2;
+  uint pad[3];
 } ClusterFrame;
 SHARED_SIZE(ClusterFrame, 144);
 

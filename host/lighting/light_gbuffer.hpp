@@ -19,18 +19,19 @@ struct PixelCounts {
 
 /// A lit G-buffer: planes of pixels() floats.
 struct LitPlanes {
-  Plane color;  ///< r g b, then with Feature::kOutputShadow the shadow layer
+  Plane color = {};  ///< r g b, then with Feature::kOutputShadow the shadow layer
   /// Half widths of the intervals that hold `color`, r g b; 0 for background. Empty without clusters and
   /// sampled lights.
-  Plane light_error;
-  Plane half_width;  ///< the part of light_error that isn't proven; empty without sampled lights
-  ClusteredLightCounts clustered;
-  SampledLightCounts sampled;
-  Plane light_count;  ///< lights in range of each pixel, if asked for
-  Plane list_length;  ///< lights in the list of each pixel's square, if asked for; without lists all lights
+  Plane light_error = {};
+  Plane half_width = {};  ///< the part of light_error that isn't proven; empty without sampled lights
+  ClusteredLightCounts clustered = {};
+  SampledLightCounts sampled = {};
+  Plane light_count = {};  ///< lights in range of each pixel, if asked for
+  Plane list_length =
+      {};  ///< lights in the list of each pixel's square, if asked for; without lists all lights
   std::uint64_t list_entries = 0;  ///< of Lighting::lists; without lists in memory, of the tile kernel
-  PairShadows pairs;               ///< with Feature::kExact: the shadows of the entries of Lighting::lists
-  TracedPairs traced;              ///< of these, the pairs of a pixel and a light that were decided by rays
+  PairShadows pairs = {};          ///< with Feature::kExact: the shadows of the entries of Lighting::lists
+  TracedPairs traced = {};         ///< of these, the pairs of a pixel and a light that were decided by rays
   std::uint64_t evaluated = 0;     ///< pixel-light pairs that the shade kernel went through, if asked for
   std::uint64_t by_beams = 0;      ///< of these, with lights whose shadows are exact
   std::uint64_t by_maps = 0;       ///< and with lights that have shadow maps

@@ -66,7 +66,7 @@ ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
 
 SampledSet sampledSet(const Scene& scene, const Camera& camera, bool highlights, const BeamScene& beams,
                       const std::vector<std::uint32_t>& chosen) {
-  SampledSet set{clusterSet(scene, camera, highlights, chosen)};
+  SampledSet set{clusterSet(scene, camera, highlights, chosen), {}};
   const LightClusters& clusters = set.diffuse;
   set.places.resize(clusters.light_rows.size() / kLightFields);
   forEachSlot(clusters, [&](std::size_t slot, std::size_t i) {

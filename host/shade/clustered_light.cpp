@@ -45,7 +45,8 @@ ClusteredLightCounts clusteredLight(OpenedDevice& device, const std::string& def
                            .levels = uint(clusters.levels),
                            .light_error = arguments.light_error,
                            .least_value = arguments.least_value,
-                           .tiles_x = uint(arguments.tiles_x)};
+                           .tiles_x = uint(arguments.tiles_x),
+                           .pad = {}};
   const std::size_t runs = std::size_t((arguments.tiles_x + kClusterRun - 1) / kClusterRun);
   launch(device, kernel,
          {{"frame", frame},

@@ -25,7 +25,7 @@ constexpr std::string_view kernelTypeName<Stratum>() {
 namespace {
 
 /// Rays a pixel that a group begins with: fewer need more rounds, more are too many where little is seen.
-constexpr uint kPilot = 256, kFinePilot = 512;
+constexpr uint kPilot = 128, kFinePilot = 256;
 /// Errors below take kFinePilot.
 constexpr float kFineError = 1.0f / 128;
 
@@ -50,7 +50,7 @@ SampleFrame sampleFrame(const SampledLightArguments& arguments) {
   frame.deviations = float(settings.deviations);
   frame.seed = settings.seed;
   frame.tiles = arguments.frame.plane_stride / kTilePixels;
-  frame.pilot = settings.light_error < kFineError ? kFinePilot : kPilot; if (getenv("PILOT")) frame.pilot = uint(atoi(getenv("PILOT")));
+  frame.pilot = settings.light_error < kFineError ? kFinePilot : kPilot;
   return frame;
 }
 
@@ -83,6 +83,7 @@ SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines
   const std::size_t strata_count = items * kMostStrata;
   const Buffer<Stratum> strata = makeBuffer<Stratum>(device, strata_count);
   const Buffer<uint> heap = makeBuffer<uint>(device, strata_count),
+                     order = makeBuffer<uint>(device, strata_count),
                      free_values = makeBuffer<uint>(device, strata_count);
   const Buffer<float> values = makeBuffer<float>(device, strata_count * kStratumValues);
   const Buffer<std::uint64_t> unsure =
@@ -115,6 +116,7 @@ SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines
           {"first_hole_triangle", beams.first_hole_triangle},
           {"strata", strata},
           {"heap", heap},
+          {"order", order},
           {"free_values", free_values},
           {"values", values},
           {"unsure", unsure},

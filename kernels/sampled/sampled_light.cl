@@ -282,9 +282,8 @@ INLINE void set_spread(const SampledGroup* group, const Cut* cut, __global Strat
 // Samples the strata that are new. When all rays are traced, sets how their halves differ.
 INLINE void sample_new(const Sampling* sampling, const SampledGroup* group, const GroupBounds* bounds,
                        uint4 seed, Cut* cut, RayQueue* queue) {
-  for (uint i = 0; i < cut->strata_count; ++i)
-    if (cut->strata[i].values == kNoValues && cut->strata[i].lights)
-      sample_stratum(sampling, group, bounds, seed, cut, i, queue);
+  uint count = list_new(cut);
+  for (uint i = 0; i < count; ++i) sample_stratum(sampling, group, bounds, seed, cut, cut->order[i], queue);
   trace_queue(sampling, queue, cut);
   for (uint i = 0; i < cut->strata_count; ++i)
     if (cut->strata[i].unshadowed >= 0.0f && cut->strata[i].lights > 2)
@@ -535,9 +534,9 @@ KERNEL void sampled_light(
     __global const float4* places, __global const float* nodes, __global const int* children,
     __global const float* blocks, __global const uint* block_bits, __global const uchar* hole_texels,
     __global const HoleTriangle* hole_triangles, __global const uint* first_hole_triangle,
-    __global Stratum* strata, __global uint* heap, __global uint* free_values, __global float* values,
-    __global ulong* unsure, __global float* light, __global float* bound, __global float* half_width,
-    __global uint* counts, volatile __global uint* next_tile) {
+    __global Stratum* strata, __global uint* heap, __global uint* order, __global uint* free_values,
+    __global float* values, __global ulong* unsure, __global float* light, __global float* bound,
+    __global float* half_width, __global uint* counts, volatile __global uint* next_tile) {
   float4 size = frame.tree_most;
   Sampling sampling = {&frame,
                        {{rows, light_rows, frame.light_count, frame.levels},
@@ -553,6 +552,7 @@ KERNEL void sampled_light(
   size_t first = get_global_id(0) * kMostStrata;
   Cut cut = {strata + first,
              heap + first,
+             order + first,
              free_values + first,
              values + first * kStratumValues,
              unsure + (HOLES ? 2 * first : 0),

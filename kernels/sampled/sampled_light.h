@@ -27,8 +27,10 @@ typedef struct {
   float unshadowed;  // what its picks would give on average if nothing were between; below 0: not new
   float key;         // light · spread: those of the largest are halved
   uint values;       // number of its values in the pool, or kNoValues
+  uint first;        // of its lights, in the tree's order
+  uint pad0, pad1, pad2;
 } Stratum;
-SHARED_SIZE(Stratum, 32);
+SHARED_SIZE(Stratum, 48);
 #define kNoValues 0xffffffffu
 
 // Floats of a stratum's values: two halves, r g b of each, of all pixels.
