@@ -22,8 +22,8 @@ struct SampleSettings {
   float4 to_pixel{};  ///< pixelsOf(): random numbers are of a pixel's place in the whole picture
 };
 
-/// The half width, in standard deviations, of the interval that holds a normally distributed value with this
-/// probability, in (0, 1).
+/// The half width, in estimated standard deviations, of the interval that holds a value with this probability,
+/// in (0, 1): of Student's distribution, as the deviation is estimated from samples, too.
 double deviationsOf(double confidence);
 
 /// SampleSettings::to_pixel of a picture.
