@@ -155,7 +155,7 @@ TEST_F(LightError, LightsThatTakeLightAwayAreRefused) {
 
 TEST_F(LightError, InfoSaysForWhichLightsClustersMayStand) {
   EXPECT_THAT(succeed("luciole info scene.json"),
-              HasSubstr("clusters may stand for 2500 (--light-error); not: 1 by kind"));
+              HasSubstr("clusters may stand for 2500 (--light-error), 0 may be sampled; not: 1 by kind"));
   const auto lights = nlohmann::json::parse(succeed("luciole info scene.json --json -"))["lights"];
   EXPECT_EQ(lights["clusterable"], 2500);
   EXPECT_EQ(lights["exact"]["kind"], 1);
