@@ -187,10 +187,11 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings, cons
                    .lights = double(scene.lights.size()),
                    .pairs = shaded * mean.square,
                    .scene_bytes = sceneBytes(scene)};
-  if (plan.features.has(Feature::kSampledLights))
-    work.sampled_rays =
-        shaded *
-        sampledRays(countUses(scene.lights, useConditions(shade))[std::size_t(LightUse::kSampled)], shade);
+  if (plan.features.has(Feature::kSampledLights)) {
+    const std::size_t sampled =
+        countUses(scene.lights, useConditions(shade))[std::size_t(LightUse::kSampled)];
+    work.sampling = sampledMilliseconds({sampled, shaded, work.triangles}, shade);
+  }
   if (plan.features.has(Feature::kLightLists)) {
     work.list_entries = shaded / double(kTilePixels) * mean.tile;
     work.tree_levels = std::log(double(scene.lights.size())) / std::log(double(kTreeArity));
