@@ -31,7 +31,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
          .tiles_x = gbuffer.tiles_x,
          .tiles_y = gbuffer.tiles_y,
          .clusters = clusters.diffuse,
-         .highlights = clusters.specular.rows.empty() ? clusters.diffuse : clusters.specular,
+         .highlights = clusters.specular.lights == 0 ? clusters.diffuse : clusters.specular,
          .light_error = clusteredError(share * settings.light_error, frame, features),
          .least_value = settings.least_value,
          .light = light,

@@ -93,7 +93,7 @@ SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines
                      counts_buffer = borrowedForOutput(device, counts);
   const Buffer<const float> rows = borrowed(device, lights.diffuse.rows),
                             light_rows = borrowed(device, lights.diffuse.light_rows);
-  const bool one_color = lights.specular.rows.empty();
+  const bool one_color = lights.specular.lights == 0;
   launch(device, kernel,
          {{"frame", frame},
           {"position", gbuffer.position},
