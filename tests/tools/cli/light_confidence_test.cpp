@@ -79,15 +79,25 @@ TEST_F(LightConfidenceOptions, FramesAtRestAreTheSamePicture) {
   expectSamePicture("frame.1.exr", "frame.2.exr");
 }
 
+// More lights than there are strata, of which a grid hides many.
 TEST_F(LightConfidenceOptions, PixelsThatStayBeyondTheirErrorAreToldInOneLine) {
-  const Outcome outcome = run(
-      "luciole render scene.json --light-error-relative 1e-6 --confidence 0.5 --size 4x4 -o out.exr --stats "
-      "stats.json");
-  const nlohmann::json told = stats();
-  if (told["counts"].contains("lights_sampled")) {
-    EXPECT_EQ(told["counts"]["lights_sampled"], kRows * kRows);
-  }
-  EXPECT_EQ(outcome.status, 0);
+  std::string lights;
+  for (int i = 0; i < 30'000; ++i)
+    lights += fmt::format(
+        R"({}{{"type": "point", "position": [{}, {}, {}], "intensity": 0.001, "attenuation": [0, 0, 1], "shadow": true}})",
+        i > 0 ? "," : "", 0.03 * (i % 173) - 2.5, 0.5 + 0.1 * (i % 13), 0.03 * (i / 173) - 2.5);
+  writeText(folder / "many.json", R"({"size": [4, 4],
+      "camera": {"eye": [0, 0.5, 0.5], "target": [0, 0, 0], "fov_y": 2},
+      "objects": [{"primitive": "plane", "scale": 4}, {"primitive": "torus", "translate": [0, 0.7, 0], "scale": 0.3},
+                  {"primitive": "torus", "translate": [0.2, 1, 0.1], "scale": 0.3}], "lights": [)" +
+                                      lights + "]}");
+  const std::string render = "luciole render many.json --shadows exact -o out.exr --stats stats.json ";
+  const Outcome outcome = run(render + "--light-error 1/4096 --confidence 0.9");
+  EXPECT_EQ(stats()["counts"]["lights_sampled"], 30'000);
+  EXPECT_EQ(stats()["counts"]["pixels_beyond_light_error"], 16);
+  EXPECT_THAT(outcome.err, HasSubstr("16 pixels stayed beyond it at a confidence of 0.9"));
+  EXPECT_EQ(stats()["warnings"].size(), 1u) << stats()["warnings"];
+  EXPECT_THAT(told(render + "--light-error 1/16"), Not(HasSubstr("warning")));
 }
 
 TEST_F(LightConfidenceOptions, InfoSaysWhichLightsMayBeSampled) {
