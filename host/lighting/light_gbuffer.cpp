@@ -68,7 +68,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(lighting.maps.host.texels.size(), 1));
   if (features.lightError()) {
     bounded = timed(stats, Stage::kClusteredLight, [&] { return sumClusters(input, frame); });
-    if (features.has(Feature::kSampledLights))
+    if (pass.lights.samples.lights > 0)
       timed(stats, Stage::kSampledLight, [&] { sampleLights(input, frame, bounded); });
     points.buffers.emission = borrowed(device, bounded.light);
   }
@@ -92,7 +92,14 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   if (features.lightError() || lighting.vertex_error)
     boundVisibleLight(pass.gbuffer, frame, features,
                       bounded.light.empty() ? pass.gbuffer.emission : bounded.light, lit.color,
-                      lighting.vertex_error, lit.light_error);
+                      lighting.vertex_error ? std::optional(lighting.vertex_error->bound) : std::nullopt,
+                      lit.light_error);
+  if (lighting.vertex_error && lighting.vertex_error->half_width != glm::vec3(0.0f)) {
+    lit.half_width.resize(lit.light_error.size());
+    for (std::size_t i = 0; i < lit.half_width.size(); ++i)
+      lit.half_width[i] =
+          std::min(lighting.vertex_error->half_width[int(i / pass.gbuffer.pixels())], lit.light_error[i]);
+  }
   PixelCounts missing = pass.counts;
   missing.evaluated &= !by_tiles;
   if (missing.in_range || missing.evaluated || missing.list_length)

@@ -17,6 +17,13 @@
 
 namespace luciole {
 
+/// The largest half width of any vertex's interval, r g b. It holds for each pixel too, because weights of
+/// vertices add up to 1 and maps are at most 1.
+struct VertexError {
+  glm::vec3 bound{0.0f};
+  glm::vec3 half_width{0.0f};  ///< of that part of an interval that is sampled
+};
+
 /// The lights and shadows of one picture, and the device memory that its passes reuse.
 struct Lighting {
   FeatureSet features;
@@ -27,11 +34,9 @@ struct Lighting {
   BeamScene beams;  ///< with FeatureSet::triangleTree() only
   SampleSettings samples;
   LightSet lights;
-  LightLists lists;           ///< of the last G-buffer that was shaded by lists
-  LightLists lists_in_range;  ///< lists by range alone, to count lights in range
-  /// With Gouraud shading and clusters: the largest error bound of any vertex, r g b. It holds for each pixel
-  /// too, because weights of vertices add up to 1 and maps are at most 1.
-  std::optional<glm::vec3> vertex_error;
+  LightLists lists;                         ///< of the last G-buffer that was shaded by lists
+  LightLists lists_in_range;                ///< lists by range alone, to count lights in range
+  std::optional<VertexError> vertex_error;  ///< with Gouraud shading and an error allowed
 };
 
 /// Fills `lighting` for a scene seen by a view of `camera`, and plans the shadow maps that the features need.

@@ -18,7 +18,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
   BoundedLight result;
   result.light.resize(3 * input.points.stride);
   result.bound.resize(3 * input.points.stride);
-  if (features.has(Feature::kClusteredLights)) {
+  if (clusters.lights > 0) {
     const SampleSettings& settings = input.lighting.samples;
     // Samples take what the proof leaves, and most of the time.
     const float share = features.has(Feature::kSampledLights) ? kProvenShare : 1.0f;
@@ -31,7 +31,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
          .tiles_x = gbuffer.tiles_x,
          .tiles_y = gbuffer.tiles_y,
          .clusters = clusters.diffuse,
-         .highlights = clusters.specular.rows.empty() ? clusters.diffuse : clusters.specular,
+         .highlights = clusters.specular.lights == 0 ? clusters.diffuse : clusters.specular,
          .light_error = clusteredError(share * settings.light_error, frame, features),
          .least_value = settings.least_value,
          .light = light,
@@ -39,7 +39,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
     download(input.device, light, result.light);
     download(input.device, bound, result.bound);
   }
-  if (!gbuffer.emission.empty())
+  if (!gbuffer.emission.empty() && input.pass.lights.emission)
     tbb::parallel_for(std::size_t(0), result.light.size(),
                       [&](std::size_t i) { result.light[i] += gbuffer.emission[i]; });
   return result;

@@ -28,17 +28,20 @@ struct VertexLister final : PointLister {
     const std::size_t n = vertices.pixels();
     if (!lit.light_error.empty()) {
       countStandIns(lit, picture.stats);
-      glm::vec3 largest(0.0f);
-      for (std::size_t i = 0; i < lit.light_error.size(); ++i)
-        largest[int(i / n)] = std::max(largest[int(i / n)], lit.light_error[i]);
-      picture.lighting.vertex_error = largest;
+      const auto largest = [&](const Plane& plane) {
+        glm::vec3 most(0.0f);
+        for (std::size_t i = 0; i < plane.size(); ++i)
+          most[int(i / n)] = std::max(most[int(i / n)], plane[i]);
+        return most;
+      };
+      picture.lighting.vertex_error = {largest(lit.light_error), largest(lit.half_width)};
     }
     picture.vertex_colors.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       picture.vertex_colors[i] = {lit.color[i], lit.color[i + n], lit.color[i + 2 * n]};
   }
 
-  void takeLayer(std::size_t, Plane) override {}  // Gouraud shading has no layers
+  void takeLayer(std::size_t, LitPlanes) override {}  // Gouraud shading has no layers
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 //   checked_pictures NUMBER    one of the pictures, any number
 //   checked_pictures clustersL a picture by clusters of lights, L pixels side by side
 //   checked_pictures raysL     rays from a G-buffer to lights, L boxes and triangles side by side
+//   checked_pictures sampledL  a picture of sampled lights, L pixels side by side
 //   checked_pictures MISTAKE   a kernel of mistake_probe.cl
 #include <algorithm>
 #include <bit>
@@ -194,6 +195,41 @@ bool traceRays(int lanes) {
   return count > 0 && count < int(rays.size());
 }
 
+/// Returns whether some pixels get light, by picks that aren't sure.
+bool lightBySamples(int lanes) {
+  OpenedDevice device;
+  openChecked(lanes, device);
+  Random random(static_cast<unsigned>(lanes));
+  const Camera camera = randomCamera(random);
+  Scene scene;
+  addObjects(camera, scene);
+  scene.fog = randomFog(FogMode::kExp, random);
+  for (int i = 0; i < 1000; ++i) {
+    Light light{.attenuation = {0, 0, 1}};
+    light.diffuse = light.specular = 0.1 * random.color();
+    light.position = camera.camera_to_world * glm::dvec4(10.0 * random.direction(), 1);
+    light.shadow = true;
+    scene.lights.push_back(light);
+  }
+  ShadeSettings settings;
+  settings.shadows = ShadowMethod::kExact;
+  settings.light_error = 0.5f;
+  settings.always_clusters = true;
+  const GBuffer gbuffer = randomGBuffer(camera, kWidth, 3, 0.7, random);
+  const View view = cameraView(camera, {kWidth, 3});
+  const FeatureSet features =
+      neededFeatures(scene, camera, {.specular = true, .emission = true}, settings, {.sampled = true});
+  Lighting lighting;
+  Stats stats;
+  prepareLighting(device, scene, camera, view, features, settings, lighting, stats);
+  const LitPlanes lit =
+      lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer, {}}, stats);
+  const auto isAny = [](const Plane& plane) {
+    return std::any_of(plane.begin(), plane.end(), [](float value) { return value > 0; });
+  };
+  return isAny(lit.color) && isAny(lit.half_width);
+}
+
 void makeMistake(const char* mistake) {
   OpenedDevice device;
   openChecked(1, device);
@@ -216,6 +252,8 @@ int main(int, char** words) {
     return luciole::test::lightByClusters(word.back() - '0') ? 0 : 1;
   } else if (word.substr(0, 4) == "rays") {
     return luciole::test::traceRays(word.back() - '0') ? 0 : 1;
+  } else if (word.substr(0, 7) == "sampled") {
+    return luciole::test::lightBySamples(word.back() - '0') ? 0 : 1;
   } else {
     luciole::test::makeMistake(words[1]);
   }

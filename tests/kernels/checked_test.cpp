@@ -69,6 +69,7 @@ std::set<std::string> kernelsToRun(int picture) {
     names = allKernels();
     names.erase("shade_tiles");
     names.erase("clustered_light");
+    names.erase("sampled_light");
     names.erase("light_rays");  // of no picture: CheckedRays
     names.erase("ray_starts");
     names.erase("check_arithmetic");  // of no picture: cli/check_device_test.cpp
@@ -107,6 +108,15 @@ TEST_P(CheckedRays, HaveNoReports) {
   EXPECT_EQ(runChecked("rays" + std::to_string(GetParam()), false).reports, "");
 }
 
+class CheckedSamples : public testing::TestWithParam<int> {};
+
+TEST_P(CheckedSamples, HaveNoReports) {
+  LUCIOLE_NEEDS_PROGRAM("oclgrind", "oclgrind");
+  // The program fails where the kernel gives no light.
+  EXPECT_EQ(runChecked("sampled" + std::to_string(GetParam()), false).reports, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, CheckedSamples, testing::Values(1, 4, 8), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Lanes, CheckedRays, testing::Values(1, 4, 8), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Lanes, CheckedClusters, testing::Values(1, 4, 8), testing::PrintToStringParamName());
 INSTANTIATE_TEST_SUITE_P(Number, CheckedPictures, testing::Range(0, 18), testing::PrintToStringParamName());

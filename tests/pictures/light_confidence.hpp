@@ -192,21 +192,27 @@ struct ConfidenceCheck {
   Stats stats;
 };
 
-/// Samples the pixels' lights within `shade.light_error`, and compares. Channels of a pixel err together, so
-/// each pixel counts once: by the channel of the largest radiance.
-inline ConfidenceCheck checkConfidence(OpenedDevice& device, const ShadowedTruth& truth,
-                                       ShadeSettings shade) {
+/// The picture with its lights sampled within `shade.light_error`. Channels R G B light_error.R .G .B
+/// light_proof.R .G .B.
+inline Image sampledPicture(OpenedDevice& device, const ShadowedTruth& truth, ShadeSettings shade,
+                            Stats& stats) {
   RenderSettings settings;
   settings.shade = shade;
   settings.shade.shadows = ShadowMethod::kExact;
   settings.shade.always_clusters = true;
   settings.shade.model = truth.model;
   settings.aovs = {Aov::kLightError, Aov::kLightProof};
+  return shadeGBuffer(device, truth.scene, truth.gbuffer, settings, stats);
+}
+
+/// Samples the pixels' lights, and compares. Channels of a pixel err together, so each pixel counts once: by
+/// the channel of the largest radiance.
+inline ConfidenceCheck checkConfidence(OpenedDevice& device, const ShadowedTruth& truth,
+                                       const ShadeSettings& shade) {
   ConfidenceCheck check;
-  const Image image = shadeGBuffer(device, truth.scene, truth.gbuffer, settings, check.stats);
+  const Image image = sampledPicture(device, truth, shade, check.stats);
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     const glm::ivec2 pixel = truth.pixels[i];
-    // Channels R G B light_error.R .G .B light_proof.R .G .B.
     const float* value = &image.pixels[9 * (std::size_t(pixel.y) * image.width + pixel.x)];
     const glm::dvec3& true_light = truth.radiance[i];
     const int c = true_light.x >= true_light.y && true_light.x >= true_light.z ? 0

@@ -109,6 +109,23 @@ TEST_F(SharedPictures, HaveTheBitsOfOneWithLightsThatClustersStandFor) {
   expectBitsOfOne(scene, settings);
 }
 
+TEST_F(SharedPictures, HaveTheBitsOfOneWithSampledLights) {
+  Scene scene = sceneFromJson(kScene);
+  for (Light& light : scene.lights) {
+    if (light.kind != LightKind::kPoint) continue;
+    light.range = INFINITY;
+    light.radius = 0;
+    light.attenuation = {0, 0, 1};
+    light.shadow = true;
+  }
+  RenderSettings settings = settingsFor(scene, {80, 300});
+  settings.shade.shadows = ShadowMethod::kExact;
+  settings.shade.light_error = 0.1f;
+  settings.shade.always_clusters = true;
+  settings.aovs = {Aov::kLightError, Aov::kLightProof};
+  expectBitsOfOne(scene, settings);
+}
+
 TEST_F(SharedPictures, KeepShadowsFromPoseToPose) {
   Scene scene = sceneFromJson(kScene);
   RenderSettings settings = settingsFor(scene, {100, 300});

@@ -81,11 +81,11 @@ std::optional<double> exposureStops(const std::string& text) {
   return stops;
 }
 
-/// The share from 0 to 1 that a text names: a number, or a fraction such as 1/256. Nothing for another text.
 /// The values of which --light-error-relative is a share are at least this. Nabata and others (2016) judge
 /// their errors so.
 constexpr float kRelativeFloor = 0.05f;
 
+/// The share from 0 to 1 that a text names: a number, or a fraction such as 1/256. Nothing for another text.
 std::optional<float> typedShare(const std::string& text) {
   const char* const text_end = text.c_str() + text.size();
   double over = 0, under = 1;
