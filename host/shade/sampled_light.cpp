@@ -88,9 +88,10 @@ SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines
   const Buffer<float> values = makeBuffer<float>(device, strata_count * kStratumValues);
   const Buffer<std::uint64_t> unsure =
       makeBuffer<std::uint64_t>(device, arguments.holes ? 2 * strata_count : 2);
-  std::vector<uint> zero(1), counts(kSampleCounts * std::max<std::size_t>(frame.tiles, 1));
-  const Buffer<uint> next_tile = borrowedForOutput(device, zero),
+  std::vector<uint> counts(kSampleCounts * std::max<std::size_t>(frame.tiles, 1));
+  const Buffer<uint> next_tile = makeBuffer<uint>(device, 1),
                      counts_buffer = borrowedForOutput(device, counts);
+  fill(device, next_tile, 0);
   const Buffer<const float> rows = borrowed(device, lights.diffuse.rows),
                             light_rows = borrowed(device, lights.diffuse.light_rows);
   const bool one_color = lights.specular.lights == 0;
