@@ -5,8 +5,8 @@
 namespace luciole {
 namespace {
 
-/// A buffer in a plane that kernels read and write.
-Buffer<float> borrowedForBoth(OpenedDevice& device, Plane& plane) {
+/// A borrowed buffer that kernels read and write. It starts with what the plane holds.
+Buffer<float> borrowedForUpdate(OpenedDevice& device, Plane& plane) {
   const Buffer<float> buffer = borrowedForOutput(device, plane);
   if (!device.shares_host_memory)
     bytes::write(device, buffer.memory, plane.data(), {0, plane.size() * sizeof(float)});
@@ -18,9 +18,9 @@ Buffer<float> borrowedForBoth(OpenedDevice& device, Plane& plane) {
 void sampleLights(const StageInput& input, const ShadeFrame& frame, BoundedLight& result) {
   const FeatureSet& features = input.pass.features;
   result.half_width.resize(3 * input.points.stride);
-  const Buffer<float> light = borrowedForBoth(input.device, result.light),
-                      bound = borrowedForBoth(input.device, result.bound),
-                      half_width = borrowedForBoth(input.device, result.half_width);
+  const Buffer<float> light = borrowedForUpdate(input.device, result.light),
+                      bound = borrowedForUpdate(input.device, result.bound),
+                      half_width = borrowedForUpdate(input.device, result.half_width);
   SampleSettings settings = input.lighting.samples;
   settings.light_error = clusteredError(settings.light_error, frame, features);
   result.sample_counts = sampledLight(

@@ -73,6 +73,15 @@ TEST(SampledLight, IsTheSameBitsAtEveryWidthAndEveryTime) {
   }
 }
 
+TEST(SampledLight, IsTheSameBitsOnADeviceWithMemoryOfItsOwn) {
+  const RenderSettings settings = sampledSettings(sampledScene(), {70, 50});
+  const Image first = picture(sampledScene(), settings);
+  OpenedDevice device;
+  openDevice("", device);
+  device.shares_host_memory = false;
+  EXPECT_TRUE(picture(sampledScene(), settings, device).pixels == first.pixels);
+}
+
 TEST(SampledLight, BandsAreThePictureBitForBit) {
   const struct {
     int samples;
@@ -182,12 +191,12 @@ TEST(SampledLight, AddsUpWithClustersAndLightsOneByOne) {
       const float* value = &both.pixels[i + c];
       const double share = value[kError] / (std::max(1.0f, value[0]) / 16);
       squares += share * share;
-      values += value[kError] > 0;
+      values += value[kError] > 1e-6f;  // the background rounds
       mixed += value[kProof] > 0 && value[kProof] < 1;
       sum += value[kError];
       proven += value[kError] * value[kProof];
     }
-  EXPECT_GT(values, 0.7 * 3 * 64 * 48);
+  EXPECT_GT(values, 0.25 * 3 * 64 * 48);
   EXPECT_LE(std::sqrt(squares / values), 1);
   EXPECT_GT(mixed, 0.8 * values);
   EXPECT_GT(proven, 0.05 * sum) << "clusters prove theirs";
