@@ -204,7 +204,7 @@ bool lightBySamples(int lanes) {
   Scene scene;
   addObjects(camera, scene);
   scene.fog = randomFog(FogMode::kExp, random);
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 500; ++i) {
     Light light{.attenuation = {0, 0, 1}};
     light.diffuse = light.specular = 0.1 * random.color();
     light.position = camera.camera_to_world * glm::dvec4(10.0 * random.direction(), 1);
@@ -215,9 +215,9 @@ bool lightBySamples(int lanes) {
   settings.shadows = ShadowMethod::kExact;
   settings.light_error = 0.5f;
   settings.always_clusters = true;
-  // A point, a group by itself, takes ten seconds.
-  const GBuffer gbuffer = randomGBuffer(camera, 2, 1, 0, random);
-  const View view = cameraView(camera, {2, 1});
+  // Each point is a group by itself.
+  const GBuffer gbuffer = randomGBuffer(camera, 4, 1, 0, random);
+  const View view = cameraView(camera, {4, 1});
   const FeatureSet features =
       neededFeatures(scene, camera, {.specular = true, .emission = true}, settings, {.sampled = true});
   Lighting lighting;
