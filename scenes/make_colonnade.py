@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Writes colonnade.json and its meshes: colonnade_column.obj, colonnade_entablature.obj, colonnade_urn.obj,
-colonnade_statue.obj, colonnade_cypress.obj. Lengths in metres; the portico runs along -z, the court lies on its right (+x)."""
+colonnade_statue.obj, colonnade_cypress.obj. And colonnade_night.json: the same place, lit by a stream of sparks, of which those in
+colonnade_sparks.csv are seen, as colonnade_sparks.obj. Lengths in metres; the portico runs along -z, the court lies on its right (+x)."""
 import json
 import math
+import random
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
@@ -330,11 +332,71 @@ def scene():
         {"type": "directional", "direction": [-0.35, 0.9, -0.25], "color": [1, 0.7, 0.42], "specular": 0, "intensity": 0.4},
         {"type": "directional", "direction": [0.6, 0.1, -0.8], "color": [1, 0.66, 0.45], "specular": 0, "intensity": 0.1},
     ]
+    write_scene("colonnade.json", head, materials, objects, lights)
+    night(head, materials, objects)
+
+
+def write_scene(name, head, materials, objects, lights, fields=()):
     parts = [f'  "{key}": {json.dumps(value)}' for key, value in head.items()]
     parts.append('  "materials": {\n' + ",\n".join(f'    "{k}": {json.dumps(v)}' for k, v in materials.items()) + "\n  }")
-    for key, values in (("objects", objects), ("lights", lights)):
-        parts.append(f'  "{key}": [\n' + ",\n".join(f"    {json.dumps(v)}" for v in values) + "\n  ]")
-    (FOLDER / "colonnade.json").write_text("{\n" + ",\n".join(parts) + "\n}\n")
+    for key, values in (("objects", objects), ("lights", lights), ("light_fields", fields)):
+        if values:
+            parts.append(f'  "{key}": [\n' + ",\n".join(f"    {json.dumps(v)}" for v in values) + "\n  ]")
+    (FOLDER / name).write_text("{\n" + ",\n".join(parts) + "\n}\n")
+
+
+# What the stream of sparks goes through, and how far they stray from it.
+STREAM = ((3.2, 0.5, 6), (0.6, 0.6, -1), (-1.9, 1.1, -5.5), (0.9, 2.3, -10), (4.5, 1.2, -15), (1.2, 3.2, -20), (-1.6, 1.6, -26),
+          (1.8, 2.6, -33), (0.2, 4.6, -42), (0.0, 3.0, -52))
+STRAY = 0.55
+EMBERS = ((1, 0.55, 0.16), (1, 0.42, 0.1), (1, 0.7, 0.3))
+
+
+def along_stream(t):
+    """Catmull-Rom: 0 is the first point, 1 the next."""
+    i = min(int(t), len(STREAM) - 2)
+    u = t - i
+    p = [STREAM[min(max(k, 0), len(STREAM) - 1)] for k in range(i - 1, i + 3)]
+    return tuple(0.5 * (2 * b + (c - a) * u + (2 * a - 5 * b + 4 * c - d) * u * u + (3 * b - a - 3 * c + d) * u ** 3)
+                 for a, b, c, d in zip(*p))
+
+
+def sparks():
+    """Sparks that are seen: a triangle each, which faces the camera, and a light two centimetres above."""
+    rng = random.Random(7)
+    obj = Obj()
+    lines = ["x,y,z,r,g,b,constant,linear,quadratic"]
+    for _ in range(2500):
+        x, y, z = along_stream(rng.random() * (len(STREAM) - 1))
+        away = normalized([rng.gauss(0, 1) for _ in range(3)])
+        r = STRAY * 1.3 * rng.random()
+        x, y, z = x + r * away[0], y + r * away[1], z + r * away[2]
+        size = 0.003 + 0.006 * rng.random() ** 3
+        obj.add([((x - size, y - 0.6 * size, z), (0, 0, 1)), ((x + size, y - 0.6 * size, z), (0, 0, 1)), ((x, y + size, z), (0, 0, 1))])
+        strength = 0.5 * size
+        red, green, blue = (round(strength * c, 6) for c in rng.choice(EMBERS))
+        lines.append(f"{x:.3f},{y + 0.02:.3f},{z:.3f},{red},{green},{blue},0,0,1")
+    obj.write("colonnade_sparks.obj")
+    (FOLDER / "colonnade_sparks.csv").write_text("\n".join(lines) + "\n")
+
+
+def night(head, materials, objects):
+    sparks()
+    dark = [0.006, 0.008, 0.02]
+    head = {**head, "background": dark, "ambient": [0.0025, 0.0035, 0.0075],
+            "fog": {"mode": "exp", "density": [0.008, 0.01, 0.013], "color": dark}}
+    materials = {**materials, "spark": {"diffuse": 0, "emission": [4, 2, 0.6]}}
+    moon = {"type": "directional", "direction": [-0.6, -0.7, -0.35], "color": [0.35, 0.5, 0.9], "intensity": 0.05, "shadow": True}
+    falls_off = {"attenuation": [0, 0, 1], "shadow": True}
+    fields = (
+        {"csv": "colonnade_sparks.csv", "shadow": True},
+        # What is too small to be seen: embers in the walk, and wisps above the court.
+        {"shape": "curve", "count": 117500, "seed": 11, "radius": STRAY, "points": STREAM, "colors": EMBERS,
+         "intensity": [0.00004, 0.0012], **falls_off},
+        {"shape": "clusters", "count": 80000, "seed": 5, "clusters": 30, "radius": 0.8, "min": [3.6, 0.3, -46], "max": [13, 3.2, 1],
+         "colors": [[0.2, 0.9, 0.75], [0.3, 0.6, 1.0]], "intensity": [0.00004, 0.0016], **falls_off},
+    )
+    write_scene("colonnade_night.json", head, materials, [*objects, {"mesh": "colonnade_sparks.obj", "material": "spark"}], [moon], fields)
 
 
 column()

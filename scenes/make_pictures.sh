@@ -28,6 +28,7 @@ picture() {
 picture scenes/fireflies.jpg render scenes/fireflies.json --shadows pcf --size 960x540 --samples 16 -o
 picture scenes/lanterns.jpg render scenes/lanterns.json --light-error 1/256 --size 960x540 --samples 16 -o
 picture scenes/colonnade.jpg render scenes/colonnade.json --shadows pcf --size 960x540 --samples 16 -o
+picture scenes/colonnade_night.jpg render scenes/colonnade_night.json --light-error 1/64 --confidence 0.95 --size 960x540 --samples 4 -o
 picture scenes/underwater.jpg render scenes/underwater.json --shadows pcf --size 960x540 --samples 16 -o
 picture scenes/city.jpg render scenes/city.json --shadows pcf --size 960x540 --samples 16 -o
 picture scenes/spheres.jpg render scenes/spheres.json --shadows pcf --size 960x540 --samples 16 -o

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include "image/light_names.hpp"
+#include "lighting/bounded_lights.hpp"
+#include "lighting/lighting.hpp"
 #include "luciole/error.hpp"
 #include "scene/light_groups.hpp"
 
@@ -33,15 +34,22 @@ std::vector<LightPart> lightParts() {
 
 void darken(float4& color) { color.x = color.y = color.z = 0; }
 
-/// The light set of a layer. chosen: indices of its lights in the picture's set, ascending.
-LightSet layerLights(OpenedDevice& device, const LightSet& lights, std::span<const std::uint32_t> chosen,
+/// The lights of a layer.
+struct ChosenLights {
+  std::vector<std::uint32_t> summed;  ///< their indices in the picture's set, ascending
+  BoundedLights bounded;
+};
+
+/// The light set of a layer, but for bounded lights. summed: see ChosenLights.
+LightSet layerLights(OpenedDevice& device, const LightSet& lights, const std::vector<std::uint32_t>& summed,
                      const LightLayer& layer) {
   LightSet set;
   set.frame = lights.frame;
   if (!layer.ambient) darken(set.frame.ambient);
   if (!layer.fog) darken(set.frame.fog_color);
   if (!layer.background) darken(set.frame.background);
-  for (const std::uint32_t i : chosen) {
+  set.emission = layer.emission;
+  for (const std::uint32_t i : summed) {
     ShadeLight light = lights.lights[i];
     if (!layer.light_ambient) darken(light.ambient);
     if (!layer.diffuse) darken(light.diffuse);
@@ -87,18 +95,28 @@ std::vector<LightLayer> lightLayers(const Scene& scene, const RenderSettings& se
   return layers;
 }
 
-std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const LightSet& lights,
-                                    const FeatureSet& features, std::vector<LightLayer> layers) {
-  std::vector<std::uint32_t> all(lights.lights.size());
-  std::iota(all.begin(), all.end(), 0u);
-  std::vector<std::vector<std::uint32_t>> in_groups(scene.light_groups.size());
-  for (const std::uint32_t i : all) in_groups[scene.lights[lights.order[i]].group].push_back(i);
+std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const Camera& camera,
+                                    const Lighting& lighting, const FeatureSet& features,
+                                    const ShadeSettings& settings, std::vector<LightLayer> layers) {
+  if (layers.empty()) return {};
+  const LightSet& lights = lighting.lights;
+  const ChosenLights none;
+  ChosenLights all{std::vector<std::uint32_t>(lights.lights.size()),
+                   boundedLights(scene, features, settings)};
+  std::iota(all.summed.begin(), all.summed.end(), 0u);
+  std::vector<ChosenLights> in_groups(scene.light_groups.size());
+  const auto groupOf = [&](std::uint32_t light) -> ChosenLights& {
+    return in_groups[scene.lights[light].group];
+  };
+  for (const std::uint32_t i : all.summed) groupOf(lights.order[i]).summed.push_back(i);
+  for (const std::uint32_t light : all.bounded.clustered) groupOf(light).bounded.clustered.push_back(light);
+  for (const std::uint32_t light : all.bounded.sampled) groupOf(light).bounded.sampled.push_back(light);
   std::vector<LitLayer> prepared;
   for (LightLayer& layer : layers) {
-    std::span<const std::uint32_t> chosen;
-    if (layer.all_lights) chosen = all;
-    if (layer.group) chosen = in_groups[*layer.group];
-    LightSet set = layerLights(device, lights, chosen, layer);
+    const ChosenLights& chosen = layer.all_lights ? all : layer.group ? in_groups[*layer.group] : none;
+    LightSet set = layerLights(device, lights, chosen.summed, layer);
+    setBoundedLights(scene, camera, lighting.beams, features, chosen.bounded, {layer.diffuse, layer.specular},
+                     set);
     const FeatureSet needed = layerFeatures(features, layer);
     prepared.push_back({std::move(layer), needed, std::move(set)});
   }
@@ -106,7 +124,8 @@ std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, co
 }
 
 FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer) {
-  if (!layer.emission) features.set(Feature::kEmission, false);
+  // Light that comes with bounds reaches the shading kernels as light that surfaces emit.
+  if (!layer.emission && !features.lightError()) features.set(Feature::kEmission, false);
   return features;
 }
 

@@ -15,6 +15,8 @@
 // to black.
 namespace luciole {
 
+struct Lighting;
+
 struct LightLayer {
   std::string name;                         ///< its channels are name + "R", "G" and "B"
   std::optional<std::uint32_t> group = {};  ///< the group of its lights; empty: none, or all_lights
@@ -44,10 +46,12 @@ struct LitLayer {
   LightSet lights;
 };
 
-/// Prepares layers of a picture. lights, features: the picture's. Lights keep their shadow maps and the
-/// pattern of their soft shadows' samples.
-std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const LightSet& lights,
-                                    const FeatureSet& features, std::vector<LightLayer> layers);
+/// Prepares layers of a picture. lighting, features, settings: the picture's. Lights keep their shadow maps
+/// and the pattern of their soft shadows' samples. Those that aren't summed by themselves in the picture
+/// aren't in a layer either, few though they may be there.
+std::vector<LitLayer> prepareLayers(OpenedDevice& device, const Scene& scene, const Camera& camera,
+                                    const Lighting& lighting, const FeatureSet& features,
+                                    const ShadeSettings& settings, std::vector<LightLayer> layers);
 
 /// The features of a layer's program, of a picture with these features.
 FeatureSet layerFeatures(FeatureSet features, const LightLayer& layer);

@@ -1,11 +1,8 @@
 #include "lighting/lighting.hpp"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
-#include <utility>
 #include <vector>
 
+#include "lighting/bounded_lights.hpp"
 #include "lights/light_use.hpp"
 
 namespace luciole {
@@ -30,62 +27,13 @@ ShadeFrame makeFrame(const Scene& scene, const Camera& camera, const ShadeSettin
 static_assert(int(FogMode::kLinear) == kFogLinear && int(FogMode::kExp) == kFogExp &&
               int(FogMode::kExp2) == kFogExp2);
 
-/// The clusters of these lights in the camera's view space. color: Light::diffuse or Light::specular.
-LightClusters clustersOf(const Scene& scene, const Camera& camera, const std::vector<std::uint32_t>& chosen,
-                         glm::vec3 Light::*color) {
-  const glm::dmat4 world_to_view = worldToView(camera);
-  std::vector<UnboundedLight> lights(chosen.size());
-  tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t i) {
-    const Light& light = scene.lights[chosen[i]];
-    lights[i] = {glm::dvec3(world_to_view * glm::dvec4(light.position, 1)), glm::dvec3(light.*color),
-                 light.attenuation.z};
-  });
-  return buildLightClusters(lights);
-}
-
-/// The lights of a use.
-std::vector<std::uint32_t> lightsOf(const Scene& scene, LightUse use, const ShadeSettings& settings) {
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
-    if (lightUse(scene.lights[i], useConditions(settings)) == use) chosen.push_back(i);
-  return chosen;
-}
-
-/// highlights: surfaces have specular colours.
-ClusterSet clusterSet(const Scene& scene, const Camera& camera, bool highlights,
-                      const std::vector<std::uint32_t>& chosen) {
-  const bool one_color = std::all_of(chosen.begin(), chosen.end(), [&](std::uint32_t light) {
-    return scene.lights[light].diffuse == scene.lights[light].specular;
-  });
-  ClusterSet set;
-  set.diffuse = clustersOf(scene, camera, chosen, &Light::diffuse);
-  if (highlights && !one_color) set.specular = clustersOf(scene, camera, chosen, &Light::specular);
-  set.lights = chosen.size();
-  return set;
-}
-
-SampledSet sampledSet(const Scene& scene, const Camera& camera, bool highlights, const BeamScene& beams,
-                      const std::vector<std::uint32_t>& chosen) {
-  SampledSet set{clusterSet(scene, camera, highlights, chosen), {}};
-  const LightClusters& clusters = set.diffuse;
-  set.places.resize(clusters.light_rows.size() / kLightFields);
-  forEachSlot(clusters, [&](std::size_t slot, std::size_t i) {
-    set.places[slot] = beamLight(scene.lights[chosen[clusters.order[i]]], true, beams).place;
-  });
-  return set;
-}
-
 /// Fills in the picture's lights. Shadow maps are planned.
 void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& camera,
                      const ShadeSettings& settings, const Lighting& lighting, LightSet& set) {
   if (scene.lighting) {
     const FeatureSet& features = lighting.features;
-    if (features.has(Feature::kClusteredLights))
-      set.clusters = clusterSet(scene, camera, features.has(Feature::kClusteredHighlights),
-                                lightsOf(scene, LightUse::kClustered, settings));
-    if (features.has(Feature::kSampledLights))
-      set.samples = sampledSet(scene, camera, features.has(Feature::kSampledHighlights), lighting.beams,
-                               lightsOf(scene, LightUse::kSampled, settings));
+    setBoundedLights(scene, camera, lighting.beams, features, boundedLights(scene, features, settings), {},
+                     set);
     if (set.clusters.lights + set.samples.lights < scene.lights.size())
       set.order = spatialOrder(scene.lights);
     if (features.lightError())

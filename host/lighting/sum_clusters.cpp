@@ -18,7 +18,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
   BoundedLight result;
   result.light.resize(3 * input.points.stride);
   result.bound.resize(3 * input.points.stride);
-  if (features.has(Feature::kClusteredLights)) {
+  if (clusters.lights > 0) {
     const SampleSettings& settings = input.lighting.samples;
     // Samples take what the proof leaves, and most of the time.
     const float share = features.has(Feature::kSampledLights) ? kProvenShare : 1.0f;
@@ -39,7 +39,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
     download(input.device, light, result.light);
     download(input.device, bound, result.bound);
   }
-  if (!gbuffer.emission.empty())
+  if (!gbuffer.emission.empty() && input.pass.lights.emission)
     tbb::parallel_for(std::size_t(0), result.light.size(),
                       [&](std::size_t i) { result.light[i] += gbuffer.emission[i]; });
   return result;

@@ -30,6 +30,7 @@ struct SampledSet : ClusterSet {
 struct LightSet {
   /// Ambient light, fog and background; all but plane_stride and texel_count, which depend on the G-buffer.
   ShadeFrame frame{};
+  bool emission = true;                ///< surfaces' own light counts
   LightArray lights;                   ///< those that are summed by themselves, in the order of a Z curve
   std::vector<std::uint32_t> order;    ///< the scene's index of each
   std::vector<BeamLight> beam_lights;  ///< one for each, with Feature::kExact only

@@ -61,7 +61,21 @@ float scaleOf(const RenderSettings& settings) {
   return std::exp2(settings.exposure) / float(settings.samples);
 }
 
+/// The exposed bound of the mean of so many samples. sum: of their bounds. scale: scaleOf().
+float boundOfMean(float sum, float mean, int samples, float scale) {
+  // Each of n samples' products and sums rounds both colour and bound, and so do the factor and the product
+  // with it: fewer than 2n + 3 roundings of 2⁻²⁴, of terms ≥ 0.
+  const double rounding = (2 * samples + 3) * 0x1p-24, bound = double(sum) * scale;
+  return finiteColor(float((1 + rounding) * bound + rounding * double(mean)));
+}
+
 }  // namespace
+
+bool boundsLayers(const RenderSettings& settings) {
+  return settings.shade.light_error > 0 && settings.wants(Aov::kLightError);
+}
+
+std::size_t layerChannels(const RenderSettings& settings) { return boundsLayers(settings) ? 6 : 3; }
 
 bool countsCovered(const RenderSettings& settings) {
   return settings.alpha || settings.wants(Aov::kShadingCount);
@@ -101,12 +115,17 @@ Image startPicture(const GBuffer& gbuffer, const LitPlanes& first, const RenderS
   return image;
 }
 
-void setLightLayer(const GBuffer& gbuffer, const Plane& sums, const RenderSettings& settings,
+void setLightLayer(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings,
                    std::size_t first_channel, Image& image) {
   const std::size_t n = gbuffer.pixels();
   const float scale = scaleOf(settings);
+  const bool has_bounds = boundsLayers(settings), is_bounded = !sums.light_error.empty();
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
-    for (std::size_t c = 0; c < 3; ++c) pixel[first_channel + c] = finiteColor(sums[place + c * n] * scale);
+    float* const layer = pixel + first_channel;
+    for (std::size_t c = 0; c < 3; ++c) layer[c] = finiteColor(sums.color[place + c * n] * scale);
+    for (std::size_t c = 0; c < 3 && has_bounds; ++c)
+      layer[3 + c] =
+          is_bounded ? boundOfMean(sums.light_error[place + c * n], layer[c], settings.samples, scale) : 0.0f;
   });
 }
 
@@ -128,16 +147,12 @@ void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettin
                                    proof_channel = is_bounded ? channelOf(image, settings, Aov::kLightProof)
                                                               : std::nullopt;
   const float scale = scaleOf(settings);
-  // Each of n samples' products and sums rounds both colour and bound, and so do the factor and the product
-  // with it: fewer than 2n + 3 roundings of 2⁻²⁴, of terms ≥ 0.
-  const double rounding = (2 * settings.samples + 3) * 0x1p-24;
   forEachPixel(gbuffer, image, [&](std::size_t place, float* pixel) {
     for (int c = 0; c < 3; ++c) pixel[c] = finiteColor(sums.color[place + c * n] * scale);
     if (settings.alpha) pixel[3] = sums.covered[place] / float(settings.samples);
-    for (int c = 0; c < 3 && bound_channel; ++c) {
-      const double bound = double(sums.light_error[place + c * n]) * scale;
-      pixel[*bound_channel + c] = finiteColor(float((1 + rounding) * bound + rounding * double(pixel[c])));
-    }
+    for (int c = 0; c < 3 && bound_channel; ++c)
+      pixel[*bound_channel + c] =
+          boundOfMean(sums.light_error[place + c * n], pixel[c], settings.samples, scale);
     for (int c = 0; c < 3 && proof_channel; ++c) {
       const float width = sums.half_width.empty() ? 0.0f : sums.half_width[place + c * n],
                   bound = sums.light_error[place + c * n];

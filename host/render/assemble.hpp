@@ -13,6 +13,12 @@ namespace luciole {
 /// The index of an AOV's first channel in the picture; empty if the settings don't ask for it.
 std::optional<std::size_t> channelOf(const Image& image, const RenderSettings& settings, Aov aov);
 
+/// Whether layers of light have channels of their bounds beside those of their colours.
+bool boundsLayers(const RenderSettings& settings);
+
+/// The number of channels of a layer of light.
+std::size_t layerChannels(const RenderSettings& settings);
+
 /// The number of channels of a picture whose G-buffer has these groups: R G B, A and AOVs, without
 /// lightLayers().
 std::size_t channelCount(const RenderSettings& settings, const PlaneSet& planes);
@@ -36,9 +42,9 @@ bool countsCovered(const RenderSettings& settings);
 /// shows a surface was shaded.
 void setColors(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings, Image& image);
 
-/// Fills in the three channels of a layer of light, from first_channel on, as setColors() does R G B. sums:
-/// r g b, over the samples.
-void setLightLayer(const GBuffer& gbuffer, const Plane& sums, const RenderSettings& settings,
+/// Fills in the layerChannels() of a layer of light, from first_channel on, as setColors() does R G B and
+/// Aov::kLightError. sums: of its colours and bounds, over the samples. Without bounds these are 0.
+void setLightLayer(const GBuffer& gbuffer, const PixelSums& sums, const RenderSettings& settings,
                    std::size_t first_channel, Image& image);
 
 }  // namespace luciole

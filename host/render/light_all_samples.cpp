@@ -31,7 +31,7 @@ struct SampleLister final : PointLister {
   int sample = -1;
   GBuffer drawn;
   PixelSums sums;
-  std::vector<Plane> layer_sums;
+  std::vector<PixelSums> layer_sums;  ///< colours and bounds alone
   Image image;
   std::optional<TraceSpan> span;
 
@@ -79,13 +79,15 @@ struct SampleLister final : PointLister {
     });
   }
 
-  void takeLayer(std::size_t layer, Plane color) override {
+  void takeLayer(std::size_t layer, LitPlanes lit) override {
     timed(picture.stats, Stage::kResolve, [&] {
-      Plane& sum = layer_sums[layer];
-      recycled = addPlane(std::move(color), 3 * drawn.pixels(), sum);
+      PixelSums& sum = layer_sums[layer];
+      const std::size_t bounds = lit.light_error.size();
+      addPlane(std::move(lit.light_error), bounds, sum.light_error);
+      recycled = addPlane(std::move(lit.color), 3 * drawn.pixels(), sum.color);
       if (!isLast()) return;
-      setLightLayer(drawn, sum, picture.settings, channelOfLayer(image, layer, layer_sums.size()), image);
-      recycled = std::move(sum);
+      setLightLayer(drawn, sum, picture.settings, channelOfLayer(picture, image, layer), image);
+      recycled = std::move(sum.color);
     });
   }
 };

@@ -32,10 +32,10 @@ struct GivenLister final : PointLister {
     });
   }
 
-  void takeLayer(std::size_t layer, Plane color) override {
+  void takeLayer(std::size_t layer, LitPlanes lit) override {
     timed(picture.stats, Stage::kResolve, [&] {
-      setLightLayer(given, color, picture.settings, channelOfLayer(image, layer, picture.layers.size()),
-                    image);
+      const PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error), {}};
+      setLightLayer(given, sums, picture.settings, channelOfLayer(picture, image, layer), image);
     });
   }
 };

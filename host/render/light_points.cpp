@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "image/light_names.hpp"
+#include "render/assemble.hpp"
+
 namespace luciole {
 
 void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister& lister) {
@@ -12,8 +15,11 @@ void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister&
   };
   while (lister.next()) {
     lister.take(light(picture.lighting.lights, features, lister.counts));
-    for (std::size_t i = 0; i < picture.layers.size(); ++i)
-      lister.takeLayer(i, light(picture.layers[i].lights, picture.layers[i].features, {}).color);
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+      LitPlanes lit = light(picture.layers[i].lights, picture.layers[i].features, {});
+      if (!boundsLayers(picture.settings)) lit.light_error = {};
+      lister.takeLayer(i, {.color = std::move(lit.color), .light_error = std::move(lit.light_error)});
+    }
   }
 }
 
@@ -25,12 +31,15 @@ PixelCounts wantedCounts(const RenderSettings& settings, int sample) {
 
 std::vector<std::string> layerNames(const ReadyPicture& picture) {
   std::vector<std::string> names;
-  for (const LitLayer& layer : picture.layers) names.push_back(layer.layer.name);
+  for (const LitLayer& layer : picture.layers) {
+    names.push_back(layer.layer.name);
+    if (boundsLayers(picture.settings)) names.push_back(layer.layer.name + std::string(kLayerBounds));
+  }
   return names;
 }
 
-std::size_t channelOfLayer(const Image& image, std::size_t layer, std::size_t layers) {
-  return image.channels.size() - 3 * (layers - layer);
+std::size_t channelOfLayer(const ReadyPicture& picture, const Image& image, std::size_t layer) {
+  return image.channels.size() - layerChannels(picture.settings) * (picture.layers.size() - layer);
 }
 
 }  // namespace luciole

@@ -22,8 +22,9 @@ struct PointLister {
   virtual bool next() = 0;
   /// Takes the batch's light.
   virtual void take(LitPlanes lit) = 0;
-  /// Takes its light of a layer, r g b. Called after take(), for each layer in order.
-  virtual void takeLayer(std::size_t layer, Plane color) = 0;
+  /// Takes its light of a layer: `color`, and with boundsLayers() `light_error`, if it has any. Called after
+  /// take(), for each layer in order.
+  virtual void takeLayer(std::size_t layer, LitPlanes lit) = 0;
 };
 
 /// Lights all points of the lister, by the picture's lights and by those of each layer. features: of the
@@ -33,11 +34,11 @@ void lightPoints(ReadyPicture& picture, const FeatureSet& features, PointLister&
 /// The counts for a sample: those that layers show in the first one only, those of statistics in all.
 PixelCounts wantedCounts(const RenderSettings& settings, int sample);
 
-/// The names of the picture's layers of light.
+/// The names of the picture's layers of light, and with boundsLayers() after each that of its bounds.
 std::vector<std::string> layerNames(const ReadyPicture& picture);
 
 /// The first channel of a layer of light. These layers are the picture's last.
-std::size_t channelOfLayer(const Image& image, std::size_t layer, std::size_t layers);
+std::size_t channelOfLayer(const ReadyPicture& picture, const Image& image, std::size_t layer);
 
 /// The pixels that `band` shows, with each sample rasterized and lit by itself. on_sample: called after each.
 Image lightAllSamples(ReadyPicture& picture, const View& band, RasterCounts& triangles,

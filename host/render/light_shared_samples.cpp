@@ -60,7 +60,7 @@ struct SharedLister final : PointLister {
   SharedSamples shared;  ///< its G-buffer is the layout of all sums
   std::size_t most_points;
   PixelSums sums;
-  std::vector<PixelSums> layer_sums;  ///< colours alone
+  std::vector<PixelSums> layer_sums;  ///< colours and bounds alone
   Image image;
   bool is_begun = false;
 
@@ -149,14 +149,16 @@ struct SharedLister final : PointLister {
     });
   }
 
-  void takeLayer(std::size_t layer, Plane color) override {
+  void takeLayer(std::size_t layer, LitPlanes lit) override {
     timed(picture.stats, Stage::kResolve, [&] {
       PixelSums& sum = layer_sums[layer];
-      if (points)
-        addPoints(shared.gbuffer, *points, first_list, end_list, {.color = std::move(color)},
-                  gathered.pixels(), sum);
-      else
-        sum.color = firstPoints(shared.gbuffer, shared.samples, {.color = std::move(color)}).color;
+      if (points) {
+        addPoints(shared.gbuffer, *points, first_list, end_list, lit, gathered.pixels(), sum);
+        return;
+      }
+      PixelSums first = firstPoints(shared.gbuffer, shared.samples, std::move(lit));
+      sum.color = std::move(first.color);
+      sum.light_error = std::move(first.light_error);
     });
   }
 
@@ -174,8 +176,8 @@ struct SharedLister final : PointLister {
       setColors(shared.gbuffer, sums, picture.settings, image);
       for (std::size_t layer = 0; layer < layer_sums.size(); ++layer) {
         addUncovered(picture.layers[layer].lights, layer_sums[layer].color);
-        setLightLayer(shared.gbuffer, layer_sums[layer].color, picture.settings,
-                      channelOfLayer(image, layer, layer_sums.size()), image);
+        setLightLayer(shared.gbuffer, layer_sums[layer], picture.settings,
+                      channelOfLayer(picture, image, layer), image);
       }
       return cutOut(std::move(image), sampled.inner.first - sampled.view.crop_origin,
                     sampled.inner.end - sampled.inner.first);

@@ -41,7 +41,7 @@ struct VertexLister final : PointLister {
       picture.vertex_colors[i] = {lit.color[i], lit.color[i + n], lit.color[i + 2 * n]};
   }
 
-  void takeLayer(std::size_t, Plane) override {}  // Gouraud shading has no layers
+  void takeLayer(std::size_t, LitPlanes) override {}  // Gouraud shading has no layers
 };
 
 }  // namespace

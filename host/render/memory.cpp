@@ -28,7 +28,7 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
                               (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
   const std::size_t counted = settings.count_lights || settings.wants(Aov::kLightCount) ? 1 : 0;
-  const std::size_t light_layers = 3 * plan.layers.size();
+  const std::size_t light_layers = layerChannels(settings) * plan.layers.size();
   const std::size_t channels = channelCount(settings, planes) + light_layers;
   // Colours and counts are on the device and on the host. The picture of the band before still exists, and
   // from the second sample on the sums.

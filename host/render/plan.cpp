@@ -74,7 +74,6 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
   plan.shade.shadow_layer = settings.wants(Aov::kShadow);
   chooseModel(surfaces.models, plan.shade);
   plan.layers = lightLayers(scene, settings);
-  if (!plan.layers.empty()) plan.shade.light_error = 0;
   const StandIns stand_ins = standIns(scene, view, surfaces, plan.shade);
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
     plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits,

@@ -15,7 +15,7 @@ namespace luciole {
 /// All decisions about a picture that don't depend on the device.
 struct PicturePlan {
   View view;            ///< of the picture, or of its crop
-  ShadeSettings shade;  ///< those of the settings, with the model, light_error and shadow ways decided
+  ShadeSettings shade;  ///< those of the settings, with the model and shadow ways decided
   FeatureSet features;  ///< of all passes together
   FeatureSet pixels;    ///< of the pass that lights pixels
   FeatureSet vertices;  ///< of the pass that lights vertices, with Shading::kGouraud only

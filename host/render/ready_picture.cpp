@@ -15,10 +15,10 @@ void prepareLights(ReadyPicture& picture, const Camera& camera, KeptShadows* kep
   const PicturePlan& plan = picture.plan;
   prepareLighting(picture.device, picture.scene, camera, plan.view, plan.features, plan.shade,
                   picture.lighting, picture.stats, kept);
-  LightSet& lights = picture.lighting.lights;
-  if (picture.settings.alpha) lights.frame.background = {};
+  if (picture.settings.alpha) picture.lighting.lights.frame.background = {};
   picture.layers = timed(picture.stats, Stage::kPrepareLights, [&] {
-    return prepareLayers(picture.device, picture.scene, lights, plan.pixels, plan.layers);
+    return prepareLayers(picture.device, picture.scene, camera, picture.lighting, plan.pixels, plan.shade,
+                         plan.layers);
   });
 }
 

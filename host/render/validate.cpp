@@ -73,8 +73,7 @@ void validate(const Scene& scene, const RenderSettings& settings, const KeptShad
   validateShading(settings.shade, scene.lights.size());
   for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov(kAovCount - 1));
   if (settings.shading == Shading::kGouraud && wantsLightLayers(settings))
-    throw InputError(
-        "settings.shading: layers of light go with each light summed in each pixel, not kGouraud");
+    throw InputError("settings.shading: layers of light are lit at each pixel, not kGouraud");
   checkRange("settings.exposure", double(settings.exposure), -kMostStops, kMostStops);
   if (settings.band_height < 0)
     throw InputError(fmt::format("settings.band_height: {}, expected at least 0", settings.band_height));

@@ -7,10 +7,12 @@
 
 #include "kernels/shared.h"
 #include "raster/lift.hpp"
+#include "scene/count_triangles.hpp"
 #include "scene/models.hpp"
 #include "scene/tangents.hpp"
 #include "shade/clustered_light.hpp"
 #include "shade/sampled_light.hpp"
+#include "shade/shadow_ways.hpp"
 #include "shadow/maps/shadow_views.hpp"
 
 namespace luciole {
@@ -61,8 +63,26 @@ ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& 
   return settings.shadow_ways.empty() ? ShadowWay::kBeams : settings.shadow_ways[light];
 }
 
+static bool anyHoles(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.alpha_cutoff > 0; });
+}
+
 UseConditions useConditions(const ShadeSettings& settings) {
   return {settings.material_models ? std::nullopt : std::optional(settings.model), settings.shadows};
+}
+
+/// Whether sampling so many lights is estimated to be faster than to sum each, with beams for its shadow.
+static bool samplesAreFaster(const Scene& scene, const View& view, std::size_t lights,
+                             const ShadeSettings& settings) {
+  if (lights == 0) return false;
+  // Summing a light at a point without its shadow.
+  constexpr double kSum = 1.2e-6;
+  const double points = double(view.size.x) * view.size.y, triangles = double(countTriangles(scene));
+  const double one_by_one =
+      double(lights) *
+      (kSum * points + beamMilliseconds({.points = points, .triangles = triangles}, anyHoles(scene)));
+  return sampledMilliseconds({lights, points, triangles}, settings) < one_by_one;
 }
 
 StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
@@ -74,7 +94,7 @@ StandIns standIns(const Scene& scene, const View& view, SurfaceTraits surfaces,
   StandIns stand_ins{clustered > 0, sampled > 0};
   if (!settings.always_clusters) {
     stand_ins.clustered = clustersAreFaster({clustered, settings.light_error, surfaces.specular}, view);
-    stand_ins.sampled = samplesAreFaster(sampled, settings);
+    stand_ins.sampled = samplesAreFaster(scene, view, sampled, settings);
   }
   // Clusters know nothing of what stands behind a surface that a bent normal faces.
   stand_ins.clustered &= !surfaces.normal_maps;
@@ -127,11 +147,6 @@ void addShadow(const Light& light, ShadowWay way, const ShadeSettings& settings,
   const double size = light.kind == LightKind::kDirectional ? light.half_angle : light.radius;
   if (settings.shadows == ShadowMethod::kSoftExact && size > 0) features.set(Feature::kSoftExact);
   features.set(Feature::kOutputShadow, settings.shadow_layer);
-}
-
-bool anyHoles(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& material) { return material.alpha_cutoff > 0; });
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ struct SampleSettings {
   float4 to_pixel{};  ///< pixelsOf(): random numbers are of a pixel's place in the whole picture
 };
 
-/// The half width, in standard deviations, of the interval that holds a normally distributed value with this
-/// probability, in (0, 1).
+/// The half width, in estimated standard deviations, of the interval that holds a value with this
+/// probability, in (0, 1): of Student's distribution, as the deviation is estimated from samples, too.
 double deviationsOf(double confidence);
 
 /// SampleSettings::to_pixel of a picture.
@@ -55,11 +55,18 @@ struct SampledLightCounts {
 SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines,
                                 const SampledLightArguments& arguments);
 
-/// Whether sampling so many lights is estimated to be faster than summing each, exact shadow included. It is
-/// computed, not timed, so no picture depends on the machine.
-bool samplesAreFaster(std::size_t lights, const ShadeSettings& settings);
+/// Lights that could be sampled, in a picture.
+struct SampleableLights {
+  std::size_t count;
+  double points;     ///< shaded points of the picture
+  double triangles;  ///< of the scene
+};
 
-/// The estimated rays that sampling traces for a pixel.
+/// The estimated rays that sampling traces for a point.
 double sampledRays(std::size_t lights, const ShadeSettings& settings);
+
+/// The estimated milliseconds of sampling, on two cores of an AMD EPYC of 2024. It is computed, not timed, so
+/// no picture depends on the machine.
+double sampledMilliseconds(const SampleableLights& lights, const ShadeSettings& settings);
 
 }  // namespace luciole

@@ -87,14 +87,17 @@ std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double 
 // shares of each sum by least squares of relative errors, then its scale so that the geometric mean of the
 // errors is 1. The powers were the best of a grid. Half of all costs are within a factor of 1.3,
 // and nine in ten within 2.6.
+double beamMilliseconds(const ShadowWork& work, bool holes) {
+  const double through_holes =
+      holes ? 2.3e-7 * work.points + 4e-7 * std::sqrt(work.points * work.triangles) : 0;
+  return 1.5e-6 * work.points + 1.1e-5 * std::pow(work.points, 0.4) * std::pow(work.triangles, 0.7) +
+         through_holes;
+}
+
 ShadowCosts shadowCosts(double triangles, bool holes, std::span<const ShadowWork> work) {
   ShadowCosts costs{.tree = 1.9e-4 * triangles, .plan = 2.9e-5 * triangles};
   for (const ShadowWork& each : work) {
-    const double through_holes =
-        holes ? 2.3e-7 * each.points + 4e-7 * std::sqrt(each.points * each.triangles) : 0;
-    costs.beams.push_back(1.5e-6 * each.points +
-                          1.1e-5 * std::pow(each.points, 0.4) * std::pow(each.triangles, 0.7) +
-                          through_holes);
+    costs.beams.push_back(beamMilliseconds(each, holes));
     costs.maps.push_back(3.5e-6 * each.points + 6.9e-5 * each.triangles + 1.9e-7 * each.texels +
                          1.6e-6 * std::pow(each.points * each.triangles, 0.6));
   }

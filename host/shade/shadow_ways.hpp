@@ -35,6 +35,9 @@ double shadedPoints(const Scene& scene, glm::ivec2 size, int samples, bool share
 std::vector<ShadowWork> shadowWork(const Scene& scene, const View& view, double points_a_pixel,
                                    const ShadowLimits& limits);
 
+/// Estimated milliseconds of a light's beams: ShadowCosts::beams.
+double beamMilliseconds(const ShadowWork& work, bool holes);
+
 /// triangles: of the scene. holes: some materials have holes, which take rays.
 ShadowCosts shadowCosts(double triangles, bool holes, std::span<const ShadowWork> work);
 

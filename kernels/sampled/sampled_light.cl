@@ -41,6 +41,9 @@
 // The halves of a stratum differ in what they give on average, so that their difference varies more than
 // their sum: by this.
 #define HALVES_DIFFER 0.8f
+// What is added to that for a group of one pixel, whose variance few pairs tell; it falls as the number of
+// pixels to the power −3/4.
+#define FEW_PIXELS 0.3f
 // The next round's rays are at least and at most so many times this one's.
 #define LEAST_GROWTH 1.15f
 #define MOST_GROWTH 2.5f
@@ -378,16 +381,17 @@ INLINE floatL seen_share(const BeforeLight* before, uint c, uint j) {
 INLINE float judge(const SampleFrame* frame, const SampledGroup* group, const BeforeLight* before,
                    uint strata, GroupLight* sums) {
   float worst = 0.0f, own = OWN_PAIRS * (float)strata, count = (float)group->count;
+  float root = square_root(count), differ = HALVES_DIFFER + quotient(FEW_PIXELS, root * square_root(root));
   for (uint c = 0; c < 3; ++c) {
     float shares[kSampledPixels] ALIGNED;
     for (uint j = 0; j < kSampledPixels; j += LANES)
       *(floatL*)(shares + j) = *(const floatL*)(sums->variance[c] + j);
-    float of_group = HALVES_DIFFER * quotient(sum_of_pixels(shares), count);
+    float of_group = differ * quotient(sum_of_pixels(shares), count);
     clear_pixels(shares);
     for (uint j = 0; j < group->count; j += LANES) {
       floatL variance = *(const floatL*)(sums->variance[c] + j), seen = seen_share(before, c, j);
-      variance = quotient_lanes(GROUP_PAIRS * of_group + own * HALVES_DIFFER * variance,
-                                (floatL)(GROUP_PAIRS + own));
+      variance =
+          quotient_lanes(GROUP_PAIRS * of_group + own * differ * variance, (floatL)(GROUP_PAIRS + own));
       *(floatL*)(sums->variance[c] + j) = variance;
       floatL light = seen * (*(const floatL*)(before->light[c] + j) + *(const floatL*)(sums->light[c] + j));
       floatL allowed = frame->light_error * max_lanes(light, (floatL)(frame->least_value)),

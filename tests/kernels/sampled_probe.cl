@@ -63,8 +63,8 @@ __kernel void probe_picks(__global const float* in, __global float* out, uint st
 }
 
 // in: a group's bounds. As the first work-item finds them after halves[0] halvings, out holds: room for
-// kMostStrata strata, for the heap, for the order of those that are new, and for free values; then the numbers
-// of strata, of the heap and of the order, and the cost.
+// kMostStrata strata, for the heap, for the order of those that are new, and for free values; then the
+// numbers of strata, of the heap and of the order, and the cost.
 __kernel void probe_cut(__global const float* in, __global float* out, uint stride,
                         __global const float* rows, __global const float* light_rows,
                         __global const uint* size, __global const uint* halves) {
@@ -72,8 +72,17 @@ __kernel void probe_cut(__global const float* in, __global float* out, uint stri
   LightTrees trees = trees_of(rows, light_rows, size[0], size[1]);
   GroupBounds bounds = bounds_of(in, stride, 0);
   __global uint* places = (__global uint*)(out + kMostStrata * (sizeof(Stratum) / sizeof(float)));
-  Cut cut = {(__global Stratum*)out,   places, places + kMostStrata, places + 2 * kMostStrata,
-             (__global float*)0, (__global ulong*)0, 0, 0, 0, 0, 0};
+  Cut cut = {(__global Stratum*)out,
+             places,
+             places + kMostStrata,
+             places + 2 * kMostStrata,
+             (__global float*)0,
+             (__global ulong*)0,
+             0,
+             0,
+             0,
+             0,
+             0};
   start_cut(&trees.diffuse, &cut);
   for (uint i = 0; i < halves[0] && halve_stratum(&trees, &bounds, &cut); ++i) {
   }
@@ -85,8 +94,8 @@ __kernel void probe_cut(__global const float* in, __global float* out, uint stri
   counts[3] = cut.cost;
 }
 
-// in: the weights of kClusterSlots slots, how many of them there are, the picks, and ξ. out: the first pick of
-// each slot, and of the one after the last; the sum.
+// in: the weights of kClusterSlots slots, how many of them there are, the picks, and ξ. out: the first pick
+// of each slot, and of the one after the last; the sum.
 __kernel void probe_share_out(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   for (uint i = first; i < first + LANES; ++i) {
@@ -110,8 +119,8 @@ __kernel void probe_sum_of_pixels(__global const float* in, __global float* out,
   }
 }
 
-// in: four numbers of 16 bits. out: the hash of them, halves of 16 bits of each number, the low one first; and
-// random_unit() of 1 2 3 4 and the first two.
+// in: four numbers of 16 bits. out: the hash of them, halves of 16 bits of each number, the low one first;
+// and random_unit() of 1 2 3 4 and the first two.
 __kernel void probe_random(__global const float* in, __global float* out, uint stride) {
   uint first = get_global_id(0) * LANES;
   for (uint i = first; i < first + LANES; ++i) {

@@ -178,6 +178,129 @@ TEST(LightLayers, WithAlphaLeaveTheBackgroundOut) {
   }
 }
 
+/// A scene whose lights are sampled, stood for by clusters and summed by themselves, as are those of some of
+/// its groups alone; with what no light gives.
+constexpr const char* kBoundedScene =
+    R"({"camera": {"eye": [3, 2, 5], "target": [0, 0.5, 0], "fov_y": 60}, "background": [0, 0, 0.25], "ambient": 0.1,
+  "fog": {"mode": "exp2", "density": [0.05, 0.02, 0.01], "color": [0.2, 0.3, 0.4]},
+  "materials": {"m": {"diffuse": [0.6, 0.5, 0.4], "specular": 0.5, "shininess": 32},
+                "e": {"diffuse": 0.5, "emission": [0.2, 0.1, 0]}},
+  "objects": [{"primitive": "plane", "scale": 4, "material": "m"}, {"primitive": "sphere", "translate": [0, 1, 0], "material": "m"},
+              {"primitive": "torus", "translate": [1, 0.5, 2], "rotate": [60, 0, 20], "material": "e"}],
+  "lights": [{"type": "directional", "direction": [-1, -2, -1], "intensity": 0.3, "shadow": true},
+             {"type": "point", "position": [1, 2, 2], "attenuation": [0, 0, 1], "shadow": true, "color": [1, 0.5, 0.2], "group": "few"},
+             {"type": "point", "position": [-1, 3, 2], "attenuation": [0, 0, 1], "shadow": true, "diffuse": 0.4, "specular": 2, "group": "few"},
+             {"type": "point", "position": [-2, 2, 2], "attenuation": [0, 0, 1], "diffuse": [0.4, 0.2, 1], "specular": 0.1, "group": "few"}],
+  "light_fields": [{"count": 300, "seed": 3, "min": [-4, 0.2, -4], "max": [4, 3, 4], "no_range": true, "shadow": true, "intensity": 0.5, "group": "cast"},
+                   {"count": 200, "seed": 4, "min": [-4, 0.2, -4], "max": [4, 3, 4], "no_range": true, "intensity": 0.3, "group": "open"}]})";
+
+RenderSettings boundedSettings(const Scene& scene) {
+  RenderSettings settings = settingsFor(scene, {100, 80});
+  settings.shade.shadows = ShadowMethod::kExact;
+  settings.shade.light_error = 1.0f / 32;
+  settings.shade.always_clusters = true;
+  settings.light_groups = true;
+  settings.aovs = kParts;
+  settings.aovs.push_back(Aov::kLightError);
+  return settings;
+}
+
+std::size_t channelIndex(const Image& image, const std::string& name) {
+  const auto found = std::find(image.channels.begin(), image.channels.end(), name);
+  EXPECT_NE(found, image.channels.end()) << name;
+  return std::size_t(found - image.channels.begin());
+}
+
+/// The share of the pixels' channels in which a layer is farther from the exact one than its bounds say. The
+/// exact one's own rounding is boundOfSum().
+double shareBeyondBounds(const Image& image, const Image& exact, const std::string& layer, double rounding) {
+  std::size_t beyond = 0, count = 0;
+  for (const char* component : {"R", "G", "B"}) {
+    const std::size_t place = channelIndex(image, layer + component),
+                      bounds = channelIndex(image, layer + std::string(kLayerBounds) + component),
+                      truth = channelIndex(exact, layer + component);
+    for (std::size_t i = 0; i < image.pixels.size() / image.channels.size(); ++i) {
+      const float* const pixel = image.pixels.data() + i * image.channels.size();
+      const double value = exact.pixels[i * exact.channels.size() + truth];
+      beyond += std::abs(pixel[place] - value) > pixel[bounds] + rounding * value;
+      ++count;
+    }
+  }
+  return double(beyond) / double(count);
+}
+
+TEST(LightLayers, OfLightsWithAnErrorAreWithinBoundsOfTheirOwnAndAddUpWithinTheirSum) {
+  const Scene scene = sceneFromJson(kBoundedScene);
+  for (const auto& [samples, shading] :
+       {std::pair{1, SampleShading::kShared}, std::pair{4, SampleShading::kShared},
+        std::pair{3, SampleShading::kAll}}) {
+    RenderSettings settings = boundedSettings(scene);
+    settings.samples = samples;
+    settings.sample_shading = shading;
+    settings.exposure = 0.5f;
+    const Image image = picture(scene, settings);
+    RenderSettings without = settings;
+    without.shade.light_error = 0;
+    const Image exact = picture(scene, without);
+    // Without an error there are no bounds of layers.
+    EXPECT_EQ(image.channels.size(), exact.channels.size() + 3 * (5 + 5));
+    const double rounding = boundOfSum(scene, samples);
+    // Which pixels are shaded at all of their samples depends on the picture, so on its errors.
+    const double most_other_points = samples == 4 ? 0.002 : 0;
+    for (const char* sampled :
+         {"light_groups.few.", "light_groups.cast.", "diffuse_light.", "specular_light."}) {
+      const double share = shareBeyondBounds(image, exact, sampled, rounding);
+      std::printf("%d samples, %s: %.4f beyond their bounds\n", samples, sampled, share);
+      EXPECT_LT(share, 0.02) << sampled;
+    }
+    for (const char* proven : {"light_groups.default.", "light_groups.open.", "light_groups.rest.",
+                               "ambient_light.", "emission_light.", "fog_light."})
+      EXPECT_LE(shareBeyondBounds(image, exact, proven, rounding), most_other_points) << proven;
+    for (const std::vector<std::string>& layers :
+         {std::vector<std::string>{"light_groups.default.", "light_groups.few.", "light_groups.cast.",
+                                   "light_groups.open.", "light_groups.rest."},
+          kPartLayers}) {
+      std::size_t beyond = 0;
+      for (const char* component : {"R", "G", "B"})
+        for (std::size_t i = 0; i < image.pixels.size(); i += image.channels.size()) {
+          const auto at = [&](const std::string& name) {
+            return double(image.pixels[i + channelIndex(image, name + component)]);
+          };
+          double sum = 0, bounds = at("light_error.");
+          for (const std::string& layer : layers) {
+            sum += at(layer);
+            bounds += at(layer + std::string(kLayerBounds));
+          }
+          beyond += std::abs(sum - at("")) > bounds;
+        }
+      EXPECT_LT(double(beyond), 0.001 * 3 * 100 * 80) << layers.front();
+    }
+    settings.light_groups = false;
+    settings.aovs = {Aov::kLightError};
+    const Image alone = picture(scene, settings);
+    for (std::size_t i = 0; i < alone.pixels.size(); ++i)
+      ASSERT_EQ(alone.pixels[i], image.pixels[i / 6 * image.channels.size() + i % 6])
+          << "layers change the picture";
+  }
+}
+
+TEST(LightLayers, OfLightsWithAnErrorAreTheSameInBandsOfAGBufferAndInMemoryOfTheDevice) {
+  const Scene scene = sceneFromJson(kBoundedScene);
+  RenderSettings settings = boundedSettings(scene);
+  settings.size = {100, 150};
+  settings.band_height = 1 << 20;
+  const Image whole = picture(scene, settings);
+  settings.band_height = 64;
+  EXPECT_EQ(picture(scene, settings).pixels, whole.pixels);
+  OpenedDevice device;
+  openDevice("", device);
+  device.shares_host_memory = false;
+  EXPECT_EQ(picture(scene, settings, device).pixels, whole.pixels);
+  Stats stats;
+  const GBuffer gbuffer = rasterizeScene(nullptr, scene, settings, stats);
+  EXPECT_EQ(shadeGBuffer(testDevice(), scene, gbuffer, settings, stats).pixels, whole.pixels);
+}
+
 TEST(LightLayers, AreOneAGroupThatHasLightsAndTooManyAreRefused) {
   Scene scene = sceneFromJson(kGroupsScene);
   RenderSettings settings;

@@ -44,11 +44,13 @@ void expectCullingChangesNoBitOfAnyPart(const Scene& scene, glm::ivec2 size) {
   }
 }
 
+/// All but colonnade_night: each of its 200,000 lights has a shadow in each pixel.
 std::vector<std::string> ownScenes() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(LUCIOLE_SOURCE_DIR "/scenes"))
     if (entry.path().extension() == ".json" && !entry.path().stem().has_extension())  // not scene.schema.json
       names.push_back(entry.path().stem().string());
+  std::erase(names, "colonnade_night");
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -134,8 +134,8 @@ struct RenderSettings {
   /// show the first sample, or the point that is shaded for it.
   std::vector<Aov> aovs = {};
   /// Adds three channels for each group of lights that has any, and three for the rest: ambient light,
-  /// emission, fog and background. Their sum is the picture. With these or with parts of the light,
-  /// ShadeSettings::light_error is ignored, and Shading::kGouraud is refused.
+  /// emission, fog and background. Their sum is the picture. With these or with parts of the light
+  /// Shading::kGouraud is refused, and Aov::kLightError adds a layer of bounds to each of them.
   bool light_groups = false;
   float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the

@@ -15,6 +15,7 @@
 #include "tools/bench/raster_speed.hpp"
 #include "tools/bench/shading_rate.hpp"
 #include "tools/bench/shadow_errors.hpp"
+#include "tools/bench/shadowed_lights.hpp"
 #include "tools/bench/start_time.hpp"
 
 namespace luciole {
@@ -33,6 +34,7 @@ constexpr SpeedMeasurement kSpeed[] = {
     {kCullAndShade, measureGivenGBuffer},
     {"many lights", measureManyLights},
     {kLightErrors, measureLightErrors, true},
+    {kShadowedLights, measureShadowedLights, true},
     {"anti-aliasing", measureAntiAliasing},
     {"shadow errors", measureShadowErrors},
     {"rasterizer", measureRasterizer},

@@ -6,18 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "lighting/stats.hpp"
-#include "luciole/error.hpp"
-#include "raster/visible_points.hpp"
 #include "reference/reference.hpp"
 #include "render/render.hpp"
-#include "scene/bounds.hpp"
-#include "scene/lights/light_field.hpp"
-#include "scene/lights/light_range.hpp"
 #include "shade/features.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/lit_stage.hpp"
 #include "tools/bench/speed_scenes.hpp"
-#include "tools/figures/checked_pixels.hpp"
 #include "tools/figures/kept_bounds.hpp"
 
 namespace luciole {
@@ -33,7 +27,6 @@ constexpr double kFewestRounds = 3;
 /// Pairs of a pixel and a light that are summed one by one, seconds of work; the time of more is estimated.
 constexpr double kMostExactPairs = 1e10;
 
-const NoValue kTooLong{"so many lights one by one would take too long"};
 constexpr std::size_t kBoundColumns = 7;  ///< the last of the table
 
 struct Placement {
@@ -43,41 +36,10 @@ struct Placement {
 constexpr Placement kPlacements[] = {
     {"box", FieldShape::kBox}, {"clusters", FieldShape::kClusters}, {"surfaces", FieldShape::kSurface}};
 
-/// What is lit, and where lights are put.
-struct LitStage {
-  Scene scene;
-  GBuffer gbuffer;
-  std::vector<glm::dvec3> seen;  ///< points that the camera sees
-  std::vector<glm::ivec2> judged;
-};
-
 Scene makeMatteHall() {
   Scene hall = makeHall();
   for (Material& material : hall.materials) material.specular = glm::vec3(0.0f);
   return hall;
-}
-
-LitStage setStage(Scene scene, glm::ivec2 size) {
-  LitStage stage{std::move(scene), {}, {}, chooseCheckedPixels(size, kJudgedPixels, 0).pixels};
-  RenderSettings settings;
-  settings.size = size;
-  settings.camera = stage.scene.cameras.front();
-  Stats ignored;
-  stage.gbuffer = rasterizeScene(nullptr, stage.scene, settings, ignored);
-  stage.seen = visiblePoints(stage.scene, settings.camera, size, kMeasuredPlaces, 0);
-  if (stage.seen.empty())
-    throw InputError(
-        fmt::format("{}: its camera sees nothing that lights could be put around", stage.scene.name));
-  return stage;
-}
-
-void placeLights(LitStage& stage, FieldShape shape, std::uint64_t lights) {
-  const glm::dvec3 eye(stage.gbuffer.camera.camera_to_world[3]);
-  LightField field = fieldInBox(shape, seenBox(stage.seen, eye));
-  field.count = lights;
-  stage.scene.lights.clear();
-  expandLightField(field, stage.scene);
-  spreadEverywhere(stage.scene.lights, stage.seen);
 }
 
 RenderSettings settingsFor(float light_error) {
@@ -86,16 +48,6 @@ RenderSettings settingsFor(float light_error) {
   settings.shade.light_error = light_error;
   settings.shade.always_clusters = true;
   return settings;
-}
-
-/// Milliseconds of all that lighting the G-buffer takes, the tree of lights included.
-double lightingTime(OpenedDevice& device, const LitStage& stage, float light_error) {
-  Stats stats;
-  shadeGBuffer(device, stage.scene, stage.gbuffer, settingsFor(light_error), stats);
-  double sum = 0;
-  for (const auto& timed : stats.stages)
-    if (!isStart(timed.first)) sum += ownShare(stats, timed);
-  return sum;
 }
 
 /// Whether lighting is too much work to be measured, because it sums too many lights one by one.
@@ -169,11 +121,6 @@ std::vector<TimedLighting> addBounds(const SpeedInput& input, const LitStage& st
   return timed;
 }
 
-/// The time of all lights one by one, by the most of a placement's that were measured.
-struct ExactTime {
-  double lights = 0, milliseconds = 0;
-};
-
 /// Times the rows of a stage's lights. exact: of fewer lights in the same places; becomes theirs if it is
 /// measured.
 void addTimes(const SpeedInput& input, const LitStage& stage, std::vector<TimedLighting> timed,
@@ -183,11 +130,13 @@ void addTimes(const SpeedInput& input, const LitStage& stage, std::vector<TimedL
   if (is_exact_timed) timed.push_back({});
   if (timed.empty()) return;
   double once = 0;  // milliseconds of a round, which isn't counted: it makes memory and caches warm
-  for (const TimedLighting& one : timed) once += lightingTime(input.device, stage, one.light_error);
+  for (const TimedLighting& one : timed)
+    once += lightingTime(input.device, stage, settingsFor(one.light_error));
   const int runs = std::min(input.repeats, int(std::max(kFewestRounds, kMostMilliseconds / once)));
-  const auto rounds = runInRounds(
-      timed.size(), runs, table.name + ": times", input.on_progress,
-      [&](std::size_t i) { return std::vector{lightingTime(input.device, stage, timed[i].light_error)}; });
+  const auto rounds =
+      runInRounds(timed.size(), runs, table.name + ": times", input.on_progress, [&](std::size_t i) {
+        return std::vector{lightingTime(input.device, stage, settingsFor(timed[i].light_error))};
+      });
   if (is_exact_timed) exact = {lights, rounds.back().summary(0).median};
   for (std::size_t i = 0; i < timed.size(); ++i) {
     if (!timed[i].row) continue;
@@ -209,7 +158,8 @@ void addTimes(const SpeedInput& input, const LitStage& stage, std::vector<TimedL
 }  // namespace
 
 SpeedTable measureLightErrors(const SpeedInput& input) {
-  LitStage stage = setStage(input.scene ? *input.scene : makeMatteHall(), input.size.value_or(kBoundedSize));
+  LitStage stage = setStage(input.scene ? *input.scene : makeMatteHall(), input.size.value_or(kBoundedSize),
+                            kJudgedPixels);
   const glm::ivec2 size = stage.gbuffer.picture_size;
   SpeedTable table{
       .name = kLightErrors,

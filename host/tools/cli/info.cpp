@@ -19,6 +19,7 @@
 #include "luciole/pose.hpp"
 #include "render/plan.hpp"
 #include "scene/json/mesh_file.hpp"
+#include "shade/sampled_light.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/frames.hpp"
 #include "tools/cli/picture_options.hpp"
@@ -204,8 +205,9 @@ void addLights(const Scene& scene, const LightCounts& lights, Report& report) {
 }
 
 /// For how many of the lights clusters may stand and how many may be sampled (--light-error), and why not the
-/// others.
-void addLightUses(const Scene& scene, const ShadeSettings& settings, Report& report) {
+/// others; and what this picture would do with them.
+void addLightUses(const Scene& scene, const PicturePlan& plan, Report& report) {
+  const ShadeSettings& settings = plan.shade;
   const LightUseCounts counts = countUses(scene.lights, useConditions(settings));
   const std::size_t clusterable = counts[std::size_t(LightUse::kClustered)],
                     sampleable = counts[std::size_t(LightUse::kSampled)];
@@ -223,6 +225,22 @@ void addLightUses(const Scene& scene, const ShadeSettings& settings, Report& rep
   addLine(report, "",
           fmt::format("clusters may stand for {} (--light-error), {} may be sampled{}{}", clusterable,
                       sampleable, reasons.empty() ? "" : "; not: ", fmt::join(reasons, ", ")));
+  if (!(settings.light_error > 0)) return;
+  const std::size_t clustered = plan.features.has(Feature::kClusteredLights) ? clusterable : 0,
+                    sampled = plan.features.has(Feature::kSampledLights) ? sampleable : 0;
+  const double rays = sampled > 0 ? sampledRays(sampled, settings) : 0;
+  json["clustered"] = clustered;
+  json["sampled"] = sampled;
+  json["rays_per_point"] = rays;
+  json["confidence"] = settings.confidence;
+  std::vector<std::string> uses;
+  if (clustered > 0) uses.push_back(fmt::format("clusters stand for {}", clustered));
+  if (sampled > 0)
+    uses.push_back(fmt::format("{} are sampled by about {:.0f} rays a point at a confidence of {}", sampled,
+                               rays, settings.confidence));
+  if (const std::size_t few = clusterable + sampleable - clustered - sampled; few > 0)
+    uses.push_back(fmt::format("{} are too few for it", few));
+  if (!uses.empty()) addLine(report, "", fmt::format("{}", fmt::join(uses, ", ")));
 }
 
 /// Two digits of a duration: "450 ms", "1.5 s", "12 min".
@@ -330,7 +348,7 @@ Report sceneReport(InfoOptions options) {
   addMaterials(scene, info, report);
   addCameras(scene, report);
   addLights(scene, info.lights, report);
-  addLightUses(scene, plan.shade, report);
+  addLightUses(scene, plan, report);
   report.json["variants"] = scene.variants;
   if (!scene.variants.empty())
     addLine(report, "variants", printable(fmt::format("{}", fmt::join(scene.variants, ", "))));

@@ -108,17 +108,11 @@ void checkOutput(const PictureOptions& options) {
   RenderSettings layers;
   layers.aovs = aovs;
   layers.light_groups = options.light_groups;
-  if (wantsLightLayers(layers))
-    for (const auto& [is_given, what] :
-         {std::pair{options.light_error > 0, "--light-error"},
-          std::pair{options.light_error_relative > 0, "--light-error-relative"},
-          std::pair{options.shading == "gouraud", "--shading gouraud"}})
-      if (is_given)
-        throw InputError(
-            fmt::format("{}: layers of light add up to the picture only where each light is summed by itself "
-                        "in each pixel; "
-                        "leave out {}",
-                        what, options.light_groups ? "--light-groups" : "these of --aov"));
+  if (wantsLightLayers(layers) && options.shading == "gouraud")
+    throw InputError(
+        fmt::format("--shading gouraud: lights corners, and layers of light are lit pixel by pixel; "
+                    "leave it out, or {}",
+                    options.light_groups ? "--light-groups" : "these of --aov"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkOtherOutputs(options);

@@ -37,14 +37,15 @@ const std::vector<ScaleAxis> kAxes{{"culling", {"none", "tiles"}},
                                    {"pcf-width", {"2", "4", "6"}},
                                    {"shadow-memory", {"64", "512"}},
                                    {"shadow-size", {"512", "1024", "2048", "4096"}},
-                                   {kLightErrorAxis, {"0", "1/16", "1/64", "1/256", "1/1024"}}};
+                                   {kLightErrorAxis, {"0", "1/16", "1/64", "1/256", "1/1024"}},
+                                   {kConfidenceAxis, {"0.9", "0.95", "0.99", "0.999"}}};
 
 /// Axes that say how far lights reach. A variant takes a value of only one of them.
 constexpr const char* kReaches[] = {"density", "range", "cutoff", "no-range"};
 
 /// The most pairs of a pixel and a light, seconds of work, of a picture without light error beside others
-/// with one.
-constexpr double kMostExactPairs = 1e10;
+/// with one: without shadows, and with them.
+constexpr double kMostExactPairs = 1e10, kMostShadowedPairs = 1e9;
 
 constexpr const char* kViewOfGBuffer =
     "scale: --gbuffer: a G-buffer has its size, camera, shading and samples already";
@@ -184,6 +185,7 @@ bool isLeftOut(const std::vector<ScaleAxis>& axes, const std::vector<std::string
   const bool varies_shadows =
       std::any_of(axes.begin(), axes.end(), [](const ScaleAxis& axis) { return axis.name == "shadows"; });
   return (has("culling", "none") && !isFirst("tile")) ||
+         ((has("shadows", "off") || has(kLightErrorAxis, "0")) && !isFirst(kConfidenceAxis)) ||
          (varies_shadows && !has("shadows", "pcf") && !isFirst("pcf-width")) ||
          (has("shadows", "off") && (!isFirst("shadow-memory") || !isFirst("shadow-size")));
 }
@@ -195,7 +197,9 @@ bool isTooExact(const RenderSettings& settings, std::uint64_t lights, const std:
     return axis.name == kLightErrorAxis && axis.values.size() > 1;
   });
   const double samples = double(settings.size.x) * settings.size.y * settings.samples;
-  return has_rivals && settings.shade.light_error == 0 && samples * double(lights) > kMostExactPairs;
+  return has_rivals && settings.shade.light_error == 0 &&
+         samples * double(lights) >
+             (settings.shade.shadows == ShadowMethod::kOff ? kMostExactPairs : kMostShadowedPairs);
 }
 
 /// Sets an option as if it had been typed, and runs its checks.
@@ -340,7 +344,9 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
         : name == "no-range"                     ? false  // told below
         : name == "density"       ? choosesRanges(command, options) && !removesRanges(command, options, axes)
         : name == kLightErrorAxis ? options.picture.light_error > 0
-        : name == "pcf-width"     ? options.picture.shadows == "pcf"
+        : name == kConfidenceAxis
+            ? options.picture.shadows != "off" && (options.picture.light_error > 0 || variesLightError(axes))
+        : name == "pcf-width"                              ? options.picture.shadows == "pcf"
         : name == "shadow-memory" || name == "shadow-size" ? options.picture.shadows != "off"
                                                            : true;
     if (!is_varied && is_meant) shared.emplace_back(name, command.get_option("--" + name)->as<std::string>());
@@ -374,12 +380,19 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
   const bool is_view_typed = isTyped("--size") || isTyped("--camera") || isTyped("--shading") ||
                              isTyped("--samples") || isTyped("--samples-shading");
   int reaches = options.range.has_value() + options.cutoff.has_value() + options.no_range;
-  for (const ScaleAxis& axis : parseAxes(options.vary)) {
+  const std::vector<ScaleAxis> axes = parseAxes(options.vary);
+  const auto varies = [&](const char* name) {
+    return std::any_of(axes.begin(), axes.end(), [&](const ScaleAxis& axis) { return axis.name == name; });
+  };
+  for (const ScaleAxis& axis : axes) {
     if (command.get_option("--" + axis.name)->count() > 0)
       throw InputError(fmt::format("scale: --{} is given and varied; expected one", axis.name));
     if (options.own_lights && (isReach(axis) || axis.name == "intensity" || axis.name == "field"))
       throw InputError(fmt::format("scale: --vary {}: --own-lights leaves lights as they are", axis.name));
     if (!options.gbuffer.empty() && (is_view_typed || isOfView(axis.name))) throw InputError(kViewOfGBuffer);
+    if (axis.name == kConfidenceAxis && options.picture.shadows == "off" && !varies("shadows"))
+      throw InputError(
+          "scale: --vary confidence: is of lights that cast shadows; expected --shadows exact with it");
     reaches += isReach(axis) && command.get_option("--density")->count() > 0;
     if (isReach(axis) && reaches > 0)
       throw InputError(fmt::format(

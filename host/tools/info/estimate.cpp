@@ -15,7 +15,7 @@ double estimatedStart(const PictureWork& work) {
 }
 
 double estimatedMilliseconds(const PictureWork& work) {
-  const double tree = work.beam_pairs > 0 ? 2e-4 * work.triangles : 0;
+  const double tree = work.beam_pairs + work.sampling > 0 ? 2e-4 * work.triangles : 0;
   const double raster = 14e-6 * work.pixels + 25e-6 * work.textured + 2e-4 * work.bands * work.triangles;
   const double cull = 3e-5 * work.list_entries +
                       work.shadings * work.pixels * (2e-6 + 4e-4 / double(kTilePixels) * work.tree_levels);
@@ -25,7 +25,7 @@ double estimatedMilliseconds(const PictureWork& work) {
   // A walk for a third of the pairs, and its samples.
   const double of_beam_pair = 12e-6 + (work.soft_samples > 0 ? 2e-4 + 2e-6 * work.soft_samples : 0);
   const double shade = work.shadings * 3e-6 * work.pixels + 6e-7 * work.pairs +
-                       of_shadow_pair * work.shadow_pairs + of_beam_pair * work.beam_pairs;
+                       of_shadow_pair * work.shadow_pairs + of_beam_pair * work.beam_pairs + work.sampling;
   const double shadow_maps = 3e-6 * work.shadow_texels + 0.1 * work.shadow_faces +
                              (work.shadow_texels > 0 ? 1e-4 * work.bands * work.triangles : 0);
   const double write = (17e-6 + 2e-6 * (work.passes - 1)) * work.pixels;
@@ -38,7 +38,7 @@ double estimatedMilliseconds(const PictureWork& work) {
 
 double estimatedBytes(const PictureWork& work) {
   const double loaded = 95e6 + work.scene_bytes + double(kBytesPerLight) * work.lights;
-  const double tree = work.beam_pairs > 0 ? 200 * work.triangles : 0;
+  const double tree = work.beam_pairs + work.sampling > 0 ? 200 * work.triangles : 0;
   // What is freed between passes is not all used again.
   const double raster = (100 + 120 * std::log2(work.passes)) * work.triangles;
   const double picture = raster + work.pixel_bytes +

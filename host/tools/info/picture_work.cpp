@@ -71,9 +71,6 @@ std::vector<SeenPoint> seenPoints(const Scene& scene, const RenderSettings& sett
   return points;
 }
 
-/// A ray takes as long as so many lights that are summed.
-constexpr double kRayWork = 100;
-
 /// How many lights there are on average for a point that is seen.
 struct MeanLights {
   double square = 0;                 ///< in the list of its square
@@ -81,7 +78,7 @@ struct MeanLights {
   double tile = 0;                   ///< in that of its tile
 };
 
-/// Clusters and samples count as the lights that would be as much work.
+/// Clusters count as the lights that would be as much work.
 MeanLights meanLights(const Scene& scene, const View& view, const std::vector<SeenPoint>& points,
                       const FeatureSet& features, const ShadeSettings& settings) {
   struct Counts {
@@ -119,10 +116,6 @@ MeanLights meanLights(const Scene& scene, const View& view, const std::vector<Se
     mean.square += clusteredWork({countUses(scene.lights, conditions)[std::size_t(LightUse::kClustered)],
                                   settings.light_error, features.has(Feature::kClusteredHighlights)},
                                  view);
-  if (features.has(Feature::kSampledLights))
-    mean.square +=
-        kRayWork *
-        sampledRays(countUses(scene.lights, conditions)[std::size_t(LightUse::kSampled)], settings);
   return mean;
 }
 
@@ -194,6 +187,11 @@ PictureWork pictureWork(const Scene& scene, const RenderSettings& settings, cons
                    .lights = double(scene.lights.size()),
                    .pairs = shaded * mean.square,
                    .scene_bytes = sceneBytes(scene)};
+  if (plan.features.has(Feature::kSampledLights)) {
+    const std::size_t sampled =
+        countUses(scene.lights, useConditions(shade))[std::size_t(LightUse::kSampled)];
+    work.sampling = sampledMilliseconds({sampled, shaded, work.triangles}, shade);
+  }
   if (plan.features.has(Feature::kLightLists)) {
     work.list_entries = shaded / double(kTilePixels) * mean.tile;
     work.tree_levels = std::log(double(scene.lights.size())) / std::log(double(kTreeArity));

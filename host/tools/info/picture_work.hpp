@@ -24,6 +24,7 @@ struct PictureWork {
   double pairs = 0;          ///< points that are shaded, times the lights that they are shaded with
   double shadow_pairs = 0;   ///< of these, with lights that have shadow maps
   double beam_pairs = 0;     ///< and with those whose shadows are exact
+  double sampling = 0;       ///< of lights that are sampled: milliseconds
   int soft_samples = 0;      ///< of a light of a size, if exact shadows have any
   double shadow_texels = 0;  ///< drawn
   double shadow_faces = 0;

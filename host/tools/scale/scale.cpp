@@ -173,8 +173,8 @@ std::vector<float> largestBounds(const Image& picture) {
   return largest;
 }
 
-/// Whether the picture's bounds hold for the truth: other lights err, too, and with several samples the truth
-/// has others.
+/// Whether the picture's bounds are of its distance from the truth: other lights err, too, and with several
+/// samples the truth has others.
 bool boundsTheTruth(const ScaleExperiment& experiment, const Stats& stats) {
   return stats.light_error.values > 0 && countOf(stats, "lights_exact") == 0 && experiment.truth_samples == 1;
 }
@@ -196,10 +196,12 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   const std::uint64_t pixels_lit = countOf(stats, "pixels_lit");
   const std::uint64_t pairs_of_clusters =
       countOf(stats, "pixel_clusters_evaluated") + countOf(stats, "pixel_clustered_lights_evaluated");
-  // All lights that clusters stand for reach all pixels.
-  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated") + pairs_of_clusters,
+  const std::uint64_t sampled = countOf(stats, "lights_sampled");
+  // All lights that clusters stand for or that are sampled reach all pixels.
+  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated") + pairs_of_clusters +
+                                      countOf(stats, "sampled_rays"),
                    .pairs_in_range = countOf(stats, "pixel_lights_in_range") +
-                                     countOf(stats, "lights_stood_for") * pixels_lit,
+                                     (countOf(stats, "lights_stood_for") + sampled) * pixels_lit,
                    .pixels_lit = pixels_lit,
                    .list_entries = countOf(stats, "list_entries"),
                    .pixels = difference.pixels,
@@ -222,6 +224,7 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
       write(listMap(picture.width, picture.height, layerOf(picture, "list_length")), "-lists.png");
   if (boundsTheTruth(bench.experiment, stats)) {
     check.bounds = measureBounds(picture, settings.exposure, bench.checked.pixels, truth.colors);
+    if (sampled > 0) check.bounds->confidence = settings.shade.confidence;
     check.bound_map = write(boundMap(picture.width, picture.height, largestBounds(picture)), "-bounds.png");
   }
   return check;

@@ -33,6 +33,8 @@ struct ScaleAxis {
 inline constexpr const char* kNotThis = "-";
 /// The axis of ShadeSettings::light_error.
 inline constexpr const char* kLightErrorAxis = "light-error";
+/// The axis of ShadeSettings::confidence.
+inline constexpr const char* kConfidenceAxis = "confidence";
 
 /// One way to make the picture, with one number of lights.
 struct ScalePoint {
@@ -80,14 +82,15 @@ struct ScaleExperiment {
 
 /// The results of a point that are measured once: the error of its picture, and counts.
 struct PointCheck {
-  std::uint64_t pairs_evaluated = 0;  ///< of a pixel and a light, or a cluster that stands for lights
+  /// Of a pixel and a light, or a cluster that stands for lights; and rays to sampled lights
+  std::uint64_t pairs_evaluated = 0;
   std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
   double reach =
       0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
   std::uint64_t pixels = 0;                    ///< compared with the reference
   double mean_abs = 0, max_abs = 0, rmse = 0;  ///< errors of these pixels, in linear units
   std::string picture, error_map, list_map;    ///< files in the experiment's folder
-  /// Where clusters stand for all lights of a picture of one sample a pixel, and a map of the bounds
+  /// Where no light of a picture of one sample a pixel is summed by itself, and a map of the bounds
   std::optional<KeptBounds> bounds{};
   std::string bound_map{};
 };

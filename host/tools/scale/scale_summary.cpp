@@ -118,10 +118,9 @@ ScaleSummary summarizeScale(const ScaleResults& results) {
     const std::string name = pointName(results.description, point);
     const auto found = results.records.find(name);
     const bool is_checked = found != results.records.end() && found->second.check;
-    if (is_checked && found->second.check->bounds && found->second.check->bounds->violations > 0)
-      summary.violations.push_back(fmt::format("{}: {} of {} values are wrong by more than their bounds",
-                                               found->first, found->second.check->bounds->violations,
-                                               found->second.check->bounds->values));
+    if (is_checked && found->second.check->bounds)
+      if (const std::string broken = brokenPromise(*found->second.check->bounds); !broken.empty())
+        summary.violations.push_back(found->first + ": " + broken);
     if (!is_checked || int(found->second.runs.size()) < results.description.repeats)
       summary.incomplete.push_back(name);
     if (is_checked && !found->second.runs.empty())

@@ -43,7 +43,8 @@ struct ScaleSummary {
   std::vector<PointSummary> points;  ///< in the order of the description
   std::vector<StageGrowth> growth;
   std::vector<std::string> incomplete;  ///< names of points that lack their check or one of their runs
-  /// Points whose picture breaks its bounds, a line each, for people: a fault of the program.
+  /// Points whose picture breaks what its bounds promise (see brokenPromise()), a line each, for people: a
+  /// fault of the program.
   std::vector<std::string> violations;
 };
 

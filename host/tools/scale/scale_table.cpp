@@ -29,6 +29,8 @@ std::string errorText(double error) {
   return std::isfinite(error) ? fmt::format("{:.1e}", error) : "not finite";
 }
 
+bool isSampled(const PointSummary& point) { return point.check.bounds && point.check.bounds->confidence < 1; }
+
 std::string pointTable(const ScaleSummary& summary, const std::vector<PointSummary>& points) {
   Cells head{"lights"};
   for (const std::string& name : axisNames(summary.description)) head.push_back(name);
@@ -38,6 +40,8 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
       points.begin(), points.end(), [](const PointSummary& point) { return point.check.bounds.has_value(); });
   if (are_bounded)
     for (const char* name : {"largest bound", "mean", "error / bound, largest", "mean"}) head.push_back(name);
+  const bool are_sampled = std::any_of(points.begin(), points.end(), isSampled);
+  if (are_sampled) head.push_back("pixels within, %");
   // Errors compare, and a front is meaningful, only among points with the same truth.
   const bool truths_differ = std::any_of(points.begin(), points.end(), [&](const PointSummary& point) {
     return point.truth != points.front().truth;
@@ -62,6 +66,7 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
       cells.push_back(bounds ? fmt::format("{:.2f}", bounds->max_used) : "–");
       cells.push_back(bounds ? fmt::format("{:.2f}", bounds->mean_used) : "–");
     }
+    if (are_sampled) cells.push_back(bounds ? fmt::format("{:.2f}", 100 * bounds->held) : "–");
     if (truths_differ) cells.push_back(point.truth);
     lines.push_back(cells);
   }
@@ -122,7 +127,13 @@ std::string scaleTable(const ScaleSummary& summary) {
                         summary.points.size() - points.size());
   if (std::any_of(points.begin(), points.end(),
                   [](const PointSummary& point) { return point.check.bounds.has_value(); }))
-    text += "Bounds are shares of the larger of 1 and the colour. –: clusters don't stand for all lights.\n";
+    text +=
+        "Bounds are shares of the larger of 1 and the colour. –: there are lights that are summed one by "
+        "one.\n";
+  if (std::any_of(points.begin(), points.end(), isSampled))
+    text +=
+        "Of lights that cast shadows a bound is half an interval, within which a pixel is with the stated "
+        "confidence.\n";
   return text + "\nGrowth: ms = a + b * lights^c. All stages, with a and b, are in growth.json.\n\n" +
          growthTable(summary);
 }

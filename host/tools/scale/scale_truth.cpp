@@ -6,9 +6,9 @@ namespace luciole {
 namespace {
 
 /// Axes that change how the picture is made but not what it approximates: light lists, samples, shadow maps,
-/// clusters of lights.
-constexpr const char* kWaysToMakeIt[] = {"culling",       "tile",        "samples",      "pcf-width",
-                                         "shadow-memory", "shadow-size", kLightErrorAxis};
+/// clusters and samples of lights.
+constexpr const char* kWaysToMakeIt[] = {"culling",       "tile",        "samples",       "pcf-width",
+                                         "shadow-memory", "shadow-size", kLightErrorAxis, kConfidenceAxis};
 
 bool isWayToMakeIt(const std::string& axis) {
   return std::find(std::begin(kWaysToMakeIt), std::end(kWaysToMakeIt), axis) != std::end(kWaysToMakeIt);

@@ -23,11 +23,12 @@ namespace {
 /// take time by the square of their number.
 constexpr std::size_t kReadBytes = std::size_t(512) << 20;
 
-/// The group whose red channel this is; empty for another channel.
+/// The group whose red channel this is; empty for another channel, such as that of a group's bounds.
 std::string groupOfRed(const std::string& channel) {
   if (!channel.starts_with(kLightGroups) || !channel.ends_with(".R")) return "";
-  const std::size_t length = channel.size() - kLightGroups.size();
-  return length > 2 ? channel.substr(kLightGroups.size(), length - 2) : "";
+  const std::string name = channel.substr(kLightGroups.size());
+  const std::size_t dot = name.find('.');
+  return dot != std::string::npos && dot + 2 == name.size() ? name.substr(0, dot) : "";
 }
 
 /// The part of the file that has the groups' layers; -1 where none has.

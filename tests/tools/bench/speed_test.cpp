@@ -17,6 +17,8 @@
 #include "tools/bench/picture_time.hpp"
 #include "tools/bench/raster_speed.hpp"
 #include "tools/bench/shading_rate.hpp"
+#include "tools/bench/shadow_scenes.hpp"
+#include "tools/bench/shadowed_lights.hpp"
 #include "tools/bench/start_time.hpp"
 
 namespace luciole::test {
@@ -159,6 +161,38 @@ TEST(LightErrors, WithNothingToLightThereIsNothingToMeasure) {
   scene.cameras.emplace_back();
   input.scene = &scene;
   EXPECT_THROW(measureLightErrors(input), InputError);
+}
+
+TEST(ShadowedLights, EachWayIsHeldAgainstEveryRay) {
+  SpeedInput input = tinyInput();
+  const Scene hall = makeLampHall(4);
+  input.scene = &hall;
+  const SpeedTable table = measureShadowedLights(input);
+  expectWhole(table);
+  EXPECT_TRUE(table.failures.empty());
+  const std::vector<std::string> ways{"every ray", "one by one", "sampled, 95 %", "sampled, 99 %",
+                                      "light tree"};
+  ASSERT_EQ(table.rows.size(), ways.size()) << "1000 lights";
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    EXPECT_EQ(table.rows[i].name, "hall, 4 lamps, " + ways[i]);
+    EXPECT_EQ(count(table, i, "lights"), 1000);
+    if (i > 0) {
+      EXPECT_GT(median(table, i, "milliseconds"), 0);
+    }
+  }
+  EXPECT_GT(std::get<Estimate>(cellOf(table, 0, "milliseconds")).value, 0);
+  EXPECT_LT(count(table, 0, "rays"), 1000) << "no point faces all lights";
+  EXPECT_LT(count(table, 1, "rmse"), 0.01) << "but for rounding exact";
+  EXPECT_EQ(count(table, 1, "within_error"), 100);
+  for (const std::size_t i : {2, 3}) {
+    EXPECT_GT(count(table, i, "rays"), 0);
+    EXPECT_LT(count(table, i, "rmse"), 1);
+    EXPECT_GT(count(table, i, "within_error"), 95);
+    EXPECT_GT(count(table, i, "within_interval"), 90);
+  }
+  EXPECT_GE(count(table, 4, "rays"), 1);
+  EXPECT_GT(count(table, 4, "rmse"), count(table, 1, "rmse"));
+  EXPECT_LE(count(table, 4, "rmse"), count(table, 4, "percentile_99"));
 }
 
 TEST(RasterSpeed, DrawsAGBufferAndADepthMapOfTheHallOrOfTheNamedScene) {

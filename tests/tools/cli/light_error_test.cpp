@@ -161,5 +161,19 @@ TEST_F(LightError, InfoSaysForWhichLightsClustersMayStand) {
   EXPECT_EQ(lights["exact"]["kind"], 1);
 }
 
+TEST_F(LightError, InfoSaysWhatAPictureWouldDo) {
+  EXPECT_THAT(succeed("luciole info scene.json --light-error 1/64"), HasSubstr(" clusters stand for 2500\n"));
+  EXPECT_THAT(succeed("luciole info scene.json --light-error 1/64 --size 4x4"),
+              HasSubstr(" 2500 are too few for it\n"));
+  writeText(folder / "many.json", kManyLights);
+  const std::string sampled = "luciole info many.json --cast-shadows all --light-error 1/64 --confidence 0.9";
+  EXPECT_THAT(succeed(sampled), HasSubstr(" 20000 are sampled by about "));
+  const auto lights = nlohmann::json::parse(succeed(sampled + " --json -"))["lights"];
+  EXPECT_EQ(lights["clustered"], 0);
+  EXPECT_EQ(lights["sampled"], 20000);
+  EXPECT_EQ(lights["confidence"], 0.9);
+  EXPECT_GT(lights["rays_per_point"], 0);
+}
+
 }  // namespace
 }  // namespace luciole::test

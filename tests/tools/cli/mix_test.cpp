@@ -93,6 +93,19 @@ TEST_F(MixCommand, RefusesWhatItCannotDoInOneLine) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out.exr"));
 }
 
+TEST_F(MixCommand, BoundsOfLayersAreNoLight) {
+  const std::vector<std::string> channels{"light_groups.a.R",
+                                          "light_groups.a.G",
+                                          "light_groups.a.B",
+                                          "light_groups.a.light_error.R",
+                                          "light_groups.a.light_error.G",
+                                          "light_groups.a.light_error.B"};
+  writeImage({1, 1, channels, {1, 2, 3, 4, 5, 6}}, folder / "bounded.exr", {});
+  succeed("luciole mix bounded.exr --light-mixer a=2 --quiet -o out.exr");
+  EXPECT_EQ(pixelOf("out.exr"), (std::vector<float>{2, 4, 6}));
+  refuse("luciole mix bounded.exr --light-mixer a.light_error=2 -o out.exr", 2, "a.light_error");
+}
+
 TEST_F(MixCommand, NotANumberAndTooMuchLightBecomeTheLargestFloat) {
   writeImage({1, 1, {"light_groups.a.R", "light_groups.a.G", "light_groups.a.B"}, {NAN, INFINITY, 3e38f}},
              folder / "odd.exr", {});
@@ -103,7 +116,6 @@ TEST_F(MixCommand, NotANumberAndTooMuchLightBecomeTheLargestFloat) {
 TEST_F(MixCommand, LayersOfLightAreRefusedWhereTheyWouldNotAddUp) {
   writeText(folder / "scene.json", kSmallScene);
   refuse("luciole render scene.json --light-groups -o a.png", 2, "--light-groups: a.png cannot hold layers");
-  refuse("luciole render scene.json --light-groups --light-error 0.1 -o a.exr", 2, "--light-error");
   refuse("luciole render scene.json --aov fog --shading gouraud -o a.exr", 2, "--shading gouraud");
   refuse("luciole render scene.json --light-groups --frames 1-2 -o a.mp4", 2,
          "--light-groups: a.mp4 cannot hold");

@@ -53,6 +53,33 @@ TEST(KeptBounds, CountEachChannelThatIsWrongByMoreAndWhatIsNoNumber) {
   EXPECT_GT(kept.max_used, 1);
 }
 
+TEST(KeptBounds, APixelIsWithinByTheChannelOfTheMostLight) {
+  const std::vector<glm::ivec2> pixels{{0, 0}, {1, 0}, {2, 0}};
+  const std::vector<glm::dvec3> truth{{0.5, 0.75, 0.1}, {0.1, 0.5, 0.8}, glm::dvec3(9)};
+  const KeptBounds kept =
+      measureBounds(rowOf({{0.5f, 0.25f}, {0.5f, 0.25f}, {0.0f, 0.0f}}), 0, pixels, truth);
+  EXPECT_EQ(kept.held, 0.5) << "of two that show something";
+  EXPECT_EQ(kept.violations, 3u);
+}
+
+/// Of 1000 pixels.
+KeptBounds heldBy(double held, double confidence, std::uint64_t violations) {
+  return {.values = 3000, .violations = violations, .held = held, .confidence = confidence};
+}
+
+TEST(KeptBounds, WhatIsProvenIsBrokenByOneValueAndAConfidenceByMoreThanChance) {
+  EXPECT_EQ(brokenPromise(heldBy(1, 1, 0)), "");
+  EXPECT_EQ(brokenPromise(heldBy(1, 1, 1)), "1 of 3000 values are wrong by more than their bounds");
+  EXPECT_EQ(brokenPromise(heldBy(0.985, 0.99, 50)), "");
+  EXPECT_EQ(brokenPromise(heldBy(0.95, 0.99, 150)),
+            "95.00 % of 1000 pixels are within intervals that shall hold for 99 %");
+  EXPECT_EQ(brokenPromise(heldBy(0.45, 0.5, 1650)), "");
+  EXPECT_NE(brokenPromise(heldBy(0.1, 0.5, 2700)), "");
+  // One pixel in 10,000 is expected: some in 1000 are bad luck, and ten no luck.
+  EXPECT_EQ(brokenPromise(heldBy(0.998, 0.9999, 6)), "");
+  EXPECT_NE(brokenPromise(heldBy(0.99, 0.9999, 30)), "");
+}
+
 TEST(KeptBounds, ATruthBeyondTheLargestFloatEndsThere) {
   const float most = std::numeric_limits<float>::max();
   const KeptBounds kept =

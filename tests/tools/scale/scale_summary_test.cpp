@@ -143,6 +143,22 @@ TEST(ScaleSummary, BrokenBoundsAreToldByPoint) {
   EXPECT_EQ(page["points"][5]["bounds"]["violations"], 2);
 }
 
+TEST(ScaleSummary, IntervalsAreBrokenWhereTheyHoldLessOftenThanStated) {
+  ScaleResults results = madeUpLightErrors();
+  KeptBounds& bounds = *results.records.at("lights=100 field=box light-error=1/16").check->bounds;
+  bounds.confidence = 0.9;
+  bounds.violations = 6;
+  bounds.held = 0.875;
+  EXPECT_TRUE(summarizeScale(results).violations.empty()) << "2 of 16 pixels";
+  bounds.held = 0.25;
+  const ScaleSummary summary = summarizeScale(results);
+  ASSERT_EQ(summary.violations.size(), 1u);
+  EXPECT_EQ(
+      summary.violations[0],
+      "lights=100 field=box light-error=1/16: 25.00 % of 16 pixels are within intervals that shall hold "
+      "for 90 %");
+}
+
 TEST(ScaleFiles, BoundsAreInTheLastColumnsWhereThereAreAny) {
   const ScaleSummary summary = summarizeScale(madeUpLightErrors());
   std::istringstream lines(scaleCsv(summary));
@@ -152,10 +168,11 @@ TEST(ScaleFiles, BoundsAreInTheLastColumnsWhereThereAreAny) {
   for (int i = 0; i < 4; ++i) std::getline(lines, bounded);
   EXPECT_TRUE(
       head.ends_with(",truth,max_bound,mean_bound,max_error,mean_error,max_used,mean_used,"
-                     "bounded_values,violations,bound_map"))
+                     "held,stated,bounded_values,violations,bound_map"))
       << head;
-  EXPECT_TRUE(exact.ends_with(",field box,,,,,,,,,")) << exact;
-  EXPECT_TRUE(bounded.ends_with(",field box,0.25,0.125,0.125,0.015625,0.5,0.125,48,0,pictures/bounds.png"))
+  EXPECT_TRUE(exact.ends_with(",field box,,,,,,,,,,,")) << exact;
+  EXPECT_TRUE(
+      bounded.ends_with(",field box,0.25,0.125,0.125,0.015625,0.5,0.125,1,1,48,0,pictures/bounds.png"))
       << bounded;
   const auto page = nlohmann::json::parse(pageData(summary, "", ""));
   EXPECT_TRUE(page["points"][0]["bounds"].is_null());

@@ -89,6 +89,20 @@ TEST(ScaleTable, BoundsStandBesideErrorsWhereThereAreAny) {
   EXPECT_THAT(lines[2], HasSubstr("|             – |       – |                      – |    – |"));
   EXPECT_THAT(lines[6], HasSubstr("|       2.5e-01 | 1.2e-01 |                   0.50 | 0.12 |"));
   EXPECT_THAT(text, HasSubstr("Bounds are shares of the larger of 1 and the colour"));
+  EXPECT_THAT(text, Not(HasSubstr("pixels within")));
+}
+
+TEST(ScaleTable, WhereBoundsHoldWithAConfidenceItSaysHowOftenTheyDid) {
+  ScaleResults results = madeUpLightErrors();
+  KeptBounds& bounds = *results.records.at("lights=100 field=box light-error=1/4").check->bounds;
+  bounds.confidence = 0.9;
+  bounds.held = 0.875;
+  const std::string text = scaleTable(summarizeScale(results));
+  const std::vector<std::string> lines = linesOf(text);
+  EXPECT_THAT(lines[0], HasSubstr("| pixels within, % |"));
+  EXPECT_THAT(lines[2], HasSubstr("|                – |"));
+  EXPECT_THAT(lines[6], HasSubstr("|            87.50 |"));
+  EXPECT_THAT(text, HasSubstr("with the stated confidence"));
 }
 
 TEST(ScaleTable, OneWayOfManyHasNoColumnForIt) {

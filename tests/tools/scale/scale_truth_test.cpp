@@ -22,8 +22,8 @@ TEST(ScaleTruth, ShadowsByAnyMethodHaveOneAndNoShadowsAnother) {
 }
 
 TEST(ScaleTruth, WaysToMakeThePictureDoNotChangeIt) {
-  for (const char* axis :
-       {"culling", "tile", "samples", "pcf-width", "shadow-memory", "shadow-size", "light-error"})
+  for (const char* axis : {"culling", "tile", "samples", "pcf-width", "shadow-memory", "shadow-size",
+                           "light-error", "confidence"})
     EXPECT_EQ(truthOf({{axis, "4"}}), "") << axis;
   EXPECT_EQ(
       truthOf({{"culling", "none"}, {"shadows", "pcf"}, {"pcf-width", "6"}, {"shadow-size", "512"}}),

@@ -5,9 +5,11 @@
 //   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
 //     pairs_evaluated, pairs_in_range, pixels_lit, list_entries, device_bytes, peak_bytes,
 //     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, bound_map, reasons: {name: why it is null},
-//     bounds: {max_bound, mean_bound, max_error, mean_error, max_used, mean_used, bounded_values, violations}}]:
+//     bounds: {max_bound, mean_bound, max_error, mean_error, max_used, mean_used, held, stated, bounded_values,
+//     violations}}]:
 //     low and high are quartiles, truth says what the errors are from, front that no point of as many lights and the same
-//     truth beats this one in both time and mean error, bounds how those of clusters of lights are kept (used: error over bound);
+//     truth beats this one in both time and mean error, bounds how those of clusters and samples of lights are kept (used: error over bound; held: the
+//     share of pixels that are within, stated: the share that is promised, 1 where bounds are proven);
 //     all but lights and milliseconds may be absent or null, and picture, error_map, tile_map and bound_map are indices into
 //   pictures: [data URL];
 //   violations: [text], what breaks its bounds;
@@ -521,6 +523,11 @@ function boundOf(point, name) {
   return point.bounds ? point.bounds[name] : null;
 }
 
+// Whether its bounds hold with a confidence.
+function isStated(point) {
+  return boundOf(point, 'stated') < 1 && isNumber(boundOf(point, 'stated'));
+}
+
 function pairRatio(point) {
   return point.pairs_in_range > 0 && isNumber(point.pairs_evaluated) ? point.pairs_evaluated / point.pairs_in_range : null;
 }
@@ -741,6 +748,9 @@ const boundColumns = [
   {name: 'Largest error over bound', format: formatFixed, of: point => boundOf(point, 'max_used')},
   {name: 'Mean error over bound', format: formatFixed, of: point => boundOf(point, 'mean_used')},
   {name: 'Bounds broken', format: formatCount, of: point => boundOf(point, 'violations')},
+  ...(points.some(isStated) ? [
+    {name: 'Pixels within', unit: '%', format: formatFixed, of: point => 100 * boundOf(point, 'held')},
+    {name: 'Stated', unit: '%', format: formatFixed, of: point => 100 * boundOf(point, 'stated')}] : []),
 ];
 
 function addBounds() {
