@@ -287,7 +287,7 @@ TEST_F(ScaleCommand, LightErrorsOfShadowedLightsAreHeldAgainstRaysWithTheirConfi
   writeText(folder / "scene.json", matteScene());
   size = "120x68";
   succeed(
-      "--lights 100,2000 --vary light-error=0,1/16,confidence=0.6,0.99 --shadows exact --repeat 1 -o run "
+      "--lights 100,10000 --vary light-error=0,1/16,confidence=0.6,0.99 --shadows exact --repeat 1 -o run "
       "--plot plot.svg");
   const std::vector<Row> rows = readCsv(folder / "run/results.csv");
   ASSERT_EQ(rows.size(), 2u * 3) << "lights one by one have no confidence";
@@ -295,7 +295,7 @@ TEST_F(ScaleCommand, LightErrorsOfShadowedLightsAreHeldAgainstRaysWithTheirConfi
     EXPECT_EQ(row.at("reach"), "inf");
     EXPECT_EQ(row.at("truth"), "");
     // Few lights are summed one by one.
-    const bool is_sampled = row.at("light-error") == "1/16" && row.at("lights") == "2000";
+    const bool is_sampled = row.at("light-error") == "1/16" && row.at("lights") == "10000";
     EXPECT_EQ(row.at("max_bound").empty(), !is_sampled);
     if (!is_sampled) {
       EXPECT_LT(std::stod(row.at("max_abs")), 1e-3) << "shadows are those of rays";
@@ -308,7 +308,7 @@ TEST_F(ScaleCommand, LightErrorsOfShadowedLightsAreHeldAgainstRaysWithTheirConfi
     EXPECT_FALSE(row.at("bound_map").empty());
     EXPECT_GT(std::stod(row.at("sampled_light_ms")), 0);
     EXPECT_GT(std::stod(row.at("pairs_evaluated")), std::stod(row.at("pixels_lit")));
-    EXPECT_EQ(std::stod(row.at("pairs_in_range")), 2000 * std::stod(row.at("pixels_lit")));
+    EXPECT_EQ(std::stod(row.at("pairs_in_range")), 10000 * std::stod(row.at("pixels_lit")));
   }
   EXPECT_THAT(readText(folder / "plot.svg"), HasSubstr(">confidence 0.99, true error<"));
   EXPECT_THAT(refuse("--lights 10 --vary confidence --repeat 1 -o other"), HasSubstr("--shadows exact"));
