@@ -15,6 +15,7 @@ struct OptionName {
 constexpr OptionName kOptionNames[] = {
     {"settings.crop: ", "--crop "},
     {"settings.size", "--size"},
+    {"settings.shade.confidence: ", "--confidence "},
     {"changes: ", "--set "},
     {"device: ", "--device ", " (see luciole devices)"},
     {"options.format", "--format"},

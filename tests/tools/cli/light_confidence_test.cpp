@@ -92,7 +92,7 @@ TEST_F(LightConfidenceOptions, PixelsThatStayBeyondTheirErrorAreToldInOneLine) {
                   {"primitive": "torus", "translate": [0.2, 1, 0.1], "scale": 0.3}], "lights": [)" +
                                       lights + "]}");
   const std::string render = "luciole render many.json --shadows exact -o out.exr --stats stats.json ";
-  const Outcome outcome = run(render + "--light-error 1/4096 --confidence 0.9");
+  const Outcome outcome = run(render + "--light-error 1/3500 --confidence 0.9");
   EXPECT_EQ(stats()["counts"]["lights_sampled"], 30'000);
   EXPECT_EQ(stats()["counts"]["pixels_beyond_light_error"], 16);
   EXPECT_THAT(outcome.err, HasSubstr("16 pixels stayed beyond it at a confidence of 0.9"));
