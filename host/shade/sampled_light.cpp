@@ -6,6 +6,7 @@
 
 #include "cl/launch.hpp"
 #include "kernels/sampled/sampled_light.h"
+#include "shadow/exact/beam_frame.hpp"
 
 namespace luciole {
 
@@ -26,8 +27,8 @@ namespace {
 
 /// Rays a pixel that a group begins with: fewer need more rounds, more are too many where little is seen.
 constexpr uint kPilot = 128, kFinePilot = 256;
-/// Degrees of freedom of the variance that samples estimate: with 40, stated intervals held as often as
-/// stated in the table of tests/README.md. Even.
+/// Degrees of freedom of the variance that samples estimate. Chosen by build/tests/light_confidence, so that
+/// at a confidence of 0.99 intervals of small scenes hold as often as they state. Even.
 constexpr int kFreedom = 40;
 /// Errors below take kFinePilot.
 constexpr float kFineError = 1.0f / 128;
@@ -37,17 +38,16 @@ uint pilotRays(float light_error) { return light_error < kFineError ? kFinePilot
 SampleFrame sampleFrame(const SampledLightArguments& arguments) {
   const BeamScene& beams = arguments.beams;
   const SampleSettings& settings = arguments.settings;
-  const glm::mat3& turn = beams.view_to_tree;
-  const auto row = [&](int i) { return float4{turn[0][i], turn[1][i], turn[2][i], 0}; };
+  const BeamFrame in_tree = beamFrame(beams, arguments.frame.plane_stride);
   SampleFrame frame{};
   frame.shade = arguments.frame;
-  frame.to_tree_x = row(0);
-  frame.to_tree_y = row(1);
-  frame.to_tree_z = row(2);
-  frame.tree_most = beams.largest_coordinates;
+  frame.to_tree_x = in_tree.to_tree_x;
+  frame.to_tree_y = in_tree.to_tree_y;
+  frame.to_tree_z = in_tree.to_tree_z;
+  frame.tree_most = in_tree.tree_most;
   frame.to_pixel = settings.to_pixel;
-  frame.tree_scale = beams.tree->scale;
-  frame.tree_root = beams.tree->root;
+  frame.tree_scale = in_tree.tree_scale;
+  frame.tree_root = in_tree.tree_root;
   frame.light_count = uint(arguments.lights.lights);
   frame.levels = uint(arguments.lights.diffuse.levels);
   frame.light_error = settings.light_error;

@@ -72,8 +72,7 @@ typedef struct {
   LastBlockers last;
 } RayQueue;
 
-// --- samples
-// ------------------------------------------------------------------------------------------------
+// --- samples ---
 
 SHARED_WORK void trace_queue(const Sampling* sampling, RayQueue* queue, const Cut* cut) {
   if (!queue->count) return;
@@ -294,8 +293,7 @@ INLINE void sample_new(const Sampling* sampling, const SampledGroup* group, cons
   sort_heap(cut);
 }
 
-// --- sums
-// ---------------------------------------------------------------------------------------------------
+// --- sums ---
 
 // Of a group's pixels: their light, its variance, and what is surely its largest error but for that.
 typedef struct {
@@ -440,8 +438,7 @@ INLINE void light_sampled_group(const Sampling* sampling, const SampledGroup* gr
   if (!(worst <= 1.0f)) counts->of[kMissedPixels] += group->count;
 }
 
-// --- tiles
-// --------------------------------------------------------------------------------------------------
+// --- tiles ---
 
 // The planes that are written, r g b each, from a tile's first pixel on.
 typedef struct {
@@ -471,7 +468,7 @@ INLINE void store_group(const SampleFrame* frame, const SampledGroup* group, con
   }
 }
 
-// Adds the light of a tile's pixels and their intervals. number: of the tile.
+// Adds the light of a tile's pixels and their intervals.
 INLINE void light_sampled_tile(const Sampling* sampling, const SampledTile* tile, Cut* cut, RayQueue* queue,
                                const SampledPlanes* planes, SampleCounts* counts) {
   const SampleFrame* frame = sampling->frame;
