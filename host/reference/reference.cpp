@@ -196,6 +196,16 @@ glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const Sur
 
 std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
                                          const ReferenceSettings& settings) {
+  std::vector<LightTerm> lights;
+  std::optional<PixelTerms> terms =
+      referenceTerms(scene, gbuffer, pixel, settings, [&](const LightTerm& term) { lights.push_back(term); });
+  if (terms) terms->lights = std::move(lights);
+  return terms;
+}
+
+std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                                         const ReferenceSettings& settings,
+                                         const std::function<void(const LightTerm&)>& take) {
   const std::optional<ShownPoint> shown = shownPoint(gbuffer, pixel, settings);
   if (!shown) return std::nullopt;
   PixelTerms terms;
@@ -207,7 +217,7 @@ std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuf
     eachLightTerm(scene, gbuffer.camera, terms.point, terms.model, shown->visibility,
                   [&](const LightTerm& term) {
                     radiance += term.sum();
-                    terms.lights.push_back(term);
+                    take(term);
                   });
   terms.fog_share = referenceFog(
       {scene.fog.mode, scene.fog.radial, scene.fog.density, scene.fog.start, scene.fog.end, glm::vec3(0.0f)},

@@ -84,6 +84,11 @@ struct PixelTerms {
 std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
                                          const ReferenceSettings& settings);
 
+/// The same, but calls `take` with each term instead of keeping it in PixelTerms::lights: no memory.
+std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                                         const ReferenceSettings& settings,
+                                         const std::function<void(const LightTerm&)>& take);
+
 /// A colour's channel as pictures store it: rounded to float, at most the largest finite one.
 float pictureValue(double channel);
 

@@ -9,6 +9,7 @@
 //   take_group → halve strata of the largest light · spread, until the rays allowed are spent (cut.clh)
 //              → sample_new: pick lights, evaluate them, trace rays (ray_walk.clh)
 //              → sum_strata, judge: is the interval narrow enough for the group? Else allow more rays.
+//              → renew_kept: sample what was kept from earlier rounds anew, and judge again
 //
 // Neighbours in a square of 4×4 pixels take different picks of a stratum, in the order of a Bayer matrix: so
 // errors are a fine dither instead of blocks. Strata of one light or two are summed, and have no variance.
@@ -41,13 +42,15 @@
 // The halves of a stratum differ in what they give on average, so that their difference varies more than
 // their sum: by this.
 #define HALVES_DIFFER 0.8f
-// What is added to that for a group of one pixel, whose variance few pairs tell; it falls as the number of
-// pixels to the power −3/4.
-#define FEW_PIXELS 0.3f
+// Light that no pair met has left no variance. So many pairs more than a group took, of a mean stratum, count
+// as if one half had given all of its light and the other nothing.
+#define UNSEEN_PAIRS 1.0f
 // The next round's rays are at least and at most so many times this one's.
 #define LEAST_GROWTH 1.15f
 #define MOST_GROWTH 2.5f
 enum { kMostRounds = 30 };
+// From one seed of a group to the next.
+#define RENEWED_SEED 0x5bd1e995u
 // What a sampled light gives counts as this at most: squares of sums are finite floats.
 #define MOST_SAMPLE 1e17f
 // And what a light gives that is summed: what a float nearly holds.
@@ -138,7 +141,7 @@ INLINE vec3L unshadowed_light(const SampleFrame* frame, const SampledGroup* grou
 
 // Sets A or B of a stratum's pixels to what the picks give them if nothing is between, and asks rays about
 // it. turn: which pick pixels take, exclusive or with their own. most: of a value. Returns the sum of what
-// they give, a mean of the channels.
+// largest channels.
 INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, const Picks* picks, uint side,
                          uint turn, uint values, float most, Cut* cut, RayQueue* queue) {
   ClusteredLight light[kPicks];
@@ -198,15 +201,14 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
     vec3L given_row = unshadowed_light(sampling->frame, group, i, &lights);
     floatL channel[3] = {given_row.x, given_row.y, given_row.z};
     intL counts = LANE_NUMBERS + (int)i < (int)group->count;
-    floatL largest = 0.0f, sum = 0.0f;
+    floatL largest = 0.0f;
     UNROLLED(c, 3) {
       floatL value = min_lanes(channel[c], (floatL)(most));
       value = counts ? value : (floatL)(0.0f);
       store_lanes(cut->values + first_value + c * kSampledPixels + i, value);
       largest = max_lanes(largest, value);
-      sum += value;
     }
-    *(floatL*)(given + i) = sum;
+    *(floatL*)(given + i) = largest;
     for (uint bits = lane_bits(largest > 0.0f); bits; bits &= bits - 1) {
       uint lane = lowest_bit(bits), n = queue->count++;
       float4 place = sampling->places[picks->light[side * kPicks + (group->pick[i + lane] ^ turn)]];
@@ -219,7 +221,7 @@ INLINE float sample_half(const Sampling* sampling, const SampledGroup* group, co
       if (queue->count == kTreeWidth) trace_queue(sampling, queue, cut);
     }
   }
-  return sum_of_pixels(given) * (1.0f / 3.0f);
+  return sum_of_pixels(given);
 }
 
 // The lights of a stratum of one or two: every pixel asks each.
@@ -259,12 +261,16 @@ SHARED_WORK void sample_stratum(const Sampling* sampling, const SampledGroup* gr
     given += sample_half(sampling, group, &picks, side, turn[side], stratum.values,
                          all ? MOST_LIGHT : MOST_SAMPLE, cut, queue);
   stratum.unshadowed = quotient(given, (float)group->count);
+  stratum.is_new = 1;
   cut->strata[number] = stratum;
 }
 
+// The pairs of a stratum that a group's pixels take.
+INLINE float pairs_of(const SampledGroup* group) { return lesser((float)group->count, (float)(2 * kPicks)); }
+
 // Sets how the halves of a stratum differ.
 INLINE void set_spread(const SampledGroup* group, const Cut* cut, __global Stratum* stratum) {
-  float count = (float)group->count, pairs = lesser(count, (float)(2 * kPicks));
+  float count = (float)group->count, pairs = pairs_of(group);
   __global const float* values = cut->values + (size_t)stratum->values * kStratumValues;
   float squares[kSampledPixels] ALIGNED;
   clear_pixels(squares);
@@ -278,18 +284,17 @@ INLINE void set_spread(const SampledGroup* group, const Cut* cut, __global Strat
   float deviation = square_root(quotient(fma(mean, pairs, prior), pairs + 2.0f * PRIOR_PAIRS));
   stratum->spread = quotient(deviation, stratum->light + 1e-30f);
   stratum->key = stratum->light * stratum->spread;
-  stratum->unshadowed = -1.0f;
 }
 
 // Samples the strata that are new. When all rays are traced, sets how their halves differ.
 INLINE void sample_new(const Sampling* sampling, const SampledGroup* group, const GroupBounds* bounds,
                        uint4 seed, Cut* cut, RayQueue* queue) {
+  for (uint i = 0; i < cut->strata_count; ++i) cut->strata[i].is_new = 0;
   uint count = list_new(cut);
   for (uint i = 0; i < count; ++i) sample_stratum(sampling, group, bounds, seed, cut, cut->order[i], queue);
   trace_queue(sampling, queue, cut);
   for (uint i = 0; i < cut->strata_count; ++i)
-    if (cut->strata[i].unshadowed >= 0.0f && cut->strata[i].lights > 2)
-      set_spread(group, cut, cut->strata + i);
+    if (cut->strata[i].is_new && cut->strata[i].lights > 2) set_spread(group, cut, cut->strata + i);
   sort_heap(cut);
 }
 
@@ -300,6 +305,7 @@ typedef struct {
   float light[3][kSampledPixels] ALIGNED;
   float variance[3][kSampledPixels] ALIGNED;
   float proven[3][kSampledPixels] ALIGNED;
+  float unseen;  // the variance of light that no pair met
 } GroupLight;
 
 // Adds the values of pixels whose rays textures decide.
@@ -316,11 +322,13 @@ INLINE void sum_strata(const SampledGroup* group, const Cut* cut, GroupLight* su
     clear_pixels(sums->variance[c]);
     clear_pixels(sums->proven[c]);
   }
+  float squares = 0.0f;
   for (uint i = 0; i < cut->strata_count; ++i) {
     Stratum stratum = cut->strata[i];
     if (!stratum.lights) continue;
     __global const float* values = cut->values + (size_t)stratum.values * kStratumValues;
     bool sampled = stratum.lights > 2;
+    if (sampled) squares = fma(stratum.unshadowed, stratum.unshadowed, squares);
     for (uint c = 0; c < 3; ++c)
       for (uint j = 0; j < group->count; j += LANES) {
         floatL a = load_lanes(values + c * kSampledPixels + j),
@@ -335,6 +343,7 @@ INLINE void sum_strata(const SampledGroup* group, const Cut* cut, GroupLight* su
       add_unsure(values + 3 * kSampledPixels, cut->unsure[2 * stratum.values + 1], sums);
     }
   }
+  sums->unseen = quotient(UNSEEN_PAIRS * squares, pairs_of(group) * (float)(cut->heap_count + 1));
   // Each stratum's sum rounds once, and so does the sum with what was there before.
   float rounding = 0x1p-24f * (float)(LIGHT_ROUNDING + cut->strata_count + 2);
   for (uint c = 0; c < 3; ++c)
@@ -379,17 +388,17 @@ INLINE floatL seen_share(const BeforeLight* before, uint c, uint j) {
 INLINE float judge(const SampleFrame* frame, const SampledGroup* group, const BeforeLight* before,
                    uint strata, GroupLight* sums) {
   float worst = 0.0f, own = OWN_PAIRS * (float)strata, count = (float)group->count;
-  float root = square_root(count), differ = HALVES_DIFFER + quotient(FEW_PIXELS, root * square_root(root));
   for (uint c = 0; c < 3; ++c) {
     float shares[kSampledPixels] ALIGNED;
     for (uint j = 0; j < kSampledPixels; j += LANES)
       *(floatL*)(shares + j) = *(const floatL*)(sums->variance[c] + j);
-    float of_group = differ * quotient(sum_of_pixels(shares), count);
+    float of_group = HALVES_DIFFER * quotient(sum_of_pixels(shares), count);
     clear_pixels(shares);
     for (uint j = 0; j < group->count; j += LANES) {
       floatL variance = *(const floatL*)(sums->variance[c] + j), seen = seen_share(before, c, j);
-      variance =
-          quotient_lanes(GROUP_PAIRS * of_group + own * differ * variance, (floatL)(GROUP_PAIRS + own));
+      variance = quotient_lanes(GROUP_PAIRS * of_group + own * HALVES_DIFFER * variance,
+                                (floatL)(GROUP_PAIRS + own)) +
+                 sums->unseen;
       *(floatL*)(sums->variance[c] + j) = variance;
       floatL light = seen * (*(const floatL*)(before->light[c] + j) + *(const floatL*)(sums->light[c] + j));
       floatL allowed = frame->light_error * max_lanes(light, (floatL)(frame->least_value)),
@@ -411,6 +420,26 @@ typedef struct {
   uint of[kSampleCounts];
 } SampleCounts;
 
+// Strata that were sampled in an earlier round are to be sampled anew. They were kept since their samples
+// differ little: so on average these miss light.
+INLINE void renew_kept(Cut* cut) {
+  for (uint i = 0; i < cut->strata_count; ++i) {
+    __global Stratum* stratum = cut->strata + i;
+    if (stratum->lights <= 2 || stratum->is_new) continue;
+    cut->free_values[cut->free_count++] = stratum->values;
+    stratum->values = kNoValues;
+  }
+}
+
+// Samples what isn't sampled yet. Returns what judge() does.
+SHARED_WORK float sample_and_judge(const Sampling* sampling, const SampledGroup* group,
+                                   const GroupBounds* bounds, const BeforeLight* before, uint4 seed, Cut* cut,
+                                   RayQueue* queue, GroupLight* sums) {
+  sample_new(sampling, group, bounds, seed, cut, queue);
+  sum_strata(group, cut, sums);
+  return judge(sampling->frame, group, before, cut->heap_count + 1, sums);
+}
+
 // Lights a group.
 INLINE void light_sampled_group(const Sampling* sampling, const SampledGroup* group,
                                 const BeforeLight* before, uint4 seed, Cut* cut, RayQueue* queue,
@@ -423,11 +452,15 @@ INLINE void light_sampled_group(const Sampling* sampling, const SampledGroup* gr
     while ((cut->cost < budget || (cut->heap_count && cut->strata[cut->heap[0]].light >= BRIGHT)) &&
            halve_stratum(&sampling->trees, &bounds, cut)) {
     }
-    sample_new(sampling, group, &bounds, seed, cut, queue);
-    sum_strata(group, cut, sums);
-    worst = judge(sampling->frame, group, before, cut->heap_count + 1, sums);
+    worst = sample_and_judge(sampling, group, &bounds, before, seed, cut, queue, sums);
     counts->of[kSampledRounds] += 1;
-    if (worst <= 1.0f || !cut->heap_count || cut->strata_count == kMostStrata || round == kMostRounds) break;
+    bool is_last = !cut->heap_count || cut->strata_count == kMostStrata || round == kMostRounds;
+    if (round > 1 && (worst <= 1.0f || is_last)) {
+      renew_kept(cut);
+      seed.x += RENEWED_SEED;
+      worst = sample_and_judge(sampling, group, &bounds, before, seed, cut, queue, sums);
+    }
+    if (worst <= 1.0f || is_last) break;
     // The error falls about as the rays' number to the power −0.65.
     float more = square_root(1.1f * worst);
     more *= square_root(more);

@@ -24,13 +24,13 @@ typedef struct {
   uint lights;       // 0: the stratum is gone
   float light;       // about the most that it gives a pixel if nothing is between
   float spread;      // the standard deviation of the difference of its two halves, as a share of `light`
-  float unshadowed;  // what its picks would give on average if nothing were between; below 0: not new
+  float unshadowed;  // what its picks would give on average if nothing were between: of the largest channels
   float key;         // light · spread: those of the largest are halved
   uint values;       // number of its values in the pool, or kNoValues
   uint first;        // of its lights, in the tree's order
-  uint pad0, pad1, pad2;
+  uint is_new;       // sampled in this round
 } Stratum;
-SHARED_SIZE(Stratum, 48);
+SHARED_SIZE(Stratum, 40);
 #define kNoValues 0xffffffffu
 
 // Floats of a stratum's values: two halves, r g b of each, of all pixels.

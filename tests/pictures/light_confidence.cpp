@@ -21,7 +21,7 @@ struct Experiment {
   std::vector<double> parts{16, 64, 256}, confidences{0.9, 0.95, 0.99, 0.999};
   double floor = 1;
   unsigned seeds = 1;
-  std::string device;
+  std::string device, truth_device;
 };
 
 /// Adds what another seed gave.
@@ -67,7 +67,8 @@ void printRow(const std::string& scene, const std::string& placement, std::size_
   std::fflush(stdout);
 }
 
-void checkScene(OpenedDevice& device, const Experiment& experiment, const std::string& name) {
+void checkScene(OpenedDevice& device, OpenedDevice& truth_device, const Experiment& experiment,
+                const std::string& name) {
   const std::string file =
       name.find('/') == name.npos ? LUCIOLE_SOURCE_DIR "/scenes/" + name + ".json" : name;
   Scene scene = loadScene(file);
@@ -78,7 +79,7 @@ void checkScene(OpenedDevice& device, const Experiment& experiment, const std::s
       lightWithoutRange(scene, shape, lights, experiment.highlights);
       for (Light& light : scene.lights) light.shadow = true;
       const ShadowedTruth truth =
-          shadowedTruth(device, scene, {experiment.size[0], experiment.size[1]}, experiment.pixels);
+          shadowedTruth(truth_device, scene, {experiment.size[0], experiment.size[1]}, experiment.pixels);
       for (const double parts : experiment.parts)
         for (const double confidence : experiment.confidences) {
           ShadeSettings shade;
@@ -110,13 +111,15 @@ int run(int count, char** arguments) {
   app.add_option("--seeds", experiment.seeds)->capture_default_str();
   app.add_flag("--highlights", experiment.highlights, "lights have a specular part");
   app.add_option("--device", experiment.device);
+  app.add_option("--truth-device", experiment.truth_device, "traces every light's rays (default: the same)");
   CLI11_PARSE(app, count, arguments);
-  OpenedDevice device;
+  OpenedDevice device, truth_device;
   openDevice(experiment.device, device);
+  openDevice(experiment.truth_device.empty() ? experiment.device : experiment.truth_device, truth_device);
   fmt::print("| scene | placement | lights | E | C % | values | held % | within E % | penumbra % | near % ");
   fmt::print("| grazing % | RMSE/E | bias/E | width/E | s | rays a pixel | missed |\n");
   fmt::print("|---|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
-  for (const std::string& scene : experiment.scenes) checkScene(device, experiment, scene);
+  for (const std::string& scene : experiment.scenes) checkScene(device, truth_device, experiment, scene);
   return 0;
 }
 

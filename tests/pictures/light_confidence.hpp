@@ -98,6 +98,55 @@ struct Rays {
   }
 };
 
+/// A pixel whose rays are to be traced.
+struct AskedPixel {
+  PixelTerms terms;  ///< but for lights
+  std::vector<LightRay> rays;
+  std::vector<glm::dvec3> light;  ///< what each gives if nothing is in its way
+  glm::dvec3 sure{0.0};           ///< of lights that no ray asks for
+  std::size_t first_ray = 0;
+};
+
+inline void askPixel(const Rays& rays, const glm::ivec2& pixel, const ReferenceSettings& settings,
+                     AskedPixel& asked) {
+  asked.rays.clear();
+  asked.light.clear();
+  asked.sure = glm::dvec3(0.0);
+  const uint point = uint(rays.gbuffer.index(pixel.x, pixel.y));
+  asked.terms = *referenceTerms(rays.scene, rays.gbuffer, pixel, settings, [&](const LightTerm& term) {
+    if (term.visibility > 0 && rays.scene.lights[term.light].shadow) {
+      asked.rays.push_back({point, uint(term.light)});
+      asked.light.push_back(term.sum());
+    } else {
+      asked.sure += term.sum();
+    }
+  });
+}
+
+/// Sets what reaches the eye, and what kind of pixel that is.
+inline void sumPixel(const Rays& rays, const std::vector<uint>& lit, const AskedPixel& asked,
+                     glm::dvec3& radiance, PixelKind& kind) {
+  const auto sum = [](const glm::dvec3& v) { return v.x + v.y + v.z; };
+  glm::dvec3 light = asked.sure;
+  double all = sum(light), largest = 0;
+  for (std::size_t i = 0; i < asked.rays.size(); ++i) {
+    const std::size_t ray = asked.first_ray + i;
+    all += sum(asked.light[i]);
+    if ((lit[ray / 32] >> ray % 32 & 1) == 0) continue;
+    light += asked.light[i];
+    largest = std::max(largest, sum(asked.light[i]));
+  }
+  const double reached = sum(light);
+  const PixelTerms& terms = asked.terms;
+  const Camera& camera = rays.gbuffer.camera;
+  radiance =
+      referenceFog(rays.scene.fog, camera, terms.point.position, terms.own + terms.point.emission + light);
+  const glm::dvec3 to_eye = glm::normalize(glm::dvec3(camera.camera_to_world[3]) - terms.point.position);
+  kind.penumbra = reached > 0.1 * all && reached < 0.9 * all;
+  kind.near_light = largest > 0.1 * reached;
+  kind.grazing = std::abs(glm::dot(terms.point.normal, to_eye)) < 0.2;
+}
+
 }  // namespace truth
 
 /// Covered pixels of the scene's picture, spread evenly: all of them, or `most`. All lights count as casting
@@ -126,47 +175,24 @@ inline ShadowedTruth shadowedTruth(OpenedDevice& device, const Scene& scene, glm
   result.radiance.resize(count);
   result.kinds.resize(count);
   truth::Rays rays(device, result.scene, gbuffer);
-  // All terms of some pixels fit into memory.
-  const std::size_t batch = std::clamp<std::size_t>(4'000'000 / (scene.lights.size() + 1), 1, 256);
+  // The rays of some pixels fit into memory.
+  const std::size_t batch = std::clamp<std::size_t>(32'000'000 / (scene.lights.size() + 1), 1, 256);
+  std::vector<truth::AskedPixel> pixels(std::min(batch, count));
+  std::vector<LightRay, RawArrayAllocator<LightRay>> asked;
   for (std::size_t first = 0; first < count; first += batch) {
-    const std::size_t end = std::min(first + batch, count);
-    std::vector<PixelTerms> terms(end - first);
-    tbb::parallel_for(first, end, [&](std::size_t i) {
-      terms[i - first] = *referenceTerms(result.scene, gbuffer, result.pixels[i], {.model = model});
+    const std::size_t some = std::min(batch, count - first);
+    tbb::parallel_for(std::size_t(0), some, [&](std::size_t i) {
+      askPixel(rays, result.pixels[first + i], {.model = model}, pixels[i]);
     });
-    std::vector<LightRay, RawArrayAllocator<LightRay>> asked;
-    for (std::size_t i = first; i < end; ++i)
-      for (const LightTerm& term : terms[i - first].lights)
-        if (term.visibility > 0 && result.scene.lights[term.light].shadow)
-          asked.push_back({uint(gbuffer.index(result.pixels[i].x, result.pixels[i].y)), uint(term.light)});
-    const std::vector<uint> lit = rays.trace(device, asked);
-    std::size_t ray = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      const PixelTerms& of_pixel = terms[i - first];
-      glm::dvec3 light(0.0);
-      double all = 0, largest = 0, reached = 0;
-      for (const LightTerm& term : of_pixel.lights) {
-        bool is_lit = true;
-        if (term.visibility > 0 && result.scene.lights[term.light].shadow) {
-          is_lit = (lit[ray / 32] >> ray % 32 & 1) != 0;
-          ++ray;
-        }
-        const glm::dvec3 sum = term.sum();
-        const double weight = sum.x + sum.y + sum.z;
-        all += weight;
-        if (!is_lit) continue;
-        light += sum;
-        reached += weight;
-        largest = std::max(largest, weight);
-      }
-      const glm::dvec3 own = of_pixel.own + of_pixel.point.emission;
-      result.radiance[i] =
-          referenceFog(result.scene.fog, gbuffer.camera, of_pixel.point.position, own + light);
-      const glm::dvec3 to_eye =
-          glm::normalize(glm::dvec3(gbuffer.camera.camera_to_world[3]) - of_pixel.point.position);
-      result.kinds[i] = {reached > 0.1 * all && reached<0.9 * all, largest> 0.1 * reached,
-                         std::abs(glm::dot(of_pixel.point.normal, to_eye)) < 0.2};
+    asked.clear();
+    for (std::size_t i = 0; i < some; ++i) {
+      pixels[i].first_ray = asked.size();
+      asked.insert(asked.end(), pixels[i].rays.begin(), pixels[i].rays.end());
     }
+    const std::vector<uint> lit = rays.trace(device, asked);
+    tbb::parallel_for(std::size_t(0), some, [&](std::size_t i) {
+      sumPixel(rays, lit, pixels[i], result.radiance[first + i], result.kinds[first + i]);
+    });
   }
   return result;
 }

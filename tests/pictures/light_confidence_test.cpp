@@ -164,6 +164,18 @@ TEST(LightConfidence, HoldsAsOftenAsStatedOfShippedScenes) {
   }
 }
 
+// Strata are kept where their samples agree, and halved where they don't. What chance made agree would leave
+// light out.
+TEST(LightConfidence, LightIsRightOnAverageHoweverFine) {
+  Scene scene = loadScene(LUCIOLE_SOURCE_DIR "/scenes/colonnade.json");
+  lightWithoutRange(scene, FieldShape::kBox, 20'000, false);
+  for (Light& light : scene.lights) light.shadow = true;
+  const ShadowedTruth truth = shadowedTruth(testDevice(), scene, {64, 36}, std::size_t(-1));
+  const Calibration all =
+      calibrate(truth, {.light_error = 1.0f / 256, .confidence = 0.9}, longRun() ? 16 : 2);
+  EXPECT_LE(std::abs(all.bias), 4 * all.rmse / std::sqrt(all.groups));
+}
+
 /// A floor, a ball and a wall that keeps the light of half of all places from the rest.
 Scene plainScene() {
   return sceneFromJson(R"({"camera": {"eye": [0, 2, 5], "target": [0, 0.5, 0], "fov_y": 45},
@@ -263,8 +275,14 @@ TEST(HardLightConfidence, OfNothingThatIsSeenByAnyLight) {
   Stats stats;
   const ShadowedTruth truth = shadowedTruth(testDevice(), scene, {48, 27}, std::size_t(-1));
   const Image image = sampledPicture(testDevice(), truth, {.light_error = 1.0f / 16}, stats);
+  float largest_interval = 0;
   for (std::size_t i = 0; i < image.pixels.size(); i += 9)
-    for (std::size_t c = 0; c < 6; ++c) ASSERT_LT(image.pixels[i + c], 1e-30f) << "colour, or interval";
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_LT(image.pixels[i + c], 1e-30f);
+      largest_interval = std::max(largest_interval, image.pixels[i + 3 + c]);
+    }
+  EXPECT_GT(largest_interval, 1e-4f) << "samples that all missed prove no darkness";
+  EXPECT_LE(largest_interval, 1.0f / 16);
   EXPECT_EQ(countOf(stats, "pixels_beyond_light_error"), 0u);
 }
 
