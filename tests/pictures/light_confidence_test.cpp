@@ -60,9 +60,9 @@ void expectFinite(const Image& image) {
 }
 
 /// rounding: what is left to floats beyond the interval, as a share of the larger of 1 and the light.
-void expectSummed(std::size_t lights, bool highlights, Model model, double rounding) {
+void expectSummed(std::size_t lights, bool highlights, Model model, double rounding,
+                  Scene scene = everySurface()) {
   SCOPED_TRACE(fmt::format("{} lights, model {}", lights, int(model)));
-  Scene scene = everySurface();
   Random random{unsigned(lights)};
   lightAround(lights, 0.01, random, scene);
   if (!highlights)
@@ -97,6 +97,19 @@ TEST(LightConfidence, OfFewLightsTheIntervalIsWhatFloatsRound) {
 TEST(LightConfidence, OfFewLightsHighlightsAreWhatFloatsRound) {
   for (const Model model : {Model::kPhong, Model::kBlinnPhong})
     for (const std::size_t lights : {1, 3, 50}) expectSummed(lights, true, model, 0);
+}
+
+// There a light's place in view space isn't a float: it takes two.
+TEST(LightConfidence, OfFewLightsFarFromTheEyeTheIntervalIsWhatFloatsRound) {
+  Scene scene = everySurface();
+  scene.fog = {};
+  Camera& camera = scene.cameras.front();
+  const double distance = 30'000;
+  camera.camera_to_world[3] =
+      glm::dvec4(glm::dvec3(0, 0.5, 0) + distance * glm::dvec3(camera.camera_to_world[2]), 1);
+  camera.fov_y = 2 * std::atan(1.9 / distance);
+  camera.far = 2 * distance;
+  expectSummed(50, false, Model::kPhong, 0, scene);
 }
 
 /// What several seeds gave together.

@@ -228,6 +228,43 @@ TEST(SampledLight, ASmallFloorNarrowsTheIntervalsOfDarkPixels) {
   EXPECT_GT(absolute, 1.5 * relative);
 }
 
+// What the fog hides can't be wrong: the mean square of intervals is what is allowed.
+TEST(SampledLight, FogNarrowsIntervalsAsItDimsTheLight) {
+  Scene scene = sampledScene();
+  scene.fog.mode = FogMode::kExp;
+  scene.fog.density = glm::vec3(0.3f);
+  RenderSettings settings = sampledSettings(scene, {48, 36});
+  settings.shade.light_error = 1.0f / 256;
+  const Image image = picture(scene, settings);
+  double squares = 0, values = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += kChannels) {
+    if (image.pixels[i + kProof] == 1) continue;
+    const double share = image.pixels[i + kError] / (std::max(1.0f, image.pixels[i]) / 256);
+    squares += share * share;
+    ++values;
+  }
+  EXPECT_GT(values, 300);
+  EXPECT_LE(squares, values);
+}
+
+// Part of a pixel's variance is its own.
+TEST(SampledLight, PixelsOfAGroupHaveIntervalsOfTheirOwn) {
+  const Image image = picture(sampledScene(), sampledSettings(sampledScene(), {64, 48}));
+  int pairs = 0, apart = 0;
+  const auto width = [&](std::size_t pixel) {
+    const float* value = &image.pixels[pixel * kChannels];
+    return value[kError] * (1 - value[kProof]);
+  };
+  for (std::size_t i = 0; i + 1 < image.pixels.size() / kChannels; i += 2) {
+    const float one = width(i), other = width(i + 1);
+    if (one == 0 || other == 0) continue;
+    ++pairs;
+    apart += std::abs(one - other) > 1e-3f * one;
+  }
+  EXPECT_GT(pairs, 300);
+  EXPECT_GT(apart, pairs / 2);
+}
+
 TEST(SampledLight, SmallerErrorsAndLargerConfidencesTakeMoreRays) {
   RenderSettings settings = sampledSettings(sampledScene(), {48, 36});
   const auto rays = [&](float error, double confidence) {
