@@ -206,20 +206,27 @@ TEST(SampledLight, AddsUpWithClustersAndLightsOneByOne) {
   EXPECT_LT(stats.light_error.proven, 0.95 * stats.light_error.sum);
 }
 
+/// The mean square of the intervals of sampled pixels, as shares of `error` times the larger of `least` and
+/// the colour.
+double meanSquareShare(const Image& image, float error, float least) {
+  double squares = 0;
+  int values = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += kChannels) {
+    if (image.pixels[i + kProof] == 1) continue;
+    const double share = image.pixels[i + kError] / (error * std::max(least, image.pixels[i]));
+    squares += share * share;
+    ++values;
+  }
+  EXPECT_GT(values, 50);
+  return squares / values;
+}
+
 TEST(SampledLight, ASmallFloorNarrowsTheIntervalsOfDarkPixels) {
   const Scene scene = sceneWith(gridOfLights(30, 0.8, kCasts));
   RenderSettings settings = sampledSettings(scene, {48, 36});
   settings.shade.light_error = 1.0f / 512;
   const auto meanShare = [&] {
-    const Image image = picture(scene, settings);
-    double squares = 0, values = 0;
-    for (std::size_t i = 0; i < image.pixels.size(); i += kChannels) {
-      if (image.pixels[i + kError] == 0) continue;
-      const double share = image.pixels[i + kError] / (std::max(0.05f, image.pixels[i]) / 512);
-      squares += share * share;
-      ++values;
-    }
-    return std::sqrt(squares / values);
+    return std::sqrt(meanSquareShare(picture(scene, settings), settings.shade.light_error, 0.05f));
   };
   const double absolute = meanShare();
   settings.shade.light_error_floor = 0.05f;
@@ -235,16 +242,7 @@ TEST(SampledLight, FogNarrowsIntervalsAsItDimsTheLight) {
   scene.fog.density = glm::vec3(0.3f);
   RenderSettings settings = sampledSettings(scene, {48, 36});
   settings.shade.light_error = 1.0f / 256;
-  const Image image = picture(scene, settings);
-  double squares = 0, values = 0;
-  for (std::size_t i = 0; i < image.pixels.size(); i += kChannels) {
-    if (image.pixels[i + kProof] == 1) continue;
-    const double share = image.pixels[i + kError] / (std::max(1.0f, image.pixels[i]) / 256);
-    squares += share * share;
-    ++values;
-  }
-  EXPECT_GT(values, 300);
-  EXPECT_LE(squares, values);
+  EXPECT_LE(meanSquareShare(picture(scene, settings), settings.shade.light_error, 1), 1);
 }
 
 // Part of a pixel's variance is its own.
