@@ -1,5 +1,6 @@
 # Run when a test program is built: writes OUTPUT, which makes its suites entries of ctest. Tests of a suite share a process, the kernels that
-# it compiled and its devices. PROGRAM: made with GoogleTest; APART: suites of which each test is an entry; CACHE: PoCL's.
+# it compiled and its devices. No process outlives a test (LUCIOLE_HELPERS).
+# PROGRAM: made with GoogleTest; APART: suites of which each test is an entry; CACHE: PoCL's.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 # What follows a # are values of parameters.
 string(REGEX REPLACE " *#[^\n]*" "" list "${list}")
@@ -21,7 +22,7 @@ foreach(line IN LISTS list)
   endif()
   if(filter)
     string(APPEND entries "add_test(\"${name}\" \"${PROGRAM}\" \"--gtest_filter=${filter}\")\n"
-      "set_tests_properties(\"${name}\" PROPERTIES ENVIRONMENT \"POCL_CACHE_DIR=${CACHE}\" FAIL_REGULAR_EXPRESSION \"Running 0 tests\"\n"
+      "set_tests_properties(\"${name}\" PROPERTIES ENVIRONMENT \"POCL_CACHE_DIR=${CACHE};LUCIOLE_HELPERS=0\" FAIL_REGULAR_EXPRESSION \"Running 0 tests\"\n"
       "  SKIP_REGULAR_EXPRESSION \"PASSED  . 0 tests[.]\\n.  SKIPPED\")\n")
   endif()
 endforeach()

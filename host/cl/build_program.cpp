@@ -11,19 +11,19 @@
 #include "base/machine_memory.hpp"
 #include "cl/driver_call.hpp"
 #include "cl/kernel_source.hpp"
+#include "cl/pocl_cache.hpp"
 #include "cl/program_cache.hpp"
 
 namespace luciole {
 namespace {
 
-constexpr std::string_view kPocl = "Portable Computing Language";
-
 /// Platforms without our cache: two have a cache of their own, and Oclgrind, which interprets kernels to find
 /// their mistakes, needs their source.
-constexpr std::string_view kWithoutOurCache[] = {kPocl, "NVIDIA CUDA", "Oclgrind"};
+constexpr std::string_view kWithoutOurCache[] = {kPoclPlatform, "NVIDIA CUDA", "Oclgrind"};
 
-/// Prefixes of environment variables that change the output of Intel's compilers.
-constexpr std::string_view kCompilerSettings[] = {"CL_CONFIG_", "IGC_"};
+/// Prefixes of environment variables that change what Intel's and PoCL's compilers make.
+constexpr std::string_view kCompilerSettings[] = {"CL_CONFIG_", "IGC_", "POCL_EXTRA_BUILD_FLAGS",
+                                                  "POCL_WORK_GROUP_METHOD"};
 
 /// Bytes of memory that must be free when a program is compiled: the compiler's part of kPlatformBytes
 /// (device.cpp), measured in the same way.
@@ -41,7 +41,7 @@ cl::Program built(const OpenedDevice& device, const std::string& source, const s
 
 cl::Program compile(const OpenedDevice& device, const std::string& source, const std::string& options) {
   requireMemory(kCompilerBytes, "compiling kernels");
-  if (device.description.platform == kPocl) {
+  if (device.description.platform == kPoclPlatform) {
     try {
       return built(device, kernelSource("builtins.clh") + source, options + " -D_OPENCL_H_");
     } catch (const cl::BuildError& error) {

@@ -21,6 +21,7 @@
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 #include "cl/driver_call.hpp"
+#include "cl/pocl_cache.hpp"
 #include "luciole/error.hpp"
 
 namespace luciole {
@@ -167,7 +168,7 @@ std::size_t selectDevice(std::span<const DeviceDescription> devices, const std::
   const std::string wanted = lowered(selector.substr(0, selector.find(kLanesSuffix)));
   if (wanted.empty()) {
     for (std::size_t i = 0; i < devices.size(); ++i)
-      if (devices[i].platform == "Portable Computing Language") return i;
+      if (devices[i].platform == kPoclPlatform) return i;
     return 0;
   }
   if (wanted == kAllDevices)
@@ -189,7 +190,9 @@ void openDevice(const std::string& selector, OpenedDevice& device) {
   for (const FoundDevice& one : found) descriptions.push_back(one.description);
   const FoundDevice& chosen = found[selectDevice(descriptions, selector)];
   device.description = chosen.description;
+  device.selector = selector;
   device.program_cache = programCacheOf(chosen.description.platform);
+  if (chosen.description.platform == kPoclPlatform) device.pocl_cache = poclCache();
   if (const std::size_t suffix = selector.find(kLanesSuffix); suffix != std::string::npos) {
     const auto lanes = parseNumber(std::string_view(selector).substr(suffix + kLanesSuffix.size()));
     if (lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)

@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "base/clock.hpp"
+#include "cl/pocl_cache.hpp"
 
 namespace luciole {
 namespace {
@@ -22,7 +23,7 @@ double now() {
 }  // namespace
 
 std::optional<int> kernelsCompiled(const std::string& platform) {
-  if (platform != "Portable Computing Language") return std::nullopt;
+  if (platform != kPoclPlatform) return std::nullopt;
   // PoCL loads each compiled kernel as a shared object from its cache: one younger than the program's start
   // wasn't in the cache before.
   struct Search {

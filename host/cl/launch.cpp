@@ -4,15 +4,45 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "cl/build_program.hpp"
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 #include "cl/driver_call.hpp"
 #include "cl/kernel_source.hpp"
+#include "cl/pocl_cache.hpp"
 
 namespace luciole {
 namespace {
+
+/// The compiler's option for a program that is compiled quickly.
+constexpr const char* kQuickly = " -cl-opt-disable";
+
+/// The compiler's options for any program with these defines.
+std::string optionsFor(const OpenedDevice& device, const std::string& defines) {
+  // -w: clang warns about vectors wider than the processor's, and prints the number of warnings to standard
+  // error.
+  return fmt::format("-cl-std=CL1.2 -w {} -cl-kernel-arg-info -DLANES={} {}", device.arithmetic,
+                     device.description.lanes, defines);
+}
+
+/// Builds a program, quickly if the device says so and PoCL hasn't kept it optimized.
+Program build(const OpenedDevice& device, const std::string& source, std::string options) {
+  if (device.pocl_cache.empty()) return buildProgram(device, source, options);
+  std::string description = describeProgram(device, source, options);
+  bool is_listed = isListed(device.pocl_cache, description);
+  const bool quickly = device.compiles_quickly && !is_listed;
+  if (quickly) {
+    options += kQuickly;
+    description = describeProgram(device, source, options);
+    is_listed = isListed(device.pocl_cache, description);
+  }
+  Program program = buildProgram(device, source, options);
+  if (!is_listed) program.unlisted = std::move(description);
+  program.is_quick = quickly;
+  return program;
+}
 
 /// The kernel `name` of the program with this key and these defines. A program that isn't there yet is built
 /// from what source() returns.
@@ -21,14 +51,11 @@ Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* na
                     const std::string& defines, Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
-    // -w: clang warns about vectors wider than the processor's, and prints the number of warnings to standard
-    // error.
-    const std::string options = fmt::format("-cl-std=CL1.2 -w {} -cl-kernel-arg-info -DLANES={} {}",
-                                            device.arithmetic, device.description.lanes, defines);
+    const std::string options = optionsFor(device, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {
       const TraceSpan span("build program", {{"kernel", name}, {"defines", defines}});
-      place = device.programs.emplace(options + key, buildProgram(device, source(), options)).first;
+      place = device.programs.emplace(options + key, build(device, source(), options)).first;
     }
     const Program& program = place->second;
     const cl::Kernel kernel = callDriver([&] { return cl::Kernel(program.program, name); });
@@ -95,6 +122,29 @@ Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* nam
 Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
                             const std::string& defines) {
   return makeKernelOf(device, source, name, defines, [&] { return source; });
+}
+
+bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines) {
+  if (device.pocl_cache.empty()) return true;
+  const std::string source = kernelSource(file), options = optionsFor(device, defines);
+  const auto is_kept = [&](const std::string& with) {
+    return isListed(device.pocl_cache, describeProgram(device, source, with));
+  };
+  return is_kept(options) || (device.compiles_quickly && is_kept(options + kQuickly));
+}
+
+bool hasQuickPrograms(OpenedDevice& device) {
+  const std::lock_guard lock(device.programs_mutex);
+  return std::any_of(device.programs.begin(), device.programs.end(),
+                     [](const auto& one) { return one.second.is_quick; });
+}
+
+void listCompiled(OpenedDevice& device) {
+  const std::lock_guard lock(device.programs_mutex);
+  std::vector<std::string> compiled;
+  for (auto& [key, program] : device.programs)
+    if (!program.unlisted.empty()) compiled.push_back(std::exchange(program.unlisted, ""));
+  if (!compiled.empty()) addToList(device.pocl_cache, compiled);
 }
 
 void launch(OpenedDevice& device, Kernel& kernel, const std::vector<KernelArgument>& arguments,

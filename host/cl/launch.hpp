@@ -133,6 +133,16 @@ Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* nam
 Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
                             const std::string& defines);
 
+/// Whether makeKernel() would find this program's machine code on disk, as far as is known. Of platforms
+/// other than PoCL it isn't known, and taken so. Throws cl::Error.
+bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines);
+
+/// Whether any program of the device was compiled quickly.
+bool hasQuickPrograms(OpenedDevice& device);
+
+/// Call it when all kernels of the device's programs have run: notes that PoCL has their machine code now.
+void listCompiled(OpenedDevice& device);
+
 /// The size of a launch. A kernel's result may not depend on `group`, because it is halved until the device
 /// takes it.
 struct WorkItems {

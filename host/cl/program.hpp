@@ -23,6 +23,9 @@ struct Program {
   /// Of all its kernels, if it was built from a binary: OpenCL provides them only for programs built from
   /// source.
   KernelArguments arguments;
+  /// Its description (describeProgram) until it is on the list of what PoCL has kept (pocl_cache.hpp).
+  std::string unlisted = {};
+  bool is_quick = false;  ///< compiled without optimization
 };
 
 }  // namespace luciole

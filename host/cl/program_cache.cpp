@@ -26,12 +26,6 @@ constexpr const char* kExtension = ".program";
 /// A file larger than this is none of ours.
 constexpr std::uintmax_t kLargestFile = 256 << 20;
 
-/// FNV-1a (Fowler, Noll, Vo) of 64 bits, in hexadecimal.
-std::string hashOf(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  return fmt::format("{:016x}", hash);
-}
 constexpr std::size_t kHashLength = 16;
 
 files::path placeOf(const std::string& folder, const std::string& description) {
@@ -96,6 +90,12 @@ void removeOldest(const std::string& folder, std::uintmax_t most_bytes) {
 }
 
 }  // namespace
+
+std::string hashOf(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+  return fmt::format("{:016x}", hash);
+}
 
 std::string userCache(const char* kind) {
   const char* const cache = std::getenv("XDG_CACHE_HOME");

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cl/program.hpp"
@@ -16,6 +17,9 @@ struct KeptProgram {
   std::vector<unsigned char> binary;
   KernelArguments arguments;  ///< of all its kernels
 };
+
+/// FNV-1a (Fowler, Noll, Vo) of 64 bits, as 16 hexadecimal digits.
+std::string hashOf(std::string_view bytes);
 
 /// luciole/`kind` in $XDG_CACHE_HOME or, without that, in $HOME/.cache. Empty if there is neither.
 std::string userCache(const char* kind);

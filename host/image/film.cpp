@@ -23,6 +23,7 @@
 
 #include "base/cleanup.hpp"
 #include "base/output_file.hpp"
+#include "base/spawn.hpp"
 #include "base/write_file.hpp"
 #include "image/file_format.hpp"
 #include "image/row_file.hpp"
@@ -154,27 +155,15 @@ struct Film::State {
       throw MachineError(fmt::format("{}: can't start ffmpeg: {}", path, systemReason()));
     const Descriptor read_end(ends[0]);
     input.number = ends[1];
-    std::vector<std::string> arguments = ffmpegArguments(format, width, height, rate);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, read_end.number, STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, messages.number, STDERR_FILENO);
     posix_spawn_file_actions_adddup2(&actions, file.descriptor(), kFilmDescriptor);
-    // It takes signals, whatever this program does with them.
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
     const auto lock = holdSignals();
     const int error =
-        posix_spawn(&child, findProgram("ffmpeg").c_str(), &actions, &attributes, pointers.data(), environ);
-    posix_spawnattr_destroy(&attributes);
+        spawnProgram(findProgram("ffmpeg"), ffmpegArguments(format, width, height, rate), actions, 0, child);
     posix_spawn_file_actions_destroy(&actions);
     if (error == 0) return void(killing.emplace([pid = child] { kill(pid, SIGKILL); }));
     child = -1;

@@ -1,24 +1,60 @@
 #include "lighting/compile_kernels.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <memory>
 #include <utility>
 
 #include "base/trace.hpp"
+#include "cl/launch.hpp"
 #include "kernels/shared.h"
+#include "lighting/compile_helper.hpp"
 #include "lighting/light_gbuffer.hpp"
+#include "lighting/stages.hpp"
 
 namespace luciole {
+namespace {
 
-void compileKernels(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings) {
-  GBuffer empty;  // one tile of background
+/// Users who wait longer than this are told what for.
+constexpr std::chrono::milliseconds kLongWait(300);
+
+/// One tile of background, with all groups of planes: the kernels load a row's values before they know that
+/// it is background.
+GBuffer emptyTile() {
+  GBuffer empty;
   empty.tiles_x = empty.tiles_y = 1;
   empty.position.assign(3 * kTilePixels, -std::numeric_limits<float>::infinity());
-  // All groups must be there, because the kernel loads a row's values before it knows that it is background.
   for (Plane* group : {&empty.normal, &empty.diffuse, &empty.ambient, &empty.emission})
     group->assign(3 * kTilePixels, 0.0f);
   empty.specular.assign(4 * kTilePixels, 0.0f);
+  return empty;
+}
+
+/// Starts the helper on those beams of the picture's programs that have to be compiled.
+void startBeams(OpenedDevice& device, const CompileTask& picture, HelperProcess& helper) {
+  CompileTask beams{{}, picture.settings, {.others = false}, device.compiles_quickly};
+  for (const FeatureSet& features : picture.programs)
+    if (features.has(Feature::kExact) &&
+        !isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))))
+      beams.programs.push_back(features);
+  if (!beams.programs.empty()) helper.start(device, beams);
+}
+
+/// Calls the device's check of itself, with a kernel that is compiled as those of the picture are.
+void checkItself(OpenedDevice& device) {
+  if (!device.self_check) return;
+  const bool compiles_quickly = std::exchange(device.compiles_quickly, hasQuickPrograms(device));
+  std::exchange(device.self_check, nullptr)();
+  device.compiles_quickly = compiles_quickly;
+}
+
+}  // namespace
+
+void compileKernels(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings,
+                    KernelChoice choice) {
+  const GBuffer empty = emptyTile();
+  const Scene nothing;
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
   lighting.group_log2 = groupLog2(settings.tile_size);
@@ -29,22 +65,46 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     lighting.maps.host.bin_count = 1;
   }
   borrowMaps(device, lighting.maps);
-  if (features.triangleTree())
+  const bool beams = choice.beams && features.has(Feature::kExact);
+  if (beams || features.has(Feature::kSampledLights))
     prepareBeams(device, {}, std::make_shared<const TriangleTree>(buildTriangleTree({}, {})), nullptr,
                  features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
   finishLightSet(device, lighting.lights);
   Stats ignored;
-  lightGBuffer(device, {}, lighting, {.lights = lighting.lights, .features = features, .gbuffer = empty},
-               ignored);
+  LightPass pass{.lights = lighting.lights,
+                 .features = features,
+                 .gbuffer = empty,
+                 .counts = {.in_range = choice.counts}};
+  if (beams) {
+    const Points points = pointsOnDevice(device, empty, features, false);
+    LightLists empty_list;
+    empty_list.tiles = 1;
+    reserve(device, 2, empty_list.starts);
+    fill(device, empty_list.starts, 0);
+    timed(ignored, Stage::kBeamShadows, [&] {
+      decideBeams({device, nothing, lighting, pass, points, empty_list});
+    });
+  }
+  if (choice.others) lightGBuffer(device, nothing, lighting, std::move(pass), ignored);
+  listCompiled(device);
 }
 
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
-                                   const ShadeSettings& settings) {
-  return std::async(std::launch::async, [&device, &programs, &settings] {
+                                   const ShadeSettings& settings, bool little_work) {
+  return std::async(std::launch::async, [&device, &programs, &settings, little_work] {
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
-    for (const FeatureSet& features : programs) compileKernels(device, features, settings);
+    device.compiles_quickly = !device.helper.empty() && device.makes_one_picture && little_work;
+    const CompileTask picture{programs, settings, {.counts = true}};
+    HelperProcess helper;
+    startBeams(device, picture, helper);
+    for (const FeatureSet& features : programs) compileKernels(device, features, settings, {.beams = false});
+    checkItself(device);
+    if (!helper.await() && device.warn)
+      device.warn("a process that compiled kernels failed; they are compiled in this one");
+    for (const FeatureSet& features : programs) compileKernels(device, features, settings, {.others = false});
+    if (hasQuickPrograms(device)) device.left_over = argumentsOf(device, picture);
     return endStage(Stage::kCompileKernels, begin);
   });
 }
@@ -52,7 +112,7 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
 void awaitKernels(std::future<double>& compiling, OpenedDevice& device, const RenderSettings& settings,
                   Stats& stats) {
   const double milliseconds = timed(stats, Stage::kWaitForKernels, [&] {
-    if (settings.on_long_compile && compiling.wait_for(std::chrono::seconds(1)) != std::future_status::ready)
+    if (settings.on_long_compile && compiling.wait_for(kLongWait) != std::future_status::ready)
       settings.on_long_compile();
     return compiling.get();
   });

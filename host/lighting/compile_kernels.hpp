@@ -10,15 +10,25 @@
 
 namespace luciole {
 
+/// Kernels that can be compiled side by side.
+struct KernelChoice {
+  bool beams = true;    ///< kernels/exact/beam_shadows.cl, which takes longest
+  bool others = true;   ///< all others that light
+  bool counts = false;  ///< those that count lights for statistics
+};
+
 /// Compiles the kernels for these features down to machine code, by lighting one tile of background: OpenCL
 /// compiles a kernel at its first launch. Throws MachineError.
-void compileKernels(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings);
+void compileKernels(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings,
+                    KernelChoice choice = {});
 
-/// Compiles the programs of these feature sets in a thread of its own, once the device is open. The future's
-/// value is the milliseconds that it took. Its destructor waits for the thread, which refers to the
-/// arguments.
+/// Compiles the programs of these feature sets in a thread of its own, once the device is open, then calls
+/// OpenedDevice::self_check. Where the device has a helper (compile_helper.hpp) it compiles beams meanwhile;
+/// and if the device makes one picture, which is `little_work`, programs that PoCL hasn't kept are compiled
+/// quickly, and OpenedDevice::left_over is set. The future's value is the milliseconds that it took. Its
+/// destructor waits for the thread, which refers to the arguments.
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
-                                   const ShadeSettings& settings);
+                                   const ShadeSettings& settings, bool little_work);
 
 /// Waits for the kernels of startCompiling(), and adds the times of waiting, compiling and opening the device
 /// to the statistics. Calls RenderSettings::on_long_compile. Throws what the thread threw.

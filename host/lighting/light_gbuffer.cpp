@@ -60,7 +60,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   const StageInput input{device, scene, lighting, pass, points, by_lists ? lighting.lists : no_lists};
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
   if (features.shadowMaps()) drawNeededMaps(input, lighting.maps, stats);
-  if (features.has(Feature::kExact)) computeExactShadows(input, lit, stats);
+  if (features.has(Feature::kExact) && lighting.beams.tree) computeExactShadows(input, lit, stats);
   // Lives to the end: Oclgrind takes a buffer for unwritten if it reuses the address of a freed one.
   const PairBuffers pairs = borrowPairs(device, lit.pairs);
   ShadeFrame frame = pass.lights.frame;

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "setting.hpp"
 #include "shared_files.hpp"
 
 namespace luciole::test {
@@ -122,23 +123,6 @@ TEST(ProgramCache, WhatWasUsedLongestAgoMakesRoom) {
   for (const char* name : {"a", "c", "d"}) EXPECT_TRUE(findProgram(folder.path(), name)) << name;
   EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
 }
-
-/// Sets a variable of the environment, or removes it, until the end of the test.
-class Setting {
- public:
-  Setting(const char* name, std::optional<std::string> value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    set(value);
-  }
-  ~Setting() { set(old_); }
-
- private:
-  void set(const std::optional<std::string>& value) {
-    value ? setenv(name_, value->c_str(), 1) : unsetenv(name_);
-  }
-  const char* name_;
-  std::optional<std::string> old_;
-};
 
 TEST(UserProgramCache, IsBelowTheUsersCacheFolder) {
   const Setting home("HOME", "/home/someone");

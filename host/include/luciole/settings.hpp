@@ -149,7 +149,7 @@ struct RenderSettings {
   int band_height = 0;
   /// Called after each pass over a band, if set: how many rows are done, of how many, in all passes together.
   std::function<void(int done, int rows)> on_pass = {};
-  /// Called once if set and a picture has waited a second for its kernels to be compiled.
+  /// Called once if set and a picture has waited 0.3 s for its kernels to be compiled.
   std::function<void()> on_long_compile = {};
 
   /// Whether `aovs` has this layer.

@@ -28,6 +28,7 @@
 #include "base/machine_memory.hpp"
 #include "base/output_file.hpp"
 #include "base/utf8.hpp"
+#include "lighting/compile_helper.hpp"
 #include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
@@ -259,6 +260,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addGenerateCommand(app, context);
   addInfoCommand(app, context);
   addDevicesCommand(app, context);
+  addCompileCommand(app, context);
   addManCommand(app);
   addCompletionCommand(app);
   std::string topic;
@@ -314,6 +316,7 @@ int main(int argument_count, char** arguments) {
   logEvent("start", {{"command", context.command_line}, {"version", LUCIOLE_VERSION}});
   const int status = flushOutput(runCommand(argument_count, arguments, context));
   ignoreSignals();
+  startLeftOver(context.device);
   logEnd(status);
   if (kIsSanitized) return status;
   // All files are closed. To take the device's compiler apart would cost 6 ms, and 100 where it has compiled.

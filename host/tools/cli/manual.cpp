@@ -41,11 +41,19 @@ const Terms kManualVariables{
      "in the folders fonts of these places DejaVuSans.ttf is looked for, which labels are drawn with"},
     {"PATH", "where the program ffmpeg is looked for, which makes films"},
     {"POCL_CACHE_DIR", "read by PoCL: where it keeps the kernels that it compiled"},
+    {"POCL_KERNEL_CACHE", "read by PoCL: 0 lets it keep none"},
+    {"LUCIOLE_HELPERS",
+     "0: no process but the command's own compiles kernels. Otherwise another may compile some of them "
+     "meanwhile, and the first picture is made by kernels that are compiled in a third of the time, with the "
+     "same bits, but run slower: then one compiles the fast ones when the command has ended, at the lowest "
+     "priority, for some seconds"},
     {"XDG_CACHE_HOME, HOME", "the folder of caches is the first, or .cache in the second"},
     {"OCL_ICD_VENDORS", "read by the OpenCL loader: where it looks for devices' drivers"}};
 
 const Terms kManualFiles{
-    {"~/.cache/pocl/kcache", "kernels that PoCL compiled; without them the next start takes a second longer"},
+    {"~/.cache/pocl/kcache",
+     "kernels that PoCL compiled; without them the next start takes a second longer. luciole-programs there "
+     "lists those of this program"},
     {"~/.cache/luciole/programs", "kernels of platforms that don't keep them themselves, at most 64 MiB"},
     {"~/.cache/luciole/checks", "for each device and driver, whether it computes as every other does"},
     {".NAME.lock",

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <future>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "luciole/error.hpp"
@@ -20,6 +23,14 @@ std::string differenceOf(const DeviceDescription& device, const std::vector<std:
   if (wrong.empty()) return "";
   return fmt::format("{}: its pictures may have other bits than those of other devices: {}", device.name,
                      wrong.front());
+}
+
+/// This program's file, which compiles kernels in processes of its own; empty with LUCIOLE_HELPERS=0.
+std::string helperProgram() {
+  const char* const setting = std::getenv("LUCIOLE_HELPERS");
+  if (setting && std::string_view(setting) == "0") return "";
+  std::error_code unknown;
+  return std::filesystem::read_symlink("/proc/self/exe", unknown);
 }
 
 /// Checks a device that is open, notes the hash of its arithmetic, and says how it differs from others.
@@ -90,20 +101,28 @@ std::list<Sharer> openAllDevices(const PictureOptions& options, CommandContext& 
 
 }  // namespace
 
-void startCheckedDevice(const PictureOptions& options, CommandContext& context) {
-  startDevice(options.device, context.device,
-              [&context, require = options.require_exact, quiet = options.quiet] {
-                const std::string difference = checkDevice(context.device);
-                if (difference.empty()) return;
-                if (require) throw MachineError("--require-exact: " + difference);
-                if (!quiet) reportWarning(difference + kCheckHint);
-              });
+void startCheckedDevice(const PictureOptions& options, CommandContext& context, bool makes_one_picture) {
+  OpenedDevice& device = context.device;
+  device.helper = helperProgram();
+  device.makes_one_picture = makes_one_picture;
+  if (!options.quiet) device.warn = reportWarning;
+  if (options.require_exact)
+    return startDevice(options.device, device, [&device] {
+      const std::string difference = checkDevice(device);
+      if (!difference.empty()) throw MachineError("--require-exact: " + difference);
+    });
+  device.self_check = [&device, quiet = options.quiet] {
+    const std::string difference = checkDevice(device);
+    if (!difference.empty() && !quiet) reportWarning(difference + kCheckHint);
+  };
+  startDevice(options.device, device);
 }
 
-std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context) {
+std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context,
+                               bool makes_one_picture) {
   if (options.device.substr(0, options.device.find(',')) == kAllDevices)
     return openAllDevices(options, context);
-  startCheckedDevice(options, context);
+  startCheckedDevice(options, context, makes_one_picture);
   std::list<Sharer> one;
   one.push_back({&context.device});
   return one;

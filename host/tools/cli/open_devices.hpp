@@ -9,14 +9,16 @@
 
 namespace luciole {
 
-/// Opens the device that --device names in a thread of its own (see startDevice), which also checks its
-/// arithmetic. If not, it warns, or with --require-exact throws MachineError.
-void startCheckedDevice(const PictureOptions& options, CommandContext& context);
+/// Opens the device that --device names in a thread of its own (see startDevice). Its arithmetic is checked
+/// when the picture's kernels are compiled: if it is wrong, this warns, or with --require-exact throws
+/// MachineError. makes_one_picture: see OpenedDevice.
+void startCheckedDevice(const PictureOptions& options, CommandContext& context, bool makes_one_picture);
 
 /// The same for all devices that render the picture: one, or with --device all every device that can be
 /// opened and whose arithmetic is right; these are open on return. Warns of others. Throws MachineError, for
 /// all devices if none is left.
-std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context);
+std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context,
+                               bool makes_one_picture);
 
 /// Writes the used device to the event log.
 void logDevice(const DeviceDescription& device);

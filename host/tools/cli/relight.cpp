@@ -224,7 +224,7 @@ void relight(CommandContext& context, RelightOptions& options) {
         fmt::format("--albedo: the lights of {} are divided by pi already, as every glTF's", options.scene));
   Stats stats;
   stats.command = context.command_line;
-  startCheckedDevice(options, context);
+  startCheckedDevice(options, context, true);
   Scene scene = timed(stats, Stage::kLoadScene, [&] { return openScene(options.scene, frame, options); });
   if (scene.adds_lights) throw InputError(options.scene + ": no lights, expected a scene that has some");
   GBufferInput input = timed(stats, Stage::kReadGBuffer,
@@ -255,7 +255,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
     refuseSurfaceIds(*options);
     Stats stats;
     stats.command = context.command_line;
-    startCheckedDevice(*options, context);
+    startCheckedDevice(*options, context, true);
     const Scene scene =
         timed(stats, Stage::kLoadScene, [&] { return openScene(*scene_path, frame, *options); });
     const GBufferInput input =

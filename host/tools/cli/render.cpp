@@ -514,7 +514,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       readSweeps(options->sweeps);  // before a device is opened
       Stats stats;
       stats.command = context.command_line;
-      std::list<Sharer> sharers = startSharers(*options, context);
+      std::list<Sharer> sharers = startSharers(*options, context, false);
       return renderSweep(sharers, *options, choice.frames.front(), std::move(stats));
     }
     const bool is_film = makesFilm(*options, choice);
@@ -534,7 +534,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     }
     Stats stats;
     stats.command = context.command_line;
-    std::list<Sharer> sharers = startSharers(*options, context);
+    std::list<Sharer> sharers = startSharers(*options, context, !choice.is_list);
     OpenedDevice& device = *sharers.front().device;
     Scene scene = timed(stats, Stage::kLoadScene, [&] {
       return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);

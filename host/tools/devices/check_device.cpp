@@ -47,7 +47,8 @@ std::string keptPlace(const OpenedDevice& device) {
   if (folder.empty()) return "";
   const std::string description =
       describeProgram(device, kernelSource(kKernelFile),
-                      fmt::format("{} -DLANES={}", device.arithmetic, device.description.lanes));
+                      fmt::format("{} -DLANES={}{}", device.arithmetic, device.description.lanes,
+                                  device.compiles_quickly ? " quickly" : ""));
   Sha256 hash;
   hash.add(description.data(), description.size());
   return std::filesystem::path(folder) / hash.hex();

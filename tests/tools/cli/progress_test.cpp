@@ -78,7 +78,7 @@ TEST_F(Progress, OfTheReferenceAndOfAnExperimentShowsTheTimeLeft) {
   EXPECT_THAT(scale, ContainsRegex("run 2 of 4: lights=1[^\r]* left"));
 }
 
-TEST_F(Progress, SaysThatKernelsAreCompiledAfterASecond) {
+TEST_F(Progress, SaysThatKernelsAreCompiledWhereThatTakesLong) {
   // With an empty cache this scene's kernels take seconds.
   const auto cold = [](const std::string& name) {
     return "export POCL_CACHE_DIR=$PWD/" + name + " XDG_CACHE_HOME=$PWD/" + name + "; mkdir " + name + "; ";

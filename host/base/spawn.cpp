@@ -1,0 +1,27 @@
+#include "base/spawn.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include "base/cleanup.hpp"
+
+namespace luciole {
+
+int spawnProgram(const std::string& path, std::vector<std::string> arguments,
+                 const posix_spawn_file_actions_t& actions, short flags, pid_t& child) {
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, short(flags | POSIX_SPAWN_SETSIGMASK));
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  const auto lock = holdSignals();
+  const int error = posix_spawn(&child, path.c_str(), &actions, &attributes, pointers.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  return error;
+}
+
+}  // namespace luciole

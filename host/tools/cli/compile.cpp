@@ -1,0 +1,50 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cl/launch.hpp"
+#include "lighting/compile_helper.hpp"
+#include "tools/cli/commands.hpp"
+#include "tools/devices/check_device.hpp"
+
+namespace luciole {
+namespace {
+
+/// Makes this process wait for all others, and returns whether it is the only one that compiles what pictures
+/// left over.
+bool takesTurn(const OpenedDevice& device) {
+  [[maybe_unused]] const int priority = nice(19);
+  const std::filesystem::path place = std::filesystem::path(device.pocl_cache) / "luciole-compiles";
+  const int file = open(place.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  return file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;  // until the process ends
+}
+
+void compile(const DeviceTask& what, CommandContext& context) {
+  openDevice(what.selector, context.device);
+  const CompileTask& task = what.task;
+  const bool is_left_over = task.choice.counts;
+  if (is_left_over && !takesTurn(context.device)) return;
+  context.device.compiles_quickly = task.quickly;
+  for (const FeatureSet& features : task.programs)
+    compileKernels(context.device, features, task.settings, task.choice);
+  if (!is_left_over) return;
+  knownArithmetic(context.device);
+  listCompiled(context.device);
+}
+
+}  // namespace
+
+/// A helper of other processes of this program (lighting/compile_helper.hpp), which help doesn't list.
+void addCompileCommand(CLI::App& app, CommandContext& context) {
+  CLI::App* command = app.add_subcommand("compile", "compile kernels for another process")->group("");
+  auto words = std::make_shared<std::vector<std::string>>();
+  command->add_option("TASK", *words, "what to compile")->required();
+  command->callback([&context, words] { compile(readTask(*words), context); });
+}
+
+}  // namespace luciole
