@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "scene/json/json_keys.hpp"
 #include "scene/json/json_light.hpp"
 #include "scene/json/json_object.hpp"
+#include "scene/json/plain_lights.hpp"
 #include "scene/posing.hpp"
 
 namespace luciole {
@@ -213,9 +215,11 @@ void readSurroundings(const JsonNode& top, Scene& scene) {
   if (const auto n = find(top, "lighting")) scene.lighting = readBool(*n);
 }
 
-SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where,
-                         std::vector<SceneChange> changes) {
-  SceneFile read;
+namespace {
+
+/// Reads a scene from its text, to which the lights `read` has already belong.
+SceneFile readScene(SceneFile read, const std::string& text, const std::string& file,
+                    const SearchFolders& where, std::vector<SceneChange> changes) {
   Scene& scene = read.scene;
   // Lights and cameras refer to nothing else in the file, so they are read while it is parsed: lights because
   // there may be a million, cameras because their order counts and a JSON object has none.
@@ -268,6 +272,23 @@ SceneFile parseJsonScene(const std::string& text, const std::string& file, const
   refuseUnmade(changes, scene, light_count);
   scene.says_light = saysLight(top);
   return read;
+}
+
+}  // namespace
+
+SceneFile parseJsonScene(const std::string& text, const std::string& file, const SearchFolders& where,
+                         std::vector<SceneChange> changes) {
+  std::optional<PlainLights> plain = changes.empty() ? readPlainLights(text) : std::nullopt;
+  if (plain) {
+    try {
+      SceneFile read;
+      read.scene.lights = std::move(plain->lights);
+      return readScene(std::move(read), plain->rest, file, where, {});
+    } catch (const InputError&) {
+      // Places in the whole text are told below.
+    }
+  }
+  return readScene({}, text, file, where, std::move(changes));
 }
 
 }  // namespace luciole

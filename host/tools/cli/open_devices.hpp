@@ -9,9 +9,9 @@
 
 namespace luciole {
 
-/// Opens the device that --device names in a thread of its own (see startDevice). Its arithmetic is checked
-/// when the picture's kernels are compiled: if it is wrong, this warns, or with --require-exact throws
-/// MachineError. makes_one_picture: see OpenedDevice.
+/// Opens the device that --device names in a thread of its own (see startDevice). Warns if its arithmetic is
+/// wrong, when the picture's kernels are compiled; with --require-exact awaitDevice() throws MachineError
+/// then. makes_one_picture: see OpenedDevice.
 void startCheckedDevice(const PictureOptions& options, CommandContext& context, bool makes_one_picture);
 
 /// The same for all devices that render the picture: one, or with --device all every device that can be
