@@ -33,6 +33,7 @@ GBuffer emptyTile() {
 
 /// Starts the helper on those beams of the picture's programs that have to be compiled.
 void startBeams(OpenedDevice& device, const CompileTask& picture, HelperProcess& helper) {
+  if (device.helper.empty()) return;
   CompileTask beams{{}, picture.settings, {.others = false}, device.compiles_quickly};
   for (const FeatureSet& features : picture.programs)
     if (features.has(Feature::kExact) &&

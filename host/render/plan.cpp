@@ -66,7 +66,7 @@ std::vector<bool> summedCasters(const Scene& scene, const ShadeSettings& setting
 }
 
 /// Whether lighting so many points takes less time by programs that are compiled quickly than to optimize
-/// them: up to 10^8 pairs of a point and a light, which take 0.1 s where they are optimized and 0.7 s where
+/// them: up to 10^8 pairs of a point and a light, which take 0.1 s where they are optimized and 0.6 s where
 /// not, and 1 to 2 s to optimize for. Of lights with ranges few reach a point.
 bool isLittle(const Scene& scene, const FeatureSet& features, double points) {
   if (features.lightError() || features.has(Feature::kSoftExact)) return false;

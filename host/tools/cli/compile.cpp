@@ -15,13 +15,13 @@
 namespace luciole {
 namespace {
 
-/// Makes this process wait for all others, and returns whether it is the only one that compiles what pictures
-/// left over.
+/// Gives this process the lowest priority. Returns whether no other compiles what pictures left over, and
+/// keeps others from it until it ends.
 bool takesTurn(const OpenedDevice& device) {
   [[maybe_unused]] const int priority = nice(19);
   const std::filesystem::path place = std::filesystem::path(device.pocl_cache) / "luciole-compiles";
   const int file = open(place.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  return file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;  // until the process ends
+  return file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
 }
 
 void compile(const DeviceTask& what, CommandContext& context) {
