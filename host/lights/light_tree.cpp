@@ -108,7 +108,7 @@ std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights) {
   });
   sortByKey(keyed);
   std::vector<std::uint32_t> order(lights.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].index;
+  tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) { order[i] = keyed[i].index; });
   return order;
 }
 

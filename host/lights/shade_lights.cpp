@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lights/light_tree.hpp"
 #include "raster/view.hpp"
@@ -20,11 +21,23 @@ constexpr double kNarrowestEdge = 1 - 12 * 0x1p-24;
 /// Prefetch distance in lights, enough to hide the latency of memory.
 constexpr std::size_t kLightsAhead = 12;
 
-void prefetch(const Light& light) {
+void prefetchToWrite(const ShadeLight& light) {
   constexpr std::size_t kLine = 64;
   const char* bytes = reinterpret_cast<const char*>(&light);
-  for (std::size_t i = 0; i < sizeof(Light); i += kLine) __builtin_prefetch(bytes + i);
-  __builtin_prefetch(bytes + sizeof(Light) - 1);
+  for (std::size_t i = 0; i < sizeof(ShadeLight); i += kLine) __builtin_prefetch(bytes + i, 1);
+  __builtin_prefetch(bytes + sizeof(ShadeLight) - 1, 1);
+}
+
+using Places = std::vector<std::uint32_t, RawArrayAllocator<std::uint32_t>>;
+constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::max();
+
+/// The place of each of `lights` lights in `order`, or kNoPlace.
+Places placesIn(std::span<const std::uint32_t> order, std::size_t lights) {
+  Places places(lights);
+  if (order.size() < lights) std::fill(places.begin(), places.end(), kNoPlace);
+  tbb::parallel_for(std::size_t(0), order.size(),
+                    [&](std::size_t i) { places[order[i]] = std::uint32_t(i); });
+  return places;
 }
 
 float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y), float(xyz.z), float(w)}; }
@@ -36,15 +49,19 @@ LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> orde
   const glm::dmat4 world_to_view = worldToView(camera);
   const glm::dmat3 rotation(world_to_view);
   LightArray result(order.size());
-  tbb::parallel_for(std::size_t(0), order.size(), [&](std::size_t i) {
-    // The order is that of space, not of memory.
-    if (i + kLightsAhead < order.size()) prefetch(scene.lights[order[i + kLightsAhead]]);
-    const Light& light = scene.lights[order[i]];
-    ShadeLight& out = result[i];
+  // The order is that of space, not of memory. Lights are read in the order of memory, since the scene's take
+  // more of it, and in small pages.
+  const Places places = placesIn(order, scene.lights.size());
+  tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t i) {
+    if (places[i] == kNoPlace) return;
+    if (i + kLightsAhead < places.size() && places[i + kLightsAhead] != kNoPlace)
+      prefetchToWrite(result[places[i + kLightsAhead]]);
+    const Light& light = scene.lights[i];
+    ShadeLight& out = result[places[i]];
     const glm::dvec3 shines = rotation * light.direction;
     const double range = light.range;
     const double inverse_range2 = light.kind == LightKind::kDirectional ? 0.0 : 1.0 / (range * range);
-    const double edge = std::min(std::cos(light.cutoff), kNarrowestEdge);
+    const double edge = light.cutoff == 0 ? kNarrowestEdge : std::min(std::cos(light.cutoff), kNarrowestEdge);
     double cone_scale = 0;
     // Light from farther away than kFarthestLight comes from the same direction at every visible point. So
     // the light may be moved nearer, by this factor, if its falloff is scaled to match.
@@ -68,7 +85,7 @@ LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> orde
     out.attenuation = pack(glm::dvec3(light.attenuation) * glm::dvec3(1, nearer, nearer * nearer), 0);
     out.khr_window = light.window == RangeWindow::kKhr;
     out.cone = light.falloff == SpotFalloff::kCone;
-    out.shadow = map_of_light.empty() ? kNoShadow : map_of_light[order[i]];
+    out.shadow = map_of_light.empty() ? kNoShadow : map_of_light[i];
   });
   return result;
 }

@@ -15,8 +15,9 @@ struct Keyed {
 
 using KeyedArray = std::vector<Keyed, RawArrayAllocator<Keyed>>;
 
-/// Sorts by key, ascending; elements of one key keep their order. A radix sort from the lowest digit up, on
-/// all cores, of O(n) for any keys. Takes as much memory again as the array has. At most 2³² − 1 elements.
+/// Sorts by key, ascending, and elements of one key by index. On all cores: by radix in O(n), but elements
+/// whose keys differ in their lowest bits only in O(n log n). Takes as much memory again as the array has. At
+/// most 2³² − 1 elements.
 void sortByKey(KeyedArray& elements);
 
 }  // namespace luciole
