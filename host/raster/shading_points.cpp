@@ -227,6 +227,20 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
     whole.sum += sample;
     whole.squares += sample * sample;
   }
+  // Most pixels see one triangle, and neighbours the same.
+  GroupPlace whole_place{};
+  std::uint32_t whole_object = kNoObject, whole_labels = 0;
+  const auto objectOf = [&](std::uint32_t triangle) {
+    return std::uint32_t(grouping.surfaces[triangle].surface.object - grouping.sampled.objects.data());
+  };
+  const auto takeWhole = [&](const std::uint32_t* labels) {
+    whole.triangle = labels[0];
+    whole_labels = std::uint32_t(2 * kept.size()) | 1u;
+    kept.push_back(labels[0]);
+    if (labels[0] == kNoTriangle) return;
+    whole_place = placeOf(whole, labels, grouping);
+    whole_object = objectOf(labels[0]);
+  };
   forEachSquare(part, crop, [&](const glm::ivec2& square) {
     Lanes<std::uint32_t> triangles;
     SquarePlace at;
@@ -240,38 +254,37 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
       const std::uint32_t* labels = samples.labels(pixel - bin_origin, pattern);
       const std::uint32_t number = std::uint32_t(pixel.y - crop.y) * std::uint32_t(out.gbuffer.width) +
                                    std::uint32_t(pixel.x - crop.x);
-      const auto takeFirst = [&](const SampleGroup& group) {
-        const GroupPlace place = placeOf(group, labels, grouping);
+      const auto takeFirst = [&](const SampleGroup& group, const GroupPlace& place, std::uint32_t object) {
         triangles[lane] = group.triangle;
         at.x[lane] += place.mean.x;
         at.y[lane] += place.mean.y;
         at.spread_x[lane] = place.spread.x;
         at.spread_y[lane] = place.spread.y;
         out.samples[number] = std::uint16_t(group.samples);
-        const PlacedObject* object = grouping.surfaces[group.triangle].surface.object;
-        out.objects[number] = std::uint32_t(object - grouping.sampled.objects.data());
+        out.objects[number] = object;
         any = true;
       };
-      const bool alike = allEqual(labels, pattern.count), wanted = grouping.sampled.inner.contains(pixel);
-      if (wanted) {
-        out.labels.places[number] = std::uint32_t(2 * kept.size()) | (alike ? 1u : 0u);
-        kept.insert(kept.end(), labels, labels + (alike ? 1 : pattern.count));
-      }
-      if (alike) {
-        whole.triangle = labels[0];
-        if (whole.triangle != kNoTriangle) takeFirst(whole);
+      const bool wanted = grouping.sampled.inner.contains(pixel);
+      if (allEqual(labels, pattern.count)) {
+        if (whole_labels == 0 || labels[0] != whole.triangle) takeWhole(labels);
+        out.labels.places[number] = whole_labels;
+        if (labels[0] != kNoTriangle) takeFirst(whole, whole_place, whole_object);
         continue;
+      }
+      if (wanted) {
+        out.labels.places[number] = std::uint32_t(2 * kept.size());
+        kept.insert(kept.end(), labels, labels + pattern.count);
       }
       groupByTriangle(labels, grouping);
       if (grouping.groups.size() > 1) mergeGroups(pixel, grouping);
       for (const SampleGroup& group : grouping.groups) {
         if (group.merged) continue;
+        if (group.first != 0 && !wanted) continue;
+        const GroupPlace place = placeOf(group, labels, grouping);
         if (group.first == 0) {
-          takeFirst(group);
+          takeFirst(group, place, objectOf(group.triangle));
           continue;
         }
-        if (!wanted) continue;
-        const GroupPlace place = placeOf(group, labels, grouping);
         further.push_back({number, group.triangle, place.mean.x, place.mean.y, place.spread.x, place.spread.y,
                            std::uint32_t(group.samples)});
       }

@@ -69,7 +69,7 @@ void readRow(const GBuffer& gbuffer, const Plane& color, int y, PixelRow& row) {
 /// for rounding. These are even. Where a reflectance is 0 the light is not a number, and the pixel is
 /// suspect.
 void findSuspects(const PixelRow& above, const PixelRow& row, const PixelRow& below, int first, int end,
-                  std::uint8_t* suspect) {
+                  float most_uneven, std::uint8_t* suspect) {
   std::fill(suspect + first, suspect + end, std::uint8_t(0));
   const float *red = row.color[0].data(), *green = row.color[1].data(), *blue = row.color[2].data();
   const int last = end - 1;
@@ -77,7 +77,7 @@ void findSuspects(const PixelRow& above, const PixelRow& row, const PixelRow& be
     const float *reflectance = row.reflectance[c].data(), *light = row.light[c].data();
     const float *up = above.light[c].data(), *down = below.light[c].data();
     const auto test = [&](int x, int left, int right) {
-      const float allowed = 0.99f * kMostUneven * std::max(std::max(red[x], green[x]), blue[x]);
+      const float allowed = 0.99f * most_uneven * std::max(std::max(red[x], green[x]), blue[x]);
       const float scale = 0.5f * reflectance[x];
       const float across = scale * (std::abs(light[left] - light[x]) + std::abs(light[right] - light[x]));
       const float along = scale * (std::abs(up[x] - light[x]) + std::abs(down[x] - light[x]));
@@ -96,6 +96,7 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
   const GBuffer& gbuffer = shared.gbuffer;
   const std::size_t stride = gbuffer.pixels();
   const int width = gbuffer.width;
+  const float most_uneven = mostUneven(sampled.pattern.count);
   const auto objectAt = [&](const glm::ivec2& pixel) {
     const bool inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < width && pixel.y < gbuffer.height;
     return inside ? shared.objects[std::size_t(pixel.y) * width + pixel.x] : kNoObject;
@@ -117,7 +118,7 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
       most = std::max(most, share * unevenness(row, of_color, gbuffer.diffuse.data() + c * stride));
       brightest = std::max({brightest, of_color[row.before], of_color[row.here], of_color[row.after]});
     }
-    return most > kMostUneven * brightest;
+    return most > most_uneven * brightest;
   };
   std::vector<std::uint8_t> uneven(shared.objects.size());
   const glm::ivec2 crop = sampled.view.crop_origin;
@@ -133,7 +134,7 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
       if (below > y) read(below);
       std::uint8_t* row = uneven.data() + std::size_t(y) * width;
       findSuspects(rows[std::size_t(above % 3)], rows[std::size_t(y % 3)], rows[std::size_t(below % 3)],
-                   first.x, end.x, row);
+                   first.x, end.x, most_uneven, row);
       for (int x = first.x; x < end.x; ++x) {
         const glm::ivec2 pixel(x, y);
         row[x] =

@@ -9,11 +9,12 @@
 namespace luciole {
 
 /// The largest difference between the colour of a pixel's first point and the mean of its neighbours on the
-/// same surface, as a share of the brightest of them. At the edge of a shadow or highlight it is half of the
-/// step, the largest error of the point. One of 16 samples has the same weight.
-constexpr float kMostUneven = 1.0f / 16;
+/// same surface, as a share of the brightest of them, in a picture of so many samples a pixel. At the edge of
+/// a shadow or highlight it is half of the step, the largest error of the point. One sample has the same
+/// weight.
+constexpr float mostUneven(int samples) { return 1.0f / float(samples); }
 
-/// The pixels of sampled.inner whose first points differ by more than kMostUneven from the mean of their
+/// The pixels of sampled.inner whose first points differ by more than mostUneven() from the mean of their
 /// neighbours to the left and right, or above and below: 1 or 0 for each pixel, row by row. With a single
 /// neighbour on the surface half of the difference counts. Colours are divided by the diffuse reflectance,
 /// since points average maps already. color: of the first points, r g b, without exposure.

@@ -1,5 +1,6 @@
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "kernels/shared.h"
@@ -52,6 +53,11 @@ Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
   return part;
 }
 
+glm::vec3 backgroundOf(const LightSet& lights) {
+  const float4& color = lights.frame.background;
+  return {color.x, color.y, color.z};
+}
+
 /// Lists a band's shading points: first those of all pixels' first samples, then the other points of pixels
 /// that see several surfaces, and last every sample of pixels with uneven light.
 struct SharedLister final : PointLister {
@@ -59,6 +65,7 @@ struct SharedLister final : PointLister {
   SampledView sampled;
   SharedSamples shared;  ///< its G-buffer is the layout of all sums
   std::size_t most_points;
+  PointCounts counted;
   PixelSums sums;
   std::vector<PixelSums> layer_sums;  ///< colours and bounds alone
   Image image;
@@ -81,6 +88,12 @@ struct SharedLister final : PointLister {
     shared.gbuffer.camera = picture.settings.camera;
     most_points = pointsAPass(shared.gbuffer.pixels());
     layer_sums.resize(picture.layers.size());
+    const auto has_background = [](const auto& layer) {
+      return backgroundOf(layer.lights) != glm::vec3(0.0f);
+    };
+    counted = {countsCovered(picture.settings) || has_background(picture.lighting) ||
+                   std::any_of(picture.layers.begin(), picture.layers.end(), has_background),
+               picture.settings.wants(Aov::kShadingCount)};
   }
 
   bool next() override {
@@ -145,7 +158,7 @@ struct SharedLister final : PointLister {
                            std::move(picture.recycled.picture));
       uneven = unevenPixels(sampled, shared, lit.color);
       removePoints(uneven, shared);
-      sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit));
+      sums = firstPoints(shared.gbuffer, shared.samples, std::move(lit), counted);
     });
   }
 
@@ -156,9 +169,7 @@ struct SharedLister final : PointLister {
         addPoints(shared.gbuffer, *points, first_list, end_list, lit, gathered.pixels(), sum);
         return;
       }
-      PixelSums first = firstPoints(shared.gbuffer, shared.samples, std::move(lit));
-      sum.color = std::move(first.color);
-      sum.light_error = std::move(first.light_error);
+      sum = firstPoints(shared.gbuffer, shared.samples, std::move(lit), {});
     });
   }
 
@@ -168,9 +179,8 @@ struct SharedLister final : PointLister {
     addCount(picture.stats, "refined_points", refined_points);
     return timed(picture.stats, Stage::kResolve, [&] {
       const auto addUncovered = [&](const LightSet& lights, Plane& color) {
-        const float4& background = lights.frame.background;
-        addBackground({background.x, background.y, background.z}, picture.settings.samples, sums.covered,
-                      color);
+        if (!sums.covered.empty())
+          addBackground(backgroundOf(lights), picture.settings.samples, sums.covered, color);
       };
       addUncovered(picture.lighting.lights, sums.color);
       setColors(shared.gbuffer, sums, picture.settings, image);

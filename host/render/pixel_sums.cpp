@@ -3,25 +3,34 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <utility>
 #include <vector>
 
 namespace luciole {
 
-PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, LitPlanes lit) {
-  const std::size_t n = layout.pixels();
-  PixelSums sums{std::move(lit.color), Plane(n), Plane(n), std::move(lit.light_error),
-                 std::move(lit.half_width)};
+PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, LitPlanes lit,
+                      const PointCounts& counts) {
+  const std::size_t n = layout.pixels(), width = std::size_t(layout.width);
+  PixelSums sums{std::move(lit.color), Plane(counts.covered ? n : 0), Plane(counts.shadings ? n : 0),
+                 std::move(lit.light_error), std::move(lit.half_width)};
   sums.color.resize(3 * n);
-  tbb::parallel_for(0, layout.height, [&](int y) {
-    const std::uint16_t* row = samples.data() + std::size_t(y) * layout.width;
-    for (int x = 0; x < layout.width; ++x) {
-      const std::size_t i = layout.index(x, y);
-      for (Plane* plane : {&sums.color, &sums.light_error, &sums.half_width})
-        for (int c = 0; c < 3 && !plane->empty(); ++c) (*plane)[i + c * n] *= float(row[x]);
-      sums.covered[i] = float(row[x]);
-      sums.shadings[i] = row[x] > 0 ? 1.0f : 0.0f;
-    }
+  const int tiles_x = layout.tiles_x;
+  tbb::parallel_for(0, tiles_x * layout.tiles_y, [&](int tile) {
+    const glm::ivec2 first = glm::ivec2(tile % tiles_x, tile / tiles_x) * int(kTileSize);
+    const std::size_t at = std::size_t(tile) * kTilePixels, origin = layout.index(first.x, first.y);
+    std::array<float, kTilePixels> factors{};
+    const glm::ivec2 end = glm::min(glm::ivec2(kTileSize), glm::ivec2(layout.width, layout.height) - first);
+    for (int y = 0; y < end.y; ++y)
+      for (int x = 0; x < end.x; ++x)
+        factors[layout.index(first.x + x, first.y + y) - origin] =
+            float(samples[std::size_t(first.y + y) * width + std::size_t(first.x + x)]);
+    for (Plane* plane : {&sums.color, &sums.light_error, &sums.half_width})
+      for (int c = 0; c < 3 && !plane->empty(); ++c)
+        for (std::size_t i = 0; i < kTilePixels; ++i) (*plane)[at + i + c * n] *= factors[i];
+    for (std::size_t i = 0; i < kTilePixels && counts.covered; ++i) sums.covered[at + i] = factors[i];
+    for (std::size_t i = 0; i < kTilePixels && counts.shadings; ++i)
+      sums.shadings[at + i] = factors[i] > 0 ? 1.0f : 0.0f;
   });
   return sums;
 }

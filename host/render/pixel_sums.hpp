@@ -19,9 +19,16 @@ struct PixelSums {
   Plane half_width;   ///< the parts of them that aren't proven, r g b
 };
 
+/// What sums hold beside light.
+struct PointCounts {
+  bool covered = false;
+  bool shadings = false;
+};
+
 /// The sums over the first points of the pixels. layout: their G-buffer, whose planes may be empty. samples:
 /// as in SharedSamples. lit: their light.
-PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, LitPlanes lit);
+PixelSums firstPoints(const GBuffer& layout, std::span<const std::uint16_t> samples, LitPlanes lit,
+                      const PointCounts& counts);
 
 /// Adds the lit points of the lists from first_list up to end_list. lit: their planes, laid out as by
 /// gatherPoints(), `stride` floats each.
