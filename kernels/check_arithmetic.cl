@@ -3,7 +3,7 @@
 #include "check_arithmetic.clh"
 
 KERNEL void check_arithmetic(__global const float* in, __global int* out, uint stride) {
-  uint first = get_global_id(0) * LANES, at = first;
+  uint first = work_item() * LANES, at = first;
   floatL a = load_lanes(in + first), b = load_lanes(in + first + stride),
          c = load_lanes(in + first + 2 * stride);
   intL i = as_intL(a), j = as_intL(b);

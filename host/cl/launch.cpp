@@ -112,6 +112,15 @@ std::vector<cl_uint> matchArguments(const Kernel& kernel, const std::vector<Kern
   return places;
 }
 
+/// The number of equal rows in which so many groups of work-items are launched. PoCL compiles a kernel once
+/// more where a row has 65,536 work-items or more, so rows are shorter if the groups can be divided so.
+std::size_t rowsOf(std::size_t groups, std::size_t group) {
+  constexpr std::size_t kLongestRow = 65'535;
+  for (std::size_t rows = (groups * group + kLongestRow - 1) / kLongestRow; rows <= kLongestRow; ++rows)
+    if (groups % rows == 0) return rows;
+  return 1;
+}
+
 }  // namespace
 
 Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name,
@@ -173,8 +182,10 @@ void launch(OpenedDevice& device, Kernel& kernel, const std::vector<KernelArgume
                   {"group", std::int64_t(group)},
                   {"defines", kernel.defines}},
                  [&](cl::Event* event) {
-                   device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange, cl::NDRange(work.items),
-                                                     cl::NDRange(group), nullptr, event);
+                   const std::size_t rows = rowsOf(work.items / group, group);
+                   device.queue.enqueueNDRangeKernel(kernel.kernel, cl::NullRange,
+                                                     cl::NDRange(work.items / rows, rows),
+                                                     cl::NDRange(group, 1), nullptr, event);
                  });
   } catch (const cl::Error& error) {
     throw deviceError(error, what);

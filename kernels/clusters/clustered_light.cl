@@ -556,7 +556,7 @@ KERNEL void clustered_light(ClusterFrame frame, __global const float* position, 
                  {rows, light_rows, frame.light_count, frame.levels},
                  {highlight_rows, highlight_light_rows, frame.light_count, frame.levels},
                  {frame.light_error, frame.least_value}};
-  uint runs = (frame.tiles_x + kClusterRun - 1) / kClusterRun, item = get_global_id(0);
+  uint runs = (frame.tiles_x + kClusterRun - 1) / kClusterRun, item = work_item();
   uint column = item % runs * kClusterRun, first_tile = item / runs * frame.tiles_x + column;
   uint first = first_tile * kTilePixels;
   Tile tile = {position + first, normal + first, diffuse + first, specular + first, frame.shade.plane_stride};

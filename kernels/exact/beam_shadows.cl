@@ -393,7 +393,7 @@ KERNEL void beam_shadows(BeamFrame frame, __global const float* position, __glob
   Scene scene = {nodes, children, blocks,      block_bits, masks, frame.tree_root, {most.x, most.y, most.z},
                  0,     &cache,   &candidates, 0};
   PairBuffers buffers = {position, normal, lift, lights, list_starts, list, lit, unsure, receivers};
-  uint first = get_global_id(0) * kBeamRun;
+  uint first = work_item() * kBeamRun;
   for (uint tile = first; tile < frame.tiles && tile < first + kBeamRun; ++tile)
     shadow_tile(tile, &frame, scene, buffers);
 }

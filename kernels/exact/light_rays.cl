@@ -87,5 +87,5 @@ KERNEL void light_rays(RayFrame frame, __global const LightRay* rays, __global c
                     frame.tree_root,
                     2.0f * greater(most.x, greater(most.y, most.z))};
   RayBuffers buffers = {rays, starts, lights, lit, unsure};
-  trace_run(&scene, &frame, &buffers, get_global_id(0) * kRayRun);
+  trace_run(&scene, &frame, &buffers, work_item() * kRayRun);
 }

@@ -10,7 +10,7 @@
 // tree's space, of all pixels. Those that show nothing are somewhere.
 KERNEL void ray_starts(BeamFrame frame, __global const float* position, __global const float* normal,
                        __global const float* lift, __global float* starts) {
-  uint at = get_global_id(0) * LANES, stride = frame.plane_stride;
+  uint at = work_item() * LANES, stride = frame.plane_stride;
   vec3L p = load_vec3(position + at, stride), n = load_vec3(normal + at, stride);
   p.z = p.z > -INFINITY ? p.z : (floatL)(-1.0f);
   vec3L start = start_points(&frame, p, n, LIFT ? load_lanes(lift + at) : (floatL)(0.0f));

@@ -12,7 +12,7 @@
 KERNEL void count_in_range(__global const float* position, uint plane_stride,
                            __global const ShadeLight* lights, __global const uint* list_starts,
                            __global const ListEntry* list, __global float* counts) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L p = load_vec3(position + first, plane_stride);
   intL covered = p.z > -INFINITY;
   uint tile = first / kTilePixels;

@@ -135,7 +135,7 @@ WORK uint list_lights(Tiles tile, const CullFrame* frame, __global const float* 
 KERNEL void find_lights(CullFrame frame, __global const float* position, __global const float* normal,
                         __global const float* tree, __global const ShadeLight* lights,
                         __global ListEntry* found, __global uint* starts, __global ListEntry* all_lists) {
-  uint tile = get_global_id(0), room = kFoundPerTile;
+  uint tile = work_item(), room = kFoundPerTile;
   __global ListEntry* list = found + tile * kFoundPerTile;
   if (frame.fill) {
     __global const ListEntry* first_found = list;

@@ -85,6 +85,6 @@ KERNEL void find_needed(uint plane_stride, __global const float* position, __glo
                         __global const ShadowMap* shadow_maps, __global const ShadowFace* shadow_faces,
                         __global uint* needed) {
   if (!SHADOW_MAPS) return;
-  note_tile(get_global_id(0), plane_stride, position, normal, lift, lights, light_count, list_starts, list,
+  note_tile(work_item(), plane_stride, position, normal, lift, lights, light_count, list_starts, list,
             shadow_maps, shadow_faces, needed);
 }

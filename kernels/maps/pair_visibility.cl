@@ -18,7 +18,7 @@ KERNEL void pair_visibility(uint stride, __global const float* position, __globa
                             __global const ShadowFace* faces, __global const ShadowTexel* texels,
                             uint texel_count, __global float* visibility) {
   if (!SHADOW_MAPS) return;
-  uint row = get_global_id(0), first = row * LANES;
+  uint row = work_item(), first = row * LANES;
   MapPoint point = receiver_point(maps + map_of_row[row], faces, load_vec3(position + first, stride),
                                   load_vec3(normal + first, stride),
                                   unpack_normal(*(__global const intL*)(surface_normal + first)),

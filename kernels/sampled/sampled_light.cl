@@ -583,7 +583,7 @@ KERNEL void sampled_light(
                         {hole_texels, hole_triangles, first_hole_triangle},
                         frame.tree_root,
                         2.0f * greater(size.x, greater(size.y, size.z))}};
-  size_t first = get_global_id(0) * kMostStrata;
+  size_t first = work_item() * kMostStrata;
   Cut cut = {strata + first,
              heap + first,
              order + first,

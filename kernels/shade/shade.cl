@@ -92,5 +92,5 @@ KERNEL void shade(ShadeFrame frame, __global const float* position, __global con
   Planes planes = {position, normal, diffuse, specular, ambient, emission, surface_normal, lift, model};
   Shadows shadows = {shadow_maps, shadow_faces, shadow_texels, frame.texel_count,
                      pair_bits,   ray_bits,     first_share,   shares};
-  shade_rows(frame, planes, lights, list_starts, list, shadows, get_global_id(0) * (ROWS * LANES), image);
+  shade_rows(frame, planes, lights, list_starts, list, shadows, work_item() * (ROWS * LANES), image);
 }

@@ -254,7 +254,7 @@ KERNEL void shade_tiles(ShadeTilesFrame frame, __global const float* position, _
   Planes planes = {position, normal, diffuse, specular, ambient, emission, surface_normal, 0, model};
   uint width = frame.block_width, height = frame.block_height;
   uint blocks_x = (frame.tiles_x + width - 1) / width, blocks_y = (frame.tiles_y + height - 1) / height;
-  uint blocks = blocks_x * blocks_y, runs = (blocks + kBlockRun - 1) / kBlockRun, item = get_global_id(0);
+  uint blocks = blocks_x * blocks_y, runs = (blocks + kBlockRun - 1) / kBlockRun, item = work_item();
   uint run = (uint)((ulong)(item / kBlockRun) * frame.run_stride % runs);
   uint block = run * kBlockRun + item % kBlockRun;
   if (block >= blocks) return;

@@ -225,5 +225,32 @@ TEST_F(Launch, GroupsGetNoLargerThanTheDeviceTakes) {
   EXPECT_EQ(back, std::vector<uint>(items, uint(std::bit_floor(most))));
 }
 
+TEST_F(Launch, ManyWorkItemsRunOnceEachInRowsForWhichPoclCompilesNoSecondKernel) {
+  Kernel rows =
+      makeKernelFromSource(device,
+                           "__kernel void probe(__global uint *runs, __global uint *widths) {\n"
+                           "  size_t i = get_global_id(1) * get_global_size(0) + get_global_id(0);\n"
+                           "  runs[i] += 1;\n"
+                           "  widths[i] = get_global_size(0);\n"
+                           "}\n",
+                           "probe", "");
+  // Just below PoCL's limit and above it, a picture of 3840 x 2160 pixels, and what can't be divided.
+  constexpr std::size_t kPrime = 65'537;
+  for (const WorkItems work :
+       {WorkItems{65'535}, WorkItems{65'536}, WorkItems{3840 * 2160, 16}, WorkItems{kPrime}}) {
+    std::vector<uint> runs(work.items, 0), widths(work.items, 0);
+    const Buffer<uint> of_runs = borrowedForOutput(device, runs),
+                       of_widths = borrowedForOutput(device, widths);
+    fill(device, of_runs, 0u);
+    launch(device, rows, {{"runs", of_runs}, {"widths", of_widths}}, work);
+    download(device, of_runs, runs);
+    download(device, of_widths, widths);
+    EXPECT_EQ(runs, std::vector<uint>(work.items, 1));
+    if (work.items != kPrime) {
+      EXPECT_LT(widths.front(), 65'536u);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace luciole::test

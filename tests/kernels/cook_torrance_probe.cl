@@ -4,7 +4,7 @@
 #include "shade/cook_torrance.clh"
 
 __kernel void probe_cook_torrance(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L normal = load_vec3(in + first, stride);
   vec3L to_light = load_vec3(in + 3 * stride + first, stride);
   vec3L to_eye = load_vec3(in + 6 * stride + first, stride);

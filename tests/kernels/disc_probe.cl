@@ -4,7 +4,7 @@
 #include "maps/disc.clh"
 
 __kernel void probe_disc(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint i = first; i < first + LANES; ++i) {
     float2 even = even_disc[(uint)in[i] % EVEN_POINTS], dense = dense_disc[(uint)in[i] % DENSE_POINTS];
     out[i] = even.x;

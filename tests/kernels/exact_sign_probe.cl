@@ -3,7 +3,7 @@
 #include "lanes.clh"
 
 __kernel void probe_exact_sign(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint i = first; i < first + LANES; ++i) {
     float4 point[4];
     for (uint k = 0; k < 4; ++k)

@@ -6,7 +6,7 @@
 
 __kernel void probe_falloff(__global const float* in, __global float* out, uint stride,
                             __global const ShadeLight* light) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L to_light = load_vec3(in + first, stride);
   floatL d2 = SQUARED_LENGTH(to_light.x, to_light.y, to_light.z);
   floatL inverse_d = rsqrt_lanes(d2);

@@ -35,7 +35,7 @@ INLINE HighlightGroup group_of(__global const float* in, uint stride, uint i) {
 // join the series.
 __kernel void probe_lobes(__global const float* in, __global float* out, uint stride,
                           __global const float* rows, __global const uint* of_lights) {
-  uint first = get_global_id(0) * LANES, part = first % kClusterSlots / LANES;
+  uint first = work_item() * LANES, part = first % kClusterSlots / LANES;
   bool lights = *of_lights != 0;
   __global const float* row =
       rows + (size_t)(first / kClusterSlots) * ((lights ? kLightFields : kClusterFields) * kClusterSlots);
@@ -78,7 +78,7 @@ __kernel void probe_lobes(__global const float* in, __global float* out, uint st
 // and the exponent's lobe_rounding().
 __kernel void probe_listed_highlights(__global const float* in, __global float* out, uint stride,
                                       __global const float* light_rows, __global const uint* times) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   ClusterTree tree = {light_rows, light_rows, stride, 0};
   for (uint lane = 0; lane < LANES; ++lane) {
     uint i = first + lane;

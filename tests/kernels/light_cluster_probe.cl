@@ -33,7 +33,7 @@ INLINE vec3L from_middle(vec3L position, const PixelGroup* group) {
 // is below all horizons, 2 if above, else 0.
 __kernel void probe_far_cluster(__global const float* in, __global float* out, uint stride,
                                 __global const float* rows) {
-  uint first = get_global_id(0) * LANES, part = first % kClusterSlots / LANES;
+  uint first = work_item() * LANES, part = first % kClusterSlots / LANES;
   __global const float* row = rows + (size_t)(first / kClusterSlots) * (kClusterFields * kClusterSlots);
   for (uint lane = 0; lane < LANES; ++lane) {
     uint i = first + lane;
@@ -70,7 +70,7 @@ __kernel void probe_far_cluster(__global const float* in, __global float* out, u
 // The same of lights: of an open leaf the one that is `light_rows`'. The last is 0 where it is listed.
 __kernel void probe_far_light(__global const float* in, __global float* out, uint stride,
                               __global const float* light_rows) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   ClusterTree tree = {light_rows, light_rows, stride, 0};
   for (uint lane = 0; lane < LANES; ++lane) {
     uint i = first + lane;
@@ -99,7 +99,7 @@ __kernel void probe_far_light(__global const float* in, __global float* out, uin
 // out: the same but for the last, of the sum of all clusters of `row_count` rows.
 __kernel void probe_field_sums(__global const float* in, __global float* out, uint stride,
                                __global const float* rows, __global const uint* row_count) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   PixelGroup group = group_of(in, stride, first);
   FieldSums sums;
   start_field(&sums);
@@ -128,7 +128,7 @@ __kernel void probe_field_sums(__global const float* in, __global float* out, ui
 // out: what a cluster that the pixel's horizon cuts adds to its light, and to the bound, by channel.
 __kernel void probe_cut_cluster(__global const float* in, __global float* out, uint stride,
                                 __global const float* rows) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint lane = 0; lane < LANES; ++lane) {
     uint i = first + lane;
     floatL none = 0.0f;

@@ -4,12 +4,12 @@
 
 #define PROBE_1(name, function)                                                    \
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
-    uint first = get_global_id(0) * LANES;                                         \
+    uint first = work_item() * LANES;                                         \
     store_lanes(out + first, function(load_lanes(in + first)));                    \
   }
 #define PROBE_2(name, function)                                                                  \
   __kernel void name(__global const float* in, __global float* out, uint stride) {               \
-    uint first = get_global_id(0) * LANES;                                                       \
+    uint first = work_item() * LANES;                                                       \
     store_lanes(out + first, function(load_lanes(in + first), load_lanes(in + first + stride))); \
   }
 
@@ -29,7 +29,7 @@ PROBE_2(probe_min, min_lanes)
 
 #define PROBE_3(name, expression)                                                  \
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
-    uint first = get_global_id(0) * LANES;                                         \
+    uint first = work_item() * LANES;                                         \
     floatL a = load_lanes(in + first), b = load_lanes(in + first + stride),        \
            c = load_lanes(in + first + 2 * stride);                                \
     store_lanes(out + first, expression);                                          \
@@ -38,7 +38,7 @@ PROBE_3(probe_fma, fma_lanes(a, b, c))
 PROBE_3(probe_product_and_sum, a* b + c)
 
 __kernel void probe_normalize(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L unit = normalize_lanes(load_vec3(in + first, stride));
   store_lanes(out + first, unit.x);
   store_lanes(out + first + stride, unit.y);
@@ -47,13 +47,13 @@ __kernel void probe_normalize(__global const float* in, __global float* out, uin
 
 // 1 in every lane of a row where any lane is above 0, else 0.
 __kernel void probe_any_lane(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   store_lanes(out + first, (floatL)(any_lane(load_lanes(in + first) > 0.0f) ? 1.0f : 0.0f));
 }
 
 #define PROBE_ROW(name, expression)                                                \
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
-    uint first = get_global_id(0) * LANES;                                         \
+    uint first = work_item() * LANES;                                         \
     floatL row = load_lanes(in + first);                                           \
     store_lanes(out + first, (floatL)((float)(expression)));                       \
   }
@@ -66,7 +66,7 @@ PROBE_ROW(probe_lane_bits, lane_bits(row < 0.0f))
 // packed: by packNormal().
 __kernel void probe_unpack_normal(__global const float* in, __global float* out, uint stride,
                                   __global const uint* packed) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L unit = unpack_normal(*(__global const intL*)(packed + first));
   store_lanes(out + first, unit.x);
   store_lanes(out + first + stride, unit.y);

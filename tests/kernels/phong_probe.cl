@@ -3,7 +3,7 @@
 #include "shade/phong.clh"
 
 __kernel void probe_lobes(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L normal = load_vec3(in + first, stride);
   vec3L to_light = load_vec3(in + 3 * stride + first, stride);
   vec3L to_eye = load_vec3(in + 6 * stride + first, stride);

@@ -8,7 +8,7 @@
 __kernel void plain(__global const float4* position, __global const float4* normal,
                     __global const float4* diffuse, __global const float4* specular,
                     __global const ShadeLight* lights, uint light_count, __global float4* image) {
-  size_t pixel = get_global_id(0);
+  size_t pixel = get_global_id(1) * get_global_size(0) + get_global_id(0);
   float3 p = position[pixel].xyz;
   float3 n = normal[pixel].xyz;
   float3 to_eye = normalize(-p);

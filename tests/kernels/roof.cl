@@ -18,7 +18,7 @@
 // frame.plane_stride floats.
 __kernel void roof(ShadeFrame frame, __global const ShadeLight* lights, uint light_count,
                    __global float* image) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   floatL factor = lights[0].attenuation.x, term = lights[0].position.w, limit = lights[0].diffuse.x;
   intL mask = (intL)((int)lights[0].kind - 1), step = (intL)((int)lights[0].khr_window + 1);
   floatL x[CHAINS];

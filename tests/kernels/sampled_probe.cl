@@ -44,7 +44,7 @@ INLINE LightTrees trees_of(__global const float* rows, __global const float* lig
 __kernel void probe_picks(__global const float* in, __global float* out, uint stride,
                           __global const float* rows, __global const float* light_rows,
                           __global const uint* size) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   LightTrees trees = trees_of(rows, light_rows, size[0], size[1]);
   for (uint i = first; i < first + LANES; ++i) {
     GroupBounds bounds = bounds_of(in, stride, i);
@@ -68,7 +68,7 @@ __kernel void probe_picks(__global const float* in, __global float* out, uint st
 __kernel void probe_cut(__global const float* in, __global float* out, uint stride,
                         __global const float* rows, __global const float* light_rows,
                         __global const uint* size, __global const uint* halves) {
-  if (get_global_id(0) > 0) return;
+  if (work_item() > 0) return;
   LightTrees trees = trees_of(rows, light_rows, size[0], size[1]);
   GroupBounds bounds = bounds_of(in, stride, 0);
   __global uint* places = (__global uint*)(out + kMostStrata * (sizeof(Stratum) / sizeof(float)));
@@ -97,7 +97,7 @@ __kernel void probe_cut(__global const float* in, __global float* out, uint stri
 // in: the weights of kClusterSlots slots, how many of them there are, the picks, and ξ. out: the first pick
 // of each slot, and of the one after the last; the sum.
 __kernel void probe_share_out(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint i = first; i < first + LANES; ++i) {
     float weight[kClusterSlots];
     for (uint slot = 0; slot < kClusterSlots; ++slot) weight[slot] = in[i + slot * stride];
@@ -111,7 +111,7 @@ __kernel void probe_share_out(__global const float* in, __global float* out, uin
 
 // in: kSampledPixels values. out: their sum.
 __kernel void probe_sum_of_pixels(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint i = first; i < first + LANES; ++i) {
     float values[kSampledPixels] ALIGNED;
     for (uint k = 0; k < kSampledPixels; ++k) values[k] = in[i + k * stride];
@@ -122,7 +122,7 @@ __kernel void probe_sum_of_pixels(__global const float* in, __global float* out,
 // in: four numbers of 16 bits. out: the hash of them, halves of 16 bits of each number, the low one first;
 // and random_unit() of 1 2 3 4 and the first two.
 __kernel void probe_random(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint i = first; i < first + LANES; ++i) {
     uint4 v = (uint4)((uint)in[i], (uint)in[i + stride], (uint)in[i + 2 * stride], (uint)in[i + 3 * stride]);
     uint4 hash = hash4(v);
@@ -137,6 +137,6 @@ __kernel void probe_random(__global const float* in, __global float* out, uint s
 
 // in: a place of a pixel in its group of 8 × 8, in Z order. out: its pick.
 __kernel void probe_bayer_pick(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   for (uint i = first; i < first + LANES; ++i) out[i] = (float)bayer_pick((uint)in[i]);
 }

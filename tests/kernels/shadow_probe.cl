@@ -6,7 +6,7 @@
 __kernel void probe_shadow(__global const float* in, __global float* out, uint stride,
                            __global const ShadowMap* map, __global const ShadowFace* faces,
                            __global const ShadowTexel* texels, __global const uint* texel_count) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   MapPoint point =
       map_point(map, faces, load_vec3(in + first, stride), load_vec3(in + 3 * stride + first, stride));
   store_lanes(out + first, map_lookup(map, faces, texels, *texel_count, point));
@@ -16,7 +16,7 @@ __kernel void probe_shadow(__global const float* in, __global float* out, uint s
 __kernel void probe_receiver(__global const float* in, __global float* out, uint stride,
                              __global const ShadowMap* map, __global const ShadowFace* faces,
                              __global const ShadowTexel* texels, __global const uint* texel_count) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   vec3L normal = load_vec3(in + 3 * stride + first, stride);
   MapPoint point = receiver_point(map, faces, load_vec3(in + first, stride), normal, normal,
                                   load_lanes(in + 6 * stride + first));
@@ -27,7 +27,7 @@ __kernel void probe_receiver(__global const float* in, __global float* out, uint
 // else 0.
 __kernel void probe_point(__global const float* in, __global float* out, uint stride,
                           __global const ShadowMap* map, __global const ShadowFace* faces) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   MapPoint point =
       map_point(map, faces, load_vec3(in + first, stride), load_vec3(in + 3 * stride + first, stride));
   store_lanes(out + first, point.x);

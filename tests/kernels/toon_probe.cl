@@ -3,7 +3,7 @@
 #include "shade/toon.clh"
 
 __kernel void probe_toon(__global const float* in, __global float* out, uint stride) {
-  uint first = get_global_id(0) * LANES;
+  uint first = work_item() * LANES;
   floatL x = load_lanes(in + first);
   store_lanes(out + first, toon(x));
   store_lanes(out + first + stride, toon_highlight(x));
