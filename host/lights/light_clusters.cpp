@@ -8,7 +8,6 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace luciole {
@@ -55,30 +54,35 @@ std::size_t forEachRowLevel(unsigned tree_levels, Visit&& visit) {
   return first;
 }
 
-/// Orders order[begin, end) so that each node of the tree below (level, index) holds its part.
-void split(std::span<const UnboundedLight> lights, std::vector<std::uint32_t>& order, unsigned levels,
-           unsigned level, std::size_t index) {
+/// A light to be ordered. Positions lie beside each other, since looking them up takes most of the time.
+struct Placed {
+  glm::dvec3 position;
+  std::uint32_t light;
+};
+
+/// Orders the lights so that each node of the tree below (level, index) holds its part.
+void split(std::vector<Placed>& lights, unsigned levels, unsigned level, std::size_t index) {
   const auto at = [&](unsigned l, std::size_t i) {
-    return order.begin() + std::ptrdiff_t(clusterBegin(order.size(), l, i));
+    return lights.begin() + std::ptrdiff_t(clusterBegin(lights.size(), l, i));
   };
   const auto begin = at(level, index), end = at(level, index + 1);
   if (level == levels) {
     // std::nth_element leaves the order within a leaf unspecified.
-    std::sort(begin, end);
+    std::sort(begin, end, [](const Placed& a, const Placed& b) { return a.light < b.light; });
     return;
   }
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
   for (auto i = begin; i != end; ++i) {
-    low = glm::min(low, lights[*i].position);
-    high = glm::max(high, lights[*i].position);
+    low = glm::min(low, i->position);
+    high = glm::max(high, i->position);
   }
   const glm::dvec3 side = high - low;
   const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-  std::nth_element(begin, at(level + 1, 2 * index + 1), end, [&](std::uint32_t a, std::uint32_t b) {
-    const double x = lights[a].position[axis], y = lights[b].position[axis];
-    return x != y ? x < y : a < b;
+  std::nth_element(begin, at(level + 1, 2 * index + 1), end, [axis](const Placed& a, const Placed& b) {
+    const double x = a.position[axis], y = b.position[axis];
+    return x != y ? x < y : a.light < b.light;
   });
-  const auto half = [&](std::size_t child) { split(lights, order, levels, level + 1, 2 * index + child); };
+  const auto half = [&](std::size_t child) { split(lights, levels, level + 1, 2 * index + child); };
   if (std::size_t(end - begin) < kParallelLights) {
     half(0);
     half(1);
@@ -87,11 +91,26 @@ void split(std::span<const UnboundedLight> lights, std::vector<std::uint32_t>& o
   }
 }
 
-/// Partial sums: as many as a vector has doubles, since compilers may not reorder sums.
-constexpr std::size_t kSumLanes = 8;
-using Doubles = std::array<double, kSumLanes>;
+/// The lights in the order of the tree's nodes.
+std::vector<std::uint32_t> orderOf(std::span<const UnboundedLight> lights, unsigned levels) {
+  std::vector<Placed> placed(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) placed[i] = {lights[i].position, std::uint32_t(i)};
+  if (!lights.empty()) split(placed, levels, 0, 0);
+  std::vector<std::uint32_t> order(lights.size());
+  std::transform(placed.begin(), placed.end(), order.begin(), [](const Placed& one) { return one.light; });
+  return order;
+}
 
-double total(const Doubles& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); }
+/// Partial sums: as many as a vector has doubles, since compilers may not reorder sums. GCC and Clang make
+/// vector instructions of this type on any machine.
+constexpr std::size_t kSumLanes = 8;
+using Doubles = double __attribute__((vector_size(kSumLanes * sizeof(double))));
+
+double total(const Doubles& parts) {
+  double sum = 0;
+  for (std::size_t i = 0; i < kSumLanes; ++i) sum += parts[i];
+  return sum;
+}
 
 /// Planes of the lights' positions, and of their colours as the device's floats.
 struct LightPlanes {
@@ -114,13 +133,15 @@ enum {
   kSums = kDegree4 + 9
 };
 
-/// The terms of the sums for a light of q = 1.
-std::array<double, kSums> summands(double x, double y, double z) {
-  const double xx = x * x, yy = y * y, zz = z * z, across = xx + yy, d2 = across + zz, d = std::sqrt(d2);
+/// The terms of the sums for lights of q = 1.
+inline std::array<Doubles, kSums> summands(const Doubles& x, const Doubles& y, const Doubles& z) {
+  const Doubles one = Doubles{} + 1, xx = x * x, yy = y * y, zz = z * z, across = xx + yy, d2 = across + zz;
+  Doubles d;
+  for (std::size_t i = 0; i < kSumLanes; ++i) d[i] = std::sqrt(d2[i]);
   const double s3 = 1.7320508075688772, s5 = 2.23606797749979, s6 = 2.449489742783178,
                s10 = 3.1622776601683795, s15 = 3.872983346207417, s35 = 5.916079783099616,
                s70 = 8.366600265340756;
-  return {1, x, y, z, xx, x * y, x * z, yy, y * z, zz, d, d2 * d,
+  return {one, x, y, z, xx, x * y, x * z, yy, y * z, zz, d, d2 * d,
           // degree 2
           0.5 * (2 * zz - across), s3 * x * z, s3 * y * z, s3 * x * y, 0.5 * s3 * (xx - yy),
           // degree 3
@@ -167,21 +188,20 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
         offset[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
         color[axis][i] = lights.color[axis][first + i];
       }
-    std::array<Doubles, kSums> each;
-    for (std::size_t i = 0; i < kSumLanes; ++i) {
-      const double x = offset[0][i], y = offset[1][i], z = offset[2][i];
-      const std::array<double, kSums> terms = summands(x, y, z);
-      for (std::size_t m = 0; m < kSums; ++m) each[m][i] = terms[m];
-      farthest[0][i] = std::max(farthest[0][i], std::abs(x));
-      farthest[1][i] = std::max(farthest[1][i], std::abs(y));
-      farthest[2][i] = std::max(farthest[2][i], std::abs(z));
-      farthest[3][i] = std::max(farthest[3][i], x * x + y * y + z * z);
-    }
+    const auto& [x, y, z] = offset;
+    const std::array<Doubles, kSums> each = summands(x, y, z);
+    const std::array<Doubles, 4> distances{x < 0 ? -x : x, y < 0 ? -y : y, z < 0 ? -z : z,
+                                           x * x + y * y + z * z};
+    for (std::size_t k = 0; k < farthest.size(); ++k)
+      farthest[k] = distances[k] > farthest[k] ? distances[k] : farthest[k];
     for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t m = 0; m < kSums; ++m)
-        for (std::size_t i = 0; i < kSumLanes; ++i) sums[c][m][i] += color[c][i] * each[m][i];
+      for (std::size_t m = 0; m < kSums; ++m) sums[c][m] += color[c] * each[m];
   }
-  const auto most = [](const Doubles& values) { return *std::max_element(values.begin(), values.end()); };
+  const auto most = [](const Doubles& values) {
+    double largest = values[0];
+    for (std::size_t i = 1; i < kSumLanes; ++i) largest = std::max(largest, values[i]);
+    return largest;
+  };
   for (std::size_t axis = 0; axis < 3; ++axis) {
     field(kClusterCentre + axis) = float(centre[int(axis)]);
     field(kClusterExtent + axis) = atLeast(most(farthest[axis]));
@@ -219,9 +239,7 @@ LightClusters buildLightClusters(std::span<const UnboundedLight> lights) {
   LightClusters clusters;
   const std::size_t count = lights.size();
   while ((std::size_t(kLeafLights) << clusters.levels) < count) ++clusters.levels;
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  if (count > 0) split(lights, order, clusters.levels, 0, 0);
+  std::vector<std::uint32_t> order = orderOf(lights, clusters.levels);
 
   LightPlanes planes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
