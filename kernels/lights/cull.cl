@@ -106,7 +106,7 @@ WORK uint list_lights(Tiles tile, const CullFrame* frame, __global const float* 
       lit |= groups_lit(walk.tiles.boxes + i, facing + i, lights + light, tests) << i * LANES;
     lit &= near;
     TestedLight tested = tested_light(lights + light);
-    for (uint rest = wide_groups(&walk.tiles, tested.place.w, lit); rest; rest &= rest - 1) {
+    for (uint rest = wide_groups(&walk.tiles, (floatL)(0.0f), tested.place.w, lit); rest; rest &= rest - 1) {
       uint group = lowest_bit(rest);
       if (!lights_group(&walk.tiles, group, &tested, tests)) lit &= ~(1u << group);
     }

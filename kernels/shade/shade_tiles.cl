@@ -160,6 +160,7 @@ INLINE void shade_row(const Task* task, uint first, const RowLights* lights, Lig
   if (task->last) {
     finish_row(&row, task->frame, first, task->planes, LIT, long_sums, any_lane(row.covered), task->image);
   } else if (LIT) {
+    if (long_sums) start_closed(&row.sums);
     *kept = row.sums;
   }
 }
