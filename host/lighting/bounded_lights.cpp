@@ -59,11 +59,12 @@ BoundedLights boundedLights(const Scene& scene, const FeatureSet& features, cons
   BoundedLights chosen;
   if (!features.lightError()) return chosen;
   const UseConditions conditions = useConditions(settings);
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
-    const LightUse use = lightUse(scene.lights[i], conditions);
-    if (!isSummed(use, features))
-      (use == LightUse::kClustered ? chosen.clustered : chosen.sampled).push_back(i);
-  }
+  std::vector<LightUse> uses(scene.lights.size());
+  tbb::parallel_for(std::size_t(0), uses.size(),
+                    [&](std::size_t i) { uses[i] = lightUse(scene.lights[i], conditions); });
+  for (std::uint32_t i = 0; i < uses.size(); ++i)
+    if (!isSummed(uses[i], features))
+      (uses[i] == LightUse::kClustered ? chosen.clustered : chosen.sampled).push_back(i);
   return chosen;
 }
 

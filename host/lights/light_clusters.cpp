@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <glm/glm.hpp>
 #include <limits>
 #include <utility>
@@ -105,6 +106,9 @@ std::vector<std::uint32_t> orderOf(std::span<const UnboundedLight> lights, unsig
 /// vector instructions of this type on any machine.
 constexpr std::size_t kSumLanes = 8;
 using Doubles = double __attribute__((vector_size(kSumLanes * sizeof(double))));
+using Floats = float __attribute__((vector_size(kSumLanes * sizeof(float))));
+using LaneNumbers = std::int64_t __attribute__((vector_size(kSumLanes * sizeof(std::int64_t))));
+constexpr LaneNumbers kLaneNumbers{0, 1, 2, 3, 4, 5, 6, 7};
 
 double total(const Doubles& parts) {
   double sum = 0;
@@ -112,7 +116,8 @@ double total(const Doubles& parts) {
   return sum;
 }
 
-/// Planes of the lights' positions, and of their colours as the device's floats.
+/// Planes of the lights' positions, and of their colours as the device's floats, with kSumLanes elements more
+/// than lights.
 struct LightPlanes {
   std::array<std::vector<double>, 3> position;
   std::array<std::vector<float>, 3> color;
@@ -182,12 +187,16 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
   std::array<Doubles, 4> farthest{};  // |xyz| and the square of the distance
   for (std::size_t first = begin; first < end; first += kSumLanes) {
     // Lanes beyond the end are black lights at the centre.
-    std::array<Doubles, 3> offset{}, color{};
-    for (std::size_t i = 0; i < std::min(kSumLanes, end - first); ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        offset[axis][i] = lights.position[axis][first + i] - centre[int(axis)];
-        color[axis][i] = lights.color[axis][first + i];
-      }
+    const LaneNumbers inside = kLaneNumbers < std::int64_t(end - first);
+    std::array<Doubles, 3> offset, color;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Doubles position;
+      Floats intensity;
+      std::memcpy(&position, &lights.position[axis][first], sizeof position);
+      std::memcpy(&intensity, &lights.color[axis][first], sizeof intensity);
+      offset[axis] = inside ? position - centre[int(axis)] : Doubles{};
+      color[axis] = inside ? __builtin_convertvector(intensity, Doubles) : Doubles{};
+    }
     const auto& [x, y, z] = offset;
     const std::array<Doubles, kSums> each = summands(x, y, z);
     const std::array<Doubles, 4> distances{x < 0 ? -x : x, y < 0 ? -y : y, z < 0 ? -z : z,
@@ -243,8 +252,8 @@ LightClusters buildLightClusters(std::span<const UnboundedLight> lights) {
 
   LightPlanes planes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    planes.position[axis].resize(count);
-    planes.color[axis].resize(count);
+    planes.position[axis].resize(count + kSumLanes);
+    planes.color[axis].resize(count + kSumLanes);
   }
   clusters.lights = count;
   const std::size_t leaves = std::size_t(1) << clusters.levels;
