@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/large_pages.hpp"
 #include "base/machine_memory.hpp"
 #include "base/utf8.hpp"
 #include "luciole/error.hpp"
@@ -32,7 +33,7 @@ std::string readFile(const std::string& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, no_size);  // pipes have none
   if (!no_size) {
     requireMemory(double(size), path);
-    bytes.reserve(size);
+    reserveLarge(bytes, size);
   }
   char block[1 << 16];
   while (file.read(block, sizeof block) || file.gcount() > 0) bytes.append(block, file.gcount());

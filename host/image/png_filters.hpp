@@ -12,4 +12,9 @@ namespace luciole {
 void filterPngRow(const std::uint8_t* row, const std::uint8_t* above, std::size_t bytes,
                   std::size_t pixel_bytes, std::uint8_t* out, std::uint8_t* spare);
 
+/// Undoes the filter of a row of a PNG, in place. `above`: the row before it, zeros for the first one. Both
+/// have `bytes` bytes, whole pixels of `pixel_bytes`, 1 to 4. Returns false where there is no such filter.
+bool unfilterPngRow(int filter, std::uint8_t* row, const std::uint8_t* above, std::size_t bytes,
+                    std::size_t pixel_bytes);
+
 }  // namespace luciole

@@ -18,7 +18,7 @@
 #include "base/machine_memory.hpp"
 #include "base/picture_size.hpp"
 #include "image/build_mips.hpp"
-#include "image/png_rows.hpp"
+#include "image/png_pixels.hpp"
 #include "image/spread_texels.hpp"
 
 namespace luciole {
@@ -84,9 +84,12 @@ class JpegRows {
   std::size_t height() const { return jpeg_.output_height; }
   int channels() const { return jpeg_.output_components; }
 
-  bool next(std::uint8_t* row) {
+  /// The next row's codes, valid until the next call; null where the file is damaged.
+  const std::uint8_t* next() {
+    row_.resize(width() * std::size_t(channels()));
+    std::uint8_t* row = row_.data();
     unsigned read = 0;
-    return call([&] { read = jpeg_read_scanlines(&jpeg_, &row, 1); }) && read == 1;
+    return call([&] { read = jpeg_read_scanlines(&jpeg_, &row, 1); }) && read == 1 ? row : nullptr;
   }
 
   /// Whether all was read without a warning, which is what libjpeg has to say of truncated files.
@@ -119,6 +122,7 @@ class JpegRows {
   jpeg_error_mgr errors_{};
   std::jmp_buf on_error_;
   std::span<const std::byte> file_;
+  std::vector<std::uint8_t> row_;
   bool is_made_ = false;
 };
 
@@ -128,10 +132,10 @@ std::optional<MipLevel> readLevel(Rows& rows, const std::string& name) {
   // The texels, and a third more for the mip chain.
   requireMemory(double(pixels * 4 * sizeof(std::uint16_t)) * 4 / 3, name);
   MipLevel level{int(rows.width()), int(rows.height()), Texels(pixels * 4)};
-  std::vector<std::uint8_t> row(rows.width() * rows.channels());
   for (std::size_t y = 0; y < rows.height(); ++y) {
-    if (!rows.next(row.data())) return std::nullopt;
-    spreadTexels(row.data(), rows.width(), rows.channels(), &level.texels[y * rows.width() * 4]);
+    const std::uint8_t* codes = rows.next();
+    if (!codes) return std::nullopt;
+    spreadTexels(codes, rows.width(), rows.channels(), &level.texels[y * rows.width() * 4]);
   }
   if (!rows.end()) return std::nullopt;
   return level;
@@ -139,14 +143,16 @@ std::optional<MipLevel> readLevel(Rows& rows, const std::string& name) {
 
 std::optional<MipLevel> readPng(std::span<const std::byte> file, const std::string& name, bool knows_space) {
   std::span<const std::byte> rest = file;
-  PngRows rows([&rest](png_bytep bytes, std::size_t count) {
+  PngRows header([&rest](png_bytep bytes, std::size_t count) {
     if (count > rest.size()) return false;
     std::memcpy(bytes, rest.data(), count);
     rest = rest.subspan(count);
     return true;
   });
-  if (!rows.readHeader() || !isPlain(rows, file.size(), knows_space) || !rows.begin()) return std::nullopt;
-  return readLevel(rows, name);
+  if (!header.readHeader() || !isPlain(header, file.size(), knows_space)) return std::nullopt;
+  constexpr std::size_t kChunkHeader = 8;  // of the first IDAT chunk, which libpng has read
+  PngPixels pixels(header, file.last(rest.size() + kChunkHeader));
+  return readLevel(pixels, name);
 }
 
 std::optional<MipLevel> readJpeg(std::span<const std::byte> file, const std::string& name) {

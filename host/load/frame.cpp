@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -139,10 +140,12 @@ Stand standAt(const RayScene& rays, const Bounds& bounds, const glm::dvec3& plac
 
 /// Chooses the direction with the highest score: clear distance ahead · √(open space in the field of view) ·
 /// number of different triangles that rays hit. So the view goes far, passes nothing close, and shows many
-/// things rather than bare walls.
-void lookAround(const RayScene& rays, const Bounds& bounds, Stand& stand) {
+/// things rather than bare walls. `best`: the highest score of any stand yet, which this raises; directions
+/// that can't reach it are left out.
+void lookAround(const RayScene& rays, const Bounds& bounds, std::atomic<double>& best, Stand& stand) {
   if (!isInRoom(rays, stand.eye)) return;
   constexpr int kDirections = 16;
+  constexpr double kRays = 9 * 5;  // each sees a thing at most, and no open space beyond the beam
   const glm::dvec3 up{0, 1, 0};
   for (int i = 0; i < kDirections; ++i) {
     const double angle = 2 * std::numbers::pi * i / kDirections;
@@ -156,6 +159,8 @@ void lookAround(const RayScene& rays, const Bounds& bounds, Stand& stand) {
                         clearDistance(rays, bounds, stand.eye, glm::normalize(ahead + x * right + y * up)));
       }
     }
+    // With a margin for rounding, and for the choice among equals below.
+    if (kRays * beam * std::sqrt(kRays * beam) * (1 + 1e-5) < std::max(best.load(), stand.score)) continue;
     double room = 0;
     std::vector<std::uint32_t> seen;
     for (int x = -4; x <= 4; ++x) {
@@ -173,6 +178,9 @@ void lookAround(const RayScene& rays, const Bounds& bounds, Stand& stand) {
       stand.ahead = ahead;
       stand.length = length;
     }
+  }
+  double before = best;
+  while (before < stand.score && !best.compare_exchange_weak(before, stand.score)) {
   }
 }
 
@@ -256,7 +264,7 @@ Framing frameScene(const Scene& scene) {
   if (countTriangles(scene) > kMostTrianglesForRays)
     return frameFromOutside(bounds, glm::normalize(glm::dvec3(0.5, 0.35, 1)));
 
-  const RayScene rays = buildRayScene(scene, centerOf(bounds));
+  const RayScene rays = buildRayScene(scene, centerOf(bounds), {}, RayTree::kQuickToBuild);
   const std::vector<glm::dvec3> tried = placesToStand(scene, bounds);
   std::vector<char> in_room(tried.size());
   tbb::parallel_for(std::size_t{0}, tried.size(),
@@ -279,8 +287,9 @@ Framing frameScene(const Scene& scene) {
     const Stand stand = standAt(rays, bounds, place);
     if (stands.empty() || glm::distance(stands.back().eye, stand.eye) > close) stands.push_back(stand);
   }
+  std::atomic<double> highest = 0;
   tbb::parallel_for(std::size_t{0}, stands.size(),
-                    [&](std::size_t i) { lookAround(rays, bounds, stands[i]); });
+                    [&](std::size_t i) { lookAround(rays, bounds, highest, stands[i]); });
   const auto best = std::max_element(stands.begin(), stands.end(),
                                      [](const Stand& a, const Stand& b) { return a.score < b.score; });
   return best->score > 0 ? frameFromInside(bounds, *best) : frameFromOutside(bounds, usual);

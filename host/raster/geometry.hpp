@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "luciole/array_memory.hpp"
 #include "luciole/scene.hpp"
 #include "raster/clip.hpp"
 #include "raster/view.hpp"
@@ -56,13 +57,17 @@ enum VertexPlace : std::uint16_t {
   kUnusable = 128,      ///< not finite, in double or as float
 };
 
+/// New elements are not cleared.
+template <class T>
+using RawArray = std::vector<T, RawArrayAllocator<T>>;
+
 /// All vertices of the objects to draw, seen by a view.
 struct Geometry {
   std::vector<PlacedObject> objects;
   std::uint32_t triangle_count = 0;
-  std::vector<glm::dvec3> positions;  ///< view space
-  std::vector<ScreenVertex> screen;   ///< meaningless behind the near plane
-  std::vector<std::uint16_t> places;  ///< VertexPlace bits
+  RawArray<glm::dvec3> positions;  ///< view space
+  RawArray<ScreenVertex> screen;   ///< meaningless behind the near plane
+  RawArray<std::uint16_t> places;  ///< VertexPlace bits
 };
 
 /// Perspective division and viewport; meaningless unless clip.w > 0.

@@ -1,7 +1,5 @@
 #include "raster/resolve.hpp"
 
-#include <algorithm>
-
 #include "raster/resolve_square.hpp"
 
 namespace luciole {
@@ -23,8 +21,9 @@ Lanes<std::uint32_t> trianglesSeen(const BinPixels& pixels, const glm::ivec2& bi
 }
 
 bool seesNothing(const Lanes<std::uint32_t>& triangles) {
-  return std::all_of(triangles.begin(), triangles.end(),
-                     [](std::uint32_t triangle) { return triangle == kNoTriangle; });
+  bool sees = false;
+  for (int i = 0; i < kSquarePixels; ++i) sees |= triangles[i] != kNoTriangle;
+  return !sees;
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ constexpr int kSubpixels = 1 << kSubpixelBits;
 
 enum class FaceCulling : std::uint8_t { kNone, kBackFaces };
 
-using RasterTriangles = std::vector<RasterTriangle, RawArrayAllocator<RasterTriangle>>;
+using RasterTriangles = RawArray<RasterTriangle>;
 
 struct RasterSetup {
   RasterTriangles triangles;  ///< in object and triangle order

@@ -194,7 +194,8 @@ void setMaps(const ResolveInput& input, const SeenSurface& seen, const PlaneCros
              const SquareWeights& weights, const LaneMask& mask, SquareValues& out) {
   const Material& material = *seen.surface.material;
   const auto setMap = [&](const TextureUse& map, Lanes<const TextureUse*>& uses) {
-    for (int i = 0; i < kSquarePixels; ++i) uses[i] = mask[i] && map.texture >= 0 ? &map : nullptr;
+    const TextureUse* use = map.texture >= 0 ? &map : nullptr;
+    for (int i = 0; i < kSquarePixels; ++i) uses[i] = mask[i] ? use : nullptr;
   };
   // The diffuse map colours what vertices reflect.
   if (input.litVertices()) {
@@ -227,7 +228,15 @@ void copyFootprints(const SquareFootprints& values, const LaneMask& mask, Square
 }
 
 bool anyMap(const Lanes<const TextureUse*>& maps) {
-  return std::any_of(maps.begin(), maps.end(), [](const TextureUse* map) { return map != nullptr; });
+  bool any = false;
+  for (int i = 0; i < kSquarePixels; ++i) any |= maps[i] != nullptr;
+  return any;
+}
+
+bool isSpread(const SquarePlace& place) {
+  bool spread = false;
+  for (int i = 0; i < kSquarePixels; ++i) spread |= (place.spread_x[i] != 0.0f) | (place.spread_y[i] != 0.0f);
+  return spread;
 }
 
 /// A footprint's place, moved by a number of pixels right and down.
@@ -241,10 +250,7 @@ void moveAlong(const Lanes<float>& right, const Lanes<float>& down, const Square
 
 Lanes3<float> mapColors(const Scene& scene, const Lanes<const TextureUse*>& maps, const SquarePlace& place,
                         const SquareFootprints& footprints) {
-  const auto is_zero = [](float spread) { return spread == 0.0f; };
-  if (std::all_of(place.spread_x.begin(), place.spread_x.end(), is_zero) &&
-      std::all_of(place.spread_y.begin(), place.spread_y.end(), is_zero))
-    return sampleTextures(scene.textures, maps, footprints);
+  if (!isSpread(place)) return sampleTextures(scene.textures, maps, footprints);
   Lanes3<float> mean{};
   SquareFootprints moved = footprints;
   for (const float side_x : {-1.0f, 1.0f})

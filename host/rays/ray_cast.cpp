@@ -100,15 +100,15 @@ void askPacket(const RayScene& scene, std::span<const ShadowRay> rays, std::span
   for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = valid[i] && packet.tfar[i] < 0;
 }
 
-/// Writes three corners a triangle, relative to rays.origin, and fills rays.mirrored.
-void placeCorners(const Scene& scene, RayScene& rays, glm::vec3* corner) {
+/// Writes the objects' vertices, relative to rays.origin, and their triangles, and fills rays.mirrored.
+void placeTriangles(const Scene& scene, RayScene& rays, glm::vec3* vertex, glm::uvec3* triangle) {
+  std::uint32_t first = 0;
   for (const Object& object : scene.objects) {
     const Mesh& mesh = scene.meshes[object.mesh];
-    for (const glm::uvec3& triangle : mesh.triangles) {
-      for (int i = 0; i < 3; ++i)
-        *corner++ =
-            glm::dvec3(object.object_to_world * glm::dvec4(mesh.positions[triangle[i]], 1)) - rays.origin;
-    }
+    for (const glm::vec3& position : mesh.positions)
+      *vertex++ = glm::dvec3(object.object_to_world * glm::dvec4(position, 1)) - rays.origin;
+    for (const glm::uvec3& corners : mesh.triangles) *triangle++ = corners + first;
+    first += std::uint32_t(mesh.positions.size());
     const bool mirrored = glm::determinant(glm::dmat3(object.object_to_world)) < 0;
     rays.mirrored.insert(rays.mirrored.end(), mesh.triangles.size(), mirrored);
   }
@@ -116,7 +116,7 @@ void placeCorners(const Scene& scene, RayScene& rays, glm::vec3* corner) {
 
 }  // namespace
 
-RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter) {
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter, RayTree tree) {
   const std::shared_ptr<RTCDeviceTy> device(rtcNewDevice(nullptr), rtcReleaseDevice);
   if (!device) throw MachineError("Embree can't be started");
   RayScene result;
@@ -124,17 +124,22 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter h
   // The scene keeps its device alive.
   result.scene.reset(rtcNewScene(device.get()), [device](RTCScene built) { rtcReleaseScene(built); });
   rtcSetSceneFlags(result.scene.get(), RTC_SCENE_FLAG_ROBUST);
+  const RTCBuildQuality quality =
+      tree == RayTree::kQuickToBuild ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
+  rtcSetSceneBuildQuality(result.scene.get(), quality);
 
   const std::size_t count = countTriangles(scene);
+  std::size_t vertex_count = 0;
+  for (const Object& object : scene.objects) vertex_count += scene.meshes[object.mesh].positions.size();
   const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * count));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), count));
-  if (count > 0 && (!corners || !indices))
+  rtcSetGeometryBuildQuality(geometry, quality);
+  auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), vertex_count));
+  auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), count));
+  if (count > 0 && (!vertices || !triangles))
     throw MachineError(scene.name + ": no memory for its triangles in Embree");
-  placeCorners(scene, result, corners);
-  for (std::size_t i = 0; i < 3 * count; ++i) indices[i] = static_cast<std::uint32_t>(i);
+  placeTriangles(scene, result, vertices, triangles);
   if (hit_filter) {
     result.hit_filter = std::make_shared<const HitFilter>(std::move(hit_filter));
     rtcSetGeometryUserData(geometry, const_cast<HitFilter*>(result.hit_filter.get()));

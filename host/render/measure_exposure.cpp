@@ -9,8 +9,8 @@
 
 namespace luciole {
 
-double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
-                       Stats& stats) {
+double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
+                       KeptShadows* kept) {
   RenderSettings small;
   small.size = measuringSize(settings.size);
   small.camera = settings.camera;
@@ -21,7 +21,8 @@ double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSet
   Stats of_small;
   Image picture;
   const TraceSpan span(stageName(Stage::kMeasureExposure));
-  const double milliseconds = millisecondsOf([&] { picture = renderScene(device, scene, small, of_small); });
+  const double milliseconds =
+      millisecondsOf([&] { picture = renderScene(device, scene, small, of_small, kept); });
   // Waiting for the device and kernels doesn't count: the picture itself would have to.
   const double waited =
       stageTime(of_small, Stage::kWaitForDevice) + stageTime(of_small, Stage::kWaitForKernels);

@@ -44,7 +44,8 @@ void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings&
       device, scene, settings, plan, next, [&](const Band&, const Image& rows) { take(rows); }, stats, kept);
 }
 
-Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats) {
+Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
+                  KeptShadows* kept) {
   Image picture;
   renderBands(
       device, scene, settings,
@@ -54,7 +55,7 @@ Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings
         picture.channels = rows.channels;
         picture.pixels.insert(picture.pixels.end(), rows.pixels.begin(), rows.pixels.end());
       },
-      stats);
+      stats, kept);
   return picture;
 }
 

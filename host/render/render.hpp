@@ -22,7 +22,8 @@ void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings&
                  const RowSink& take, Stats& stats, KeptShadows* kept = nullptr);
 
 /// The same, but returns the whole picture.
-Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats);
+Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
+                  KeptShadows* kept = nullptr);
 
 /// The first half of renderScene(): the G-buffer with every group. `device` is needed for Shading::kGouraud,
 /// which lights vertices; otherwise it may be null. Throws as validate() does, InputError for a crop outside

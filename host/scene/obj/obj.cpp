@@ -12,6 +12,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/large_pages.hpp"
 #include "base/text_file.hpp"
 #include "base/utf8.hpp"
 #include "image/srgb.hpp"
@@ -219,15 +220,20 @@ Parts partsOf(const std::string& path, const ObjFile& file, std::vector<Warning>
   return {{""}, std::vector<int>(is_used.size(), 0)};
 }
 
+/// The index of a face's material among the entries, -1: none or unknown.
+int entryOf(const ObjFace& face, const std::vector<int>& entry_of_material) {
+  return face.material < 0 ? -1 : entry_of_material[face.material];
+}
+
 /// Cuts the file's faces into triangles.
 std::vector<Triangle> cutFaces(const ObjFile& file, const std::vector<int>& entry_of_material,
                                const Parts& parts) {
   std::vector<Triangle> triangles;
-  triangles.reserve(file.faces.size());
+  reserveLarge(triangles, file.faces.size());
   std::vector<glm::dvec3> polygon;
   for (const ObjFace& face : file.faces) {
     const ObjCorner* corners = &file.corners[face.first_corner];
-    const int entry = face.material < 0 ? -1 : entry_of_material[face.material];
+    const int entry = entryOf(face, entry_of_material);
     const int part = parts.of_statement[face.part + 1];
     if (face.corner_count == 3) {
       triangles.push_back({{corners[0], corners[1], corners[2]}, entry, part, face.smoothing});
@@ -341,19 +347,20 @@ struct FileMaterials {
   std::vector<MapPlaces> distinct_places{{}};          ///< the first is of maps that lie as the file says
 };
 
-/// Adds the materials that triangles use, their textures not decoded yet.
-FileMaterials addMaterials(const std::vector<MtlEntry>& entries, const std::vector<Triangle>& triangles,
-                           MtlReading& reading) {
+/// Adds the materials that faces use, their textures not decoded yet.
+FileMaterials addMaterials(const std::vector<MtlEntry>& entries, const std::vector<ObjFace>& faces,
+                           const std::vector<int>& entry_of_material, MtlReading& reading) {
   FileMaterials materials{std::vector<std::optional<std::uint32_t>>(entries.size() + 1),
                           std::vector<int>(entries.size() + 1)};
-  for (const Triangle& triangle : triangles) {
-    const std::size_t which = triangle.entry + 1;
+  for (const ObjFace& face : faces) {
+    const int entry = entryOf(face, entry_of_material);
+    const std::size_t which = entry + 1;
     if (materials.in_scene[which]) continue;
     materials.in_scene[which] = static_cast<std::uint32_t>(reading.scene.materials.size());
     MtlMaterial made;
     made.material.name = "default";
     made.material.double_sided = true;
-    if (triangle.entry >= 0) made = readMaterial(entries[triangle.entry], reading);
+    if (entry >= 0) made = readMaterial(entries[entry], reading);
     reading.scene.materials.push_back(made.material);
     std::vector<MapPlaces>& distinct = materials.distinct_places;
     const auto found = std::find(distinct.begin(), distinct.end(), made.places);
@@ -477,14 +484,16 @@ std::uint32_t loadObj(const std::string& path, Scene& scene, const std::vector<s
   std::vector<MtlEntry> entries = readEntries(path, file.material_files, search, scene);
   const std::vector<int> entry_of_material = findEntries(path, file, entries, scene.warnings);
   const Parts parts = partsOf(path, file, scene.warnings);
-  std::vector<Triangle> triangles = cutFaces(file, entry_of_material, parts);
   const std::vector<glm::vec4> colors = linearColors(path, file, scene.warnings);
 
   const std::size_t first_material = scene.materials.size();
   MtlReading reading{scene, search};
-  const FileMaterials materials = addMaterials(entries, triangles, reading);
+  const FileMaterials materials = addMaterials(entries, file.faces, entry_of_material, reading);
   std::vector<Mesh> meshes;
-  const auto make = [&] { meshes = makeMeshes(file, colors, materials, parts.names.size(), triangles); };
+  const auto make = [&] {
+    std::vector<Triangle> triangles = cutFaces(file, entry_of_material, parts);
+    meshes = makeMeshes(file, colors, materials, parts.names.size(), triangles);
+  };
   if (allDecoded(scene))
     make();  // in this thread, whose memory is warm
   else

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/large_pages.hpp"
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
 #include "scene/obj/obj_text.hpp"
@@ -420,11 +421,11 @@ ObjFile joinParts(std::vector<Reader>& parts) {
     has_colors |= !part.file.colors.empty();
     whole.has_lines |= part.file.has_lines;
   }
-  whole.positions.reserve(positions);
-  whole.uvs.reserve(uvs);
-  whole.normals.reserve(normals);
-  whole.corners.reserve(corners);
-  whole.faces.reserve(faces);
+  reserveLarge(whole.positions, positions);
+  reserveLarge(whole.uvs, uvs);
+  reserveLarge(whole.normals, normals);
+  reserveLarge(whole.corners, corners);
+  reserveLarge(whole.faces, faces);
   unsigned smoothing = 0;  // that the part before ends with
   for (Reader& part : parts) {
     ObjFile& file = part.file;

@@ -63,7 +63,7 @@ Crop windowOf(const RenderSettings& settings) {
 }
 
 /// The exposure of each picture, by one a camera: measured at this frame, or none where the options say it.
-std::vector<std::optional<double>> chooseExposures(OpenedDevice& device, Scene& scene, int frame,
+std::vector<std::optional<double>> chooseExposures(Sharer& sharer, Scene& scene, int frame,
                                                    const RenderOptions& options,
                                                    const std::vector<PictureOptions>& pictures,
                                                    Stats& stats) {
@@ -74,7 +74,7 @@ std::vector<std::optional<double>> chooseExposures(OpenedDevice& device, Scene& 
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     RenderSettings settings = settingsAt(frame, pictures[i], scene, options.orbit);
     settings.on_long_compile = compileReporter(progress);
-    exposures[i] = measureExposure(device, scene, settings, stats);
+    exposures[i] = measureExposure(*sharer.device, scene, settings, stats, &sharer.kept);
   }
   progress.clear();
   return exposures;
@@ -551,7 +551,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       awaitDevice(device);
       for (const Sharer& sharer : sharers) logDevice(sharer.device->description);
       // By the first frame of all, also of those that aren't made here: every shard measures the same.
-      const auto exposures = chooseExposures(device, scene, choice.frames.front(), *options, pictures, stats);
+      const auto exposures =
+          chooseExposures(sharers.front(), scene, choice.frames.front(), *options, pictures, stats);
       context.status = is_film ? renderFilm(sharers, scene, *options, frames, exposures, std::move(stats))
                                : renderFrames(sharers, scene, *options, frames, exposures, nullptr,
                                               claims ? &*claims : nullptr, std::move(stats));
@@ -571,7 +572,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     for (const PictureOptions& picture : pictures) checkOutput(picture);
     logEvent("frame_begun", {{"frame", frame}});
     bool device_is_told = false;
-    const auto exposures = chooseExposures(device, scene, frame, *options, pictures, stats);
+    const auto exposures = chooseExposures(sharers.front(), scene, frame, *options, pictures, stats);
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       ProgressLine progress(options->quiet);
       progress.frame = frame;
@@ -584,7 +585,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       };
       stats.measured_exposure = exposures[i];
       renderPicture(sharers, scene, pictures[i], settingsAt(frame, pictures[i], scene, options->orbit),
-                    nullptr, progress, showPass, false, stats);
+                    nullptr, progress, showPass, true, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);
