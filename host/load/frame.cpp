@@ -264,7 +264,7 @@ Framing frameScene(const Scene& scene) {
   if (countTriangles(scene) > kMostTrianglesForRays)
     return frameFromOutside(bounds, glm::normalize(glm::dvec3(0.5, 0.35, 1)));
 
-  const RayScene rays = buildRayScene(scene, centerOf(bounds), {}, RayTree::kQuickToBuild);
+  const RayScene rays = buildRayScene(scene, centerOf(bounds));
   const std::vector<glm::dvec3> tried = placesToStand(scene, bounds);
   std::vector<char> in_room(tried.size());
   tbb::parallel_for(std::size_t{0}, tried.size(),

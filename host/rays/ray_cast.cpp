@@ -116,7 +116,7 @@ void placeTriangles(const Scene& scene, RayScene& rays, glm::vec3* vertex, glm::
 
 }  // namespace
 
-RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter, RayTree tree) {
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter) {
   const std::shared_ptr<RTCDeviceTy> device(rtcNewDevice(nullptr), rtcReleaseDevice);
   if (!device) throw MachineError("Embree can't be started");
   RayScene result;
@@ -124,15 +124,11 @@ RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter h
   // The scene keeps its device alive.
   result.scene.reset(rtcNewScene(device.get()), [device](RTCScene built) { rtcReleaseScene(built); });
   rtcSetSceneFlags(result.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  const RTCBuildQuality quality =
-      tree == RayTree::kQuickToBuild ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
-  rtcSetSceneBuildQuality(result.scene.get(), quality);
 
   const std::size_t count = countTriangles(scene);
   std::size_t vertex_count = 0;
   for (const Object& object : scene.objects) vertex_count += scene.meshes[object.mesh].positions.size();
   const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetGeometryBuildQuality(geometry, quality);
   auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), vertex_count));
   auto* triangles = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(

@@ -34,15 +34,10 @@ struct RayScene {
   std::shared_ptr<RTCSceneTy> scene;
 };
 
-/// What a tree is built for: many rays, or to be there soon. Rays hit the same, but of triangles at one
-/// distance either may be told.
-enum class RayTree : std::uint8_t { kQuickToAsk, kQuickToBuild };
-
 /// Builds the tree over all triangles of the scene at its pose. Corners are copied, so the scene needn't
 /// outlive the result. Without `hit_filter` every triangle is solid, also where its material has holes.
 /// Throws MachineError where Embree can't be started or has no memory for the triangles.
-RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter = {},
-                       RayTree tree = RayTree::kQuickToAsk);
+RayScene buildRayScene(const Scene& scene, const glm::dvec3& origin, HitFilter hit_filter = {});
 
 struct RayHit {
   double distance;         ///< metres
