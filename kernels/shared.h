@@ -302,6 +302,14 @@ typedef struct {
 } BeamFrame;
 SHARED_SIZE(BeamFrame, 96);
 
+// Pairs of a tile's pixels and the lights of its list.
+typedef struct {
+  uint unsure;               // rays decide
+  uint soft_unsure;          // of these, with lights of a size
+  uint soft_lit, soft_dark;  // with lights of a size, decided without rays: all is lit, or dark
+} TilePairs;
+SHARED_SIZE(TilePairs, 16);
+
 // Of shade_tiles.cl. A block is what a work-item takes: kBlockTiles together or fewer.
 typedef struct {
   ShadeFrame shade;

@@ -18,13 +18,16 @@ PairShadows decideBeams(const StageInput& input) {
 }
 
 TracedPairs traceUnsurePairs(const StageInput& input, PairShadows& pairs) {
-  return tracePairs(input.device, input.scene, input.lighting.beams, input.pass.lights, input.pass.gbuffer,
-                    input.lists, input.pass.features.has(Feature::kSoftExact), pairs);
-}
-
-PairBuffers borrowPairs(OpenedDevice& device, const PairShadows& pairs) {
-  return {borrowed(device, pairs.lit), borrowed(device, pairs.unsure), borrowed(device, pairs.first_share),
-          borrowed(device, pairs.shares)};
+  const FeatureSet& features = input.pass.features;
+  return tracePairs({.device = input.device,
+                     .defines = featureDefines(featuresFor(kForBeams, features)),
+                     .scene = input.scene,
+                     .beams = input.lighting.beams,
+                     .lights = input.pass.lights,
+                     .gbuffer = input.pass.gbuffer,
+                     .lists = input.lists,
+                     .soft = features.has(Feature::kSoftExact)},
+                    pairs);
 }
 
 }  // namespace luciole

@@ -126,6 +126,15 @@ __kernel void report_cull_frame(__global uint* out) {
   *out++ = OFFSET(fill);
 }
 
+__kernel void report_tile_pairs(__global uint* out) {
+  TilePairs value;
+  *out++ = sizeof(TilePairs);
+  *out++ = OFFSET(unsure);
+  *out++ = OFFSET(soft_unsure);
+  *out++ = OFFSET(soft_lit);
+  *out++ = OFFSET(soft_dark);
+}
+
 __kernel void report_beam_frame(__global uint* out) {
   BeamFrame value;
   *out++ = sizeof(BeamFrame);

@@ -106,6 +106,12 @@ TEST(StructLayout, CullFrame) {
                 offsetof(CullFrame, fill)});
 }
 
+TEST(StructLayout, TilePairs) {
+  expectLayout("report_tile_pairs",
+               {sizeof(TilePairs), offsetof(TilePairs, unsure), offsetof(TilePairs, soft_unsure),
+                offsetof(TilePairs, soft_lit), offsetof(TilePairs, soft_dark)});
+}
+
 TEST(StructLayout, BeamFrame) {
   expectLayout("report_beam_frame",
                {sizeof(BeamFrame), offsetof(BeamFrame, to_tree_x), offsetof(BeamFrame, to_tree_y),

@@ -1,7 +1,6 @@
 #include "shadow/exact/beam_shadows.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -27,21 +26,6 @@ float4 largestCoordinates(const TriangleTree& tree) {
         axis = std::max(axis, value);
       }
   return {most[0], most[1], most[2], 0};
-}
-
-/// Counts the pairs with lights of a size that are decided without rays. receivers: for each entry the number
-/// of its pixels that the light may reach.
-void countDecided(const PairBits& receivers, std::size_t entries, PairShadows& pairs) {
-  for (std::size_t entry = 0; entry < entries; ++entry) {
-    if (receivers[entry] == 0) continue;
-    std::uint64_t bits = 0, by_rays = 0;
-    for (std::size_t i = entry * kPairWords; i < (entry + 1) * kPairWords; ++i) {
-      bits += std::uint64_t(std::popcount(pairs.lit[i]));
-      by_rays += std::uint64_t(std::popcount(pairs.unsure[i]));
-    }
-    pairs.soft_lit += bits;
-    pairs.soft_dark += receivers[entry] - bits - by_rays;
-  }
 }
 
 }  // namespace
@@ -99,12 +83,12 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
     throw MachineError(
         "exact shadows of 2^29 or more pairs of a tile and a light: use fewer lights or a smaller picture");
   PairShadows result;
-  result.lit.resize(std::max<std::size_t>(entries, 1) * kPairWords);
-  if (unsure_pairs) result.unsure.resize(result.lit.size());
-  PairBits receivers(soft ? std::max<std::size_t>(entries, 1) : 0);
-  const Buffer<uint> lit = borrowedForOutput(device, result.lit),
-                     unsure = borrowedForOutput(device, result.unsure),
-                     received = borrowedForOutput(device, receivers);
+  result.lit = makeBuffer<uint>(device, entries * kPairWords);
+  if (unsure_pairs) {
+    result.unsure = makeBuffer<uint>(device, entries * kPairWords);
+    result.counts.resize(tiles);
+  }
+  const Buffer<TilePairs> counts = borrowedForOutput(device, result.counts);
   BeamFrame frame = beamFrame(beams, arguments.plane_stride);
   frame.light_count = uint(arguments.lights.count);
   Kernel kernel = makeKernel(device, "exact/beam_shadows.cl", "beam_shadows", defines);
@@ -123,15 +107,12 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
           {"hole_texels", beams.hole_texels},
           {"hole_triangles", beams.hole_triangles},
           {"first_hole_triangle", beams.first_hole_triangle},
-          {"lit", lit},
-          {"unsure", unsure},
-          {"receivers", received}},
+          {"lit", result.lit},
+          {"unsure", result.unsure},
+          {"counts", counts}},
          {.items = (tiles + kBeamRun - 1) / kBeamRun});
-  download(device, lit, result.lit);
-  if (unsure_pairs) download(device, unsure, result.unsure);
-  if (!soft) return result;
-  download(device, received, receivers);
-  countDecided(receivers, entries, result);
+  finish(device);
+  download(device, counts, result.counts);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "shadow/exact/pair_rays.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -9,11 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "base/machine_memory.hpp"
+#include "cl/launch.hpp"
 #include "kernels/shared.h"
 #include "luciole/error.hpp"
 #include "raster/opacity.hpp"
 #include "shadow/exact/exact_ray.hpp"
+#include "shadow/exact/light_rays.hpp"
 #include "shadow/exact/light_samples.hpp"
 
 namespace luciole {
@@ -58,40 +60,17 @@ HostLists downloadLists(OpenedDevice& device, const LightLists& lists, std::size
   return result;
 }
 
-/// Bits of a word's pixels in an entry's squares. Other pixels are never shaded with its light.
-uint listedPixels(uint squares, std::size_t word) {
-  const uint of_word = squares >> SQUARE_OF_PIXEL(word * 32);
-  return ((of_word & 1) != 0 ? 0xffffu : 0) | ((of_word & 2) != 0 ? 0xffff0000u : 0);
-}
-
-/// Clears the bits of unsure pairs that aren't shaded, and sets first_share. Returns the number of shares.
-std::size_t placeShares(const HostLists& lists, std::size_t tiles, PairShadows& shadows) {
-  std::vector<std::size_t> first(tiles + 1);
-  const auto forWords = [&](std::size_t tile, const auto& word_of_entry) {
-    for (std::size_t entry = lists.first(tile); entry < lists.first(tile + 1); ++entry)
-      for (std::size_t word = 0; word < kPairWords; ++word) word_of_entry(entry, word);
-  };
-  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    forWords(tile, [&](std::size_t entry, std::size_t word) {
-      uint& unsure = shadows.unsure[entry * kPairWords + word];
-      unsure &= listedPixels(lists.at(tile, entry).squares, word);
-      first[tile + 1] += std::size_t(std::popcount(unsure));
-    });
+/// Sets first_share. Returns the number of shares.
+std::size_t placeShares(const HostLists& lists, std::span<const uint> first, std::span<const uint> unsure,
+                        std::span<uint> first_share) {
+  tbb::parallel_for(std::size_t(0), first.size() - 1, [&](std::size_t tile) {
+    uint next = first[tile];
+    for (std::size_t at = lists.first(tile) * kPairWords; at < lists.first(tile + 1) * kPairWords; ++at) {
+      first_share[at] = next;
+      next += uint(std::popcount(unsure[at]));
+    }
   });
-  for (std::size_t tile = 0; tile < tiles; ++tile) first[tile + 1] += first[tile];
-  if (first[tiles] > 0xffffffffu)
-    throw MachineError(
-        "soft shadows of 2^32 or more pairs of a pixel and a light: use fewer lights or a smaller picture");
-  requireMemory(double(first[tiles]) * sizeof(float), "the soft shadows of all pixels");
-  shadows.first_share.resize(shadows.unsure.size());
-  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    std::size_t next = first[tile];
-    forWords(tile, [&](std::size_t entry, std::size_t word) {
-      shadows.first_share[entry * kPairWords + word] = uint(next);
-      next += std::size_t(std::popcount(shadows.unsure[entry * kPairWords + word]));
-    });
-  });
-  return first[tiles];
+  return first.back();
 }
 
 /// The state of a thread.
@@ -103,12 +82,10 @@ struct Tracer {
   std::array<float4, kMostSoftSamples> places{};
 
   /// The share of a light, by its index on the device, that reaches a start point.
-  float visibility(const glm::vec3& start, std::uint32_t index, TracedPairs& traced) {
+  float visibility(const glm::vec3& start, std::uint32_t index) {
     const BeamLight& light = lights.beam_lights[index];
-    ++traced.pairs;
     std::span<float4> to(places.data(), 1);
     if (light.size > 0) {
-      ++traced.soft;
       const std::span<const LightSample> pattern =
           patternOf(beams.samples, beams.soft_samples, start, lights.order[index]);
       to = std::span(places.data(), pattern.size());
@@ -116,51 +93,103 @@ struct Tracer {
     } else {
       places[0] = light.place;
     }
-    traced.rays += to.size();
     return float(countUnblocked(*beams.tree, start, to, is_hole, likely)) / float(to.size());
   }
 };
 
+/// The index of each tile's first unsure pair, and the number of all. Throws MachineError.
+std::vector<uint> firstPairs(std::span<const TilePairs> counts) {
+  std::vector<uint> first(counts.size() + 1);
+  std::uint64_t sum = 0;
+  for (std::size_t tile = 0; tile < counts.size(); ++tile) {
+    first[tile] = uint(sum);
+    sum += counts[tile].unsure;
+  }
+  if (sum > 0xffffffffu)
+    throw MachineError(
+        "rays decide 2^32 or more pairs of a pixel and a light: use fewer lights or a smaller picture");
+  first.back() = uint(sum);
+  return first;
+}
+
+/// Decides pairs with lights without a size by rays on the host.
+void traceOpenPairs(const PairInput& in, const HoleTest& is_hole, PairShadows& shadows) {
+  const std::vector<uint> first = firstPairs(shadows.counts);
+  const Buffer<const uint> first_open = borrowed(in.device, first);
+  const Buffer<LightRay> open = makeBuffer<LightRay>(in.device, first.back());
+  std::vector<unsigned char> visible(first.back());
+  std::vector<LightRay> rays(first.back());
+  Kernel kernel = makeKernel(in.device, "exact/open_pairs.cl", "open_pairs", in.defines);
+  const auto run = [&](bool settle, const Buffer<const unsigned char>& verdicts) {
+    launch(in.device, kernel,
+           {{"settle", uint(settle)},
+            {"light_count", uint(in.lights.beam_lights.size())},
+            {"list_starts", in.lists.starts},
+            {"list", in.lists.list},
+            {"unsure", shadows.unsure},
+            {"first_open", first_open},
+            {"open", open},
+            {"visible", verdicts},
+            {"lit", shadows.lit}},
+           {.items = shadows.counts.size()});
+  };
+  run(false, {});
+  download(in.device, open, rays);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 64), [&](const auto& part) {
+    Tracer tracer{in.beams, in.lights, is_hole};
+    for (std::size_t i = part.begin(); i < part.end(); ++i)
+      visible[i] = tracer.visibility(startPoint(in.beams, in.gbuffer, rays[i].point), rays[i].light) > 0;
+  });
+  run(true, borrowed(in.device, visible));
+  finish(in.device);
+}
+
+/// Decides pairs with lights of any size by rays on the host.
+void traceShares(const PairInput& in, const HoleTest& is_hole, PairShadows& shadows) {
+  const std::vector<uint> first = firstPairs(shadows.counts);
+  const HostLists lists = downloadLists(in.device, in.lists, in.lights.beam_lights.size());
+  std::vector<uint> unsure(shadows.unsure.count), first_share(unsure.size());
+  download(in.device, shadows.unsure, unsure);
+  std::vector<float> shares(placeShares(lists, first, unsure, first_share));
+  tbb::parallel_for(std::size_t(0), shadows.counts.size(), [&](std::size_t tile) {
+    Tracer tracer{in.beams, in.lights, is_hole};
+    std::size_t share = first[tile];
+    for (std::size_t at = lists.first(tile) * kPairWords; at < lists.first(tile + 1) * kPairWords; ++at)
+      for (uint left = unsure[at]; left != 0; left &= left - 1) {
+        const std::size_t pixel =
+            tile * kTilePixels + at % kPairWords * 32 + std::size_t(std::countr_zero(left));
+        shares[share++] =
+            tracer.visibility(startPoint(in.beams, in.gbuffer, pixel), lists.at(tile, at / kPairWords).light);
+      }
+  });
+  shadows.first_share = makeBuffer<uint>(in.device, first_share.size());
+  bytes::write(in.device, shadows.first_share.memory, first_share.data(),
+               {0, first_share.size() * sizeof(uint)});
+  shadows.shares = makeBuffer<float>(in.device, shares.size());
+  bytes::write(in.device, shadows.shares.memory, shares.data(), {0, shares.size() * sizeof(float)});
+}
+
 }  // namespace
 
-TracedPairs tracePairs(OpenedDevice& device, const Scene& scene, const BeamScene& beams,
-                       const LightSet& lights, const GBuffer& gbuffer, const LightLists& lists, bool soft,
-                       PairShadows& shadows) {
-  const std::size_t tiles = gbuffer.pixels() / kTilePixels;
-  const HostLists host_lists = downloadLists(device, lists, lights.beam_lights.size());
-  if (soft) shadows.shares.resize(placeShares(host_lists, tiles, shadows));
-  const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
+TracedPairs tracePairs(const PairInput& in, PairShadows& shadows) {
+  const std::vector<PlacedObject> objects = placeObjects(in.scene, allObjects(in.scene), glm::dmat4(1));
   const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {
     const PlacedObject& object = objectOfTriangle(objects, triangle);
-    return isHoleAt(scene, object, triangle - object.first_triangle, weights);
+    return isHoleAt(in.scene, object, triangle - object.first_triangle, weights);
   };
-  std::vector<TracedPairs> traced(tiles);
-  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    Tracer tracer{beams, lights, is_hole};
-    for (std::size_t entry = host_lists.first(tile); entry < host_lists.first(tile + 1); ++entry) {
-      const std::uint32_t light = host_lists.at(tile, entry).light;
-      for (std::size_t word = 0; word < kPairWords; ++word) {
-        const std::size_t at = entry * kPairWords + word;
-        std::size_t share = soft ? shadows.first_share[at] : 0;
-        for (uint left = shadows.unsure[at]; left != 0; left &= left - 1) {
-          const int bit = std::countr_zero(left);
-          const std::size_t pixel = tile * kTilePixels + word * 32 + std::size_t(bit);
-          const float visible = tracer.visibility(startPoint(beams, gbuffer, pixel), light, traced[tile]);
-          if (soft)
-            shadows.shares[share++] = visible;
-          else if (visible > 0)
-            shadows.lit[at] |= 1u << bit;
-        }
-      }
-    }
-  });
-  TracedPairs sum;
-  for (const TracedPairs& of_tile : traced) {
-    sum.pairs += of_tile.pairs;
-    sum.rays += of_tile.rays;
-    sum.soft += of_tile.soft;
+  if (in.soft)
+    traceShares(in, is_hole, shadows);
+  else
+    traceOpenPairs(in, is_hole, shadows);
+  TracedPairs traced;
+  for (const TilePairs& of_tile : shadows.counts) {
+    traced.pairs += of_tile.unsure;
+    traced.soft += of_tile.soft_unsure;
+    traced.soft_lit += of_tile.soft_lit;
+    traced.soft_dark += of_tile.soft_dark;
   }
-  return sum;
+  traced.rays = traced.pairs - traced.soft + traced.soft * std::uint64_t(in.beams.soft_samples);
+  return traced;
 }
 
 }  // namespace luciole
