@@ -88,9 +88,9 @@ typedef struct {
   float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
   float reach;   // its range; +∞: everywhere
   uint casts;    // 1: it casts shadows
-  float size;  // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards
-               // them are off; 0: it has none
-  uint pad;
+  float size;   // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards
+                // them are off; 0: it has none
+  uint number;  // its index in the scene
 } BeamLight;
 SHARED_SIZE(BeamLight, 32);
 
@@ -240,6 +240,9 @@ SHARED_SIZE(ShadowTexel, 8);
 
 // Words of beam_shadows.cl's result for an entry of a light list: a bit for each pixel of the tile.
 enum { kPairWords = kTilePixels / 32 };
+
+// Of pairs whose share of a light the host decides, in place of the share.
+#define OPEN_SHARE (-1.0f)
 
 // How far a point may lie off its surface, as a share of its distance from the eye. A float position is
 // rounded in view space, and again relative to the eye, by 2⁻²⁴ each. Thirty-two times that leaves room for

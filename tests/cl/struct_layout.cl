@@ -73,7 +73,7 @@ __kernel void report_beam_light(__global uint* out) {
   *out++ = OFFSET(reach);
   *out++ = OFFSET(casts);
   *out++ = OFFSET(size);
-  *out++ = OFFSET(pad);
+  *out++ = OFFSET(number);
 }
 
 __kernel void report_hole_triangle(__global uint* out) {

@@ -75,7 +75,7 @@ TEST(StructLayout, ShadowTexel) {
 TEST(StructLayout, BeamLight) {
   expectLayout("report_beam_light",
                {sizeof(BeamLight), offsetof(BeamLight, place), offsetof(BeamLight, reach),
-                offsetof(BeamLight, casts), offsetof(BeamLight, size), offsetof(BeamLight, pad)});
+                offsetof(BeamLight, casts), offsetof(BeamLight, size), offsetof(BeamLight, number)});
 }
 
 TEST(StructLayout, HoleTriangle) {

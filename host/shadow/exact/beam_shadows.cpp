@@ -37,7 +37,11 @@ void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<co
   beams.view_to_tree = glm::mat3(glm::dmat3(camera.camera_to_world));
   beams.largest_coordinates = largestCoordinates(*beams.tree);
   beams.soft_samples = soft_samples;
-  if (soft_samples > 0) beams.samples = makeLightSamples();
+  if (soft_samples > 0) {
+    beams.samples = makeLightSamples();
+    beams.cosines = quarterCosines();
+    beams.quarter_cosines = borrowed(device, beams.cosines);
+  }
   beams.nodes = borrowed(device, beams.tree->nodes);
   beams.children = borrowed(device, beams.tree->children);
   beams.blocks = borrowed(device, beams.tree->blocks);

@@ -23,12 +23,14 @@ struct BeamScene {
   float4 largest_coordinates{};            ///< the largest |x|, |y|, |z| in the tree
   int soft_samples = 0;                    ///< of each light of a size; 0: none has one
   std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
+  std::vector<float> cosines;              ///< quarterCosines(), likewise
   Buffer<const float> nodes, blocks;
   Buffer<const int> children;
   Buffer<const uint> block_bits;
   Buffer<const unsigned char> hole_texels;
   Buffer<const HoleTriangle> hole_triangles;
   Buffer<const uint> first_hole_triangle;
+  Buffer<const float> quarter_cosines;
 
   BeamScene() = default;
   BeamScene(const BeamScene&) = delete;
