@@ -85,7 +85,7 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     timed(ignored, Stage::kBeamShadows, [&] {
       const StageInput input{device, nothing, lighting, pass, points, empty_list};
       PairShadows pairs = decideBeams(input);
-      if (!pairs.counts.empty()) traceUnsurePairs(input, pairs);
+      if (pairs.counts.count > 0) traceUnsurePairs(input, pairs);
     });
   }
   if (choice.others) lightGBuffer(device, nothing, lighting, std::move(pass), ignored);

@@ -30,7 +30,7 @@ void drawNeededMaps(const StageInput& input, MapScene& maps, Stats& stats) {
 /// Computes the exact shadows: by beams, and by rays for the pairs that beams leave undecided.
 void computeExactShadows(const StageInput& input, LitPlanes& lit, Stats& stats) {
   lit.pairs = timed(stats, Stage::kBeamShadows, [&] { return decideBeams(input); });
-  if (!lit.pairs.counts.empty())
+  if (lit.pairs.counts.count > 0)
     lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsurePairs(input, lit.pairs); });
   // Without lights of a size all bits are decided now. With them shading reads the shares of unsure pairs.
   if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = {};

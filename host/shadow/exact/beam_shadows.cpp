@@ -90,9 +90,8 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
   result.lit = makeBuffer<uint>(device, entries * kPairWords);
   if (unsure_pairs) {
     result.unsure = makeBuffer<uint>(device, entries * kPairWords);
-    result.counts.resize(tiles);
+    result.counts = makeBuffer<TilePairs>(device, tiles);
   }
-  const Buffer<TilePairs> counts = borrowedForOutput(device, result.counts);
   BeamFrame frame = beamFrame(beams, arguments.plane_stride);
   frame.light_count = uint(arguments.lights.count);
   Kernel kernel = makeKernel(device, "exact/beam_shadows.cl", "beam_shadows", defines);
@@ -113,10 +112,9 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
           {"first_hole_triangle", beams.first_hole_triangle},
           {"lit", result.lit},
           {"unsure", result.unsure},
-          {"counts", counts}},
+          {"counts", result.counts}},
          {.items = (tiles + kBeamRun - 1) / kBeamRun});
   finish(device);
-  download(device, counts, result.counts);
   return result;
 }
 

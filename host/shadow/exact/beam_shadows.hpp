@@ -67,7 +67,7 @@ struct PairShadows {
   /// share; and the share of the light, in [0, 1], that reaches each unsure pair.
   Buffer<uint> first_share;
   Buffer<float> shares;
-  std::vector<TilePairs> counts;  ///< of each tile; empty where `unsure` is
+  Buffer<TilePairs> counts;  ///< of each tile; empty where `unsure` is
 };
 
 /// Launches kernels/exact/beam_shadows.cl and waits for it. defines: of featuresFor(kForBeams). Throws

@@ -161,9 +161,11 @@ void settleOnHost(const PairInput& in, std::span<const uint> counts, PairShadows
 }  // namespace
 
 TracedPairs tracePairs(const PairInput& in, PairShadows& shadows) {
+  std::vector<TilePairs> counts(shadows.counts.count);
+  download(in.device, shadows.counts, counts);
   TracedPairs traced;
   std::vector<uint> open;
-  for (const TilePairs& of_tile : shadows.counts) {
+  for (const TilePairs& of_tile : counts) {
     traced.pairs += of_tile.unsure;
     traced.soft += of_tile.soft_unsure;
     traced.soft_lit += of_tile.soft_lit;

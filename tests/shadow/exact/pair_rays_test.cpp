@@ -79,7 +79,8 @@ std::vector<float> sharesOnDevice(OpenedDevice& device, const PairStage& stage, 
   shadows.unsure = makeBuffer<uint>(device, kTiles * lights * kPairWords);
   fill(device, shadows.unsure, 0xffffffff);
   const uint pairs = uint(lights) * kTilePixels;
-  shadows.counts.assign(kTiles, {pairs, pairs, 0, 0});
+  shadows.counts = makeBuffer<TilePairs>(device, kTiles);
+  fill(device, shadows.counts, {pairs, pairs, 0, 0});
   tracePairs({device, defines, arguments, stage.scene, stage.lights, stage.gbuffer}, shadows);
   std::vector<float> shares(kTiles * pairs);
   std::vector<uint> first(shadows.unsure.count);
