@@ -44,14 +44,20 @@ INLINE float seen_share(const RayScene* scene, const PairBuffers* buffers, const
   rays->count = samples;
   rays->rows = (samples + kTreeWidth - 1) / kTreeWidth;
   uint first = first_of_pattern(rays->start, light->number, samples);
-  for (uint i = 0; i < samples; ++i) {
-    LightSample sample = light_sample(first + i, buffers->quarter_cosines);
-    float at[3];
-    place_sample(&cone, sample.share, sample.cosine, sample.sine, at);
-    UNROLLED(axis, 3) rays->place[axis][i] = at[axis];
+  for (uint row = 0; row < rays->rows; ++row) {
+    uint from = row * kTreeWidth, count = min(samples - from, (uint)kTreeWidth);
+    float share[kTreeWidth], cosine[kTreeWidth], sine[kTreeWidth], at[kTreeWidth][3];
+    for (uint i = 0; i < count; ++i) {
+      LightSample sample = light_sample(first + from + i, buffers->quarter_cosines);
+      share[i] = sample.share;
+      cosine[i] = sample.cosine;
+      sine[i] = sample.sine;
+    }
+    // Apart, for a processor to do several at once.
+    for (uint i = 0; i < count; ++i) place_sample(&cone, share[i], cosine[i], sine[i], at[i]);
+    for (uint i = 0; i < kTreeWidth; ++i)
+      UNROLLED(axis, 3) rays->place[axis][from + i] = i < count ? at[i][axis] : rays->place[axis][0];
   }
-  for (uint i = samples; i < rays->rows * kTreeWidth; ++i)
-    UNROLLED(axis, 3) rays->place[axis][i] = rays->place[axis][0];
   aim_samples(rays);
   trace_samples(scene, rays, likely);
   for (uint row = 0; HOLES && row < rays->rows; ++row)

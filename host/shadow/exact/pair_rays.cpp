@@ -123,6 +123,8 @@ std::vector<uint> traceOnDevice(const PairInput& in, std::span<const uint> count
 /// Decides the pairs that are open by rays on the host. counts: of each tile.
 void settleOnHost(const PairInput& in, std::span<const uint> counts, PairShadows& shadows) {
   const std::vector<uint> first = sumsOf(counts);
+  // Where textures may have to decide the kernel is compiled while others are.
+  if (first.back() == 0 && !in.arguments.holes) return;
   std::vector<float> seen(first.back());
   std::vector<LightRay> pairs(first.back());
   const Buffer<const uint> first_open = borrowed(in.device, first);
