@@ -88,9 +88,9 @@ typedef struct {
   float4 place;  // xyz of a light with w = 1; with w = 0 the unit direction towards a light at infinity
   float reach;   // its range; +∞: everywhere
   uint casts;    // 1: it casts shadows
-  float size;  // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards
-               // them are off; 0: it has none
-  uint pad;
+  float size;   // what its samples lie in: the radius of a sphere, or with w = 0 how far unit vectors towards
+                // them are off; 0: it has none
+  uint number;  // its index in the scene
 } BeamLight;
 SHARED_SIZE(BeamLight, 32);
 
@@ -241,6 +241,9 @@ SHARED_SIZE(ShadowTexel, 8);
 // Words of beam_shadows.cl's result for an entry of a light list: a bit for each pixel of the tile.
 enum { kPairWords = kTilePixels / 32 };
 
+// Of pairs whose share of a light the host decides, in place of the share.
+#define OPEN_SHARE (-1.0f)
+
 // How far a point may lie off its surface, as a share of its distance from the eye. A float position is
 // rounded in view space, and again relative to the eye, by 2⁻²⁴ each. Thirty-two times that leaves room for
 // G-buffers of other programs, which have rounded in world space, and for turning it to the axes of the tree
@@ -301,6 +304,14 @@ typedef struct {
   uint pad0, pad1, pad2;
 } BeamFrame;
 SHARED_SIZE(BeamFrame, 96);
+
+// Pairs of a tile's pixels and the lights of its list.
+typedef struct {
+  uint unsure;               // rays decide
+  uint soft_unsure;          // of these, with lights of a size
+  uint soft_lit, soft_dark;  // with lights of a size, decided without rays: all is lit, or dark
+} TilePairs;
+SHARED_SIZE(TilePairs, 16);
 
 // Of shade_tiles.cl. A block is what a work-item takes: kBlockTiles together or fewer.
 typedef struct {

@@ -62,6 +62,10 @@ constexpr std::string_view kernelTypeName<BeamLight>() {
   return "BeamLight";
 }
 template <>
+constexpr std::string_view kernelTypeName<TilePairs>() {
+  return "TilePairs";
+}
+template <>
 constexpr std::string_view kernelTypeName<HoleTriangle>() {
   return "HoleTriangle";
 }

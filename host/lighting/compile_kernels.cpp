@@ -83,7 +83,9 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     reserve(device, 2, empty_list.starts);
     fill(device, empty_list.starts, 0);
     timed(ignored, Stage::kBeamShadows, [&] {
-      decideBeams({device, nothing, lighting, pass, points, empty_list});
+      const StageInput input{device, nothing, lighting, pass, points, empty_list};
+      PairShadows pairs = decideBeams(input);
+      if (pairs.counts.count > 0) traceUnsurePairs(input, pairs);
     });
   }
   if (choice.others) lightGBuffer(device, nothing, lighting, std::move(pass), ignored);

@@ -103,9 +103,9 @@ void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, doubl
     countStandIns(lit, stats);
     countLightErrors(gbuffer, lit, least_value, stats);
   }
-  if (lit.pairs.soft_lit + lit.pairs.soft_dark + lit.traced.soft > 0) {
-    addCount(stats, "soft_pairs_lit", lit.pairs.soft_lit);
-    addCount(stats, "soft_pairs_dark", lit.pairs.soft_dark);
+  if (lit.traced.soft_lit + lit.traced.soft_dark + lit.traced.soft > 0) {
+    addCount(stats, "soft_pairs_lit", lit.traced.soft_lit);
+    addCount(stats, "soft_pairs_dark", lit.traced.soft_dark);
     addCount(stats, "soft_pairs_by_rays", lit.traced.soft);
   }
   if (lit.traced.rays > 0) addCount(stats, "shadow_rays", lit.traced.rays);

@@ -30,10 +30,10 @@ void drawNeededMaps(const StageInput& input, MapScene& maps, Stats& stats) {
 /// Computes the exact shadows: by beams, and by rays for the pairs that beams leave undecided.
 void computeExactShadows(const StageInput& input, LitPlanes& lit, Stats& stats) {
   lit.pairs = timed(stats, Stage::kBeamShadows, [&] { return decideBeams(input); });
-  if (!lit.pairs.unsure.empty())
+  if (lit.pairs.counts.count > 0)
     lit.traced = timed(stats, Stage::kShadowRays, [&] { return traceUnsurePairs(input, lit.pairs); });
   // Without lights of a size all bits are decided now. With them shading reads the shares of unsure pairs.
-  if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = PairBits();
+  if (!input.pass.features.has(Feature::kSoftExact)) lit.pairs.unsure = {};
 }
 
 /// The bytes of the device's buffers for this G-buffer.
@@ -41,7 +41,7 @@ std::size_t bytesOf(const StageInput& input, const BoundedLight& bounded, const 
   const std::size_t floats =
       bounded.light.size() + lit.half_width.size() + lit.light_error.size() + lit.color.size();
   const std::size_t words =
-      lit.pairs.lit.size() + lit.pairs.unsure.size() + lit.pairs.first_share.size() + lit.pairs.shares.size();
+      lit.pairs.lit.count + lit.pairs.unsure.count + lit.pairs.first_share.count + lit.pairs.shares.count;
   return input.points.bytes + bytesOf(input.pass.lights) + input.lists.bytes + floats * sizeof(float) +
          words * sizeof(uint) + input.lighting.maps.host.texels.size() * sizeof(ShadowTexel);
 }
@@ -61,8 +61,6 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
   if (features.shadowMaps()) drawNeededMaps(input, lighting.maps, stats);
   if (features.has(Feature::kExact) && lighting.beams.tree) computeExactShadows(input, lit, stats);
-  // Lives to the end: Oclgrind takes a buffer for unwritten if it reuses the address of a freed one.
-  const PairBuffers pairs = borrowPairs(device, lit.pairs);
   ShadeFrame frame = pass.lights.frame;
   frame.plane_stride = static_cast<uint>(points.stride);
   frame.texel_count = static_cast<uint>(std::max<std::size_t>(lighting.maps.host.texels.size(), 1));
@@ -80,7 +78,7 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
     if (by_tiles)
       of_tiles = shadeByTiles(input, frame, image);
     else
-      shadeByLists(input, frame, pairs, image);
+      shadeByLists(input, frame, lit.pairs, image);
   });
   timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
   lit.list_entries = of_tiles.entries;

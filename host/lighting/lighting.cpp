@@ -45,6 +45,7 @@ void prepareLightSet(OpenedDevice& device, const Scene& scene, const Camera& cam
       for (std::size_t i = 0; i < set.order.size(); ++i) {
         const bool casts = shadowWay(scene, set.order[i], settings) == ShadowWay::kBeams;
         set.beam_lights.push_back(beamLight(scene.lights[set.order[i]], casts, lighting.beams));
+        set.beam_lights.back().number = set.order[i];
         if (casts) set.lights[i].shadow = kExactShadow;
       }
   }

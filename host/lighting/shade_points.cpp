@@ -10,7 +10,7 @@ std::string shadeDefines(const StageInput& input) {
 
 }  // namespace
 
-void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,
+void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairShadows& pairs,
                   const Buffer<float>& image) {
   const MapScene& maps = input.lighting.maps;
   shade(input.device, shadeDefines(input),
@@ -21,8 +21,8 @@ void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBu
          .shadow_maps = maps.maps,
          .shadow_faces = maps.faces,
          .shadow_texels = maps.texels,
-         .pair_bits = pairs.pair_bits,
-         .ray_bits = pairs.ray_bits,
+         .pair_bits = pairs.lit,
+         .ray_bits = pairs.unsure,
          .first_share = pairs.first_share,
          .shares = pairs.shares,
          .image = image});

@@ -35,13 +35,6 @@ PairShadows decideBeams(const StageInput& input);
 /// Decides the unsure pairs by rays.
 TracedPairs traceUnsurePairs(const StageInput& input, PairShadows& pairs);
 
-/// Exact shadows on the device, borrowed. See ShadeArguments.
-struct PairBuffers {
-  Buffer<const uint> pair_bits, ray_bits, first_share;
-  Buffer<const float> shares;
-};
-PairBuffers borrowPairs(OpenedDevice& device, const PairShadows& pairs);
-
 /// Light of clusters and of sampled lights: planes r g b, or empty where there are neither.
 struct BoundedLight {
   Plane light;  ///< as it leaves the surface, and the G-buffer's emission with it
@@ -59,7 +52,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame);
 void sampleLights(const StageInput& input, const ShadeFrame& frame, BoundedLight& result);
 
 /// Shades by lists, or by all lights where there are none. image: out, see LitPlanes::color.
-void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairBuffers& pairs,
+void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairShadows& pairs,
                   const Buffer<float>& image);
 
 /// Culls and shades in one kernel, without lists in memory.

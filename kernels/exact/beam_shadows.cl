@@ -322,19 +322,49 @@ INLINE void select_cache_slot(Scene* scene, uint light) {
   for (uint i = 0; i < kTreeWidth; ++i) cache->reference[scene->cache_slot][i] = NO_TRIANGLE;
 }
 
+// Bits of a word's pixels in an entry's squares: other pixels are never shaded with its light. word: of the
+// entry's.
+INLINE uint listed_pixels(uint squares, uint word) {
+  uint of_word = squares >> SQUARE_OF_PIXEL(word * 32);
+  return (of_word & 1 ? 0xffffu : 0) | (of_word & 2 ? 0xffff0000u : 0);
+}
+
+// Takes the pixels that aren't shaded from an entry's words of unsure pairs, and counts all of its pairs.
+// lit: its words. received: pixels that the light may reach.
+INLINE void count_pairs(__global const uint* lit, __global uint* unsure, uint squares, bool sized,
+                        uint received, __global TilePairs* counts) {
+  uint lit_pairs = 0, by_rays = 0, listed = 0;
+  for (uint i = 0; i < kPairWords; ++i) {
+    lit_pairs += popcount(lit[i]);
+    by_rays += popcount(unsure[i]);
+    unsure[i] &= listed_pixels(squares, i);
+    listed += popcount(unsure[i]);
+  }
+  counts->unsure += listed;
+  if (!sized) return;
+  counts->soft_unsure += listed;
+  counts->soft_lit += lit_pairs;
+  counts->soft_dark += received - lit_pairs - by_rays;
+}
+
 // The buffers of a G-buffer, its lights and its pairs: see beam_shadows().
 typedef struct {
   __global const float *position, *normal, *lift;
   __global const BeamLight* lights;
   __global const uint* list_starts;
   __global const ListEntry* list;
-  __global uint *lit, *unsure, *receivers;
+  __global uint *lit, *unsure;
+  __global TilePairs* counts;
 } PairBuffers;
 
 // Decides the pairs of a tile.
 WORK void shadow_tile(uint number, const BeamFrame* frame, Scene scene, PairBuffers buffers) {
   uint entry = LIGHT_LISTS ? buffers.list_starts[number] : number * frame->light_count;
   uint end = LIGHT_LISTS ? buffers.list_starts[number + 1] : entry + frame->light_count;
+  if (UNSURE_PAIRS) {
+    TilePairs none = {0, 0, 0, 0};
+    buffers.counts[number] = none;
+  }
   if (entry == end) return;
   // Load the tile's points.
   TilePoints tile;
@@ -358,12 +388,14 @@ WORK void shadow_tile(uint number, const BeamFrame* frame, Scene scene, PairBuff
         first = tile.bundle_end[i];
       }
       write_pixels(&tile, remaining.left, remaining.unsure, 0xffff, lit);
-      if (UNSURE_PAIRS) write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure);
-      if (SOFT_EXACT) buffers.receivers[entry] = light.size > 0.0f ? received : 0;
+      if (UNSURE_PAIRS) {
+        write_pixels(&tile, remaining.left, remaining.unsure, 0, unsure);
+        count_pairs(lit, unsure, LIGHT_LISTS ? buffers.list[entry].squares : 0xffff,
+                    SOFT_EXACT && light.size > 0.0f, received, buffers.counts + number);
+      }
     } else {
       for (uint i = 0; i < kPairWords; ++i) lit[i] = 0;
       for (uint i = 0; UNSURE_PAIRS && i < kPairWords; ++i) unsure[i] = 0;
-      if (SOFT_EXACT) buffers.receivers[entry] = 0;
     }
   }
 }
@@ -373,8 +405,7 @@ WORK void shadow_tile(uint number, const BeamFrame* frame, Scene scene, PairBuff
 // HoleMasks. A work-item takes kBeamRun tiles.
 // - lit: kPairWords words for each entry, a bit for each pixel of the tile; 0 for lights that cast no shadow.
 // - unsure: as many, with HOLES or SOFT_EXACT only: not set in `lit`, and rays decide.
-// - receivers: a number for each entry, with SOFT_EXACT only: of pixels that a light of a size may reach; 0
-//   for other lights.
+// - counts: of each tile, likewise.
 KERNEL void beam_shadows(BeamFrame frame, __global const float* position, __global const float* normal,
                          __global const float* lift, __global const BeamLight* lights,
                          __global const uint* list_starts, __global const ListEntry* list,
@@ -382,7 +413,7 @@ KERNEL void beam_shadows(BeamFrame frame, __global const float* position, __glob
                          __global const float* blocks, __global const uint* block_bits,
                          __global const uchar* hole_texels, __global const HoleTriangle* hole_triangles,
                          __global const uint* first_hole_triangle, __global uint* lit, __global uint* unsure,
-                         __global uint* receivers) {
+                         __global TilePairs* counts) {
   BlockerCache cache;
   for (uint i = 0; i < kCachedLights; ++i) cache.light[i] = NO_TRIANGLE;
   // Lanes beyond the last candidate are computed with, too.
@@ -392,7 +423,7 @@ KERNEL void beam_shadows(BeamFrame frame, __global const float* position, __glob
   float4 most = frame.tree_most;
   Scene scene = {nodes, children, blocks,      block_bits, masks, frame.tree_root, {most.x, most.y, most.z},
                  0,     &cache,   &candidates, 0};
-  PairBuffers buffers = {position, normal, lift, lights, list_starts, list, lit, unsure, receivers};
+  PairBuffers buffers = {position, normal, lift, lights, list_starts, list, lit, unsure, counts};
   uint first = work_item() * kBeamRun;
   for (uint tile = first; tile < frame.tiles && tile < first + kBeamRun; ++tile)
     shadow_tile(tile, &frame, scene, buffers);

@@ -73,7 +73,7 @@ __kernel void report_beam_light(__global uint* out) {
   *out++ = OFFSET(reach);
   *out++ = OFFSET(casts);
   *out++ = OFFSET(size);
-  *out++ = OFFSET(pad);
+  *out++ = OFFSET(number);
 }
 
 __kernel void report_hole_triangle(__global uint* out) {
@@ -124,6 +124,15 @@ __kernel void report_cull_frame(__global uint* out) {
   *out++ = OFFSET(group_log2);
   *out++ = OFFSET(tests);
   *out++ = OFFSET(fill);
+}
+
+__kernel void report_tile_pairs(__global uint* out) {
+  TilePairs value;
+  *out++ = sizeof(TilePairs);
+  *out++ = OFFSET(unsure);
+  *out++ = OFFSET(soft_unsure);
+  *out++ = OFFSET(soft_lit);
+  *out++ = OFFSET(soft_dark);
 }
 
 __kernel void report_beam_frame(__global uint* out) {

@@ -75,7 +75,7 @@ TEST(StructLayout, ShadowTexel) {
 TEST(StructLayout, BeamLight) {
   expectLayout("report_beam_light",
                {sizeof(BeamLight), offsetof(BeamLight, place), offsetof(BeamLight, reach),
-                offsetof(BeamLight, casts), offsetof(BeamLight, size), offsetof(BeamLight, pad)});
+                offsetof(BeamLight, casts), offsetof(BeamLight, size), offsetof(BeamLight, number)});
 }
 
 TEST(StructLayout, HoleTriangle) {
@@ -104,6 +104,12 @@ TEST(StructLayout, CullFrame) {
                {sizeof(CullFrame), offsetof(CullFrame, plane_stride), offsetof(CullFrame, tree_stride),
                 offsetof(CullFrame, light_count), offsetof(CullFrame, group_log2), offsetof(CullFrame, tests),
                 offsetof(CullFrame, fill)});
+}
+
+TEST(StructLayout, TilePairs) {
+  expectLayout("report_tile_pairs",
+               {sizeof(TilePairs), offsetof(TilePairs, unsure), offsetof(TilePairs, soft_unsure),
+                offsetof(TilePairs, soft_lit), offsetof(TilePairs, soft_dark)});
 }
 
 TEST(StructLayout, BeamFrame) {

@@ -46,7 +46,8 @@ void addObjects(const Camera& camera, Scene& scene) {
 
 /// Those of odd numbers have shadows that start above facets. Fifteen in a row have every fog with rows of 1,
 /// 4 and 8 pixels (Oclgrind 21.10 takes a vector of 16 for unwritten where a function is called with it),
-/// every shadow method with each of them, and either choice of all else. Three more have soft exact shadows.
+/// every shadow method with each of them, and either choice of all else. Three more have soft exact shadows,
+/// the last one behind a material with holes.
 ///
 /// One a process: where a buffer takes the place of a smaller one that was freed, Oclgrind 21.10 takes its
 /// end for unwritten. That is also why nothing is rendered here, which lights more than one G-buffer.
@@ -66,6 +67,8 @@ void lightPicture(unsigned number) {
       scene.lights[i].radius = scene.lights[i].half_angle = 0.2;
   scene.fog = randomFog(static_cast<FogMode>(number / 3 % 4), random);
   addObjects(camera, scene);
+  // Its holes only the host knows.
+  if (number == 17) scene.materials.back().alpha = scene.materials.back().alpha_cutoff = 0.5f;
   ShadeSettings settings;
   settings.shadows = method;
   settings.shadow_layer = true;

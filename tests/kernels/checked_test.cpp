@@ -65,6 +65,8 @@ TEST(CheckedKernels, AMistakeIsReported) {
 std::set<std::string> kernelsToRun(int picture) {
   if (picture == 4 || picture == 8) return {"shade_tiles"};
   std::set<std::string> names{"shade", "count_in_range"};
+  if (picture >= 15) names.insert({"beam_shadows", "pair_rays"});
+  if (picture == 17) names.insert("open_pairs");
   if (picture == 3 || picture == 6) {
     names = allKernels();
     names.erase("shade_tiles");
@@ -72,6 +74,8 @@ std::set<std::string> kernelsToRun(int picture) {
     names.erase("sampled_light");
     names.erase("light_rays");  // of no picture: CheckedRays
     names.erase("ray_starts");
+    names.erase("pair_rays");  // of soft exact shadows
+    names.erase("open_pairs");
     names.erase("check_arithmetic");  // of no picture: cli/check_device_test.cpp
     if (picture == 3) {
       names.erase("pair_visibility");

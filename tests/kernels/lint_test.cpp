@@ -158,13 +158,13 @@ const std::regex kFixedFunctions(
     "ctpop\\.).*"
     "|llvm\\.x86\\.(avx512\\.mask\\.(gather\\.dpq|compress)\\.|avx\\.movmsk\\.ps\\.|sse\\.movmsk\\.ps).*");
 
-/// What only these functions may do: fma_lanes() says where a product and a sum are one operation, and those
-/// of quotient.clh know whether the device rounds.
-const std::map<std::string, std::regex> kAlsoFixed{{"fma_lanes", std::regex("llvm\\.fmuladd\\..*")},
-                                                   {"quotient", std::regex("fdiv")},
-                                                   {"quotient_lanes", std::regex("fdiv")},
-                                                   {"quotient_of_any", std::regex("fdiv")},
-                                                   {"square_root", std::regex("fdiv|_Z4sqrtf")}};
+/// What only these functions may do: fma_lanes() says where a product and a sum are one operation, those of
+/// quotient.clh know whether the device rounds, and in doubles every device does (OpenCL C 1.2, 7.4).
+const std::map<std::string, std::regex> kAlsoFixed{
+    {"fma_lanes", std::regex("llvm\\.fmuladd\\..*")}, {"quotient", std::regex("fdiv")},
+    {"quotient_lanes", std::regex("fdiv")},           {"quotient_of_any", std::regex("fdiv")},
+    {"square_root", std::regex("fdiv|_Z4sqrtf")},     {"see_light", std::regex("fdiv|_Z4sqrtd")},
+    {"place_sample", std::regex("_Z4sqrtd")}};
 
 /// What a line of LLVM's text defines or calls by its name, after that word; empty where it has none.
 std::string_view nameAfter(std::string_view line, std::string_view word) {

@@ -117,7 +117,7 @@ std::shared_ptr<const HoleMasks> ignorantMasks(const TriangleTree& tree) {
 }
 
 struct Shadows {
-  PairBits lit;
+  std::vector<uint> lit;
   std::uint64_t rays;
 };
 
@@ -135,8 +135,8 @@ Shadows shadowsOn(const GBuffer& seen, const Scene& scene, const View& view, con
     beams.hole_triangles = borrowed(device, beams.masks->triangles);
     beams.first_hole_triangle = borrowed(device, beams.masks->first_triangle);
   }
-  LitPlanes lit = lightGBuffer(device, scene, lighting, {lighting.lights, features, seen}, stats);
-  return {std::move(lit.pairs.lit), lit.traced.pairs};
+  const LitPlanes lit = lightGBuffer(device, scene, lighting, {lighting.lights, features, seen}, stats);
+  return {downloadPairs(device, lit.pairs).lit, lit.traced.pairs};
 }
 
 TEST(HoleMasks, ChangeNoBitOfWhatTheHostDecides) {
@@ -189,6 +189,7 @@ TEST(SoftExact, AgreesWithBruteForceBehindHoles) {
   Stats stats;
   prepareLighting(device, scene, scene.cameras[0], view, features, settings, lighting, stats);
   const LitPlanes lit = lightGBuffer(device, scene, lighting, {lighting.lights, features, gbuffer}, stats);
+  const PairWords words = downloadPairs(device, lit.pairs);
   const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
   std::size_t asked = 0;
   const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {
@@ -201,7 +202,7 @@ TEST(SoftExact, AgreesWithBruteForceBehindHoles) {
     for (int x = 0; x < size.x; ++x)
       for (std::uint32_t light = 0; light < count; ++light) {
         const std::size_t place = gbuffer.index(x, y), tile = place / kTilePixels;
-        const float share = shareOf(lit.pairs, tile * count + light, place % kTilePixels);
+        const float share = shareOf(words, tile * count + light, place % kTilePixels);
         const glm::vec3 start = startInTree(lighting.beams, gbuffer, place);
         const BeamLight& beam = lighting.lights.beam_lights[light];
         // Behind the wall no light shines on it.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "render_json.hpp"
 
@@ -92,6 +93,45 @@ TEST(Traffic, OnlyShadowTexelsThatWereDrawnGoUp) {
   constexpr std::uint64_t kPlanes = 2 * 4 * 112 * 160 * kSamples, kOther = 9 * 48 * kSamples + 4096;
   EXPECT_LT(with.traffic.bytes_up - without.bytes_up, kSamples / 2 * shadow_bytes->second + kPlanes + kOther);
   EXPECT_GT(with.traffic.bytes_up - without.bytes_up, shadow_bytes->second);
+}
+
+/// A leaf whose opacity is its cutoff: nothing but a lookup tells that it is solid.
+constexpr const char* kLeaf =
+    R"({"primitive": "plane", "translate": [0.5, 1.5, 1], "rotate": [20, 0, 10], "material": "leaf"}, )";
+
+// Neither words of pairs nor lists come down or go up. Without culling each tile has all lights, and 32 bytes
+// of words for each of them: as much is moved as with short lists, and no more than in a picture without
+// shadows but for what is said below.
+TEST(Traffic, ExactShadowsStayOnTheDevice) {
+  constexpr std::uint64_t kPasses = 2, kTiles = kPasses * (112 * 160 / kTilePixels);
+  for (const ShadowMethod method : {ShadowMethod::kExact, ShadowMethod::kSoftExact})
+    for (const bool holes : {false, true}) {
+      std::string text = kTrafficScene;
+      if (holes) {
+        text.insert(text.find(R"({"primitive")"), kLeaf);
+        text.insert(text.find(R"("m": )"),
+                    R"("leaf": {"alpha": 0.5, "alpha_cutoff": 0.5, "double_sided": true}, )");
+      }
+      const Scene scene = sceneFromJson(text.c_str());
+      RenderSettings settings = sampledSettings(scene, method, int(kPasses));
+      settings.sample_shading = SampleShading::kAll;
+      const Traffic by_lists = trafficOfPicture(deviceApart(), scene, settings);
+      settings.shade.culling = Culling::kNone;
+      Stats stats;
+      renderScene(deviceApart(), scene, settings, stats);
+      settings.shade.shadows = ShadowMethod::kOff;
+      const Traffic without = trafficOfPicture(deviceApart(), scene, settings);
+      // Pairs that only textures can tell: at most those that rays decide.
+      const std::uint64_t rays = countOf(stats, "shadow_rays"),
+                          open = !holes                           ? 0
+                                 : method == ShadowMethod::kExact ? rays
+                                                                  : countOf(stats, "soft_pairs_by_rays");
+      EXPECT_EQ(rays > 0, holes || method == ShadowMethod::kSoftExact);
+      EXPECT_LE(stats.traffic.bytes_up, by_lists.bytes_up + sizeof(float) * open);
+      // Of each tile four counts and that of open pairs, of which each has a pixel and a light. One more tile
+      // is that by which kernels are compiled.
+      EXPECT_LE(stats.traffic.bytes_down, without.bytes_down + 20 * (kTiles + 1) + 8 * open);
+    }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "shadow/exact/beam_shadows.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -29,21 +28,6 @@ float4 largestCoordinates(const TriangleTree& tree) {
   return {most[0], most[1], most[2], 0};
 }
 
-/// Counts the pairs with lights of a size that are decided without rays. receivers: for each entry the number
-/// of its pixels that the light may reach.
-void countDecided(const PairBits& receivers, std::size_t entries, PairShadows& pairs) {
-  for (std::size_t entry = 0; entry < entries; ++entry) {
-    if (receivers[entry] == 0) continue;
-    std::uint64_t bits = 0, by_rays = 0;
-    for (std::size_t i = entry * kPairWords; i < (entry + 1) * kPairWords; ++i) {
-      bits += std::uint64_t(std::popcount(pairs.lit[i]));
-      by_rays += std::uint64_t(std::popcount(pairs.unsure[i]));
-    }
-    pairs.soft_lit += bits;
-    pairs.soft_dark += receivers[entry] - bits - by_rays;
-  }
-}
-
 }  // namespace
 
 void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<const TriangleTree> tree,
@@ -53,7 +37,11 @@ void prepareBeams(OpenedDevice& device, const Camera& camera, std::shared_ptr<co
   beams.view_to_tree = glm::mat3(glm::dmat3(camera.camera_to_world));
   beams.largest_coordinates = largestCoordinates(*beams.tree);
   beams.soft_samples = soft_samples;
-  if (soft_samples > 0) beams.samples = makeLightSamples();
+  if (soft_samples > 0) {
+    beams.samples = makeLightSamples();
+    beams.cosines = quarterCosines();
+    beams.quarter_cosines = borrowed(device, beams.cosines);
+  }
   beams.nodes = borrowed(device, beams.tree->nodes);
   beams.children = borrowed(device, beams.tree->children);
   beams.blocks = borrowed(device, beams.tree->blocks);
@@ -99,12 +87,11 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
     throw MachineError(
         "exact shadows of 2^29 or more pairs of a tile and a light: use fewer lights or a smaller picture");
   PairShadows result;
-  result.lit.resize(std::max<std::size_t>(entries, 1) * kPairWords);
-  if (unsure_pairs) result.unsure.resize(result.lit.size());
-  PairBits receivers(soft ? std::max<std::size_t>(entries, 1) : 0);
-  const Buffer<uint> lit = borrowedForOutput(device, result.lit),
-                     unsure = borrowedForOutput(device, result.unsure),
-                     received = borrowedForOutput(device, receivers);
+  result.lit = makeBuffer<uint>(device, entries * kPairWords);
+  if (unsure_pairs) {
+    result.unsure = makeBuffer<uint>(device, entries * kPairWords);
+    result.counts = makeBuffer<TilePairs>(device, tiles);
+  }
   BeamFrame frame = beamFrame(beams, arguments.plane_stride);
   frame.light_count = uint(arguments.lights.count);
   Kernel kernel = makeKernel(device, "exact/beam_shadows.cl", "beam_shadows", defines);
@@ -123,15 +110,11 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
           {"hole_texels", beams.hole_texels},
           {"hole_triangles", beams.hole_triangles},
           {"first_hole_triangle", beams.first_hole_triangle},
-          {"lit", lit},
-          {"unsure", unsure},
-          {"receivers", received}},
+          {"lit", result.lit},
+          {"unsure", result.unsure},
+          {"counts", result.counts}},
          {.items = (tiles + kBeamRun - 1) / kBeamRun});
-  download(device, lit, result.lit);
-  if (unsure_pairs) download(device, unsure, result.unsure);
-  if (!soft) return result;
-  download(device, received, receivers);
-  countDecided(receivers, entries, result);
+  finish(device);
   return result;
 }
 

@@ -7,17 +7,12 @@
 #include "cl/buffer.hpp"
 #include "kernels/shared.h"
 #include "lights/cull.hpp"
-#include "luciole/array_memory.hpp"
 #include "luciole/scene.hpp"
 #include "shadow/exact/hole_masks.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/exact/triangle_tree.hpp"
 
 namespace luciole {
-
-/// Words of kernels/exact/beam_shadows.cl: kPairWords for each entry of the light lists, a bit for each pixel
-/// of its tile.
-using PairBits = std::vector<uint, ArrayAllocator<uint>>;
 
 /// The triangle tree and samples of exact shadows, on the host and on the device. Buffers are borrowed from
 /// the members before them, so it can't be copied.
@@ -28,12 +23,14 @@ struct BeamScene {
   float4 largest_coordinates{};            ///< the largest |x|, |y|, |z| in the tree
   int soft_samples = 0;                    ///< of each light of a size; 0: none has one
   std::vector<LightSample> samples;        ///< makeLightSamples(), with lights of a size only
+  std::vector<float> cosines;              ///< quarterCosines(), likewise
   Buffer<const float> nodes, blocks;
   Buffer<const int> children;
   Buffer<const uint> block_bits;
   Buffer<const unsigned char> hole_texels;
   Buffer<const HoleTriangle> hole_triangles;
   Buffer<const uint> first_hole_triangle;
+  Buffer<const float> quarter_cosines;
 
   BeamScene() = default;
   BeamScene(const BeamScene&) = delete;
@@ -62,15 +59,15 @@ struct BeamArguments {
 };
 
 /// The exact shadows of all entries of the lists; without lists of each tile and light, tile by tile.
+/// They stay on the device: kPairWords words for each entry, a bit for each pixel of its tile.
 struct PairShadows {
-  PairBits lit;
-  PairBits unsure;  ///< to be decided by tracePairs(). Empty if no triangle has holes and no light a size
+  Buffer<uint> lit;
+  Buffer<uint> unsure;  ///< to be decided by tracePairs(). Empty if no triangle has holes and no light a size
   /// With lights of a size only, by tracePairs(): for each word of `unsure` the index of its first bit's
   /// share; and the share of the light, in [0, 1], that reaches each unsure pair.
-  PairBits first_share;
-  std::vector<float, ArrayAllocator<float>> shares;
-  /// Pairs with lights of a size that are decided without rays: fully lit, or fully dark.
-  std::uint64_t soft_lit = 0, soft_dark = 0;
+  Buffer<uint> first_share;
+  Buffer<float> shares;
+  Buffer<TilePairs> counts;  ///< of each tile; empty where `unsure` is
 };
 
 /// Launches kernels/exact/beam_shadows.cl and waits for it. defines: of featuresFor(kForBeams). Throws

@@ -4,23 +4,18 @@
 #include <span>
 #include <vector>
 
+#include "kernels/exact/light_samples.h"
 #include "kernels/shared.h"
 
 namespace luciole {
-
-/// A sample of the disc that a light of a size shows, in polar coordinates: `share` is the share of the solid
-/// angle inside its circle, 0 at the middle and 1 at the rim; cosine and sine are those of its azimuth.
-struct LightSample {
-  float share, cosine, sine;
-};
 
 /// The first kLightSamples points of I. Sobol's sequence (1967) in two dimensions. Each run of 2ᵐ of them
 /// that begins at a multiple of 2ᵐ is a (0, m, 2)-net in base 2 (H. Niederreiter 1987). So a run of `samples`
 /// is a pattern of low discrepancy, and the patterns of many points together are, too.
 std::vector<LightSample> makeLightSamples();
-inline constexpr int kLightSamples = 1 << 16;
-/// Samples of a light from a point, at most.
-inline constexpr int kMostSoftSamples = 1024;
+
+/// The cosines of which kernels make the samples: see light_sample() in kernels/exact/light_samples.h.
+std::vector<float> quarterCosines();
 
 /// The pattern of a light from a point: `samples` of makeLightSamples(). It depends on the bits of the
 /// point's coordinates and on nothing else of a picture, so crops, bands and samples of a pixel have their

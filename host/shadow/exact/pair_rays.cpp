@@ -1,19 +1,22 @@
 #include "shadow/exact/pair_rays.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "base/machine_memory.hpp"
+#include "cl/launch.hpp"
 #include "kernels/shared.h"
 #include "luciole/error.hpp"
 #include "raster/opacity.hpp"
+#include "shadow/exact/beam_frame.hpp"
 #include "shadow/exact/exact_ray.hpp"
+#include "shadow/exact/light_rays.hpp"
 #include "shadow/exact/light_samples.hpp"
 
 namespace luciole {
@@ -36,131 +39,145 @@ glm::vec3 startPoint(const BeamScene& beams, const GBuffer& gbuffer, std::size_t
   return start;
 }
 
-/// The lists on the host. Without lists each tile has all lights.
-struct HostLists {
-  std::vector<uint> starts;
-  std::vector<ListEntry> list;
-  std::size_t lights;
-
-  std::size_t first(std::size_t tile) const { return starts.empty() ? tile * lights : starts[tile]; }
-  ListEntry at(std::size_t tile, std::size_t entry) const {
-    return starts.empty() ? ListEntry{uint(entry - tile * lights), 0xffff} : list[entry];
-  }
-};
-
-HostLists downloadLists(OpenedDevice& device, const LightLists& lists, std::size_t lights) {
-  HostLists result{{}, {}, lights};
-  if (lists.tiles == 0) return result;
-  result.starts.resize(lists.tiles + 1);
-  result.list.resize(lists.entries);
-  download(device, lists.starts, result.starts);
-  download(device, lists.list, result.list);
-  return result;
-}
-
-/// Bits of a word's pixels in an entry's squares. Other pixels are never shaded with its light.
-uint listedPixels(uint squares, std::size_t word) {
-  const uint of_word = squares >> SQUARE_OF_PIXEL(word * 32);
-  return ((of_word & 1) != 0 ? 0xffffu : 0) | ((of_word & 2) != 0 ? 0xffff0000u : 0);
-}
-
-/// Clears the bits of unsure pairs that aren't shaded, and sets first_share. Returns the number of shares.
-std::size_t placeShares(const HostLists& lists, std::size_t tiles, PairShadows& shadows) {
-  std::vector<std::size_t> first(tiles + 1);
-  const auto forWords = [&](std::size_t tile, const auto& word_of_entry) {
-    for (std::size_t entry = lists.first(tile); entry < lists.first(tile + 1); ++entry)
-      for (std::size_t word = 0; word < kPairWords; ++word) word_of_entry(entry, word);
-  };
-  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    forWords(tile, [&](std::size_t entry, std::size_t word) {
-      uint& unsure = shadows.unsure[entry * kPairWords + word];
-      unsure &= listedPixels(lists.at(tile, entry).squares, word);
-      first[tile + 1] += std::size_t(std::popcount(unsure));
-    });
-  });
-  for (std::size_t tile = 0; tile < tiles; ++tile) first[tile + 1] += first[tile];
-  if (first[tiles] > 0xffffffffu)
-    throw MachineError(
-        "soft shadows of 2^32 or more pairs of a pixel and a light: use fewer lights or a smaller picture");
-  requireMemory(double(first[tiles]) * sizeof(float), "the soft shadows of all pixels");
-  shadows.first_share.resize(shadows.unsure.size());
-  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    std::size_t next = first[tile];
-    forWords(tile, [&](std::size_t entry, std::size_t word) {
-      shadows.first_share[entry * kPairWords + word] = uint(next);
-      next += std::size_t(std::popcount(shadows.unsure[entry * kPairWords + word]));
-    });
-  });
-  return first[tiles];
-}
-
 /// The state of a thread.
 struct Tracer {
-  const BeamScene& beams;
-  const LightSet& lights;
+  const PairInput& in;
   const HoleTest& is_hole;
   std::optional<std::size_t> likely{};
   std::array<float4, kMostSoftSamples> places{};
 
-  /// The share of a light, by its index on the device, that reaches a start point.
-  float visibility(const glm::vec3& start, std::uint32_t index, TracedPairs& traced) {
-    const BeamLight& light = lights.beam_lights[index];
-    ++traced.pairs;
+  /// The share of a light that reaches a pixel.
+  float share(const LightRay& pair) {
+    const BeamScene& beams = in.arguments.beams;
+    const BeamLight& light = in.lights.beam_lights[pair.light];
+    const glm::vec3 start = startPoint(beams, in.gbuffer, pair.point);
     std::span<float4> to(places.data(), 1);
     if (light.size > 0) {
-      ++traced.soft;
       const std::span<const LightSample> pattern =
-          patternOf(beams.samples, beams.soft_samples, start, lights.order[index]);
+          patternOf(beams.samples, beams.soft_samples, start, light.number);
       to = std::span(places.data(), pattern.size());
       if (!placeSamples(light, start, pattern, to)) return 1;
     } else {
       places[0] = light.place;
     }
-    traced.rays += to.size();
     return float(countUnblocked(*beams.tree, start, to, is_hole, likely)) / float(to.size());
   }
 };
 
-}  // namespace
+/// The sum of the counts before each, and at last of all. Throws MachineError.
+std::vector<uint> sumsOf(std::span<const uint> counts) {
+  std::vector<uint> sums(counts.size() + 1);
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    sum += counts[i];
+    if (sum > 0xffffffffu)
+      throw MachineError(
+          "rays decide 2^32 or more pairs of a pixel and a light: use fewer lights or a smaller picture");
+    sums[i + 1] = uint(sum);
+  }
+  return sums;
+}
 
-TracedPairs tracePairs(OpenedDevice& device, const Scene& scene, const BeamScene& beams,
-                       const LightSet& lights, const GBuffer& gbuffer, const LightLists& lists, bool soft,
-                       PairShadows& shadows) {
-  const std::size_t tiles = gbuffer.pixels() / kTilePixels;
-  const HostLists host_lists = downloadLists(device, lists, lights.beam_lights.size());
-  if (soft) shadows.shares.resize(placeShares(host_lists, tiles, shadows));
-  const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), glm::dmat4(1));
+/// Launches kernels/exact/pair_rays.cl and sets first_share and shares. counts: of each tile its unsure
+/// pairs. Returns how many of them are left open.
+std::vector<uint> traceOnDevice(const PairInput& in, std::span<const uint> counts, PairShadows& shadows) {
+  const BeamArguments& arguments = in.arguments;
+  const BeamScene& beams = arguments.beams;
+  const std::vector<uint> first = sumsOf(counts);
+  std::vector<uint> open(counts.size());
+  requireMemory(double(first.back()) * sizeof(float), "the soft shadows of all pixels");
+  shadows.first_share = makeBuffer<uint>(in.device, shadows.unsure.count);
+  shadows.shares = makeBuffer<float>(in.device, first.back());
+  const Buffer<const uint> first_pair = borrowed(in.device, first);
+  const Buffer<uint> left_open = borrowedForOutput(in.device, open);
+  BeamFrame frame = beamFrame(beams, arguments.plane_stride);
+  frame.light_count = uint(arguments.lights.count);
+  Kernel kernel = makeKernel(in.device, "exact/pair_rays.cl", "pair_rays", in.defines);
+  launch(in.device, kernel,
+         {{"frame", frame},
+          {"samples", uint(beams.soft_samples)},
+          {"position", arguments.position},
+          {"normal", arguments.normal},
+          {"lift", arguments.lift},
+          {"lights", arguments.lights},
+          {"list_starts", arguments.lists.starts},
+          {"list", arguments.lists.list},
+          {"nodes", beams.nodes},
+          {"children", beams.children},
+          {"blocks", beams.blocks},
+          {"block_bits", beams.block_bits},
+          {"hole_texels", beams.hole_texels},
+          {"hole_triangles", beams.hole_triangles},
+          {"first_hole_triangle", beams.first_hole_triangle},
+          {"quarter_cosines", beams.quarter_cosines},
+          {"unsure", shadows.unsure},
+          {"first_pair", first_pair},
+          {"first_share", shadows.first_share},
+          {"shares", shadows.shares},
+          {"open", left_open}},
+         {.items = counts.size()});
+  download(in.device, left_open, open);
+  return open;
+}
+
+/// Decides the pairs that are open by rays on the host. counts: of each tile.
+void settleOnHost(const PairInput& in, std::span<const uint> counts, PairShadows& shadows) {
+  const std::vector<uint> first = sumsOf(counts);
+  // Where textures may have to decide the kernel is compiled while others are.
+  if (first.back() == 0 && !in.arguments.holes) return;
+  std::vector<float> seen(first.back());
+  std::vector<LightRay> pairs(first.back());
+  const Buffer<const uint> first_open = borrowed(in.device, first);
+  const Buffer<LightRay> open = borrowedForOutput(in.device, pairs);
+  Kernel kernel = makeKernel(in.device, "exact/open_pairs.cl", "open_pairs", in.defines);
+  const auto run = [&](bool settle, const Buffer<const float>& shares) {
+    launch(in.device, kernel,
+           {{"settle", uint(settle)},
+            {"light_count", uint(in.arguments.lights.count)},
+            {"list_starts", in.arguments.lists.starts},
+            {"list", in.arguments.lists.list},
+            {"unsure", shadows.unsure},
+            {"first_share", shadows.first_share},
+            {"first_open", first_open},
+            {"open", open},
+            {"seen", shares},
+            {"lit", shadows.lit},
+            {"shares", shadows.shares}},
+           {.items = counts.size()});
+  };
+  run(false, {});
+  download(in.device, open, pairs);
+  const std::vector<PlacedObject> objects = placeObjects(in.scene, allObjects(in.scene), glm::dmat4(1));
   const HoleTest is_hole = [&](std::uint32_t triangle, const glm::dvec3& weights) {
     const PlacedObject& object = objectOfTriangle(objects, triangle);
-    return isHoleAt(scene, object, triangle - object.first_triangle, weights);
+    return isHoleAt(in.scene, object, triangle - object.first_triangle, weights);
   };
-  std::vector<TracedPairs> traced(tiles);
-  tbb::parallel_for(std::size_t(0), tiles, [&](std::size_t tile) {
-    Tracer tracer{beams, lights, is_hole};
-    for (std::size_t entry = host_lists.first(tile); entry < host_lists.first(tile + 1); ++entry) {
-      const std::uint32_t light = host_lists.at(tile, entry).light;
-      for (std::size_t word = 0; word < kPairWords; ++word) {
-        const std::size_t at = entry * kPairWords + word;
-        std::size_t share = soft ? shadows.first_share[at] : 0;
-        for (uint left = shadows.unsure[at]; left != 0; left &= left - 1) {
-          const int bit = std::countr_zero(left);
-          const std::size_t pixel = tile * kTilePixels + word * 32 + std::size_t(bit);
-          const float visible = tracer.visibility(startPoint(beams, gbuffer, pixel), light, traced[tile]);
-          if (soft)
-            shadows.shares[share++] = visible;
-          else if (visible > 0)
-            shadows.lit[at] |= 1u << bit;
-        }
-      }
-    }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), 64), [&](const auto& part) {
+    Tracer tracer{in, is_hole};
+    for (std::size_t i = part.begin(); i < part.end(); ++i) seen[i] = tracer.share(pairs[i]);
   });
-  TracedPairs sum;
-  for (const TracedPairs& of_tile : traced) {
-    sum.pairs += of_tile.pairs;
-    sum.rays += of_tile.rays;
-    sum.soft += of_tile.soft;
+  run(true, borrowed(in.device, seen));
+  finish(in.device);
+}
+
+}  // namespace
+
+TracedPairs tracePairs(const PairInput& in, PairShadows& shadows) {
+  std::vector<TilePairs> counts(shadows.counts.count);
+  download(in.device, shadows.counts, counts);
+  TracedPairs traced;
+  std::vector<uint> open;
+  for (const TilePairs& of_tile : counts) {
+    traced.pairs += of_tile.unsure;
+    traced.soft += of_tile.soft_unsure;
+    traced.soft_lit += of_tile.soft_lit;
+    traced.soft_dark += of_tile.soft_dark;
+    open.push_back(of_tile.unsure);
   }
-  return sum;
+  traced.rays = traced.pairs - traced.soft + traced.soft * std::uint64_t(in.arguments.beams.soft_samples);
+  if (in.arguments.soft) open = traceOnDevice(in, open, shadows);
+  settleOnHost(in, open, shadows);
+  return traced;
 }
 
 }  // namespace luciole

@@ -105,6 +105,8 @@ void addExactVisibility(OpenedDevice& device, const Judged& judged, const Lighti
   std::vector<ListEntry> list(lighting.lists.entries);
   download(device, lighting.lists.starts, starts);
   download(device, lighting.lists.list, list);
+  std::vector<uint> words(lit.pairs.lit.count);
+  download(device, lit.pairs.lit, words);
   std::vector<std::uint32_t> device_light(lights.order.size());
   for (std::uint32_t i = 0; i < lights.order.size(); ++i) device_light[lights.order[i]] = i;
   for (std::size_t i = 0; i < judged.pairs.size(); ++i) {
@@ -117,7 +119,7 @@ void addExactVisibility(OpenedDevice& device, const Judged& judged, const Lighti
                          [](const ListEntry& e, std::uint32_t light) { return e.light < light; });
     const bool listed = entry != end && entry->light == device_light[pair.light] &&
                         (entry->squares >> SQUARE_OF_PIXEL(place) & 1) != 0;
-    const uint* bits = lit.pairs.lit.data() + std::size_t(entry - list.begin()) * kPairWords;
+    const uint* bits = words.data() + std::size_t(entry - list.begin()) * kPairWords;
     visibility[i] = listed ? float(bits[place / 32] >> place % 32 & 1) : float(judged.truth.lit[i]);
   }
 }

@@ -123,6 +123,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
     download(device, lighting.lists.starts, starts);
     download(device, lighting.lists.list, list);
   }
+  const PairWords words = downloadPairs(device, lit.pairs);
   const glm::dmat4 view_to_world = camera.camera_to_world;
   for (std::size_t tile = 0; tile < tiles; ++tile) {
     const bool listed = culling == Culling::kTiles;
@@ -143,7 +144,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
         if (glm::length(way) > beam.reach || glm::dot(glm::dmat3(view_to_world) * normal, way) <= 0) continue;
         // Squares that the list leaves out aren't shaded.
         if (listed && (list[entry].squares >> SQUARE_OF_PIXEL(pixel) & 1) == 0) continue;
-        const float share = shareOf(lit.pairs, entry, pixel);
+        const float share = shareOf(words, entry, pixel);
         ++verdicts.pairs;
         verdicts.lit += share == 1;
         verdicts.part += share > 0 && share < 1;
@@ -153,7 +154,7 @@ void addVerdicts(const Scene& scene, const Scene& seen, const Camera& camera, gl
     }
   }
   verdicts.soft_rays += lit.traced.soft;
-  verdicts.soft_others += lit.pairs.soft_lit + lit.pairs.soft_dark;
+  verdicts.soft_others += lit.traced.soft_lit + lit.traced.soft_dark;
 }
 
 /// A camera at the origin, and the sheets as it sees them.

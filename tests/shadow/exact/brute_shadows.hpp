@@ -104,9 +104,24 @@ inline float shareSeen(const Lighting& lighting, const glm::vec3& start, std::ui
   return float(seen) / float(places.size());
 }
 
+/// PairShadows on the host.
+struct PairWords {
+  std::vector<uint> lit, unsure, first_share;
+  std::vector<float> shares;
+};
+inline PairWords downloadPairs(OpenedDevice& device, const PairShadows& pairs) {
+  PairWords words{std::vector<uint>(pairs.lit.count), std::vector<uint>(pairs.unsure.count),
+                  std::vector<uint>(pairs.first_share.count), std::vector<float>(pairs.shares.count)};
+  download(device, pairs.lit, words.lit);
+  download(device, pairs.unsure, words.unsure);
+  download(device, pairs.first_share, words.first_share);
+  download(device, pairs.shares, words.shares);
+  return words;
+}
+
 /// What exact shadows say of a pair: the share of the light that reaches the pixel. entry: of the lists;
 /// pixel: in its tile.
-inline float shareOf(const PairShadows& pairs, std::size_t entry, std::size_t pixel) {
+inline float shareOf(const PairWords& pairs, std::size_t entry, std::size_t pixel) {
   const std::size_t word = entry * kPairWords + pixel / 32;
   const uint bit = 1u << pixel % 32;
   if (pairs.shares.empty() || (pairs.unsure[word] & bit) == 0) return (pairs.lit[word] & bit) != 0 ? 1 : 0;

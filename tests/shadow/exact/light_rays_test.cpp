@@ -94,13 +94,6 @@ std::size_t expectTheHosts(const std::shared_ptr<const TriangleTree>& tree, cons
   return std::size_t(std::count(blocked.begin(), blocked.end(), true));
 }
 
-struct RandomVectors {
-  std::mt19937 random;
-  std::uniform_real_distribution<float> anywhere{-1, 1};
-  explicit RandomVectors(unsigned seed) : random(seed) {}
-  glm::vec3 operator()() { return {anywhere(random), anywhere(random), anywhere(random)}; }
-};
-
 TEST(LightRays, OnAGridOfIntegersTheyMeetCornersEdgesAndPlanes) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> place(-4, 4);

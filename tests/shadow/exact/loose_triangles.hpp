@@ -46,6 +46,14 @@ inline std::vector<Triangle> randomTriangles(int count, float size, unsigned see
   return triangles;
 }
 
+/// Vectors in that cube.
+struct RandomVectors {
+  std::mt19937 random;
+  std::uniform_real_distribution<float> anywhere{-1, 1};
+  explicit RandomVectors(unsigned seed) : random(seed) {}
+  glm::vec3 operator()() { return {anywhere(random), anywhere(random), anywhere(random)}; }
+};
+
 inline BeamLight lightAt(const glm::vec3& xyz, float w) {
   BeamLight light{};
   light.place = {xyz.x, xyz.y, xyz.z, w};
