@@ -7,7 +7,7 @@
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
     floatL sum = 0.0f;                                                             \
     for (uint i = 0; i < stride; i += LANES) sum += expression;                    \
-    store_lanes(out + work_item() * LANES, sum);                              \
+    store_lanes(out + work_item() * LANES, sum);                                   \
   }
 #define X load_lanes(in + i)
 #define Y load_lanes(in + stride + i)

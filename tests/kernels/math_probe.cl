@@ -4,12 +4,12 @@
 
 #define PROBE_1(name, function)                                                    \
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
-    uint first = work_item() * LANES;                                         \
+    uint first = work_item() * LANES;                                              \
     store_lanes(out + first, function(load_lanes(in + first)));                    \
   }
 #define PROBE_2(name, function)                                                                  \
   __kernel void name(__global const float* in, __global float* out, uint stride) {               \
-    uint first = work_item() * LANES;                                                       \
+    uint first = work_item() * LANES;                                                            \
     store_lanes(out + first, function(load_lanes(in + first), load_lanes(in + first + stride))); \
   }
 
@@ -29,7 +29,7 @@ PROBE_2(probe_min, min_lanes)
 
 #define PROBE_3(name, expression)                                                  \
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
-    uint first = work_item() * LANES;                                         \
+    uint first = work_item() * LANES;                                              \
     floatL a = load_lanes(in + first), b = load_lanes(in + first + stride),        \
            c = load_lanes(in + first + 2 * stride);                                \
     store_lanes(out + first, expression);                                          \
@@ -53,7 +53,7 @@ __kernel void probe_any_lane(__global const float* in, __global float* out, uint
 
 #define PROBE_ROW(name, expression)                                                \
   __kernel void name(__global const float* in, __global float* out, uint stride) { \
-    uint first = work_item() * LANES;                                         \
+    uint first = work_item() * LANES;                                              \
     floatL row = load_lanes(in + first);                                           \
     store_lanes(out + first, (floatL)((float)(expression)));                       \
   }

@@ -12,7 +12,7 @@ namespace luciole {
 
 struct PairInput {
   OpenedDevice& device;
-  const std::string& defines;  ///< those of the call of beamShadows()
+  const std::string& defines;      ///< those of the call of beamShadows()
   const BeamArguments& arguments;  ///< likewise
   const Scene& scene;
   const LightSet& lights;
