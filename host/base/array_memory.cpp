@@ -1,10 +1,9 @@
 #include "luciole/array_memory.hpp"
 
-#include <sys/mman.h>
-
 #include <mutex>
 #include <new>
 
+#include "base/large_pages.hpp"
 #include "base/machine_memory.hpp"
 
 namespace luciole {
@@ -26,12 +25,9 @@ Block blockFor(std::size_t bytes) {
   return {(bytes + kLargePage - 1) / kLargePage * kLargePage, std::align_val_t(kLargePage)};
 }
 
-/// Large pages are a hint: where the system doesn't take it, pages are small.
 void* allocateBlock(const Block& block) {
   void* memory = ::operator new(block.bytes, block.alignment);
-#ifdef MADV_HUGEPAGE
-  if (block.alignment == std::align_val_t(kLargePage)) madvise(memory, block.bytes, MADV_HUGEPAGE);
-#endif
+  if (block.alignment == std::align_val_t(kLargePage)) askForLargePages(memory, block.bytes);
   return memory;
 }
 

@@ -157,6 +157,7 @@ struct WorkItems {
 /// Queues a kernel with its arguments, in any order:
 ///     launch(device, kernel, {{"position", gbuffer.position}, {"plane_stride", stride}}, {.items = 64,
 ///     .group = 16});
+/// Work-items are launched in equal rows, so a kernel counts them by work_item() of kernels/lanes.clh.
 /// It doesn't wait for the kernel. Buffers may be destroyed before it has run: OpenCL keeps their memory.
 /// 0 work-items launch nothing. Throws
 /// - std::logic_error if an argument of the kernel is missing, is given twice, isn't one of its arguments or

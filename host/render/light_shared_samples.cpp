@@ -169,6 +169,7 @@ struct SharedLister final : PointLister {
         addPoints(shared.gbuffer, *points, first_list, end_list, lit, gathered.pixels(), sum);
         return;
       }
+      lit.half_width = Plane();
       sum = firstPoints(shared.gbuffer, shared.samples, std::move(lit), {});
     });
   }

@@ -10,6 +10,7 @@
 
 namespace luciole {
 
+/// What tracePairs() reads: a G-buffer whose pairs beamShadows() has decided, on the device and on the host.
 struct PairInput {
   OpenedDevice& device;
   const std::string& defines;      ///< those of the call of beamShadows()
