@@ -46,10 +46,26 @@ struct PairStage {
     lights.beam_lights.push_back(light);
   }
 
+  /// Lifts the starts of rays above their points, along normals of length 1.
+  void liftPoints(RandomVectors& vector) {
+    gbuffer.lift.resize(gbuffer.pixels());
+    for (std::size_t i = 0; i < gbuffer.pixels(); ++i) {
+      gbuffer.lift[i] = 0.1f * std::abs(vector().x);
+      const glm::vec3 normal = glm::normalize(vector());
+      for (int axis = 0; axis < 3; ++axis)
+        gbuffer.normal[i + std::size_t(axis) * gbuffer.pixels()] = normal[axis];
+    }
+  }
+
   glm::vec3 start(std::size_t pixel) const {
-    const std::size_t stride = gbuffer.pixels();
-    return tree->scale * glm::vec3(gbuffer.position[pixel], gbuffer.position[pixel + stride],
-                                   gbuffer.position[pixel + 2 * stride]);
+    glm::vec3 start;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t place = pixel + std::size_t(axis) * gbuffer.pixels();
+      start[axis] = gbuffer.lift.empty()
+                        ? gbuffer.position[place]
+                        : std::fma(gbuffer.lift[pixel], gbuffer.normal[place], gbuffer.position[place]);
+    }
+    return tree->scale * start;
   }
 };
 
@@ -62,13 +78,14 @@ std::vector<float> sharesOnDevice(OpenedDevice& device, const PairStage& stage, 
   features.set(Feature::kExact, true);
   features.set(Feature::kSoftExact, true);
   features.set(Feature::kHoles, stage.masks != nullptr);
+  features.set(Feature::kLift, !stage.gbuffer.lift.empty());
   const std::string defines = featureDefines(features) + more_defines;
   const std::size_t lights = stage.lights.beam_lights.size();
   const LightLists no_lists;
   const BeamArguments arguments{.plane_stride = stage.gbuffer.pixels(),
                                 .position = borrowed(device, stage.gbuffer.position),
                                 .normal = borrowed(device, stage.gbuffer.normal),
-                                .lift = {},
+                                .lift = borrowed(device, stage.gbuffer.lift),
                                 .lists = no_lists,
                                 .lights = borrowed(device, stage.lights.beam_lights),
                                 .beams = beams,
@@ -157,6 +174,7 @@ TEST(PairRays, AreTheHostsAmidTriangles) {
       points.push_back(i % 4 == 0 ? triangles[i % triangles.size()][i % 3] : 1.3f * vector());
     PairStage stage(looseScene(triangles), false, points);
     addLights(vector, stage);
+    if (round == 1) stage.liftPoints(vector);
     part += expectTheHostsShares(stage, std::array{16, 5, 33}[std::size_t(round++)]);
   }
   EXPECT_GT(part, 5000u);
