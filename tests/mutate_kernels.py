@@ -667,7 +667,7 @@ MUTANTS = {
         Mutant("SAMPLE_ROUNDING (16.0f * 0x1p-24f)", "SAMPLE_ROUNDING 1.0f", same="more is decided by exact_sign.h"),
         Mutant("(upper ? low[axis] : high[axis])", "(upper ? high[axis] : low[axis])"),
         Mutant("bound > 0.0f ? -from - margin : margin - from", "-from"),
-        Mutant("enter <= leave * (1.0f + 0x1p-20f)", "enter < leave"),
+        Mutant("enter <= leave * (1.0f + 0x1p-20f)", "enter < leave", same="bounds are moved outwards, too, by more than most roundings"),
         Mutant("rays->end = rays->parallel ? FAR_END : 1.0f", "rays->end = FAR_END", same="boxes beyond a light are visited for nothing"),
         Mutant("rays->end = rays->parallel ? FAR_END : 1.0f", "rays->end = 1.0f"),
         Mutant("rays->tolerance = POINT_ERROR * sum", "rays->tolerance = 0.0f"),

@@ -197,6 +197,49 @@ TEST(PairRays, AreTheHostsOnAGridOfIntegers) {
   for (const int samples : {1, 16}) expectTheHostsShares(stage, samples);
 }
 
+// Of few triangles rays through a corner touch its box at an edge, and the boxes of its block: near the
+// origin, and where coordinates are large beside the boxes.
+TEST(PairRays, AreTheHostsThroughCornersOfFewTriangles) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> place(-4, 4);
+  const auto vector = [&] { return glm::vec3(place(random), place(random), place(random)); };
+  for (const glm::vec3& centre : {glm::vec3(0), glm::vec3(3001, -2003, 997)})
+    for (const int count : {1, 2, 3, 5, 20, 80}) {
+      std::vector<Triangle> triangles;
+      for (int i = 0; i < count; ++i) {
+        const glm::vec3 middle = centre + 2.0f * vector();
+        const auto near = [&] { return middle + glm::trunc(vector() / 2.0f); };
+        triangles.push_back({near(), near(), near()});
+      }
+      std::vector<glm::vec3> lights, points;
+      for (int i = 0; i < 16; ++i) lights.push_back(vector() + 2.0f * vector());
+      for (std::size_t i = 0; i < 512; ++i) {
+        const glm::vec3 corner = triangles[i % triangles.size()][i / 16 % 3];
+        points.push_back(corner + float(1 + i % 5) * (corner - centre - lights[i % 16]));
+      }
+      PairStage stage(looseScene(triangles), false, points);
+      for (const glm::vec3& light : lights) {
+        stage.addLight(centre + light, 1, 1e-8f);
+        if (light != glm::vec3(0)) stage.addLight(light, 0, 1e-9f);
+      }
+      expectTheHostsShares(stage, 1);
+    }
+}
+
+// A start that lies in a triangle's plane but for rounding isn't blocked by it. Of triangles that are large
+// beside the start's coordinates the plane's own rounding decides that.
+TEST(PairRays, AreTheHostsInPlanesOfLargeTriangles) {
+  RandomVectors vector(8);
+  for (int i = 0; i < 20; ++i) {
+    const glm::vec3 a = 1e3f * vector(), b = 1e3f * vector(), middle = 1e-2f * vector();
+    std::vector<glm::vec3> points;
+    for (int k = 0; k < 512; ++k) points.push_back(middle + float(k) * 1e-7f * vector());
+    PairStage stage(looseScene({{a, b, 3.0f * middle - a - b}}), false, points);
+    for (int k = 0; k < 8; ++k) stage.addLight(30.0f * vector(), 1, 0.01f);
+    expectTheHostsShares(stage, 4);
+  }
+}
+
 TEST(PairRays, AreTheHostsFarAwayAndOfManySamples) {
   RandomVectors vector(5);
   const glm::vec3 far(3e3f, -2e3f, 1e3f);
