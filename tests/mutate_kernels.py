@@ -435,7 +435,6 @@ MUTANTS = {
         Mutant("of_word & 2 ? 0xffff0000u", "of_word & 1 ? 0xffff0000u"),
         Mutant("rest.stack[j] = walk.stack[j]", "rest.stack[j] = walk.stack[0]"),
         Mutant("masked[row] ^ keep", "masked[row]"),
-        Mutant("remaining->unsure[row] |= remaining->left[row];", "remaining->unsure[row] |= 0;"),
         Mutant("lit |= remaining->left[row];", "lit |= 1u << lowest_bit(points);"),
     ],
     "exact/candidates.clh": [

@@ -186,10 +186,8 @@ SHARED_WORK void shadow_points(const Scene* scene, float4 place, float size, con
       for (uint axis = 0; axis < 3; ++axis) box.low[axis] = box.high[axis] = scene->tile->place[axis][point];
       Cluster alone = {row, row + 1, false, bounds_of(&box)};
       remaining->left[row] = (ushort)(points & (0 - points));
-      // Nothing hides a point from a light at the same place. About a point inside a light of a size rays
-      // decide.
-      if (!shadow_cluster(scene, place, size, &alone, remaining) && SOFT_EXACT && size > 0.0f)
-        remaining->unsure[row] |= remaining->left[row];
+      // Nothing hides a point from a light at the same place.
+      shadow_cluster(scene, place, size, &alone, remaining);
       lit |= remaining->left[row];
     }
     remaining->left[row] = (ushort)lit;
