@@ -63,18 +63,23 @@ void setTables(const RasterTriangle& triangle, const glm::ivec2& bin_origin, con
     const std::int32_t* y = block.y.data();
     std::int32_t* edge = tables.edges[i].data();
     std::int32_t most = -std::numeric_limits<std::int32_t>::max();
-    for (int lane = 0; lane < block.lanes; ++lane) {
-      edge[lane] = whole + (dx_high * y[lane] - dy_high * x[lane]) +
-                   ((rest + dx_low * y[lane] - dy_low * x[lane]) >> kSubpixelBits);
-      most = std::max(most, edge[lane]);
-    }
+    for (int first = 0; first < block.lanes; first += kVector)
+      for (int lane = first; lane < first + kVector; ++lane) {
+        edge[lane] = whole + (dx_high * y[lane] - dy_high * x[lane]) +
+                     ((rest + dx_low * y[lane] - dy_low * x[lane]) >> kSubpixelBits);
+        most = std::max(most, edge[lane]);
+      }
     tables.most[i] = most;
     tables.step_x[i] = -dy;
     tables.step_y[i] = dx;
   }
   const float step_x = float(triangle.depth_dx / kSubpixels), step_y = float(triangle.depth_dy / kSubpixels);
-  for (int lane = 0; lane < block.lanes; ++lane)
-    tables.depth[lane] = step_x * float(block.x[lane]) + step_y * float(block.y[lane]);
+  const std::int32_t* x = block.x.data();
+  const std::int32_t* y = block.y.data();
+  float* depth = tables.depth.data();
+  for (int first = 0; first < block.lanes; first += kVector)
+    for (int lane = first; lane < first + kVector; ++lane)
+      depth[lane] = step_x * float(x[lane]) + step_y * float(y[lane]);
 }
 
 /// kVector samples of a block, and a triangle's values there.
