@@ -74,13 +74,16 @@ struct NeighbourRows {
   const PixelRow &before, &here, &after;
 };
 
-/// A quick test without surfaces: sets `suspect` to 1 for the pixels of a row, from x = first up to end, that
-/// differ by more than allowed from their neighbours on both sides, or on either one, whichever of these lie
-/// on the same surface; with 1 % to spare for rounding. The others are even. The neighbours of x are at
-/// x − step and x + step of their rows. Where a reflectance is 0 the light is not a number, and the pixel is
-/// suspect.
+/// The axes along which a pixel may be uneven, as bits.
+enum SuspectAxis : std::uint8_t { kAcross = 1, kDown = 2 };
+
+/// A quick test without surfaces: sets the bit `axis` of `suspect` for the pixels of a row, from x = first up
+/// to end, that differ by more than allowed from their neighbours on both sides, or on either one, whichever
+/// of these lie on the same surface; with 1 % to spare for rounding. The others are even. The neighbours of x
+/// are at x − step and x + step of their rows. Where a reflectance is 0 the light is not a number, and the
+/// pixel is suspect.
 void findSuspects(const NeighbourRows& rows, int step, int first, int end, float most_uneven,
-                  std::uint8_t* suspect) {
+                  SuspectAxis axis, std::uint8_t* suspect) {
   const float allowed = 0.99f * most_uneven;
   const float* bright = rows.here.brightness.data();
   const float *bright_before = rows.before.brightness.data(), *bright_after = rows.after.brightness.data();
@@ -93,9 +96,10 @@ void findSuspects(const NeighbourRows& rows, int step, int first, int end, float
                   to_after = half * (after[x + step] - light[x]);
       const float of_before = std::max(bright[x], bright_before[x - step]),
                   of_after = std::max(bright[x], bright_after[x + step]);
-      suspect[x] |= std::uint8_t(
-          !(std::abs(to_before) <= allowed * of_before) | !(std::abs(to_after) <= allowed * of_after) |
-          !(std::abs(to_before + to_after) <= allowed * std::max(of_before, of_after)));
+      const bool differs = !(std::abs(to_before) <= allowed * of_before) |
+                           !(std::abs(to_after) <= allowed * of_after) |
+                           !(std::abs(to_before + to_after) <= allowed * std::max(of_before, of_after));
+      suspect[x] |= std::uint8_t(differs ? axis : 0);
     }
   }
 }
@@ -146,16 +150,16 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
       std::uint8_t* row = uneven.data() + std::size_t(y) * width;
       const PixelRow& here = rows[std::size_t(y % 3)];
       findSuspects({rows[std::size_t(above % 3)], here, rows[std::size_t(below % 3)]}, 0, first.x, end.x,
-                   most_uneven, row);
+                   most_uneven, kDown, row);
       // At the picture's sides, where a neighbour is missing, all are suspect.
       const int left = std::max(first.x, 1), right = std::min(end.x, width - 1);
-      if (first.x < left) row[first.x] = 1;
-      if (right < end.x) row[right] = 1;
-      findSuspects({here, here, here}, 1, left, right, most_uneven, row);
+      if (first.x < left) row[first.x] |= kAcross;
+      if (right < end.x) row[right] |= kAcross;
+      findSuspects({here, here, here}, 1, left, right, most_uneven, kAcross, row);
       for (int x = first.x; x < end.x; ++x) {
         const glm::ivec2 pixel(x, y);
-        row[x] =
-            row[x] && objectAt(pixel) != kNoObject && (is_uneven(pixel, {1, 0}) || is_uneven(pixel, {0, 1}));
+        row[x] = objectAt(pixel) != kNoObject && (((row[x] & kAcross) && is_uneven(pixel, {1, 0})) ||
+                                                  ((row[x] & kDown) && is_uneven(pixel, {0, 1})));
       }
     }
   });
