@@ -61,8 +61,8 @@ TEST(Opacity, PlacesTogetherHaveTheHolesThatEachHasAlone) {
   EXPECT_GT(solid, 500);
 }
 
-/// The share of samples that see a surface of 1024 x 1024 texels, of which in each square of 8 x 8 all but 4 x
-/// 4 are holes. It fills a picture of pixels x pixels.
+/// The share of samples that see a surface of 1024 x 1024 texels, of which in each square of 8 x 8 all but 4
+/// x 4 are holes. It fills a picture of pixels x pixels.
 double shareSeen(int pixels, int samples) {
   Material material = doubleSided();
   material.alpha_cutoff = 0.5f;
