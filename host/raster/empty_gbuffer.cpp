@@ -36,8 +36,8 @@ GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer recycled) {
   return gbuffer;
 }
 
-GBuffer emptyPoints(const View& view, glm::ivec2 tiles, PlaneSet planes) {
-  GBuffer gbuffer;
+GBuffer emptyPoints(const View& view, glm::ivec2 tiles, PlaneSet planes, GBuffer recycled) {
+  GBuffer gbuffer = std::move(recycled);
   gbuffer.tiles_x = tiles.x;
   gbuffer.tiles_y = tiles.y;
   gbuffer.width = tiles.x * kTileSize;

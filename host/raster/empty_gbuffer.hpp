@@ -15,7 +15,7 @@ void checkView(const View& view);
 GBuffer emptyGBuffer(const View& view, PlaneSet planes, GBuffer recycled = {});
 
 /// A G-buffer of so many columns and rows of tiles that shows background, for points that don't lie in a
-/// picture. Throws as allocateArray does.
-GBuffer emptyPoints(const View& view, glm::ivec2 tiles, PlaneSet planes);
+/// picture. `recycled`: as above. Throws as allocateArray does.
+GBuffer emptyPoints(const View& view, glm::ivec2 tiles, PlaneSet planes, GBuffer recycled = {});
 
 }  // namespace luciole

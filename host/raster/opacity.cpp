@@ -121,6 +121,36 @@ Lanes<float> opacities(const Scene& scene, const Surface& surface, const LaneWei
   return opacity;
 }
 
+/// The side of a sample's share of its pixel's footprint. 1 without a sample.
+float sideOfSample(const std::optional<SampleNumber>& sample) {
+  return sample ? 1.0f / std::sqrt(float(sample->count)) : 1.0f;
+}
+
+/// The share of the way from alpha_cutoff to a sample's threshold: 1 − kTestedTexels / n, see isHole().
+/// place: with the sample's footprint.
+float shareOfThreshold(const Scene& scene, const Material& material, const TexturePlace& place) {
+  float most = kTestedTexels;
+  for (const TextureUse* map : {&material.diffuse_map, &material.alpha_map}) {
+    if (map->texture < 0) continue;
+    const Texture& texture = scene.textures[std::size_t(map->texture)];
+    if (map == &material.alpha_map || texture.alpha_varies)
+      most = std::max(most, texelsInside(texture, *map, place.duv_dx, place.duv_dy));
+  }
+  return 1.0f - kTestedTexels / most;
+}
+
+/// The opacity below which a sample sees a hole of a surface that isn't blended.
+float cutoffOf(const Scene& scene, const Surface& surface, const TexturePlace& place, const glm::ivec2& pixel,
+               const SampleNumber& sample) {
+  const Material& material = *surface.material;
+  const float cutoff = material.alpha_cutoff;
+  if (sample.count == 1 || cutoff > material.alpha) return cutoff;
+  const float share = shareOfThreshold(scene, material, place);
+  if (share == 0.0f) return cutoff;
+  const float threshold = material.alpha * float(blendThreshold(surface.blend_surface, pixel, sample));
+  return cutoff + share * (threshold - cutoff);
+}
+
 }  // namespace
 
 float opacityAt(const Scene& scene, const Surface& surface, const Weights& weights,
@@ -160,12 +190,15 @@ bool isHole(const Scene& scene, const Surface& surface, const ViewPlane& plane, 
   const Material& material = *surface.material;
   const Weights weights = weightsInside(surface, plane.at(at.x, at.y));
   const bool textured = material.diffuse_map.texture >= 0 || material.alpha_map.texture >= 0;
-  const TexturePlace place = textured && !surface.object->mesh->uvs.empty()
-                                 ? texturePlace(surface, plane, at.x, at.y, weights)
-                                 : TexturePlace{};
+  TexturePlace place{};
+  if (textured && !surface.object->mesh->uvs.empty()) {
+    place = texturePlace(surface, plane, at.x, at.y, weights);
+    place.duv_dx *= sideOfSample(sample);
+    place.duv_dy *= sideOfSample(sample);
+  }
   const float opacity = opacityAt(scene, surface, weights, place);
   if (material.blended) return !(opacity > blendThreshold(surface.blend_surface, pixel, sample));
-  return opacity < material.alpha_cutoff;
+  return opacity < cutoffOf(scene, surface, place, pixel, sample);
 }
 
 LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& plane, const Lanes<double>& x,
@@ -178,6 +211,10 @@ LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& pl
   SquareFootprints places{};
   if (textured && !surface.object->mesh->uvs.empty())
     places = texturePlaces(surface, plane, x, y, here, weights);
+  Lanes<float> side;
+  side.fill(sideOfSample(sample));
+  for (Lanes<float>* step : {&places.du_dx, &places.dv_dx, &places.du_dy, &places.dv_dy})
+    multiply(side, *step);
   const Lanes<float> opacity = opacities(scene, surface, weights, places, wanted);
   LaneMask holes;
   if (material.blended && sample) {
@@ -186,7 +223,16 @@ LaneMask holesIn(const Scene& scene, const Surface& surface, const ViewPlane& pl
           wanted[i] && !(opacity[i] > blendThreshold(surface.blend_surface, {int(x[i]), int(y[i])}, *sample));
     return holes;
   }
-  for (int i = 0; i < kSquarePixels; ++i) holes[i] = wanted[i] & (opacity[i] < material.alpha_cutoff);
+  Lanes<float> cutoff;
+  cutoff.fill(material.alpha_cutoff);
+  if (sample && sample->count > 1)
+    for (int i = 0; i < kSquarePixels; ++i) {
+      if (!wanted[i]) continue;
+      const TexturePlace place{
+          {places.u[i], places.v[i]}, {places.du_dx[i], places.dv_dx[i]}, {places.du_dy[i], places.dv_dy[i]}};
+      cutoff[i] = cutoffOf(scene, surface, place, {int(x[i]), int(y[i])}, *sample);
+    }
+  for (int i = 0; i < kSquarePixels; ++i) holes[i] = wanted[i] & (opacity[i] < cutoff[i]);
   return holes;
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <limits>
 #include <optional>
 
 #include "raster/edge.hpp"
@@ -21,10 +20,13 @@ struct Block {
   int lanes;
   std::vector<std::int32_t> x;  ///< from the sample origin of the block's first pixel, 1/256 pixel
   std::vector<std::int32_t> y;
+  glm::ivec2 reach;  ///< the largest of them
 };
 
 Block makeBlock(const SamplePattern& pattern) {
-  Block block{std::max(kVector / pattern.stride, 1), std::max(kVector, pattern.stride), {}, {}};
+  Block block{
+      std::max(kVector / pattern.stride, 1), std::max(kVector, pattern.stride), {}, {}, pattern.reach};
+  block.reach.x += (block.pixels - 1) * kSubpixels;
   for (int lane = 0; lane < block.lanes; ++lane) {
     block.x.push_back(pattern.x[lane % pattern.stride] + lane / pattern.stride * kSubpixels);
     block.y.push_back(pattern.y[lane % pattern.stride]);
@@ -40,7 +42,7 @@ struct TriangleTables {
   /// Edge functions as in coverage.cpp, ⌊E / 256⌋ at each sample: from one block to another they change by
   /// integers, since whole pixels are 256 units.
   std::array<Table<std::int32_t>, 3> edges;
-  std::array<std::int32_t, 3> most;  ///< the largest entry of each
+  std::array<std::int32_t, 3> most;  ///< an upper bound of the entries of each
   std::array<std::int32_t, 3> step_x, step_y;
   Table<float> depth;  ///< from the sample origin of the block's first pixel to the sample
 
@@ -62,19 +64,25 @@ void setTables(const RasterTriangle& triangle, const glm::ivec2& bin_origin, con
     const std::int32_t* x = block.x.data();
     const std::int32_t* y = block.y.data();
     std::int32_t* edge = tables.edges[i].data();
-    std::int32_t most = -std::numeric_limits<std::int32_t>::max();
-    for (int lane = 0; lane < block.lanes; ++lane) {
-      edge[lane] = whole + (dx_high * y[lane] - dy_high * x[lane]) +
-                   ((rest + dx_low * y[lane] - dy_low * x[lane]) >> kSubpixelBits);
-      most = std::max(most, edge[lane]);
-    }
-    tables.most[i] = most;
+    for (int first = 0; first < block.lanes; first += kVector)
+      for (int lane = first; lane < first + kVector; ++lane) {
+        edge[lane] = whole + (dx_high * y[lane] - dy_high * x[lane]) +
+                     ((rest + dx_low * y[lane] - dy_low * x[lane]) >> kSubpixelBits);
+      }
+    // At the corner of the block's samples that is farthest inside.
+    tables.most[i] = whole + std::int32_t((rest + std::int64_t(std::max(dx, 0)) * block.reach.y +
+                                           std::int64_t(std::max(-dy, 0)) * block.reach.x) >>
+                                          kSubpixelBits);
     tables.step_x[i] = -dy;
     tables.step_y[i] = dx;
   }
   const float step_x = float(triangle.depth_dx / kSubpixels), step_y = float(triangle.depth_dy / kSubpixels);
-  for (int lane = 0; lane < block.lanes; ++lane)
-    tables.depth[lane] = step_x * float(block.x[lane]) + step_y * float(block.y[lane]);
+  const std::int32_t* x = block.x.data();
+  const std::int32_t* y = block.y.data();
+  float* depth = tables.depth.data();
+  for (int first = 0; first < block.lanes; first += kVector)
+    for (int lane = first; lane < first + kVector; ++lane)
+      depth[lane] = step_x * float(x[lane]) + step_y * float(y[lane]);
 }
 
 /// kVector samples of a block, and a triangle's values there.
@@ -105,24 +113,22 @@ inline Covered cover(const Samples& at) {
   return covered;
 }
 
-/// Draws an opaque triangle to the samples where it is the nearest. Returns whether it covers any, visible or
-/// not.
-inline bool takeOpaque(const Samples& at, std::uint32_t number) {
+/// Draws an opaque triangle to the samples where it is the nearest. Sets `any` of the lanes that it covers,
+/// visible or not, to 1.
+inline void takeOpaque(const Samples& at, std::uint32_t number, std::array<std::int32_t, kVector>& any) {
   const Covered covered = cover(at);
   alignas(64) std::array<float, kVector> depth;
   alignas(64) std::array<std::uint32_t, kVector> label;
   std::copy(at.depth, at.depth + kVector, depth.begin());
   std::copy(at.label, at.label + kVector, label.begin());
-  std::int32_t any = 0;
   for (int lane = 0; lane < kVector; ++lane) {
     const bool seen = covered.inside[lane] & std::int32_t(covered.z[lane] > depth[lane]);
-    any |= covered.inside[lane];
+    any[lane] |= covered.inside[lane];
     depth[lane] = seen ? covered.z[lane] : depth[lane];
     label[lane] = seen ? number : label[lane];
   }
   std::copy(depth.begin(), depth.end(), at.depth);
   std::copy(label.begin(), label.end(), at.label);
-  return any != 0;
 }
 
 /// The same for a triangle with holes; isOpen(lane): it has a hole at the sample.
@@ -151,46 +157,85 @@ struct StripTarget {
   glm::ivec2 bin_origin;
 };
 
+constexpr int kGroupSide = 4;  ///< blocks in a row and in a column that are tested together, as SIMD lanes
+
+/// Those of kGroupSide places from `start` on that lie in first to last, so many bits each.
+std::uint32_t placesWithin(int start, int first, int last, int bits) {
+  const int from = std::max(first - start, 0), end = std::min(last - start + 1, kGroupSide);
+  return (1u << end * bits) - (1u << from * bits);
+}
+
 /// Calls take(samples, pixel, lane) for all samples of a box of the bin's pixels, kVector at a time; blocks
 /// that the triangle can't cover are left out. pixel: the block's first one, in the bin; lane: of the block.
-/// Returns whether it ever returned true.
 template <class Take>
-bool forEachVector(const StripTarget& target, const PixelBox& box, StripSamples& samples, Take take) {
+void forEachVector(const StripTarget& target, const PixelBox& box, StripSamples& samples, Take take) {
   const auto& [triangle, tables, block, bin_origin] = target;
   const int stride = block.lanes / block.pixels;
-  bool any = false;
-  for (int y = box.first.y; y <= box.last.y; ++y) {
-    for (int x = box.first.x / block.pixels * block.pixels; x <= box.last.x; x += block.pixels) {
-      std::array<std::int32_t, 3> edges;
-      for (int i = 0; i < 3; ++i) edges[i] = tables.step_x[i] * x + tables.step_y[i] * y;
-      if (((edges[0] + tables.most[0]) | (edges[1] + tables.most[1]) | (edges[2] + tables.most[2])) < 0)
-        continue;
-      const float start = float(triangle.depth + triangle.depth_dx * (bin_origin.x + x) +
-                                triangle.depth_dy * (bin_origin.y + y));
-      const std::size_t first = (std::size_t(y - samples.first_row) * kBinSize + x) * std::size_t(stride);
-      for (int lane = 0; lane < block.lanes; lane += kVector) {
-        const Samples at{
-            edges,
-            {tables.edges[0].data() + lane, tables.edges[1].data() + lane, tables.edges[2].data() + lane},
-            start,
-            tables.depth.data() + lane,
-            triangle.depth_low,
-            triangle.depth_high,
-            samples.depth.data() + first + lane,
-            samples.label.data() + first + lane};
-        any |= take(at, glm::ivec2(x, y), lane);
+  // The largest entries of a group's blocks. Groups are aligned, so that they lie in the bin, and edge
+  // functions stay in range.
+  constexpr int kBlocks = kGroupSide * kGroupSide;
+  std::array<std::array<std::int32_t, kBlocks>, 3> most;
+  for (int i = 0; i < 3; ++i) {
+    const std::int32_t step_x = tables.step_x[i] * block.pixels, step_y = tables.step_y[i];
+    for (int k = 0; k < kBlocks; ++k)
+      most[i][k] = tables.most[i] + step_x * (k % kGroupSide) + step_y * (k / kGroupSide);
+  }
+  const int first_x = box.first.x / block.pixels, last_x = box.last.x / block.pixels;
+  for (int group_y = box.first.y / kGroupSide * kGroupSide; group_y <= box.last.y; group_y += kGroupSide) {
+    const std::uint32_t rows = placesWithin(group_y, box.first.y, box.last.y, kGroupSide);
+    for (int group_x = first_x / kGroupSide * kGroupSide; group_x <= last_x; group_x += kGroupSide) {
+      std::array<std::int32_t, 3> start;
+      for (int i = 0; i < 3; ++i)
+        start[i] = tables.step_x[i] * (group_x * block.pixels) + tables.step_y[i] * group_y;
+      std::uint32_t reached = 0;
+      for (int k = 0; k < kBlocks; ++k)
+        reached |=
+            std::uint32_t(((start[0] + most[0][k]) | (start[1] + most[1][k]) | (start[2] + most[2][k])) >= 0)
+            << k;
+      const std::uint32_t columns = placesWithin(group_x, first_x, last_x, 1);
+      for (reached &= rows & columns * 0x1111u; reached != 0; reached &= reached - 1) {
+        const int k = std::countr_zero(reached);
+        const int x = (group_x + k % kGroupSide) * block.pixels, y = group_y + k / kGroupSide;
+        std::array<std::int32_t, 3> edges;
+        for (int i = 0; i < 3; ++i) edges[i] = tables.step_x[i] * x + tables.step_y[i] * y;
+        const float depth = float(triangle.depth + triangle.depth_dx * (bin_origin.x + x) +
+                                  triangle.depth_dy * (bin_origin.y + y));
+        const std::size_t first = (std::size_t(y - samples.first_row) * kBinSize + x) * std::size_t(stride);
+        for (int lane = 0; lane < block.lanes; lane += kVector) {
+          const Samples at{
+              edges,
+              {tables.edges[0].data() + lane, tables.edges[1].data() + lane, tables.edges[2].data() + lane},
+              depth,
+              tables.depth.data() + lane,
+              triangle.depth_low,
+              triangle.depth_high,
+              samples.depth.data() + first + lane,
+              samples.label.data() + first + lane};
+          take(at, glm::ivec2(x, y), lane);
+        }
       }
     }
   }
-  return any;
+}
+
+/// Both draw a triangle to a box of the bin's pixels, and return whether it covers a sample, visible or not.
+bool drawOpaqueSamples(const StripTarget& target, const PixelBox& box, StripSamples& samples) {
+  alignas(64) std::array<std::int32_t, kVector> covered{};
+  forEachVector(target, box, samples, [&](const Samples& at, const glm::ivec2&, int) {
+    takeOpaque(at, target.triangle.triangle, covered);
+  });
+  std::int32_t any = 0;
+  for (int lane = 0; lane < kVector; ++lane) any |= covered[lane];
+  return any != 0;
 }
 
 bool drawMaskedSamples(const StripTarget& target, const PixelBox& box, const HoleTest& holes,
                        const SamplePattern& pattern, StripSamples& samples) {
   const std::uint32_t number = target.triangle.triangle;
   std::optional<Surface> surface;
-  return forEachVector(target, box, samples, [&](const Samples& at, const glm::ivec2& pixel, int first_lane) {
-    return takeMasked(at, number, [&](int lane_of_vector) {
+  bool covered = false;
+  forEachVector(target, box, samples, [&](const Samples& at, const glm::ivec2& pixel, int first_lane) {
+    covered |= takeMasked(at, number, [&](int lane_of_vector) {
       const int lane = first_lane + lane_of_vector;
       if (lane % pattern.stride >= pattern.count) return true;  // an entry that stands for no sample
       if (!surface) surface = makeSurface(holes.scene, holes.objects, number, holes.plane);
@@ -201,6 +246,7 @@ bool drawMaskedSamples(const StripTarget& target, const PixelBox& box, const Hol
                     {lane % pattern.stride, pattern.count});
     });
   });
+  return covered;
 }
 
 }  // namespace
@@ -232,11 +278,8 @@ void drawStrip(std::span<const RasterTriangle> triangles, const Bins& bins, int 
     if (box.first.y > box.last.y) continue;
     setTables(triangle, origin, block, tables);
     const StripTarget target{triangle, tables, block, origin};
-    const bool covered =
-        triangle.masked ? drawMaskedSamples(target, box, holes, pattern, samples)
-                        : forEachVector(target, box, samples, [&](const Samples& at, const glm::ivec2&, int) {
-                            return takeOpaque(at, triangle.triangle);
-                          });
+    const bool covered = triangle.masked ? drawMaskedSamples(target, box, holes, pattern, samples)
+                                         : drawOpaqueSamples(target, box, samples);
     // Several bins may write it at once.
     if (covered) std::atomic_ref(covering[triangle.triangle]).store(1, std::memory_order_relaxed);
   }

@@ -291,6 +291,12 @@ inline void readTexels(const SquareTexels& at, int lane, Color& color) {
 
 }  // namespace
 
+float texelsInside(const Texture& texture, const TextureUse& use, glm::vec2 duv_dx, glm::vec2 duv_dy) {
+  if (use.mips == Mips::kNone) return 0.0f;
+  const MipLevel& finest = texture.levels[0];
+  return footprintSize(finest.width, finest.height, duv_dx, duv_dy);
+}
+
 float sampleTexture(const Texture& texture, const TextureUse& use, glm::vec2 uv, glm::vec2 duv_dx,
                     glm::vec2 duv_dy, int channel) {
   const double u = wrapCoordinate(uv.x, use.wrap_u);

@@ -15,6 +15,10 @@ namespace luciole {
 float sampleTexture(const Texture& texture, const TextureUse& use, glm::vec2 uv, glm::vec2 duv_dx,
                     glm::vec2 duv_dy, int channel);
 
+/// The texels of the finest level in a square as wide as a footprint's longer side; 0 where `use` has no
+/// mips.
+float texelsInside(const Texture& texture, const TextureUse& use, glm::vec2 duv_dx, glm::vec2 duv_dy);
+
 /// Texture coordinates and footprints of a square's pixels, as above.
 struct SquareFootprints {
   Lanes<float> u, v;

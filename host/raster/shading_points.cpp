@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "kernels/shared.h"
-#include "raster/concatenate.hpp"
 #include "raster/empty_gbuffer.hpp"
 #include "raster/resolve_square.hpp"
 #include "raster/sample_coverage.hpp"
@@ -78,13 +77,12 @@ struct SampleGroup {
   bool merged;         ///< into another group
 };
 
-/// Attributes for a quick comparison of groups.
+/// Attributes of a group's triangle that tell most groups apart.
 struct GroupTraits {
   const PlacedObject* object;
   const Material* material;
   glm::uvec3 corners;
   bool front_facing;
-  glm::dvec3 facing_normal;
 };
 
 /// The state of grouping samples, one for each thread.
@@ -105,10 +103,11 @@ bool sameSurface(Grouping& grouping, std::size_t first, std::size_t second, cons
   // All that is interpolated comes from the vertices.
   if (grouping.sampled.shading != Shading::kFlat && cornersInCommon(of_first.corners, of_second.corners) >= 2)
     return true;
-  if (glm::dot(of_first.facing_normal, of_second.facing_normal) < kMostBentCosine) return false;
   const SampleGroup &a = grouping.groups[first], &b = grouping.groups[second];
   const glm::dvec2 mean = glm::dvec2(a.sum + b.sum) / double((a.samples + b.samples) * kSubpixels);
   const ViewPlane& plane = grouping.sampled.plane;
+  const glm::dvec3 normal = grouping.surfaces[a.triangle].facing_normal;
+  if (glm::dot(normal, grouping.surfaces[b.triangle].facing_normal) < kMostBentCosine) return false;
   const SeenSurface of_a = grouping.surfaces[a.triangle];  // a copy: the cache may give its place to b
   return agreeAt(of_a, grouping.surfaces[b.triangle], plane.at(pixel.x + mean.x, pixel.y + mean.y), plane);
 }
@@ -137,8 +136,9 @@ void groupByTriangle(const std::uint32_t* labels, Grouping& grouping) {
   }
 }
 
-/// Merges groups that see the same surface, each into the one with the most samples. A group keeps its
-/// triangle, gets the samples of those merged into it, and the first of all their first samples.
+/// Sets grouping.traits, and merges groups that see the same surface, each into the one with the most
+/// samples. A group keeps its triangle, gets the samples of those merged into it, and the first of all their
+/// first samples.
 void mergeGroups(const glm::ivec2& pixel, Grouping& grouping) {
   std::vector<SampleGroup>& groups = grouping.groups;
   std::sort(groups.begin(), groups.end(), [](const SampleGroup& a, const SampleGroup& b) {
@@ -146,10 +146,8 @@ void mergeGroups(const glm::ivec2& pixel, Grouping& grouping) {
   });
   grouping.traits.clear();
   for (const SampleGroup& group : groups) {
-    const SeenSurface& seen = grouping.surfaces[group.triangle];
-    const Surface& surface = seen.surface;
-    grouping.traits.push_back(
-        {surface.object, surface.material, surface.corners, surface.front_facing, seen.facing_normal});
+    const Surface& surface = grouping.surfaces[group.triangle].surface;
+    grouping.traits.push_back({surface.object, surface.material, surface.corners, surface.front_facing});
   }
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (groups[i].merged) continue;
@@ -172,11 +170,10 @@ struct GroupPlace {
   glm::vec2 spread;
 };
 
-GroupPlace placeOf(const SampleGroup& group, const std::uint32_t* labels, Grouping& grouping) {
-  const SamplePattern& pattern = grouping.sampled.pattern;
+GroupPlace placeOf(const SampleGroup& group, const Material& material, const std::uint32_t* labels,
+                   const SamplePattern& pattern) {
   const double count = group.samples, fine = kSubpixels;
   const glm::dvec2 mean = glm::dvec2(group.sum) / count;
-  const Material& material = *grouping.surfaces[group.triangle].surface.material;
   if (!hasHoles(material)) {
     const glm::dvec2 variance = glm::max(glm::dvec2(group.squares) / count - mean * mean, glm::dvec2(0.0));
     return {glm::vec2(mean / fine), glm::vec2(glm::sqrt(variance) / fine)};
@@ -230,16 +227,17 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
   // Most pixels see one triangle, and neighbours the same.
   GroupPlace whole_place{};
   std::uint32_t whole_object = kNoObject, whole_labels = 0;
-  const auto objectOf = [&](std::uint32_t triangle) {
-    return std::uint32_t(grouping.surfaces[triangle].surface.object - grouping.sampled.objects.data());
+  const auto indexOf = [&](const PlacedObject* object) {
+    return std::uint32_t(object - grouping.sampled.objects.data());
   };
   const auto takeWhole = [&](const std::uint32_t* labels) {
     whole.triangle = labels[0];
     whole_labels = std::uint32_t(2 * kept.size()) | 1u;
     kept.push_back(labels[0]);
     if (labels[0] == kNoTriangle) return;
-    whole_place = placeOf(whole, labels, grouping);
-    whole_object = objectOf(labels[0]);
+    const Surface& surface = grouping.surfaces[labels[0]].surface;
+    whole_place = placeOf(whole, *surface.material, labels, pattern);
+    whole_object = indexOf(surface.object);
   };
   forEachSquare(part, crop, [&](const glm::ivec2& square) {
     Lanes<std::uint32_t> triangles;
@@ -276,13 +274,14 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
         kept.insert(kept.end(), labels, labels + pattern.count);
       }
       groupByTriangle(labels, grouping);
-      if (grouping.groups.size() > 1) mergeGroups(pixel, grouping);
-      for (const SampleGroup& group : grouping.groups) {
+      mergeGroups(pixel, grouping);
+      for (std::size_t i = 0; i < grouping.groups.size(); ++i) {
+        const SampleGroup& group = grouping.groups[i];
         if (group.merged) continue;
         if (group.first != 0 && !wanted) continue;
-        const GroupPlace place = placeOf(group, labels, grouping);
+        const GroupPlace place = placeOf(group, *grouping.traits[i].material, labels, pattern);
         if (group.first == 0) {
-          takeFirst(group, place, objectOf(group.triangle));
+          takeFirst(group, place, indexOf(grouping.traits[i].object));
           continue;
         }
         further.push_back({number, group.triangle, place.mean.x, place.mean.y, place.spread.x, place.spread.y,
@@ -296,14 +295,14 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
   });
 }
 
-PointLists joinLists(std::vector<std::vector<ShadingPoint>> lists) {
-  PointLists joined;
-  joined.starts.reserve(lists.size() + 1);
-  joined.starts.push_back(0);
-  for (const std::vector<ShadingPoint>& list : lists)
-    joined.starts.push_back(joined.starts.back() + list.size());
-  joined.items = concatenate(std::move(lists));
-  return joined;
+/// Orders points by triangle: those of one beside each other are cheap to resolve, and see the same lights.
+void sortByTriangle(std::vector<ShadingPoint>& list) {
+  std::vector<std::uint64_t> keys(list.size());  // triangle, then place in the list
+  for (std::size_t i = 0; i < list.size(); ++i) keys[i] = std::uint64_t(list[i].triangle) << 32 | i;
+  std::sort(keys.begin(), keys.end());
+  std::vector<ShadingPoint> sorted(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) sorted[i] = list[std::uint32_t(keys[i])];
+  list = std::move(sorted);
 }
 
 /// Calls visit(part, row) for each strip of a bin that touches the crop: the part of it that does, and its
@@ -370,27 +369,23 @@ SharedSamples shareSamples(const SampledView& sampled, RasterCounts& counts) {
   shared.labels.places.resize(shared.samples.size());
   counts.covering.resize(sampled.triangle_count);
   const int rows = stripRows(sampled.pattern), strips = kBinSize / rows;
-  std::vector<std::vector<ShadingPoint>> further(std::size_t(sampled.bins.size()) * strips);
-  shared.labels.strips.resize(further.size());
+  shared.further.resize(std::size_t(sampled.bins.size()) * strips);
+  shared.labels.strips.resize(shared.further.size());
   tbb::enumerable_thread_specific<StripSamples> tables;
+  tbb::enumerable_thread_specific<SurfaceCache> caches([&] { return SurfaceCache(input); });
   tbb::parallel_for(0, sampled.bins.size(), [&](int bin) {
     if (sampled.bins.list(bin).empty()) return;
     StripSamples& samples = tables.local();
-    SurfaceCache surfaces(input);
-    Grouping grouping{sampled, surfaces};
+    Grouping grouping{sampled, caches.local()};
     forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
       drawRows(sampled, bin, row, counts.covering, samples);
       const std::size_t strip = std::size_t(bin) * strips + row / rows;
-      std::vector<ShadingPoint>& list = further[strip];
+      std::vector<ShadingPoint>& list = shared.further[strip];
       shareStrip(part, sampled.bins.origin(bin), samples, input, grouping, shared, list,
                  shared.labels.strips[strip]);
-      // Points of one triangle beside each other are cheap to resolve, and see the same lights.
-      std::sort(list.begin(), list.end(), [](const ShadingPoint& a, const ShadingPoint& b) {
-        return a.triangle != b.triangle ? a.triangle < b.triangle : a.pixel < b.pixel;
-      });
+      sortByTriangle(list);
     });
   });
-  shared.further = joinLists(std::move(further));
   setCounts(sampled.triangle_count, sampled.setup, counts);
   return shared;
 }
@@ -429,7 +424,7 @@ PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
   const View& view = sampled.view;
   const SamplePattern& pattern = sampled.pattern;
   const int rows = stripRows(pattern), strips = kBinSize / rows;
-  std::vector<std::vector<ShadingPoint>> points(std::size_t(end_bin - first_bin) * strips);
+  PointLists points(std::size_t(end_bin - first_bin) * strips);
   tbb::parallel_for(first_bin, end_bin, [&](int bin) {
     if (sampled.bins.list(bin).empty()) return;
     forEachStrip(sampled, bin, [&](const PixelRectangle& part, int row) {
@@ -449,30 +444,30 @@ PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
         }
     });
   });
-  return joinLists(std::move(points));
+  return points;
 }
 
-GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::size_t first,
-                     std::size_t end) {
-  struct Tile {
-    std::size_t begin, end;  // points
-  };
-  std::vector<Tile> tiles;
-  for (std::size_t list = first; list < end; ++list)
-    for (std::size_t at = points.starts[list]; at < points.starts[list + 1]; at += kTilePixels)
-      tiles.push_back({at, std::min(at + kTilePixels, points.starts[list + 1])});
-  GBuffer gbuffer = emptyPoints(sampled.view, {1, int(tiles.size())}, sampled.planes);
+GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::size_t first, std::size_t end,
+                     GBuffer recycled) {
+  std::vector<std::span<const ShadingPoint>> tiles;
+  for (std::size_t list = first; list < end; ++list) {
+    const std::span<const ShadingPoint> items(points[list]);
+    for (std::size_t at = 0; at < items.size(); at += kTilePixels)
+      tiles.push_back(items.subspan(at, std::min<std::size_t>(kTilePixels, items.size() - at)));
+  }
+  GBuffer gbuffer = emptyPoints(sampled.view, {1, int(tiles.size())}, sampled.planes, std::move(recycled));
   const ResolveInput input = resolveInput(sampled);
   const View& view = sampled.view;
+  tbb::enumerable_thread_specific<SurfaceCache> caches([&] { return SurfaceCache(input); });
   tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t number) {
-    SurfaceCache surfaces(input);
-    const Tile tile = tiles[number];
-    for (std::size_t begin = tile.begin; begin < tile.end; begin += kSquarePixels) {
+    SurfaceCache& surfaces = caches.local();
+    const std::span<const ShadingPoint> tile = tiles[number];
+    for (std::size_t begin = 0; begin < tile.size(); begin += kSquarePixels) {
       Lanes<std::uint32_t> triangles;
       SquarePlace at;
       for (int lane = 0; lane < kSquarePixels; ++lane) {
-        const ShadingPoint& point = points.items[std::min(begin + lane, tile.end - 1)];
-        triangles[lane] = begin + lane < tile.end ? point.triangle : kNoTriangle;
+        const ShadingPoint& point = tile[std::min(begin + lane, tile.size() - 1)];
+        triangles[lane] = begin + lane < tile.size() ? point.triangle : kNoTriangle;
         const std::uint32_t width = std::uint32_t(view.crop_size.x);
         at.x[lane] = view.crop_origin.x + int(point.pixel % width) + double(point.x);
         at.y[lane] = view.crop_origin.y + int(point.pixel / width) + double(point.y);
@@ -480,7 +475,7 @@ GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::
         at.spread_y[lane] = point.spread_y;
       }
       toPlane(input.plane, at);
-      resolveSquare(input, at, triangles, surfaces, number * kTilePixels + (begin - tile.begin), gbuffer);
+      resolveSquare(input, at, triangles, surfaces, number * kTilePixels + begin, gbuffer);
     }
   });
   return gbuffer;

@@ -26,22 +26,15 @@ struct ShadingPoint {
   std::uint32_t samples;     ///< that it stands for
 };
 
-/// Lists of points, one for each of the parts in which a bin is drawn, stored one after another. A pixel's
-/// points are all in one list, of 65,536 points at most.
-struct PointLists {
-  std::vector<std::size_t> starts;  ///< where each list starts in `items`, and the end of the last
-  std::vector<ShadingPoint> items;
+/// Lists of points, one for each of the parts in which a bin is drawn. A pixel's points are all in one list,
+/// of 65,536 points at most.
+using PointLists = std::vector<std::vector<ShadingPoint>>;
 
-  std::size_t size() const { return starts.size() - 1; }
-  std::span<const ShadingPoint> list(std::size_t number) const {
-    return std::span(items).subspan(starts[number], starts[number + 1] - starts[number]);
-  }
-  /// Tiles that a list's points fill. Lists don't share tiles: what else is lit with them leaves a list's
-  /// tiles, and with them the light of clusters, as they are.
-  std::size_t tiles(std::size_t number) const {
-    return (list(number).size() + kTilePixels - 1) / kTilePixels;
-  }
-};
+/// Tiles that a list's points fill. Lists don't share tiles: what else is lit with them leaves a list's
+/// tiles, and with them the light of clusters, as they are.
+inline std::size_t tilesOf(std::span<const ShadingPoint> list) {
+  return (list.size() + kTilePixels - 1) / kTilePixels;
+}
 
 /// A scene's triangles, ready to be drawn with several samples a pixel. Refers to the scene and to the
 /// vertices' colours.
@@ -121,8 +114,8 @@ PointLists everySample(const SampledView& sampled, const SampleLabels& labels,
                        std::span<const std::uint8_t> chosen, int first_bin, int end_bin);
 
 /// A G-buffer of the points of the lists from `first` up to `end`, one tile below the other. Each list begins
-/// a tile, and the points of a tile follow each other in the planes.
-GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::size_t first,
-                     std::size_t end);
+/// a tile, and the points of a tile follow each other in the planes. `recycled`: as in emptyGBuffer().
+GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::size_t first, std::size_t end,
+                     GBuffer recycled = {});
 
 }  // namespace luciole

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raster/blend.hpp"
+#include "raster/opacity.hpp"
 #include "raster/sample_texture.hpp"
 
 namespace luciole {
@@ -91,7 +92,7 @@ Surface makeSurface(const Scene& scene, const std::vector<PlacedObject>& objects
   surface.weight2 = row(glm::cross(a, edge1), {edge1.y, -edge1.x}, plane.perspective);
   surface.determinant = row(cross, {0.0, 0.0}, plane.perspective);
   surface.front_facing = eyeInFront(cross, a, plane.perspective) != object.mirrored;
-  if (surface.material->blended)
+  if (hasHoles(*surface.material))
     surface.blend_surface =
         blendSurface(object.number, triangleOrQuad(*object.mesh, in_mesh), surface.front_facing);
   const double length = glm::length(cross);

@@ -38,7 +38,7 @@ struct Surface {
   glm::dvec3 determinant{0.0};
   glm::dvec3 normal{0.0};  ///< unit, on the front side; (0, 0, 1) where the triangle has no area
   bool front_facing = true;
-  std::uint64_t blend_surface = 0;  ///< see blendSurface(); only where the material is blended
+  std::uint64_t blend_surface = 0;  ///< see blendSurface(); only where hasHoles()
 };
 /// Sets up a triangle by its number among those of the objects. The surface refers to `scene` and `objects`.
 /// O(log objects).

@@ -41,51 +41,66 @@ bool isContinuous(const GBuffer& gbuffer, std::size_t a, std::size_t b) {
 
 /// Rows of a picture's pixels from left to right.
 struct PixelRow {
-  std::array<std::vector<float>, 3> color, reflectance, light;  ///< light = color / reflectance
+  std::array<std::vector<float>, 3> reflectance, light;  ///< light = color / reflectance
+  std::vector<float> brightness;                         ///< the largest component of the colour
 };
 
 void readRow(const GBuffer& gbuffer, const Plane& color, int y, PixelRow& row) {
   const std::size_t stride = gbuffer.pixels(), tiles = std::size_t(gbuffer.tiles_x);
   std::array<std::size_t, kTileSize> places;
   for (int x = 0; x < kTileSize; ++x) places[x] = gbuffer.index(x, y);
+  row.brightness.assign(tiles * kTileSize, 0.0f);
   for (int c = 0; c < 3; ++c) {
-    for (auto* values : {&row.color, &row.reflectance, &row.light}) (*values)[c].resize(tiles * kTileSize);
+    for (auto* values : {&row.reflectance, &row.light}) (*values)[c].resize(tiles * kTileSize);
     const float* colors = color.data() + c * stride;
     const float* reflectances = gbuffer.diffuse.data() + c * stride;
-    float *to_color = row.color[c].data(), *to_reflectance = row.reflectance[c].data();
+    float *to_light = row.light[c].data(), *to_reflectance = row.reflectance[c].data();
     for (std::size_t tile = 0; tile < tiles; ++tile)
       for (int x = 0; x < kTileSize; ++x) {
         const std::size_t place = tile * kTilePixels + places[x];
-        to_color[tile * kTileSize + x] = colors[place];
+        to_light[tile * kTileSize + x] = colors[place];
         to_reflectance[tile * kTileSize + x] = reflectances[place];
       }
-    float* to_light = row.light[c].data();
-    for (std::size_t x = 0; x < tiles * kTileSize; ++x) to_light[x] = to_color[x] / to_reflectance[x];
+    float* brightness = row.brightness.data();
+    for (std::size_t x = 0; x < tiles * kTileSize; ++x) {
+      brightness[x] = std::max(brightness[x], to_light[x]);
+      to_light[x] /= to_reflectance[x];
+    }
   }
 }
 
-/// A quick test without surfaces: sets `suspect` to 0 for the pixels of a row, from x = first up to end,
-/// whose two neighbours along each axis differ from them by less than allowed, summed up, with 1 % to spare
-/// for rounding. These are even. Where a reflectance is 0 the light is not a number, and the pixel is
-/// suspect.
-void findSuspects(const PixelRow& above, const PixelRow& row, const PixelRow& below, int first, int end,
-                  float most_uneven, std::uint8_t* suspect) {
-  std::fill(suspect + first, suspect + end, std::uint8_t(0));
-  const float *red = row.color[0].data(), *green = row.color[1].data(), *blue = row.color[2].data();
-  const int last = end - 1;
+/// Three neighbouring rows, or columns, of pixels.
+struct NeighbourRows {
+  const PixelRow &before, &here, &after;
+};
+
+/// The axes along which a pixel may be uneven, as bits.
+enum SuspectAxis : std::uint8_t { kAcross = 1, kDown = 2 };
+
+/// A quick test without surfaces: sets the bit `axis` of `suspect` for the pixels of a row, from x = first up
+/// to end, that differ by more than allowed from their neighbours on both sides, or on either one, whichever
+/// of these lie on the same surface; with 1 % to spare for rounding. The others are even. The neighbours of x
+/// are at x − step and x + step of their rows. Where a reflectance is 0 the light is not a number, and the
+/// pixel is suspect.
+void findSuspects(const NeighbourRows& rows, int step, int first, int end, float most_uneven,
+                  SuspectAxis axis, std::uint8_t* suspect) {
+  const float allowed = 0.99f * most_uneven;
+  const float* bright = rows.here.brightness.data();
+  const float *bright_before = rows.before.brightness.data(), *bright_after = rows.after.brightness.data();
   for (int c = 0; c < 3; ++c) {
-    const float *reflectance = row.reflectance[c].data(), *light = row.light[c].data();
-    const float *up = above.light[c].data(), *down = below.light[c].data();
-    const auto test = [&](int x, int left, int right) {
-      const float allowed = 0.99f * most_uneven * std::max(std::max(red[x], green[x]), blue[x]);
-      const float scale = 0.5f * reflectance[x];
-      const float across = scale * (std::abs(light[left] - light[x]) + std::abs(light[right] - light[x]));
-      const float along = scale * (std::abs(up[x] - light[x]) + std::abs(down[x] - light[x]));
-      suspect[x] |= std::uint8_t(!(across <= allowed) | !(along <= allowed));
-    };
-    test(first, std::max(first - 1, 0), std::min(first + 1, int(row.light[c].size()) - 1));
-    for (int x = first + 1; x < last; ++x) test(x, x - 1, x + 1);
-    test(last, std::max(last - 1, 0), std::min(last + 1, int(row.light[c].size()) - 1));
+    const float *reflectance = rows.here.reflectance[c].data(), *light = rows.here.light[c].data();
+    const float *before = rows.before.light[c].data(), *after = rows.after.light[c].data();
+    for (int x = first; x < end; ++x) {
+      const float half = 0.5f * reflectance[x];
+      const float to_before = half * (before[x - step] - light[x]),
+                  to_after = half * (after[x + step] - light[x]);
+      const float of_before = std::max(bright[x], bright_before[x - step]),
+                  of_after = std::max(bright[x], bright_after[x + step]);
+      const bool differs = !(std::abs(to_before) <= allowed * of_before) |
+                           !(std::abs(to_after) <= allowed * of_after) |
+                           !(std::abs(to_before + to_after) <= allowed * std::max(of_before, of_after));
+      suspect[x] |= std::uint8_t(differs ? axis : 0);
+    }
   }
 }
 
@@ -133,12 +148,18 @@ std::vector<std::uint8_t> unevenPixels(const SampledView& sampled, const SharedS
       const int above = std::max(y - 1, 0), below = std::min(y + 1, gbuffer.height - 1);
       if (below > y) read(below);
       std::uint8_t* row = uneven.data() + std::size_t(y) * width;
-      findSuspects(rows[std::size_t(above % 3)], rows[std::size_t(y % 3)], rows[std::size_t(below % 3)],
-                   first.x, end.x, most_uneven, row);
+      const PixelRow& here = rows[std::size_t(y % 3)];
+      findSuspects({rows[std::size_t(above % 3)], here, rows[std::size_t(below % 3)]}, 0, first.x, end.x,
+                   most_uneven, kDown, row);
+      // At the picture's sides, where a neighbour is missing, all are suspect.
+      const int left = std::max(first.x, 1), right = std::min(end.x, width - 1);
+      if (first.x < left) row[first.x] |= kAcross;
+      if (right < end.x) row[right] |= kAcross;
+      findSuspects({here, here, here}, 1, left, right, most_uneven, kAcross, row);
       for (int x = first.x; x < end.x; ++x) {
         const glm::ivec2 pixel(x, y);
-        row[x] =
-            row[x] && objectAt(pixel) != kNoObject && (is_uneven(pixel, {1, 0}) || is_uneven(pixel, {0, 1}));
+        row[x] = objectAt(pixel) != kNoObject && (((row[x] & kAcross) && is_uneven(pixel, {1, 0})) ||
+                                                  ((row[x] & kDown) && is_uneven(pixel, {0, 1})));
       }
     }
   });

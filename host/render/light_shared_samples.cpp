@@ -18,8 +18,8 @@ namespace {
 
 /// The end of the lists from `first` on that are lit in one pass: at most most_points points, or one list.
 std::size_t endOfPass(const PointLists& points, std::size_t first, std::size_t most_points) {
-  std::size_t end = first + 1, tiles = points.tiles(first);
-  while (end < points.size() && (tiles += points.tiles(end)) * kTilePixels <= most_points) ++end;
+  std::size_t end = first + 1, tiles = tilesOf(points[first]);
+  while (end < points.size() && (tiles += tilesOf(points[end])) * kTilePixels <= most_points) ++end;
   return end;
 }
 
@@ -28,15 +28,9 @@ void removePoints(const std::vector<std::uint8_t>& pixels, SharedSamples& shared
   tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t i) {
     if (pixels[i]) shared.samples[i] = 0;
   });
-  PointLists& further = shared.further;
-  std::size_t kept = 0;
-  for (std::size_t list = 0; list < further.size(); ++list) {
-    const std::size_t first = std::exchange(further.starts[list], kept), end = further.starts[list + 1];
-    for (std::size_t k = first; k < end; ++k)
-      if (!pixels[further.items[k].pixel]) further.items[kept++] = further.items[k];
-  }
-  further.starts.back() = kept;
-  further.items.resize(kept);
+  tbb::parallel_for(std::size_t(0), shared.further.size(), [&](std::size_t list) {
+    std::erase_if(shared.further[list], [&](const ShadingPoint& point) { return pixels[point.pixel]; });
+  });
 }
 
 /// A rectangle of a picture.
@@ -121,9 +115,12 @@ struct SharedLister final : PointLister {
       first_list = end_list;
       if (first_list == points->size()) return false;
       end_list = endOfPass(*points, first_list, most_points);
-    } while (points->starts[first_list] == points->starts[end_list]);
-    gathered = timed(picture.stats, Stage::kRasterize,
-                     [&] { return gatherPoints(sampled, *points, first_list, end_list); });
+    } while (std::all_of(points->begin() + std::ptrdiff_t(first_list),
+                         points->begin() + std::ptrdiff_t(end_list),
+                         [](const auto& list) { return list.empty(); }));
+    gathered = timed(picture.stats, Stage::kRasterize, [&] {
+      return gatherPoints(sampled, *points, first_list, end_list, std::move(gathered));
+    });
     gathered.camera = picture.settings.camera;
     return true;
   }
@@ -137,11 +134,11 @@ struct SharedLister final : PointLister {
            (pixels + in_bins[next_bin]) * std::size_t(picture.settings.samples) <= most_points)
       pixels += in_bins[next_bin++];
     refined_pixels += pixels;
-    of_bins = {{0}, {}};
+    of_bins.clear();
     if (pixels > 0)
       of_bins = timed(picture.stats, Stage::kRasterize,
                       [&] { return everySample(sampled, shared.labels, uneven, int(first), int(next_bin)); });
-    refined_points += of_bins.items.size();
+    for (const std::vector<ShadingPoint>& list : of_bins) refined_points += list.size();
     points = &of_bins;
     end_list = 0;
     return true;

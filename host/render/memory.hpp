@@ -31,9 +31,9 @@ inline constexpr std::size_t kListBytesPerPixel = 1 + kFoundPerTile * sizeof(Lis
 /// A pass over SharedSamples::further lights at most one point for so many pixels of the band.
 inline constexpr std::size_t kPixelsAPoint = 4;
 
-/// A pixel's bytes beside the G-buffer's where samples share points: one ShadingPoint in two lists while they
-/// are joined, the object (4) and number of samples (2) of its first point, whether it is uneven (1), and the
-/// place of its labels (4).
+/// A pixel's bytes beside the G-buffer's where samples share points: one ShadingPoint and as much that
+/// its list has grown in advance, the object (4) and number of samples (2) of its first point, whether it is
+/// uneven (1), and the place of its labels (4).
 inline constexpr std::size_t kPointBytesPerPixel = 2 * sizeof(ShadingPoint) + 4 + 2 + 1 + 4;
 
 /// Upper bound of the bytes that a pixel of a band takes, on the host and on a device that shares its memory:

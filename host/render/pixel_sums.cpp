@@ -39,12 +39,12 @@ void addPoints(const GBuffer& layout, const PointLists& points, std::size_t firs
                const LitPlanes& lit, std::size_t stride, PixelSums& sums) {
   const std::size_t n = layout.pixels();
   std::vector<std::size_t> first_places;  // of each list in the planes
-  for (std::size_t list = first_list, tiles = 0; list < end_list; tiles += points.tiles(list++))
+  for (std::size_t list = first_list, tiles = 0; list < end_list; tiles += tilesOf(points[list++]))
     first_places.push_back(tiles * kTilePixels);
   // All points of a pixel are in one list.
   tbb::parallel_for(first_list, end_list, [&](std::size_t list) {
     std::size_t place = first_places[list - first_list];
-    for (const ShadingPoint& point : points.list(list)) {
+    for (const ShadingPoint& point : points[list]) {
       const std::uint32_t width = std::uint32_t(layout.width);
       const std::size_t i = layout.index(int(point.pixel % width), int(point.pixel / width));
       const float samples = float(point.samples);

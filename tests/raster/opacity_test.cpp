@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "raster_scenes.hpp"
@@ -58,6 +59,60 @@ TEST(Opacity, PlacesTogetherHaveTheHolesThatEachHasAlone) {
   }
   EXPECT_GT(holes, 500);
   EXPECT_GT(solid, 500);
+}
+
+/// The share of samples that see a surface of 1024 x 1024 texels, of which in each square of 8 x 8 all but 4
+/// x 4 are holes. It fills a picture of pixels x pixels.
+double shareSeen(int pixels, int samples) {
+  Material material = doubleSided();
+  material.alpha_cutoff = 0.5f;
+  material.diffuse_map = {0};
+  Scene scene = meshScene({{-1, -1, -1}, {3, -1, -1}, {-1, 3, -1}}, {{0, 1, 2}}, material);
+  scene.meshes[0].uvs = {{0, 4}, {8, 4}, {0, -4}};
+  Texture texture;
+  for (int side = 256; side >= 1; side /= 2) {
+    MipLevel level{side, side, {}};
+    const int block = side / 64;  // texels of a block's side, if any
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const bool solid = block > 0 && x / block % 2 == 0 && y / block % 2 == 0;
+        const int alpha = block == 0 ? 65535 / 4 : solid ? 65535 : 0;
+        level.texels.insert(level.texels.end(), {65535, 65535, 65535, std::uint16_t(alpha)});
+      }
+    texture.levels.push_back(level);
+  }
+  texture.alpha_varies = true;
+  scene.textures = {texture};
+  Camera camera = frontCamera();
+  camera.fov_y = glm::half_pi<double>();
+  const View view = cameraView(camera, {pixels, pixels});
+  const ViewPlane plane = viewPlane(view);
+  const std::vector<PlacedObject> objects = placeObjects(scene, allObjects(scene), view.world_to_view);
+  const Surface surface = makeSurface(scene, objects, 0, plane);
+  int seen = 0;
+  for (int y = 0; y < pixels; ++y)
+    for (int x = 0; x < pixels; ++x)
+      for (int i = 0; i < samples; ++i) {
+        const glm::dvec2 place = glm::dvec2(x, y) + samplePoint(i, samples) - 0.5;
+        seen += !isHole(scene, surface, plane, place, {x, y}, {i, samples});
+      }
+  return double(seen) / (pixels * pixels * samples);
+}
+
+TEST(Opacity, HolesKeepTheirShareOfASurfaceWithDistance) {
+  // Samples closer than texels: a quarter, but for the corners, which lookups between texels round.
+  EXPECT_NEAR(shareSeen(1024, 4), 0.25, 0.01);
+  // Far away all opacities are ¼. A threshold t is at ½ + s (t − ½), s = 1 − kTestedTexels / n for samples of
+  // n texels, and below ¼ where t < ½ − ¼ / s. Of the 4 samples of a pixel one is kept or none.
+  for (const int texels_across : {32, 64, 128}) {
+    const int pixels = 1024 / texels_across;
+    const double n = texels_across * texels_across / 4.0, share = 0.5 - 0.25 / (1 - kTestedTexels / n);
+    const double deviation = std::sqrt(4 * share * (1 - 4 * share)) / 4 / pixels;
+    EXPECT_NEAR(shareSeen(pixels, 4), share, 4 * deviation) << texels_across;
+    EXPECT_NEAR(share, 0.25, 0.09);
+  }
+  // One sample is tested against the cutoff, and ¼ is below it.
+  EXPECT_EQ(shareSeen(16, 1), 0);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ struct Shared {
   std::vector<PixelPoints> byPixel() const {
     std::vector<PixelPoints> pixels(samples.samples.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].first_samples = samples.samples[i];
-    for (const ShadingPoint& point : samples.further.items) pixels[point.pixel].further.push_back(point);
+    for (const std::vector<ShadingPoint>& list : samples.further)
+      for (const ShadingPoint& point : list) pixels[point.pixel].further.push_back(point);
     return pixels;
   }
 };
@@ -278,10 +279,11 @@ TEST(ShadingPoints, EverySampleOfAChosenPixelIsAPointWhereItIsAsked) {
   for (const std::size_t count : chosenInBins(sampled, chosen)) in_bins += count;
   EXPECT_EQ(in_bins, std::size_t(std::count(chosen.begin(), chosen.end(), 1)));
   std::vector<int> found(covered.size());
-  for (const ShadingPoint& point : points.items) {
-    found[point.pixel] += int(point.samples);
-    EXPECT_EQ(point.samples, 1u);
-  }
+  for (const std::vector<ShadingPoint>& list : points)
+    for (const ShadingPoint& point : list) {
+      found[point.pixel] += int(point.samples);
+      EXPECT_EQ(point.samples, 1u);
+    }
   for (std::size_t i = 0; i < chosen.size(); ++i) ASSERT_EQ(found[i], chosen[i] ? covered[i] : 0) << i;
 }
 
@@ -319,9 +321,9 @@ Facts factsOf(const Scene& scene, const View& view, int samples, Margin margin =
       facts[{x, y, kNoTriangle}] = values;
     }
   std::size_t tiles = 0;
-  for (std::size_t list = 0; list < points.size(); tiles += points.tiles(list++))
-    for (std::size_t i = 0; i < points.list(list).size(); ++i) {
-      const ShadingPoint& point = points.list(list)[i];
+  for (std::size_t list = 0; list < points.size(); tiles += tilesOf(points[list++]))
+    for (std::size_t i = 0; i < points[list].size(); ++i) {
+      const ShadingPoint& point = points[list][i];
       std::vector<float> values = valuesAt(further, tiles * kTilePixels + i);
       values.push_back(float(point.samples));
       facts[{drawn.x + int(point.pixel) % width, drawn.y + int(point.pixel) / width, point.triangle}] =
