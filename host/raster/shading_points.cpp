@@ -294,6 +294,7 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
     resolveSquare(input, at, triangles, grouping.surfaces,
                   out.gbuffer.index(square.x - crop.x, square.y - crop.y), out.gbuffer);
   });
+  finishSquares();
 }
 
 PointLists joinLists(std::vector<std::vector<ShadingPoint>> lists) {
@@ -482,6 +483,7 @@ GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::
       toPlane(input.plane, at);
       resolveSquare(input, at, triangles, surfaces, number * kTilePixels + (begin - tile.begin), gbuffer);
     }
+    finishSquares();
   });
   return gbuffer;
 }
