@@ -40,6 +40,7 @@ void resolveBin(const ResolveInput& input, const BinPixels& pixels, glm::ivec2 b
     resolveSquare(input, squarePlace(input.plane, square), triangles, surfaces,
                   gbuffer.index(square.x - crop.x, square.y - crop.y), gbuffer);
   });
+  finishSquares();
 }
 
 }  // namespace luciole

@@ -1,7 +1,12 @@
 #include "raster/resolve_square.hpp"
 
-#include <cstring>
 #include <span>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#else
+#include <cstring>
+#endif
 
 namespace luciole {
 namespace {
@@ -43,11 +48,25 @@ SquareValues valuesSeen(const ResolveInput& input, const SquarePlace& place, Lan
   return values;
 }
 
+/// Writes a square's part of a plane, a whole cache line. Where the machine can, past the caches: a line that
+/// is written through them is read first, and planes are larger than they are.
+template <class T>
+void writeLine(const Lanes<T>& values, T* out) {
+#ifdef __SSE2__
+  const auto* from = reinterpret_cast<const __m128i*>(values.data());
+  auto* to = reinterpret_cast<__m128i*>(out);
+  for (std::size_t i = 0; i < sizeof values / sizeof *to; ++i)
+    _mm_stream_si128(to + i, _mm_loadu_si128(from + i));
+#else
+  std::memcpy(out, values.data(), sizeof values);
+#endif
+}
+
 /// Stores the values of the pixels that see something into a plane, from `out` on. `whole`: all of them do.
 template <class T>
 void store(const Lanes<T>& values, const LaneMask& mask, bool whole, T* out) {
   if (whole) {
-    std::memcpy(out, values.data(), sizeof values);
+    writeLine(values, out);
   } else {
     for (int i = 0; i < kSquarePixels; ++i)
       if (mask[i]) out[i] = values[i];
@@ -85,30 +104,18 @@ void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, st
   if (!gbuffer.model.empty()) store(values.model, drawn, whole, gbuffer.model.data() + place);
 }
 
-/// Asks for the cache lines of a group of planes that store() will write. (GCC takes a function that only
-/// prefetches for one without effect, and its call away, unless it is inlined first.)
-[[gnu::always_inline]] inline void prefetch(const Plane& group, std::size_t components, std::size_t place) {
-  if (group.empty()) return;
-  const std::size_t stride = group.size() / components;
-  for (std::size_t c = 0; c < components; ++c) __builtin_prefetch(group.data() + c * stride + place, 1);
-}
-
 }  // namespace
 
 void resolveSquare(const ResolveInput& input, const SquarePlace& place, const Lanes<std::uint32_t>& triangles,
                    SurfaceCache& surfaces, std::size_t at, GBuffer& gbuffer) {
   if (nextSeen(triangles, 0) == kSquarePixels) return;
-  // They arrive while the values are computed.
-  prefetch(gbuffer.position, 3, at);
-  prefetch(gbuffer.normal, 3, at);
-  prefetch(gbuffer.diffuse, 3, at);
-  prefetch(gbuffer.specular, 4, at);
-  prefetch(gbuffer.ambient, 3, at);
-  prefetch(gbuffer.emission, 3, at);
-  if (!gbuffer.geometric_normal.empty()) __builtin_prefetch(gbuffer.geometric_normal.data() + at, 1);
-  if (!gbuffer.unbent_normal.empty()) __builtin_prefetch(gbuffer.unbent_normal.data() + at, 1);
-  prefetch(gbuffer.lift, 1, at);
   store(valuesSeen(input, place, triangles, surfaces), triangles, at, gbuffer);
+}
+
+void finishSquares() {
+#ifdef __SSE2__
+  _mm_sfence();
+#endif
 }
 
 }  // namespace luciole

@@ -19,8 +19,11 @@ void forEachSquare(const PixelRectangle& part, const glm::ivec2& crop_origin, Vi
 }
 
 /// Writes the attributes of the triangles that a square's pixels see at `place` to the G-buffer, from `at` on
-/// in its planes. Pixels that see kNoTriangle keep their content.
+/// in its planes. Pixels that see kNoTriangle keep their content. finishSquares() must follow.
 void resolveSquare(const ResolveInput& input, const SquarePlace& place, const Lanes<std::uint32_t>& triangles,
                    SurfaceCache& surfaces, std::size_t at, GBuffer& gbuffer);
+
+/// Ends a thread's calls of resolveSquare(): other threads see what they wrote once they know of this call.
+void finishSquares();
 
 }  // namespace luciole

@@ -293,6 +293,7 @@ void shareStrip(const PixelRectangle& part, const glm::ivec2& bin_origin, const 
     resolveSquare(input, at, triangles, grouping.surfaces,
                   out.gbuffer.index(square.x - crop.x, square.y - crop.y), out.gbuffer);
   });
+  finishSquares();
 }
 
 /// Orders points by triangle: those of one beside each other are cheap to resolve, and see the same lights.
@@ -477,6 +478,7 @@ GBuffer gatherPoints(const SampledView& sampled, const PointLists& points, std::
       toPlane(input.plane, at);
       resolveSquare(input, at, triangles, surfaces, number * kTilePixels + begin, gbuffer);
     }
+    finishSquares();
   });
   return gbuffer;
 }

@@ -92,6 +92,11 @@ void normalize(const Lanes3<double>& v, const glm::dvec3& otherwise, Lanes3<floa
   }
 }
 
+// As std::min and std::max, but of values: GCC vectorizes no loop over choices of references.
+double lesser(double a, double b) { return b < a ? b : a; }
+double greater(double a, double b) { return a < b ? b : a; }
+double positive(double a) { return greater(a, 0.0); }
+
 /// The lifts of a square's pixels in metres, see lift.hpp. `normal`: interpolated, of any length.
 void setLift(const SeenSurface& seen, const SquareWeights& weights, const Lanes3<double>& normal,
              Lanes<float>& out) {
@@ -103,27 +108,18 @@ void setLift(const SeenSurface& seen, const SquareWeights& weights, const Lanes3
   const glm::dvec3 edge1 = seen.surface.edge1, edge2 = seen.surface.edge2;
   for (int i = 0; i < kSquarePixels; ++i) {
     const double second = weights.second[i], third = weights.third[i], first = 1.0 - second - third;
-    const double planes = first * std::max(second * lift.rise[0][0] + third * lift.rise[0][1], 0.0) +
-                          second * std::max(third * lift.rise[1][0] + first * lift.rise[1][1], 0.0) +
-                          third * std::max(first * lift.rise[2][0] + second * lift.rise[2][1], 0.0);
+    const double planes = first * positive(second * lift.rise[0][0] + third * lift.rise[0][1]) +
+                          second * positive(third * lift.rise[1][0] + first * lift.rise[1][1]) +
+                          third * positive(first * lift.rise[2][0] + second * lift.rise[2][1]);
     const double x = normal[0][i], y = normal[1][i], z = normal[2][i];
     const double to_second = edge1.x * x + edge1.y * y + edge1.z * z,
                  to_third = edge2.x * x + edge2.y * y + edge2.z * z;
-    const double own = std::max(std::max(to_second, to_third), 0.0) - (second * to_second + third * to_third);
+    const double own = positive(greater(to_second, to_third)) - (second * to_second + third * to_third);
     const double length2 = x * x + y * y + z * z;
-    const double height = std::min(std::max(own, 0.5 * planes), planes) / std::sqrt(length2);
+    const double height = lesser(greater(own, 0.5 * planes), planes) / std::sqrt(length2);
+    const float lifted = float(lesser(height, lift.most));
     // Where the corners' normals cancel there is no direction to lift along.
-    out[i] = length2 > 0.0 && height > 0.0 ? float(std::min(height, lift.most)) : 0.0f;
-  }
-}
-
-/// Sets a pair of steps to 0 unless both are finite.
-void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
-  constexpr float kLargest = std::numeric_limits<float>::max();
-  for (int i = 0; i < kSquarePixels; ++i) {
-    const bool finite = (std::abs(x[i]) <= kLargest) & (std::abs(y[i]) <= kLargest);
-    x[i] = finite ? x[i] : 0.0f;
-    y[i] = finite ? y[i] : 0.0f;
+    out[i] = (length2 > 0.0) & (height > 0.0) ? lifted : 0.0f;
   }
 }
 
@@ -131,6 +127,7 @@ void clearUnlessFinite(Lanes<float>& x, Lanes<float>& y) {
 /// first corner u = n / d, where n and d are dot products of rows with p (see Surface). They grow by n' and
 /// d' a pixel, so
 ///     (n + n') / (d + d') − n / d = (n' − u · d') / (d + d').
+/// Both are 0 unless both are finite.
 void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& uv, double pixel,
                const PlaneCrossing& crossing, const Lanes<double>& u, const Lanes<double>& v,
                Lanes<float>& du, Lanes<float>& dv) {
@@ -138,13 +135,16 @@ void stepAlong(int axis, const Surface& surface, const Interpolant<glm::dvec2>& 
   const double determinant = pixel * surface.determinant[axis];
   const glm::dvec2 row = weight1 * uv.to_second + weight2 * uv.to_third;
   const glm::dvec2 first = uv.first;
+  constexpr float kLargest = std::numeric_limits<float>::max();
   for (int i = 0; i < kSquarePixels; ++i) {
     const double scale = crossing.scale[i];
     const float next = 1.0f / float(1.0 + determinant * scale);
-    du[i] = float((row.x - (u[i] - first.x) * determinant) * scale) * next;
-    dv[i] = float((row.y - (v[i] - first.y) * determinant) * scale) * next;
+    const float along_u = float((row.x - (u[i] - first.x) * determinant) * scale) * next;
+    const float along_v = float((row.y - (v[i] - first.y) * determinant) * scale) * next;
+    const bool finite = (std::abs(along_u) <= kLargest) & (std::abs(along_v) <= kLargest);
+    du[i] = finite ? along_u : 0.0f;
+    dv[i] = finite ? along_v : 0.0f;
   }
-  clearUnlessFinite(du, dv);
 }
 
 void setFootprints(const Surface& surface, const Interpolant<glm::dvec2>& uv, const ViewPlane& plane,

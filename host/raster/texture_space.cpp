@@ -136,6 +136,7 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
       resolveSquare(input, squarePlace(plane, square), triangles, surfaces, gbuffer.index(square.x, square.y),
                     gbuffer);
     }
+    finishSquares();
   });
   return result;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "kernels/shared.h"
 
@@ -18,6 +19,15 @@ constexpr std::uint32_t kMostBins = 32;
 constexpr std::uint32_t kChunk = 1 << 14;
 
 using QuadInt = std::int32_t __attribute__((vector_size(16)));
+
+/// A box's numbers as one vector: a bin then takes one load, one comparison and one store.
+using BoxNumbers = float __attribute__((vector_size(sizeof(QuadBox))));
+void addNumbers(const BoxNumbers& numbers, QuadBox& box) {
+  BoxNumbers own;
+  std::memcpy(&own, &box, sizeof own);
+  own = own < numbers ? own : numbers;
+  std::memcpy(static_cast<void*>(&box), &own, sizeof own);
+}
 
 struct SplitBins {
   std::array<std::array<QuadBox, kMostBins>, 3> box;
@@ -49,8 +59,10 @@ struct SplitGrid {
 void addToBins(const SplitGrid& grid, const TriangleBox* box, const TriangleBox* end, SplitBins& bins) {
   for (; box < end; ++box) {
     const QuadInt place = __builtin_convertvector((centreOf(*box) - grid.low) * grid.scale, QuadInt);
+    BoxNumbers numbers;
+    std::memcpy(&numbers, box, sizeof numbers);
     for (int axis = 0; axis < 3; ++axis) {
-      bins.box[axis][place[axis]].add(*box);
+      addNumbers(numbers, bins.box[axis][place[axis]]);
       ++bins.count[axis][place[axis]];
     }
   }
@@ -118,12 +130,22 @@ void findSplit(const SplitGrid& grid, const SplitBins& bins, int axis, Split& be
 /// Copies the boxes from `begin` to `end` to where `next` says for each side, and moves `next` on.
 void scatter(const SplitGrid& grid, const Split& split, const TriangleBox* begin, const TriangleBox* end,
              std::array<TriangleBox*, 2> next, std::array<QuadBox, 2>& centres) {
+  // All in registers: what a store by the side as an index leaves, the next triangle would wait for.
+  auto [left, right] = next;
+  QuadBox before, behind;
+  const Quad nowhere = QuadBox{}.low;
   for (; begin < end; ++begin) {
     const int side = grid.binOf(*begin, split.axis) > split.last;
-    *next[side]++ = *begin;
-    const Quad centre = centreOf(*begin);
-    centres[side].add({centre, -centre});
+    *(side ? right : left) = *begin;
+    right += side;
+    left += 1 - side;
+    const QuadInt is_behind = QuadInt{} - side;
+    const Quad centre = centreOf(*begin), minus = -centre;
+    before.add({is_behind ? nowhere : centre, is_behind ? nowhere : minus});
+    behind.add({is_behind ? centre : nowhere, is_behind ? minus : nowhere});
   }
+  centres[0].add(before);
+  centres[1].add(behind);
 }
 
 /// The two parts in the other array, whose order is that of the set.

@@ -4,8 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/machine_memory.hpp"
 #include "luciole/error.hpp"
@@ -81,10 +83,32 @@ glm::vec4 planeOf(const std::array<glm::dvec3, 3>& exact, const std::array<glm::
   return glm::dvec4(unit, glm::dot(unit, exact[0]));
 }
 
+/// The objects of a block's triangles. Asks for all that cornersOf() and hasHoles() read: triangles of a
+/// block lie anywhere in their meshes, and so they are waited for together.
+std::array<std::uint32_t, kTreeWidth> fetchTriangles(const PlacedTriangles& placed,
+                                                     std::span<const std::uint32_t> triangles) {
+  std::array<std::uint32_t, kTreeWidth> objects;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    objects[i] = objectOf(placed, triangles[i]);
+    const Mesh& mesh = placed.scene.meshes[placed.scene.objects[objects[i]].mesh];
+    const std::uint32_t in_mesh = triangles[i] - placed.first[objects[i]];
+    __builtin_prefetch(&mesh.triangles[in_mesh]);
+    if (!mesh.triangle_materials.empty()) __builtin_prefetch(&mesh.triangle_materials[in_mesh]);
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Mesh& mesh = placed.scene.meshes[placed.scene.objects[objects[i]].mesh];
+    const glm::uvec3& corners = mesh.triangles[triangles[i] - placed.first[objects[i]]];
+    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&mesh.positions[corners[corner]]);
+  }
+  return objects;
+}
+
 /// Writes a block's rows and bits of holes, and returns its box.
 FloatBox fillBlock(const PlacedTriangles& placed, std::size_t block, TriangleTree& tree) {
   float* const rows = &tree.blocks[block * kBlockRows * kTreeWidth];
   const std::uint32_t used = tree.block_bits[block] & 0xffff;
+  const std::array<std::uint32_t, kTreeWidth> objects =
+      fetchTriangles(placed, {&tree.triangles[block * kTreeWidth], std::size_t(std::popcount(used))});
   std::uint32_t holes = 0;
   FloatBox box;
   for (int slot = 0; slot < kTreeWidth; ++slot) {
@@ -93,8 +117,7 @@ FloatBox fillBlock(const PlacedTriangles& placed, std::size_t block, TriangleTre
       for (int row = 0; row < kBlockRows; ++row) set(row, rows[row * kTreeWidth + slot - 1]);
       continue;
     }
-    const std::uint32_t triangle = tree.triangles[block * kTreeWidth + slot],
-                        object = objectOf(placed, triangle);
+    const std::uint32_t triangle = tree.triangles[block * kTreeWidth + slot], object = objects[slot];
     const std::array<glm::dvec3, 3> exact = cornersOf(placed, object, triangle);
     const std::array<glm::vec3, 3> rounded{exact[0], exact[1], exact[2]};
     const glm::vec4 plane = planeOf(exact, rounded);
