@@ -31,6 +31,13 @@ GBuffer emptyTile() {
   return empty;
 }
 
+/// Whether PoCL has kept the optimized programs of beams and of shading.
+bool isKept(const OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings) {
+  return isCompiled(device, "shade/shade.cl", featureDefines(features) + mathDefines(settings)) &&
+         (!features.has(Feature::kExact) ||
+          isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))));
+}
+
 /// Starts the helper on those beams of the picture's programs that have to be compiled.
 void startBeams(OpenedDevice& device, const CompileTask& picture, HelperProcess& helper) {
   if (device.helper.empty()) return;
@@ -83,7 +90,7 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     reserve(device, 2, empty_list.starts);
     fill(device, empty_list.starts, 0);
     timed(ignored, Stage::kBeamShadows, [&] {
-      const StageInput input{device, nothing, lighting, pass, points, empty_list};
+      const StageInput input{device, nothing, lighting, pass, features, points, empty_list};
       PairShadows pairs = decideBeams(input);
       if (pairs.counts.count > 0) traceUnsurePairs(input, pairs);
     });
@@ -98,16 +105,28 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
-    device.compiles_quickly = !device.helper.empty() && device.makes_one_picture && little_work;
-    const CompileTask picture{programs, settings, {.counts = true}};
+    const bool is_followed = !device.helper.empty() && device.makes_one_picture;
+    const bool has_general = is_followed && isKept(device, generalFeatures(), settings);
+    device.lights_generally =
+        has_general && little_work && std::all_of(programs.begin(), programs.end(), isGeneral) &&
+        !std::all_of(programs.begin(), programs.end(),
+                     [&](const FeatureSet& own) { return isKept(device, own, settings); });
+    device.compiles_quickly = is_followed && little_work;
+    const CompileTask picture{
+        device.lights_generally ? std::vector{generalFeatures()} : programs, settings, {.counts = true}};
     HelperProcess helper;
     startBeams(device, picture, helper);
-    for (const FeatureSet& features : programs) compileKernels(device, features, settings, {.beams = false});
+    for (const FeatureSet& features : picture.programs)
+      compileKernels(device, features, settings, {.beams = false});
     checkItself(device);
     if (!helper.await() && device.warn)
       device.warn("a process that compiled kernels failed; they are compiled in this one");
-    for (const FeatureSet& features : programs) compileKernels(device, features, settings, {.others = false});
-    if (hasQuickPrograms(device)) device.left_over = argumentsOf(device, picture);
+    for (const FeatureSet& features : picture.programs)
+      compileKernels(device, features, settings, {.others = false});
+    CompileTask left{{}, settings, picture.choice};
+    if (device.lights_generally || hasQuickPrograms(device)) left.programs = programs;
+    if (is_followed && !has_general) left.programs.push_back(generalFeatures());
+    if (!left.programs.empty()) device.left_over = argumentsOf(device, left);
     return endStage(Stage::kCompileKernels, begin);
   });
 }

@@ -24,8 +24,9 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
 
 /// Compiles the programs of these feature sets in a thread of its own, once the device is open, then calls
 /// OpenedDevice::self_check. Where the device has a helper (compile_helper.hpp) it compiles beams meanwhile;
-/// and if the device makes one picture, which is `little_work`, programs that PoCL hasn't kept are compiled
-/// quickly, and OpenedDevice::left_over is set. The future's value is the milliseconds that it took. Its
+/// and if the device makes one picture, which is `little_work`, it is lit by the general program in the place
+/// of programs that PoCL hasn't kept, or these are compiled quickly. OpenedDevice::left_over is set to what
+/// PoCL lacks, with the general program. The future's value is the milliseconds that it took. Its
 /// destructor waits for the thread, which refers to the arguments.
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
                                    const ShadeSettings& settings, bool little_work);

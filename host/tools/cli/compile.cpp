@@ -27,7 +27,7 @@ bool takesTurn(const OpenedDevice& device) {
 void compile(const DeviceTask& what, CommandContext& context) {
   openDevice(what.selector, context.device);
   const CompileTask& task = what.task;
-  const bool is_left_over = task.choice.counts;
+  const bool is_left_over = task.choice.counts;  // and nobody waits for it
   if (is_left_over && !takesTurn(context.device)) return;
   context.device.compiles_quickly = task.quickly;
   for (const FeatureSet& features : task.programs)
@@ -40,11 +40,15 @@ void compile(const DeviceTask& what, CommandContext& context) {
 }  // namespace
 
 /// A helper of other processes of this program (lighting/compile_helper.hpp), which help doesn't list.
+/// Without a task it compiles the general program, as those who set this program up do.
 void addCompileCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("compile", "compile kernels for another process")->group("");
   auto words = std::make_shared<std::vector<std::string>>();
-  command->add_option("TASK", *words, "what to compile")->required();
-  command->callback([&context, words] { compile(readTask(*words), context); });
+  command->add_option("TASK", *words, "what to compile");
+  command->callback([&context, words] {
+    const DeviceTask general{"", {{generalFeatures()}, {}, {.counts = true}}};
+    compile(words->empty() ? general : readTask(*words), context);
+  });
 }
 
 }  // namespace luciole
