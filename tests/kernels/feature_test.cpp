@@ -42,7 +42,7 @@ const std::vector<Needs>& needs() {
       {kExact, {kDirectionalLights, kPointLights, kSpotLights}},
       {kSoftExact, {kExact}},
       {kHoles, {kExact}},
-      {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows}},
+      {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows, kExact}},
       {kNormalMaps, {kPointLights, kDirectionalLights, kSpotLights}},
       {kOutputShadow, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
       {kParallelShadows, {kDirectionalLights}},
