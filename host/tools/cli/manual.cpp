@@ -46,8 +46,7 @@ const Terms kManualVariables{
      "0: no process but the command's own compiles kernels. Otherwise another may compile some of them "
      "meanwhile, and the first picture is made by a general program, or by kernels that are compiled in a "
      "third of the time, with the same bits, but run slower: then one compiles the fast ones when the "
-     "command "
-     "has ended, at the lowest priority, for some seconds"},
+     "command has ended, at the lowest priority, for some seconds"},
     {"XDG_CACHE_HOME, HOME", "the folder of caches is the first, or .cache in the second"},
     {"OCL_ICD_VENDORS", "read by the OpenCL loader: where it looks for devices' drivers"}};
 
