@@ -42,13 +42,15 @@ struct OpenedDevice {
   /// Whether programs that PoCL hasn't kept are compiled without optimization. That takes a third of the time
   /// and gives the same bits, but they run some six times as long.
   bool compiles_quickly = false;
+  /// Whether pictures are lit by the general program (generalFeatures) instead of their own.
+  bool lights_generally = false;
   /// The program file whose command `compile` compiles for this device in a process of its own (see
   /// compile_helper.hpp); empty: none does.
   std::string helper;
   bool makes_one_picture = false;    ///< which may be made by programs that are compiled quickly
   std::function<void()> self_check;  ///< called once, by the thread that compiles a picture's kernels
   std::function<void(const std::string&)> warn;  ///< called with what went wrong, but was made good
-  std::vector<std::string> left_over;            ///< for the helper: the optimized programs of that picture
+  std::vector<std::string> left_over;  ///< for the helper: programs to be optimized after that picture
 
   Traffic traffic;             ///< since it was opened; guarded by `notes_mutex`
   std::string running_kernel;  ///< the kernel queued last, for messages; guarded by `notes_mutex`

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -19,6 +20,18 @@ namespace {
 /// Users who wait longer than this are told what for.
 constexpr std::chrono::milliseconds kLongWait(300);
 
+/// Pictures of more pairs of a point and a light take longer by programs that are compiled quickly than it
+/// takes to optimize theirs, which is 1 to 2 s: this many take 0.1 s where they are optimized, else 0.6 s.
+constexpr double kMostQuickPairs = 1e8;
+/// Likewise by the general program, which runs 1.1 to 1.6 times as long as their own.
+constexpr double kMostGeneralPairs = 1e9;
+
+/// The pairs that take as long by 16 lanes as these do by the device's. Cornell in 4K takes quick
+/// programs 1.2, 2.1 and 34 s by 8, 4 and 1 lanes, optimized ones 0.3, 0.3 and 1.7.
+double pairsOf16Lanes(double pairs, const OpenedDevice& device) {
+  return pairs * std::pow(16.0 / device.description.lanes, 1.5);
+}
+
 /// One tile of background, with all groups of planes: the kernels load a row's values before they know that
 /// it is background.
 GBuffer emptyTile() {
@@ -31,6 +44,13 @@ GBuffer emptyTile() {
   return empty;
 }
 
+/// Whether PoCL has kept the optimized programs of beams and of shading.
+bool isKept(const OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings) {
+  return isCompiled(device, "shade/shade.cl", featureDefines(features) + mathDefines(settings)) &&
+         (!features.has(Feature::kExact) ||
+          isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))));
+}
+
 /// Starts the helper on those beams of the picture's programs that have to be compiled.
 void startBeams(OpenedDevice& device, const CompileTask& picture, HelperProcess& helper) {
   if (device.helper.empty()) return;
@@ -40,6 +60,34 @@ void startBeams(OpenedDevice& device, const CompileTask& picture, HelperProcess&
         !isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))))
       beams.programs.push_back(features);
   if (!beams.programs.empty()) helper.start(device, beams);
+}
+
+/// Prepares beams in a scene without triangles.
+void prepareNoBeams(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings,
+                    BeamScene& beams) {
+  prepareBeams(device, {}, std::make_shared<const TriangleTree>(buildTriangleTree({}, {})), nullptr,
+               features.has(Feature::kSoftExact) ? settings.soft_samples : 0, beams);
+}
+
+/// Compiles the kernels for exact shadows: beams, and among the others rays for what they leave undecided.
+void compileShadows(OpenedDevice& device, const LightPass& pass, const ShadeSettings& settings,
+                    KernelChoice choice) {
+  const FeatureSet& features = pass.features;
+  const Scene nothing;
+  Lighting lighting;
+  prepareNoBeams(device, features, settings, lighting.beams);
+  const Points points = pointsOnDevice(device, pass.gbuffer, features, false);
+  LightLists empty_list;
+  empty_list.tiles = 1;
+  reserve(device, 2, empty_list.starts);
+  fill(device, empty_list.starts, 0);
+  const StageInput input{device, nothing, lighting, pass, features, points, empty_list};
+  if (choice.beams) decideBeams(input);
+  if (!choice.others || !(features.has(Feature::kHoles) || features.has(Feature::kSoftExact))) return;
+  std::vector<TilePairs> no_pairs(1);
+  PairShadows pairs;
+  pairs.counts = borrowedForOutput(device, no_pairs);
+  traceUnsurePairs(input, pairs);
 }
 
 /// Calls the device's check of itself, with a kernel that is compiled as those of the picture are.
@@ -66,48 +114,49 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     lighting.maps.host.bin_count = 1;
   }
   borrowMaps(device, lighting.maps);
-  const bool beams = choice.beams && features.has(Feature::kExact);
-  if (beams || features.has(Feature::kSampledLights))
-    prepareBeams(device, {}, std::make_shared<const TriangleTree>(buildTriangleTree({}, {})), nullptr,
-                 features.has(Feature::kSoftExact) ? settings.soft_samples : 0, lighting.beams);
+  if (features.has(Feature::kSampledLights)) prepareNoBeams(device, features, settings, lighting.beams);
   finishLightSet(device, lighting.lights);
   Stats ignored;
   LightPass pass{.lights = lighting.lights,
                  .features = features,
                  .gbuffer = empty,
                  .counts = {.in_range = choice.counts}};
-  if (beams) {
-    const Points points = pointsOnDevice(device, empty, features, false);
-    LightLists empty_list;
-    empty_list.tiles = 1;
-    reserve(device, 2, empty_list.starts);
-    fill(device, empty_list.starts, 0);
-    timed(ignored, Stage::kBeamShadows, [&] {
-      const StageInput input{device, nothing, lighting, pass, points, empty_list};
-      PairShadows pairs = decideBeams(input);
-      if (pairs.counts.count > 0) traceUnsurePairs(input, pairs);
-    });
-  }
+  if (features.has(Feature::kExact))
+    timed(ignored, Stage::kBeamShadows, [&] { compileShadows(device, pass, settings, choice); });
   if (choice.others) lightGBuffer(device, nothing, lighting, std::move(pass), ignored);
   listCompiled(device);
 }
 
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
-                                   const ShadeSettings& settings, bool little_work) {
-  return std::async(std::launch::async, [&device, &programs, &settings, little_work] {
+                                   const ShadeSettings& settings, double pairs) {
+  return std::async(std::launch::async, [&device, &programs, &settings, pairs] {
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
-    device.compiles_quickly = !device.helper.empty() && device.makes_one_picture && little_work;
-    const CompileTask picture{programs, settings, {.counts = true}};
+    const double work = pairsOf16Lanes(pairs, device);
+    const bool is_followed = !device.helper.empty() && device.makes_one_picture;
+    const bool has_general = is_followed && isKept(device, generalFeatures(), settings);
+    device.lights_generally = has_general && work <= kMostGeneralPairs &&
+                              std::all_of(programs.begin(), programs.end(), isGeneral) &&
+                              !std::all_of(programs.begin(), programs.end(), [&](const FeatureSet& own) {
+                                return isKept(device, own, settings);
+                              });
+    device.compiles_quickly = is_followed && work <= kMostQuickPairs;
+    const CompileTask picture{
+        device.lights_generally ? std::vector{generalFeatures()} : programs, settings, {.counts = true}};
     HelperProcess helper;
     startBeams(device, picture, helper);
-    for (const FeatureSet& features : programs) compileKernels(device, features, settings, {.beams = false});
+    for (const FeatureSet& features : picture.programs)
+      compileKernels(device, features, settings, {.beams = false});
     checkItself(device);
     if (!helper.await() && device.warn)
       device.warn("a process that compiled kernels failed; they are compiled in this one");
-    for (const FeatureSet& features : programs) compileKernels(device, features, settings, {.others = false});
-    if (hasQuickPrograms(device)) device.left_over = argumentsOf(device, picture);
+    for (const FeatureSet& features : picture.programs)
+      compileKernels(device, features, settings, {.others = false});
+    CompileTask left{{}, settings, picture.choice};
+    if (device.lights_generally || hasQuickPrograms(device)) left.programs = programs;
+    if (is_followed && !has_general) left.programs.push_back(generalFeatures());
+    if (!left.programs.empty()) device.left_over = argumentsOf(device, left);
     return endStage(Stage::kCompileKernels, begin);
   });
 }

@@ -13,7 +13,7 @@ namespace luciole {
 /// Kernels that can be compiled side by side.
 struct KernelChoice {
   bool beams = true;    ///< kernels/exact/beam_shadows.cl, which takes longest
-  bool others = true;   ///< all others that light
+  bool others = true;   ///< all others that light, rays for undecided shadows among them
   bool counts = false;  ///< those that count lights for statistics
 };
 
@@ -24,11 +24,12 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
 
 /// Compiles the programs of these feature sets in a thread of its own, once the device is open, then calls
 /// OpenedDevice::self_check. Where the device has a helper (compile_helper.hpp) it compiles beams meanwhile;
-/// and if the device makes one picture, which is `little_work`, programs that PoCL hasn't kept are compiled
-/// quickly, and OpenedDevice::left_over is set. The future's value is the milliseconds that it took. Its
-/// destructor waits for the thread, which refers to the arguments.
+/// and if the device makes one picture, of not too many pairs of a point and a light, it is lit by the
+/// general program in the place of programs that PoCL hasn't kept, or these are compiled quickly.
+/// OpenedDevice::left_over is set to what PoCL lacks, with the general program. The future's value is the
+/// milliseconds that it took. Its destructor waits for the thread, which refers to the arguments.
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
-                                   const ShadeSettings& settings, bool little_work);
+                                   const ShadeSettings& settings, double pairs);
 
 /// Waits for the kernels of startCompiling(), and adds the times of waiting, compiling and opening the device
 /// to the statistics. Calls RenderSettings::on_long_compile. Throws what the thread threw.

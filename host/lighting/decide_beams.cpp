@@ -4,11 +4,11 @@ namespace luciole {
 namespace {
 
 std::string beamDefines(const StageInput& input) {
-  return featureDefines(featuresFor(kForBeams, input.pass.features));
+  return featureDefines(featuresFor(kForBeams, input.compiled));
 }
 
 BeamArguments beamArguments(const StageInput& input) {
-  const FeatureSet& features = input.pass.features;
+  const FeatureSet& features = input.compiled;
   const GBufferBuffers& planes = input.points.buffers;
   return {.plane_stride = input.points.stride,
           .position = planes.position,

@@ -19,7 +19,7 @@ std::vector<std::uint32_t> findTexels(const StageInput& input) {
   const GBufferBuffers& planes = input.points.buffers;
   const LightSet& lights = input.pass.lights;
   const MapScene& maps = input.lighting.maps;
-  return findNeeded(input.device, featureDefines(featuresFor(kForLookups, input.pass.features)),
+  return findNeeded(input.device, featureDefines(featuresFor(kForLookups, input.compiled)),
                     {.plane_stride = input.points.stride,
                      .position = planes.position,
                      .normal = planes.normal,

@@ -56,8 +56,10 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   const LightLists no_lists;
   LitPlanes lit;
   BoundedLight bounded;
-  Points points = pointsOnDevice(device, pass.gbuffer, features, lighting.unlit);
-  const StageInput input{device, scene, lighting, pass, points, by_lists ? lighting.lists : no_lists};
+  const FeatureSet compiled = device.lights_generally ? generalFeatures() : features;
+  Points points = pointsOnDevice(device, pass.gbuffer, compiled, lighting.unlit);
+  const StageInput input{
+      device, scene, lighting, pass, compiled, points, by_lists ? lighting.lists : no_lists};
   if (by_lists) timed(stats, Stage::kCull, [&] { cullLights(input, lighting.lists); });
   if (features.shadowMaps()) drawNeededMaps(input, lighting.maps, stats);
   if (features.has(Feature::kExact) && lighting.beams.tree) computeExactShadows(input, lit, stats);

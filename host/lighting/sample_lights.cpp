@@ -24,7 +24,7 @@ void sampleLights(const StageInput& input, const ShadeFrame& frame, BoundedLight
   SampleSettings settings = input.lighting.samples;
   settings.light_error = clusteredError(settings.light_error, frame, features);
   result.sample_counts = sampledLight(
-      input.device, featureDefines(featuresFor(kForSampling, features)) + input.lighting.math_defines,
+      input.device, featureDefines(featuresFor(kForSampling, input.compiled)) + input.lighting.math_defines,
       {.frame = frame,
        .gbuffer = input.points.buffers,
        .lights = input.pass.lights.samples,

@@ -5,7 +5,7 @@ namespace luciole {
 namespace {
 
 std::string shadeDefines(const StageInput& input) {
-  return featureDefines(input.pass.features) + input.lighting.math_defines;
+  return featureDefines(input.compiled) + input.lighting.math_defines;
 }
 
 }  // namespace

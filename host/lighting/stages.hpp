@@ -19,6 +19,7 @@ struct StageInput {
   const Scene& scene;
   const Lighting& lighting;
   const LightPass& pass;
+  const FeatureSet& compiled;  ///< the features of the programs: those of the pass, or more
   const Points& points;
   const LightLists& lists;  ///< of the lights that matter to the points; without tiles: all do
 };

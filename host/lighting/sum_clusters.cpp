@@ -25,7 +25,7 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame) {
     const Buffer<float> light = borrowedForOutput(input.device, result.light),
                         bound = borrowedForOutput(input.device, result.bound);
     result.cluster_counts = clusteredLight(
-        input.device, featureDefines(featuresFor(kForClusters, features)) + input.lighting.math_defines,
+        input.device, featureDefines(featuresFor(kForClusters, input.compiled)) + input.lighting.math_defines,
         {.frame = frame,
          .gbuffer = input.points.buffers,
          .tiles_x = gbuffer.tiles_x,

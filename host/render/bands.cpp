@@ -108,7 +108,7 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
                                    {"objects", std::int64_t(scene.objects.size())},
                                    {"lights", std::int64_t(scene.lights.size())}});
   ReadyPicture picture{device, scene, settings, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade, plan.is_little);
+  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade, plan.pairs);
   picture.objects = settings.alpha
                         ? allObjects(scene)
                         : objectsInSight(scene, plan.view, settings.exposure, settings.shade.model);

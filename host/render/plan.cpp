@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/memory.hpp"
 #include "shade/shadow_ways.hpp"
@@ -65,16 +66,16 @@ std::vector<bool> summedCasters(const Scene& scene, const ShadeSettings& setting
   return casts;
 }
 
-/// Whether lighting so many points takes less time by programs that are compiled quickly than to optimize
-/// them: up to 10^8 pairs of a point and a light, which take 0.1 s where they are optimized and 0.6 s where
-/// not, and 1 to 2 s to optimize for. Of lights with ranges few reach a point.
-bool isLittle(const Scene& scene, const FeatureSet& features, double points) {
-  if (features.lightError() || features.has(Feature::kSoftExact)) return false;
-  constexpr double kMostPairs = 1e8, kMostInRange = 64;
+/// The work of lighting so many points: pairs of a point and a light, of which 10^8 take 0.1 s. Of lights
+/// with ranges few reach a point. Infinite where light has bounds, or lights a size.
+double pairsOf(const Scene& scene, const FeatureSet& features, double points) {
+  if (features.lightError() || features.has(Feature::kSoftExact))
+    return std::numeric_limits<double>::infinity();
+  constexpr double kMostInRange = 64;
   const auto ranged = std::count_if(scene.lights.begin(), scene.lights.end(),
                                     [](const Light& light) { return std::isfinite(light.range); });
   const double unbounded = double(scene.lights.size()) - double(ranged);
-  return points * (1 + unbounded + std::min(double(ranged), kMostInRange)) <= kMostPairs;
+  return points * (1 + unbounded + std::min(double(ranged), kMostInRange));
 }
 
 /// The part of a plan that is the same for a scene's picture and for a G-buffer. view: of the whole picture.
@@ -92,7 +93,7 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
                                         summedCasters(scene, plan.shade, stand_ins));
   plan.features = neededFeatures(scene, camera, surfaces, plan.shade, stand_ins);
   plan.pixels = plan.features;
-  plan.is_little = isLittle(scene, plan.features, double(view.size.x) * view.size.y * points_a_pixel);
+  plan.pairs = pairsOf(scene, plan.features, double(view.size.x) * view.size.y * points_a_pixel);
   return plan;
 }
 

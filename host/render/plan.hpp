@@ -22,7 +22,7 @@ struct PicturePlan {
   PlaneSet planes;      ///< the G-buffer groups of the pass that lights pixels
   std::vector<LightLayer> layers;
   std::vector<FeatureSet> programs;  ///< feature sets of all passes, each once
-  bool is_little = false;            ///< lighting it takes less time than optimizing its programs
+  double pairs = 0;                  ///< of a point and a light that lights it, about
   bool shares_samples = false;       ///< samples that see the same surface share a shading point
   std::size_t pixel_bytes = 0;       ///< see bytesPerPixel
   int band_height = 0;               ///< rows of a band, at most

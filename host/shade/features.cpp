@@ -215,6 +215,28 @@ FeatureSet featuresFor(FeatureUse use, const FeatureSet& features) {
   return kept;
 }
 
+FeatureSet generalFeatures() {
+  // What `auto` and `exact` do in pictures without shadow maps, normal maps, holes and bounds of light.
+  using enum Feature;
+  FeatureSet general;
+  for (const Model model : kAllModels) general.set(featureOf(model));
+  for (const Feature feature :
+       {kPointLights,  kDirectionalLights, kSpotLights,    kSpotExponent, kSpotCone,
+        kAttenuation,  kSmoothWindow,      kKhrWindow,     kSpecular,     kAmbient,
+        kLightAmbient, kEmission,          kExact,         kLift,         kFogLinear,
+        kFogExp,       kFogExp2,           kFogPerChannel, kFogRadial,    kParallelView,
+        kLightLists,   kLongSums,          kMaterialModels})
+    general.set(feature);
+  return general;
+}
+
+bool isGeneral(const FeatureSet& features) {
+  // Without shadows many lights are shaded by tiles, which is another kernel.
+  const bool by_tiles = features.has(Feature::kLongSums) && !features.shadows();
+  return features.has(Feature::kLightLists) && !by_tiles &&
+         features.without(generalFeatures()) == FeatureSet{};
+}
+
 PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights) ||
                       features.has(Feature::kSampledHighlights) ||

@@ -116,6 +116,13 @@ bool isSummed(LightUse use, const FeatureSet& features);
 /// features share these kernels.
 FeatureSet featuresFor(FeatureUse use, const FeatureSet& features);
 
+/// The features of the general program. It gives a picture of some of them the bits that their own program
+/// gives it, in more time.
+FeatureSet generalFeatures();
+
+/// Whether the general program may take the place of the program of these features.
+bool isGeneral(const FeatureSet& features);
+
 /// The G-buffer groups that a program with these features reads.
 PlaneSet neededPlanes(const FeatureSet& features);
 

@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "gbuffer/packed_normal.hpp"
@@ -19,6 +20,21 @@ PackedNormals packNormals(const GBuffer& gbuffer) {
   return packed;
 }
 
+/// As many zeros as the largest group has that these features read and the G-buffer lacks.
+Plane zerosFor(const GBuffer& gbuffer, const FeatureSet& features) {
+  const PlaneSet read = neededPlanes(features);
+  std::size_t planes = 0;
+  const auto take = [&](bool is_read, const Plane& group, std::size_t group_planes) {
+    if (is_read && group.empty()) planes = std::max(planes, group_planes);
+  };
+  take(read.specular, gbuffer.specular, 4);
+  take(read.ambient, gbuffer.ambient, 3);
+  // Light with bounds comes in the place of emission.
+  take(read.emission && !features.lightError(), gbuffer.emission, 3);
+  take(read.lift, gbuffer.lift, 1);
+  return Plane(planes * gbuffer.pixels());
+}
+
 }  // namespace
 
 Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const FeatureSet& features, bool unlit) {
@@ -26,16 +42,22 @@ Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const Featur
   const bool asks_surfaces = features.shadowMaps() || features.has(Feature::kNormalMaps);
   PackedNormals packed;
   if (asks_surfaces && surfaceNormals(gbuffer).empty()) packed = packNormals(gbuffer);
-  Plane zero_lift(features.has(Feature::kLift) && gbuffer.lift.empty() ? stride : 0);
   ModelPlane default_model(features.has(Feature::kMaterialModels) && gbuffer.model.empty() ? stride : 0);
   const PackedNormals& surface_normal = packed.empty() ? surfaceNormals(gbuffer) : packed;
-  const Plane& lift = zero_lift.empty() ? gbuffer.lift : zero_lift;
   const ModelPlane& model = default_model.empty() ? gbuffer.model : default_model;
-  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, surface_normal, lift, model, unlit);
+  GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, surface_normal, gbuffer.lift, model, unlit);
+  Plane zeros = zerosFor(gbuffer, features);
+  if (!zeros.empty()) {
+    const Buffer<const float> zero = borrowed(device, zeros);
+    if (gbuffer.specular.empty()) buffers.specular = zero;
+    if (gbuffer.ambient.empty() && !unlit) buffers.ambient = zero;
+    if (gbuffer.emission.empty()) buffers.emission = zero;
+    if (gbuffer.lift.empty()) buffers.lift = zero;
+  }
   const std::size_t floats = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             surface_normal.size() + lift.size() + model.size();
-  return {gbuffer, std::move(packed),     std::move(zero_lift), std::move(default_model), buffers,
+                             surface_normal.size() + gbuffer.lift.size() + zeros.size() + model.size();
+  return {gbuffer, std::move(packed),     std::move(zeros), std::move(default_model), buffers,
           stride,  floats * sizeof(float)};
 }
 

@@ -14,7 +14,7 @@ namespace luciole {
 struct Points {
   const GBuffer& gbuffer;
   PackedNormals normal_packed;  ///< in the place of surfaceNormals() that the G-buffer lacks
-  Plane zero_lift;              ///< likewise: zeros
+  Plane zeros;                  ///< likewise in the place of specular, ambient, emission and lift
   ModelPlane default_model;     ///< likewise: the picture's model
   GBufferBuffers buffers;
   std::size_t stride;  ///< elements in a plane

@@ -42,7 +42,7 @@ const std::vector<Needs>& needs() {
       {kExact, {kDirectionalLights, kPointLights, kSpotLights}},
       {kSoftExact, {kExact}},
       {kHoles, {kExact}},
-      {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows}},
+      {kLift, {kPerspectiveShadows, kParallelShadows, kCubeShadows, kExact}},
       {kNormalMaps, {kPointLights, kDirectionalLights, kSpotLights}},
       {kOutputShadow, {kCubeShadows, kParallelShadows, kPerspectiveShadows}},
       {kParallelShadows, {kDirectionalLights}},
@@ -258,6 +258,17 @@ void expectSamePicture(const Scene& scene, const GBuffer& gbuffer, const Feature
                     << " by the full";
   }
   EXPECT_EQ(different, 0u) << "of " << least.size() << " values; " << featureDefines(needed);
+  if (!isGeneral(needed)) return;
+  // As a first picture is lit: by the general program, and with the planes that a picture of its own has.
+  const PlaneSet planes = neededPlanes(needed);
+  GBuffer fewer = gbuffer;
+  if (!planes.specular) fewer.specular = {};
+  if (!planes.ambient) fewer.ambient = {};
+  if (!planes.emission) fewer.emission = {};
+  device.lights_generally = true;
+  const Plane general = lightGBuffer(device, scene, lighting, {lighting.lights, needed, fewer}, stats).color;
+  device.lights_generally = false;
+  EXPECT_TRUE(general == least) << featureDefines(needed);
 }
 
 void expectSamePicture(const FeatureSet& features) {
@@ -314,6 +325,23 @@ TEST(Features, CoveringSetsShowEveryPossiblePair) {
           EXPECT_FALSE(missing[bitOf({i, i_on, j, j_on})])
               << kFeatureTable[i].define << "=" << i_on << " " << kFeatureTable[j].define << "=" << j_on
               << " is never shown";
+}
+
+TEST(Features, OfManyPicturesTheGeneralProgramHasAll) {
+  EXPECT_TRUE(isGeneral(generalFeatures()));
+  EXPECT_FALSE(isGeneral({}));
+  // No set of pairs leaves out shadow maps, filters, holes and normal maps together; those that do are here.
+  Random random(3);
+  for (int i = 0; i < 12; ++i) {
+    FeatureSet features;
+    for (std::size_t j = 0; j < kFeatureCount; ++j)
+      features.set(Feature(j), generalFeatures().has(Feature(j)) && random.chance(0.5));
+    features.set(Feature::kLightLists);
+    features.set(Feature::kExact);
+    features = completed(features);
+    ASSERT_TRUE(isGeneral(features)) << featureDefines(features);
+    expectSamePicture(features);
+  }
 }
 
 TEST(Features, NoneAtAllLooksAsWithAll) { expectSamePicture(FeatureSet{}); }

@@ -44,9 +44,9 @@ const Terms kManualVariables{
     {"POCL_KERNEL_CACHE", "read by PoCL: 0 lets it keep none"},
     {"LUCIOLE_HELPERS",
      "0: no process but the command's own compiles kernels. Otherwise another may compile some of them "
-     "meanwhile, and the first picture is made by kernels that are compiled in a third of the time, with the "
-     "same bits, but run slower: then one compiles the fast ones when the command has ended, at the lowest "
-     "priority, for some seconds"},
+     "meanwhile, and the first picture is made by a general program, or by kernels that are compiled in a "
+     "third of the time, with the same bits, but run slower: then one compiles the fast ones when the "
+     "command has ended, at the lowest priority, for some seconds"},
     {"XDG_CACHE_HOME, HOME", "the folder of caches is the first, or .cache in the second"},
     {"OCL_ICD_VENDORS", "read by the OpenCL loader: where it looks for devices' drivers"}};
 

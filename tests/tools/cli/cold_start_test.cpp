@@ -71,12 +71,34 @@ TEST_F(ColdStart, TheFirstPictureHasTheBitsOfAllOthersAndTheNextProgramsAreOptim
   EXPECT_THAT(first.err, Not(HasSubstr("warning")));
   const std::ptrdiff_t quick = programsListed();
   EXPECT_GE(quick, 4) << "three of the picture and the check's own";
-  ASSERT_TRUE(awaitHelper(2 * quick + 1)) << "each of them is optimized, and one that counts lights";
+  ASSERT_TRUE(awaitHelper(2 * quick + 2))
+      << "each of them is optimized, one that counts lights, and the general one; its beams are those here";
   const Outcome second = runLine(folder, cold + render);
   EXPECT_EQ(nlohmann::json::parse(readText(folder / "stats.json"))["kernels_compiled"], 0);
   EXPECT_EQ(second.out, first.out);
   std::filesystem::remove_all(folder / "kernels");
   EXPECT_EQ(runLine(folder, cold + render).out, first.out) << "optimized from the start";
+}
+
+/// A matte scene without fog: other features, all of which the general program has.
+constexpr const char* kMatteScene = R"({
+  "camera": {"eye": [2, 2, 5], "target": [0, 0.5, 0]}, "size": [160, 90],
+  "objects": [{"primitive": "plane", "scale": 8}, {"primitive": "box", "translate": [0, 1, 0]}],
+  "lights": [{"type": "directional", "direction": [1, -2, -1], "shadow": true}]
+})";
+
+TEST_F(ColdStart, OnceTheGeneralProgramIsCompiledAFirstPictureTakesNoCompiler) {
+  ASSERT_EQ(runLine(folder, cold + "luciole compile").status, 0);
+  const std::ptrdiff_t general = programsListed();
+  for (const char* scene : {kScene, kMatteScene}) {
+    writeText(folder / "scene.json", scene);
+    const std::ptrdiff_t before = programsListed();
+    const Outcome first = runLine(folder, cold + "LUCIOLE_HELPERS=1 " + render);
+    EXPECT_EQ(nlohmann::json::parse(readText(folder / "stats.json"))["kernels_compiled"], 0) << first.err;
+    ASSERT_TRUE(awaitHelper(before + 1)) << "its own program is optimized";
+    EXPECT_EQ(runLine(folder, cold + "LUCIOLE_HELPERS=1 " + render).out, first.out);
+  }
+  EXPECT_GE(programsListed(), general + 2);
 }
 
 TEST_F(ColdStart, WithoutHelpersNothingOutlivesACommand) {

@@ -34,7 +34,7 @@ cat >/dev/null
 sleep 0.3
 echo "ninja's own chatter"
 if [[ -e $folder/broken ]]; then echo "shade.cpp:7: error: broken" && exit 1; fi
-printf '%s\n' '#!/usr/bin/env bash' 'printf "<%s>" "$PWD" "$@" "$(cat)"' 'exit 7' >"$2/luciole"
+printf '%s\n' '#!/usr/bin/env bash' 'if [[ $* == compile ]]; then echo >>"$folder/compiled"; exit 4; fi' 'printf "<%s>" "$PWD" "$@" "$(cat)"' 'exit 7' >"$2/luciole"
 chmod +x "$2/luciole"
 END
 standIn dpkg-query <<'END'
@@ -118,6 +118,13 @@ BuildsAgainOnlyWhenASourceIsNewer() {
   launch && launch
   expect "number of builds after a change" "$(callsOf ninja)" 2
   expect "number of configurations" "$(callsOf cmake)" 1
+}
+
+CompilesKernelsAfterABuildAndGoesOnWhereThatFails() {
+  launch render && launch render
+  expect "number of times" "$(wc -l <"$folder/compiled")" 1
+  expect output "$(<"$folder/output")" "<$PWD><render><>"
+  expect status "$status" 7
 }
 
 FailedBuildShowsItsLogAndIsTriedAgain() {
