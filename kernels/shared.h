@@ -165,7 +165,10 @@ enum {
   kClusterAbsolute = 7,  // 4: bounds of Σ q·|δ|ʲ, j = 0 … 3
   kClusterHarmonic = 11,  // 4: bounds of |Σ q·Yⱼ(δ)|, j = 1 … 4: Y₁ to Y₄ are the solid harmonics of a
                           // degree, |Yⱼ(δ)| = |δ|ʲ
-  kClusterMoments = 15,  // of each channel
+  // Bounds for a channel's lights, each light's share its q; E is the mean over them, n any direction.
+  kClusterDeviation = 15,  // √E(n·δ)²
+  kClusterPower = 16,  // 4: 6|Eδ|, E(24(n·δ)² − 3|δ|²), 32|E Y₃(δ)| + 24|E δ|δ|²|, √E|δ|⁴
+  kClusterMoments = 20,  // of each channel
 };
 
 // Moments of a channel: Σ q, Σ q·δ, Σ q·δδ (xx xy xz yy yz zz).

@@ -126,13 +126,15 @@ struct LightPlanes {
 /// A bound as a float, rounded up.
 float atLeast(double bound) { return std::nextafter(float(std::max(bound, kLeastMoment)), INFINITY); }
 
-/// Sums over lights of intensity q at δ from the cluster's centre: of q, qδ, qδδ, q|δ| and q|δ|³, and of q
-/// times the solid harmonics of degrees 2 to 4 in Racah's normalization, in which the squares of degree j add
-/// up to |δ|²ʲ.
+/// Sums over lights of intensity q at δ from the cluster's centre: of q, qδ, qδδ, q|δ|, q|δ|³, q|δ|⁴ and
+/// q|δ|²δ, and of q times the solid harmonics of degrees 2 to 4 in Racah's normalization, in which the
+/// squares of degree j add up to |δ|²ʲ.
 enum {
   kAbsolute1 = kMoments,
   kAbsolute3,
-  kDegree2,
+  kAbsolute4,
+  kCubic,
+  kDegree2 = kCubic + 3,
   kDegree3 = kDegree2 + 5,
   kDegree4 = kDegree3 + 7,
   kSums = kDegree4 + 9
@@ -146,7 +148,7 @@ inline std::array<Doubles, kSums> summands(const Doubles& x, const Doubles& y, c
   const double s3 = 1.7320508075688772, s5 = 2.23606797749979, s6 = 2.449489742783178,
                s10 = 3.1622776601683795, s15 = 3.872983346207417, s35 = 5.916079783099616,
                s70 = 8.366600265340756;
-  return {one, x, y, z, xx, x * y, x * z, yy, y * z, zz, d, d2 * d,
+  return {one, x, y, z, xx, x * y, x * z, yy, y * z, zz, d, d2 * d, d2 * d2, d2 * x, d2 * y, d2 * z,
           // degree 2
           0.5 * (2 * zz - across), s3 * x * z, s3 * y * z, s3 * x * y, 0.5 * s3 * (xx - yy),
           // degree 3
@@ -176,6 +178,27 @@ glm::dvec3 centreOf(const LightPlanes& lights, std::size_t begin, std::size_t en
     centre[axis] = float(std::isfinite(mean) ? mean : double(lights.position[std::size_t(axis)][begin]));
   }
   return centre;
+}
+
+/// At least the largest eigenvalue of the second moments xx xy xz yy yz zz, and at most 4e-7 of their trace
+/// more. The matrix is mean·I + scale·B, and the eigenvalues of B, from −2 to 2, are the roots of β³ − 3β −
+/// det B: O. Smith, "Eigenvalues of a Symmetric 3 × 3 Matrix" (1961). From 2 on Newton's method comes down to
+/// the largest and never below it. No cosine is asked for, since machines may round it apart.
+double largestEigenvalue(const double* m) {
+  const double mean = (m[0] + m[3] + m[5]) / 3, xx = m[0] - mean, yy = m[3] - mean, zz = m[5] - mean;
+  const double square = (xx * xx + yy * yy + zz * zz + 2 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4])) / 6;
+  if (!(square > 0)) return mean;
+  const double scale = std::sqrt(square);
+  const double determinant =
+      (xx * (yy * zz - m[4] * m[4]) - m[1] * (m[1] * zz - m[4] * m[2]) + m[2] * (m[1] * m[4] - yy * m[2])) /
+      (square * scale);
+  double root = 2;
+  for (int i = 0; i < 40; ++i) {
+    const double next = root - (root * (root * root - 3) - determinant) / (3 * (root * root - 1));
+    if (!(next < root - 1e-9)) break;
+    root = next;
+  }
+  return mean + scale * root + 3e-7 * mean;  // more than rounding
 }
 
 /// Sets a cluster's fields, which lie kClusterSlots floats apart from `out` on, to the lights from `begin` to
@@ -216,7 +239,7 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
     field(kClusterExtent + axis) = atLeast(most(farthest[axis]));
   }
   field(kClusterRadius) = atLeast(std::sqrt(most(farthest[3])));
-  std::array<double, 8> bounds{};  // as in shared.h, from kClusterAbsolute on
+  std::array<double, kClusterMoments - kClusterAbsolute> bounds{};  // as in shared.h
   bool finite = true;
   for (std::size_t c = 0; c < 3; ++c) {
     std::array<double, kSums> moments;
@@ -227,9 +250,23 @@ void setCluster(const LightPlanes& lights, std::size_t begin, std::size_t end, f
       return std::sqrt(square);
     };
     const double second = moments[kMoment2] + moments[kMoment2 + 3] + moments[kMoment2 + 5];
-    const std::array<double, 8> of_channel{moments[0],          moments[kAbsolute1], second,
-                                           moments[kAbsolute3], norm(kMoment1, 3),   norm(kDegree2, 5),
-                                           norm(kDegree3, 7),   norm(kDegree4, 9)};
+    const double largest = largestEigenvalue(&moments[kMoment2]);
+    // Of the mean light. Of a black channel nothing is wrong.
+    const double inverse = moments[0] > 0 ? 1 / moments[0] : 0;
+    const std::array<double, bounds.size()> of_channel{
+        moments[0],
+        moments[kAbsolute1],
+        second,
+        moments[kAbsolute3],
+        norm(kMoment1, 3),
+        norm(kDegree2, 5),
+        norm(kDegree3, 7),
+        norm(kDegree4, 9),
+        std::sqrt(largest * inverse),
+        6 * norm(kMoment1, 3) * inverse,
+        (24 * largest - 3 * second) * inverse,
+        (32 * norm(kDegree3, 7) + 24 * norm(kCubic, 3)) * inverse,
+        std::sqrt(moments[kAbsolute4] * inverse)};
     for (std::size_t b = 0; b < bounds.size(); ++b) bounds[b] = std::max(bounds[b], of_channel[b]);
     for (std::size_t m = 0; m < kMoments; ++m) {
       float& moment = field(kClusterMoments + c * kMoments + m);

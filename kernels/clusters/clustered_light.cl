@@ -197,7 +197,7 @@ INLINE bool any_specular(const GroupPixels* pixels) {
 
 // The light that a row of pixels gets from what it sums one by one.
 typedef struct {
-  Certified cut;
+  Interval cut;
   LongSum lights;
   vec3L weight;  // sum of the lights' colours over d²
 } RowSums;
@@ -265,12 +265,13 @@ INLINE float finish_group(const GroupPixels* pixels, FieldSums* sums, const Pixe
     vec3L of_row = sum_of_blocks(&row->lights);
     floatL lights[3] = {of_row.x, of_row.y, of_row.z},
            weight[3] = {row->weight.x, row->weight.y, row->weight.z}, albedo[3] = {color.x, color.y, color.z};
-    floatL cut[3] = {row->cut.light.x, row->cut.light.y, row->cut.light.z};
-    floatL cut_bound[3] = {row->cut.bound.x, row->cut.bound.y, row->cut.bound.z};
+    floatL low[3] = {row->cut.low.x, row->cut.low.y, row->cut.low.z};
+    floatL high[3] = {row->cut.high.x, row->cut.high.y, row->cut.high.z};
     floatL light[3], bound[3];
     for (uint c = 0; c < 3; ++c) {
-      light[c] = albedo[c] * (field_value(field.term + c * kFieldTerms, &factors) + cut[c] + lights[c]);
-      bound[c] = field.term[kFieldBound] + field.rounding + cut_bound[c] + of_clusters * cut[c] +
+      floatL cut = 0.5f * (low[c] + high[c]);
+      light[c] = albedo[c] * (field_value(field.term + c * kFieldTerms, &factors) + cut + lights[c]);
+      bound[c] = field.term[kFieldBound] + field.rounding + (high[c] - cut) + of_clusters * high[c] +
                  of_lights * lights[c] + COSINE_ROUNDING * 0x1p-24f * weight[c];
       // The factor is more than the rounding of sums of so many bounds. Colours, products and the sum of the
       // parts are rounded, too.
@@ -304,7 +305,7 @@ INLINE void light_group(GroupPixels* pixels, const ClusterTree* tree, AllowedErr
     RowSums row_sums[kTileRows];
     vec3L dark = {(floatL)(0.0f), (floatL)(0.0f), (floatL)(0.0f)};
     for (uint row = 0; row < kTileRows; ++row) {
-      row_sums[row].cut.light = row_sums[row].cut.bound = row_sums[row].lights.total =
+      row_sums[row].cut.low = row_sums[row].cut.high = row_sums[row].lights.total =
           row_sums[row].lights.lost = dark;
       row_sums[row].weight = dark;
     }

@@ -125,7 +125,8 @@ __kernel void probe_field_sums(__global const float* in, __global float* out, ui
   store_lanes(out + first + 5 * stride, (floatL)(field.term[kFieldWeight]));
 }
 
-// out: what a cluster that the pixel's horizon cuts adds to its light, and to the bound, by channel.
+// out: the middle, and half the width, of what a cluster that the pixel's horizon cuts adds to its light, by
+// channel.
 __kernel void probe_cut_cluster(__global const float* in, __global float* out, uint stride,
                                 __global const float* rows) {
   uint first = work_item() * LANES;
@@ -133,10 +134,15 @@ __kernel void probe_cut_cluster(__global const float* in, __global float* out, u
     uint i = first + lane;
     floatL none = 0.0f;
     vec3L dark = {none, none, none};
-    Certified sum = {dark, dark};
+    Interval sum = {dark, dark};
     add_cut_cluster(rows + (size_t)(i / kClusterSlots) * (kClusterFields * kClusterSlots) + i % kClusterSlots,
                     vector_of(in + 9 * stride, stride, i), vector_of(in + 12 * stride, stride, i), &sum);
-    floatL values[6] = {sum.light.x, sum.light.y, sum.light.z, sum.bound.x, sum.bound.y, sum.bound.z};
+    floatL low[3] = {sum.low.x, sum.low.y, sum.low.z}, high[3] = {sum.high.x, sum.high.y, sum.high.z};
+    floatL values[6];
+    for (uint c = 0; c < 3; ++c) {
+      values[c] = 0.5f * (low[c] + high[c]);
+      values[3 + c] = high[c] - values[c];
+    }
     for (uint v = 0; v < 6; ++v) out[i + v * stride] = ((const float*)&values[v])[lane];
   }
 }
