@@ -12,7 +12,7 @@ namespace luciole {
 
 /// Planes of pixels, uninitialized until they are read, so that rows that a damaged file claims but doesn't
 /// hold take no memory.
-using ChannelPlanes = std::vector<float, RawArrayAllocator<float>>;
+using ChannelPlanes = RawArray<float>;
 
 /// An EXR that is read channel by channel, by the OpenEXR library alone, without loading OpenImageIO.
 class ExrInput {

@@ -62,7 +62,7 @@ template <class Code>
 Texels texelsOf(OIIO::ImageInput& input, const std::string& name, const std::array<int, 4>& places) {
   const OIIO::ImageSpec& spec = input.spec();
   const std::size_t pixels = std::size_t(spec.width) * spec.height;
-  std::vector<Code, RawArrayAllocator<Code>> values(pixels * spec.nchannels);
+  RawArray<Code> values(pixels * spec.nchannels);
   readValues(input, name, OIIO::BaseTypeFromC<Code>::value, values.data());
   Texels texels(pixels * 4);
   for (std::size_t p = 0; p < pixels; ++p) {

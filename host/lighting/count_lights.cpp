@@ -19,7 +19,7 @@ std::size_t squareOf(std::size_t place) {
 /// true.
 template <class Predicate>
 std::vector<std::uint32_t> squareLengths(const StageInput& input, Predicate&& counts) {
-  const LightArray& lights = input.pass.lights.lights;
+  const RawArray<ShadeLight>& lights = input.pass.lights.lights;
   const LightLists& lists = input.lists;
   const std::size_t tiles = input.points.stride / kTilePixels;
   if (lists.tiles == 0)

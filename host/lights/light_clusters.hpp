@@ -26,9 +26,9 @@ inline constexpr double kLeastQuadratic = 0x1p-40;
 struct LightClusters {
   std::size_t lights = 0;  ///< their number
   /// kLightFields · kClusterSlots floats for each pair of leaves. Slots without a light are 0.
-  std::vector<float, RawArrayAllocator<float>> light_rows;
+  RawArray<float> light_rows;
   /// kClusterFields · kClusterSlots floats a row. Slots without a cluster are 0.
-  std::vector<float, RawArrayAllocator<float>> rows;
+  RawArray<float> rows;
   unsigned levels =
       0;  ///< of the tree below its root; its 2^levels leaves hold up to kLeafLights lights each
   std::vector<std::uint32_t> order;  ///< the lights' indices, leaf by leaf

@@ -21,8 +21,7 @@ struct ClusterSet {
 
 /// Lights that are sampled, with Feature::kSampledLights only.
 struct SampledSet : ClusterSet {
-  std::vector<float4, RawArrayAllocator<float4>>
-      places;  ///< BeamLight::place of each slot of a row of lights
+  RawArray<float4> places;  ///< BeamLight::place of each slot of a row of lights
 };
 
 /// The lights of a picture or of a layer of light, as kernels take them, with ambient light, fog and
@@ -31,7 +30,7 @@ struct LightSet {
   /// Ambient light, fog and background; all but plane_stride and texel_count, which depend on the G-buffer.
   ShadeFrame frame{};
   bool emission = true;                ///< surfaces' own light counts
-  LightArray lights;                   ///< those that are summed by themselves, in the order of a Z curve
+  RawArray<ShadeLight> lights;         ///< those that are summed by themselves, in the order of a Z curve
   std::vector<std::uint32_t> order;    ///< the scene's index of each
   std::vector<BeamLight> beam_lights;  ///< one for each, with Feature::kExact only
   LightTree tree;

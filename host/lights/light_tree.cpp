@@ -96,7 +96,7 @@ std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights) {
   const PositionBounds places = positionBounds(lights);
   const glm::dvec3 cells =
       double((1 << kCellBits) - 1) / glm::max(places.high - places.low, glm::dvec3(1e-300));
-  KeyedArray keyed(lights.size());
+  RawArray<Keyed> keyed(lights.size());
   tbb::parallel_for(std::size_t(0), lights.size(), [&](std::size_t i) {
     std::uint64_t key = rangeClass(lights[i]) << (3 * kCellBits);
     if (!reachesEverywhere(lights[i])) {

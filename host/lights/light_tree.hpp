@@ -18,7 +18,7 @@ std::vector<std::uint32_t> spatialOrder(std::span<const Light> lights);
 /// The tree over the lights that kernels/lights/cull.cl walks; a drawing of it is there.
 struct LightTree {
   /// Low x y z, high x y z, 1 / range²: 7 planes of `stride` floats each.
-  std::vector<float, RawArrayAllocator<float>> planes;
+  RawArray<float> planes;
   std::size_t stride = 0;  ///< nodes of all levels, padding included
 };
 

@@ -28,12 +28,11 @@ void prefetchToWrite(const ShadeLight& light) {
   __builtin_prefetch(bytes + sizeof(ShadeLight) - 1, 1);
 }
 
-using Places = std::vector<std::uint32_t, RawArrayAllocator<std::uint32_t>>;
 constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::max();
 
 /// The place of each of `lights` lights in `order`, or kNoPlace.
-Places placesIn(std::span<const std::uint32_t> order, std::size_t lights) {
-  Places places(lights);
+RawArray<std::uint32_t> placesIn(std::span<const std::uint32_t> order, std::size_t lights) {
+  RawArray<std::uint32_t> places(lights);
   if (order.size() < lights) std::fill(places.begin(), places.end(), kNoPlace);
   tbb::parallel_for(std::size_t(0), order.size(),
                     [&](std::size_t i) { places[order[i]] = std::uint32_t(i); });
@@ -44,14 +43,14 @@ float4 pack(const glm::dvec3& xyz, double w) { return {float(xyz.x), float(xyz.y
 
 }  // namespace
 
-LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> order, const Camera& camera,
-                         std::span<const std::uint32_t> map_of_light) {
+RawArray<ShadeLight> prepareLights(const Scene& scene, std::span<const std::uint32_t> order,
+                                   const Camera& camera, std::span<const std::uint32_t> map_of_light) {
   const glm::dmat4 world_to_view = worldToView(camera);
   const glm::dmat3 rotation(world_to_view);
-  LightArray result(order.size());
+  RawArray<ShadeLight> result(order.size());
   // The order is that of space, not of memory. Lights are read in the order of memory, since the scene's take
   // more of it, and in small pages.
-  const Places places = placesIn(order, scene.lights.size());
+  const RawArray<std::uint32_t> places = placesIn(order, scene.lights.size());
   tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t i) {
     if (places[i] == kNoPlace) return;
     if (i + kLightsAhead < places.size() && places[i + kLightsAhead] != kNoPlace)
@@ -90,8 +89,8 @@ LightArray prepareLights(const Scene& scene, std::span<const std::uint32_t> orde
   return result;
 }
 
-LightArray prepareLights(const Scene& scene, const Camera& camera,
-                         std::span<const std::uint32_t> map_of_light) {
+RawArray<ShadeLight> prepareLights(const Scene& scene, const Camera& camera,
+                                   std::span<const std::uint32_t> map_of_light) {
   return prepareLights(scene, spatialOrder(scene.lights), camera, map_of_light);
 }
 

@@ -20,7 +20,7 @@ constexpr int kRadixDigits = 3;
 constexpr std::size_t kBlock = std::size_t(1) << 16;  ///< elements of a task
 
 /// The bits in which keys differ from each other.
-std::uint64_t varyingBits(const KeyedArray& elements) {
+std::uint64_t varyingBits(const RawArray<Keyed>& elements) {
   const auto add = [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t bits) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) bits |= elements[i].key ^ elements[0].key;
     return bits;
@@ -30,11 +30,11 @@ std::uint64_t varyingBits(const KeyedArray& elements) {
 }
 
 /// Sorts by the bits of keys from `shift` on, below `bits`: a radix sort from the lowest digit up.
-void sortByDigits(KeyedArray& elements, int shift, int bits) {
+void sortByDigits(RawArray<Keyed>& elements, int shift, int bits) {
   const std::size_t blocks = (elements.size() + kBlock - 1) / kBlock;
   // For each digit of each block: how many there are, and then where the next one goes.
   std::vector<std::array<std::uint32_t, kDigits>> places(blocks);
-  KeyedArray sorted(elements.size());
+  RawArray<Keyed> sorted(elements.size());
   for (; shift < bits; shift += kDigitBits) {
     const auto forEach = [&](const auto& use) {
       tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
@@ -59,7 +59,7 @@ void sortByDigits(KeyedArray& elements, int shift, int bits) {
 }
 
 /// Sorts each run of elements whose keys are alike but for their lowest `bits` bits.
-void sortRuns(KeyedArray& elements, int bits) {
+void sortRuns(RawArray<Keyed>& elements, int bits) {
   const auto endOfRun = [&](std::size_t i) {
     for (++i; i < elements.size() && elements[i].key >> bits == elements[i - 1].key >> bits;) ++i;
     return i;
@@ -81,7 +81,7 @@ void sortRuns(KeyedArray& elements, int bits) {
 
 }  // namespace
 
-void sortByKey(KeyedArray& elements) {
+void sortByKey(RawArray<Keyed>& elements) {
   if (elements.empty()) return;
   const int bits = std::bit_width(varyingBits(elements));
   const int run_bits = std::max(bits - kRadixDigits * kDigitBits, 0);

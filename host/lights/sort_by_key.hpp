@@ -13,11 +13,9 @@ struct Keyed {
   std::uint32_t index;
 };
 
-using KeyedArray = std::vector<Keyed, RawArrayAllocator<Keyed>>;
-
 /// Sorts by key, ascending, and elements of one key by index. On all cores: by radix in O(n), but elements
 /// whose keys differ in their lowest bits only in O(n log n). Takes as much memory again as the array has. At
 /// most 2³² − 1 elements.
-void sortByKey(KeyedArray& elements);
+void sortByKey(RawArray<Keyed>& elements);
 
 }  // namespace luciole

@@ -57,10 +57,6 @@ enum VertexPlace : std::uint16_t {
   kUnusable = 128,      ///< not finite, in double or as float
 };
 
-/// New elements are not cleared.
-template <class T>
-using RawArray = std::vector<T, RawArrayAllocator<T>>;
-
 /// All vertices of the objects to draw, seen by a view.
 struct Geometry {
   std::vector<PlacedObject> objects;

@@ -36,18 +36,15 @@ Block makeBlock(const SamplePattern& pattern) {
 
 /// A triangle's values at the samples of the bin's first block.
 struct TriangleTables {
-  template <class T>
-  using Table = StripSamples::Table<T>;
-
   /// Edge functions as in coverage.cpp, ⌊E / 256⌋ at each sample: from one block to another they change by
   /// integers, since whole pixels are 256 units.
-  std::array<Table<std::int32_t>, 3> edges;
+  std::array<RawArray<std::int32_t>, 3> edges;
   std::array<std::int32_t, 3> most;  ///< an upper bound of the entries of each
   std::array<std::int32_t, 3> step_x, step_y;
-  Table<float> depth;  ///< from the sample origin of the block's first pixel to the sample
+  RawArray<float> depth;  ///< from the sample origin of the block's first pixel to the sample
 
   explicit TriangleTables(const Block& block) {
-    for (Table<std::int32_t>& edge : edges) edge.resize(block.lanes);
+    for (RawArray<std::int32_t>& edge : edges) edge.resize(block.lanes);
     depth.resize(block.lanes);
   }
 };

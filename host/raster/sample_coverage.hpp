@@ -15,12 +15,9 @@ namespace luciole {
 /// Depth and label of all samples of some rows of a bin: row by row, pixel by pixel, SamplePattern::stride
 /// entries each.
 struct StripSamples {
-  template <class T>
-  using Table = std::vector<T, RawArrayAllocator<T>>;
-
-  int first_row = 0;           ///< in the bin
-  Table<float> depth;          ///< reversed; 0: nothing
-  Table<std::uint32_t> label;  ///< the triangle's number, or kNoTriangle
+  int first_row = 0;              ///< in the bin
+  RawArray<float> depth;          ///< reversed; 0: nothing
+  RawArray<std::uint32_t> label;  ///< the triangle's number, or kNoTriangle
 
   /// The labels of a pixel's samples. `in_bin`: the pixel, from the bin's top left one.
   const std::uint32_t* labels(const glm::ivec2& in_bin, const SamplePattern& pattern) const {

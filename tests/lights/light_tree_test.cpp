@@ -87,7 +87,7 @@ TEST(SpatialOrder, CamerasSeeTheSameOrder) {
   const Camera camera = randomCamera(random), other = randomCamera(random);
   Scene scene = randomScene(camera, 200, random);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) scene.lights[i].diffuse.x = float(i);
-  const LightArray a = prepareLights(scene, camera, {}), b = prepareLights(scene, other, {});
+  const RawArray<ShadeLight> a = prepareLights(scene, camera, {}), b = prepareLights(scene, other, {});
   const std::vector<std::uint32_t> order = spatialOrder(scene.lights);
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].diffuse.x, float(order[i]));
@@ -118,7 +118,7 @@ class Tree : public testing::TestWithParam<int> {};
 TEST_P(Tree, EveryNodeHoldsItsChildrenAndPaddingReachesNothing) {
   Random random(11);
   const Camera camera = randomCamera(random);
-  const LightArray lights = prepareLights(randomScene(camera, GetParam(), random), camera, {});
+  const RawArray<ShadeLight> lights = prepareLights(randomScene(camera, GetParam(), random), camera, {});
   const LightTree tree = buildLightTree(lights);
   const std::vector<Level> levels = levelsOf(lights.size());
   ASSERT_EQ(tree.stride, levels.back().start + levels.back().room);

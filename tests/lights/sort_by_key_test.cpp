@@ -18,10 +18,10 @@ class SortByKey : public testing::TestWithParam<KeyBits> {};
 TEST_P(SortByKey, OrdersByKeyAndThenByIndex) {
   std::mt19937_64 random(7);
   for (const std::uint32_t count : {0u, 1u, 2u, 1000u, 200'001u}) {
-    KeyedArray elements(count);
+    RawArray<Keyed> elements(count);
     for (std::uint32_t i = 0; i < count; ++i)
       elements[i] = {GetParam().same | (random() & GetParam().varying), i};
-    KeyedArray expected = elements;
+    RawArray<Keyed> expected = elements;
     std::stable_sort(expected.begin(), expected.end(),
                      [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
     sortByKey(elements);

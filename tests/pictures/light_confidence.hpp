@@ -46,7 +46,7 @@ struct Rays {
   const GBuffer& gbuffer;
   BeamScene beams;
   FeatureSet features;
-  std::vector<BeamLight, RawArrayAllocator<BeamLight>> lights;
+  RawArray<BeamLight> lights;
   Plane starts;
 
   Rays(OpenedDevice& device, const Scene& lit, const GBuffer& points) : scene(lit), gbuffer(points) {
@@ -73,9 +73,8 @@ struct Rays {
   }
 
   /// A bit for each ray that nothing blocks.
-  std::vector<uint> trace(OpenedDevice& device,
-                          const std::vector<LightRay, RawArrayAllocator<LightRay>>& rays) {
-    std::vector<uint, RawArrayAllocator<uint>> lit(wordsForRays(rays.size())), unsure(lit.size(), 0);
+  std::vector<uint> trace(OpenedDevice& device, const RawArray<LightRay>& rays) {
+    RawArray<uint> lit(wordsForRays(rays.size())), unsure(lit.size(), 0);
     const Buffer<uint> lit_buffer = borrowedForOutput(device, lit),
                        unsure_buffer = borrowedForOutput(device, unsure);
     traceLightRays(device, featureDefines(features),
@@ -178,7 +177,7 @@ inline ShadowedTruth shadowedTruth(OpenedDevice& device, const Scene& scene, glm
   // The rays of some pixels fit into memory.
   const std::size_t batch = std::clamp<std::size_t>(32'000'000 / (scene.lights.size() + 1), 1, 256);
   std::vector<truth::AskedPixel> pixels(std::min(batch, count));
-  std::vector<LightRay, RawArrayAllocator<LightRay>> asked;
+  RawArray<LightRay> asked;
   for (std::size_t first = 0; first < count; first += batch) {
     const std::size_t some = std::min(batch, count - first);
     tbb::parallel_for(std::size_t(0), some, [&](std::size_t i) {

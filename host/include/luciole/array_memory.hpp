@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <new>
 #include <utility>
+#include <vector>
 
 namespace luciole {
 
@@ -43,5 +44,9 @@ struct RawArrayAllocator : ArrayAllocator<T> {
     new (place) U(std::forward<V>(value));
   }
 };
+
+/// An array that OpenCL can use in place. New elements are not cleared.
+template <class T>
+using RawArray = std::vector<T, RawArrayAllocator<T>>;
 
 }  // namespace luciole

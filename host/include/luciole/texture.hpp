@@ -8,8 +8,7 @@
 
 namespace luciole {
 
-/// New elements are not cleared.
-using Texels = std::vector<std::uint16_t, RawArrayAllocator<std::uint16_t>>;
+using Texels = RawArray<std::uint16_t>;
 
 /// One level of a mip chain: row-major, texel (0,0) top left.
 struct MipLevel {

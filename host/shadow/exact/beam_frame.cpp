@@ -20,4 +20,15 @@ BeamFrame beamFrame(const BeamScene& beams, std::size_t plane_stride) {
   return frame;
 }
 
+std::vector<KernelArgument> withTriangleTree(const BeamScene& beams, std::vector<KernelArgument> others) {
+  others.insert(others.end(), {{"nodes", beams.nodes},
+                               {"children", beams.children},
+                               {"blocks", beams.blocks},
+                               {"block_bits", beams.block_bits},
+                               {"hole_texels", beams.hole_texels},
+                               {"hole_triangles", beams.hole_triangles},
+                               {"first_hole_triangle", beams.first_hole_triangle}});
+  return others;
+}
+
 }  // namespace luciole

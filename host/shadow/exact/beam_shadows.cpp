@@ -96,23 +96,16 @@ PairShadows beamShadows(OpenedDevice& device, const std::string& defines, const 
   frame.light_count = uint(arguments.lights.count);
   Kernel kernel = makeKernel(device, "exact/beam_shadows.cl", "beam_shadows", defines);
   launch(device, kernel,
-         {{"frame", frame},
-          {"position", arguments.position},
-          {"normal", arguments.normal},
-          {"lift", arguments.lift},
-          {"lights", arguments.lights},
-          {"list_starts", arguments.lists.starts},
-          {"list", arguments.lists.list},
-          {"nodes", beams.nodes},
-          {"children", beams.children},
-          {"blocks", beams.blocks},
-          {"block_bits", beams.block_bits},
-          {"hole_texels", beams.hole_texels},
-          {"hole_triangles", beams.hole_triangles},
-          {"first_hole_triangle", beams.first_hole_triangle},
-          {"lit", result.lit},
-          {"unsure", result.unsure},
-          {"counts", result.counts}},
+         withTriangleTree(beams, {{"frame", frame},
+                                  {"position", arguments.position},
+                                  {"normal", arguments.normal},
+                                  {"lift", arguments.lift},
+                                  {"lights", arguments.lights},
+                                  {"list_starts", arguments.lists.starts},
+                                  {"list", arguments.lists.list},
+                                  {"lit", result.lit},
+                                  {"unsure", result.unsure},
+                                  {"counts", result.counts}}),
          {.items = (tiles + kBeamRun - 1) / kBeamRun});
   finish(device);
   return result;

@@ -152,7 +152,7 @@ std::vector<std::atomic<bool>> usedMaterials(const Scene& scene) {
 }
 
 /// Fills the masks of all materials in use that have one.
-std::vector<MaterialHoles> classifyMaterials(const Scene& scene, AlignedArray<unsigned char>& texels) {
+std::vector<MaterialHoles> classifyMaterials(const Scene& scene, RawArray<unsigned char>& texels) {
   const std::vector<std::atomic<bool>> used = usedMaterials(scene);
   std::vector<MaterialHoles> all(scene.materials.size());
   std::size_t count = 0;

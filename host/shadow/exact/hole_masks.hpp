@@ -12,12 +12,12 @@ namespace luciole {
 /// see kernels/exact/hole_masks.clh.
 struct HoleMasks {
   /// The rows of each mask: 255 times each texel's opacity, alpha or the code of a grey map.
-  AlignedArray<unsigned char> texels;
-  AlignedArray<HoleTriangle> triangles;  ///< of the bits of holes in block_bits, by block and slot
-  AlignedArray<uint> first_triangle;     ///< of each block
+  RawArray<unsigned char> texels;
+  RawArray<HoleTriangle> triangles;  ///< of the bits of holes in block_bits, by block and slot
+  RawArray<uint> first_triangle;     ///< of each block
   /// TriangleTree::block_bits, but with unused slots for triangles that are holes everywhere, and without the
   /// bits of holes for those that are solid everywhere.
-  AlignedArray<uint> block_bits;
+  RawArray<uint> block_bits;
 };
 
 /// The masks of a tree over the scene. Triangles whose opacity is the product of two textures, or depends on

@@ -20,19 +20,12 @@ void traceLightRays(OpenedDevice& device, const std::string& defines, const RayA
   frame.start_stride = uint(arguments.start_stride);
   Kernel kernel = makeKernel(device, "exact/light_rays.cl", "light_rays", defines);
   launch(device, kernel,
-         {{"frame", frame},
-          {"rays", arguments.rays},
-          {"starts", arguments.starts},
-          {"lights", arguments.lights},
-          {"nodes", beams.nodes},
-          {"children", beams.children},
-          {"blocks", beams.blocks},
-          {"block_bits", beams.block_bits},
-          {"hole_texels", beams.hole_texels},
-          {"hole_triangles", beams.hole_triangles},
-          {"first_hole_triangle", beams.first_hole_triangle},
-          {"lit", lit},
-          {"unsure", unsure}},
+         withTriangleTree(beams, {{"frame", frame},
+                                  {"rays", arguments.rays},
+                                  {"starts", arguments.starts},
+                                  {"lights", arguments.lights},
+                                  {"lit", lit},
+                                  {"unsure", unsure}}),
          {.items = (arguments.ray_count + kRayRun - 1) / kRayRun});
 }
 

@@ -41,7 +41,7 @@ struct TriangleBox : QuadBox {
   static constexpr std::uint32_t kBias = 0x20000000;
 };
 
-using TriangleBoxes = std::vector<TriangleBox, RawArrayAllocator<TriangleBox>>;
+using TriangleBoxes = RawArray<TriangleBox>;
 
 /// Triangles that lie together, from `begin` to before `end` of one of two arrays.
 struct TriangleSet {

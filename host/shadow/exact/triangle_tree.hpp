@@ -10,10 +10,6 @@
 
 namespace luciole {
 
-/// An array that OpenCL can use in place.
-template <class T>
-using AlignedArray = std::vector<T, RawArrayAllocator<T>>;
-
 /// The tree of boxes over a scene's triangles, with kTreeWidth children a node, and leaves of up to
 /// kTreeWidth triangles, the blocks.
 ///
@@ -28,11 +24,11 @@ struct TriangleTree {
   /// A power of two that keeps coordinates of triangles and lights within 2⁴⁰, so that products of three are
   /// finite. Mostly 1.
   float scale = 1;
-  AlignedArray<float> nodes;   ///< kNodeRows · kTreeWidth a node (kernels/shared.h)
-  AlignedArray<int> children;  ///< kTreeWidth a node
-  AlignedArray<float> blocks;  ///< kBlockRows · kTreeWidth a block. Unused slots repeat the last triangle
-  AlignedArray<std::uint32_t> triangles;  ///< kTreeWidth a block: counted through all objects in order
-  AlignedArray<std::uint32_t>
+  RawArray<float> nodes;   ///< kNodeRows · kTreeWidth a node (kernels/shared.h)
+  RawArray<int> children;  ///< kTreeWidth a node
+  RawArray<float> blocks;  ///< kBlockRows · kTreeWidth a block. Unused slots repeat the last triangle
+  RawArray<std::uint32_t> triangles;  ///< kTreeWidth a block: counted through all objects in order
+  RawArray<std::uint32_t>
       block_bits;  ///< of a block: bit i: slot i is used; bit 16 + i: its material has holes
   int root = 0;    ///< as in `children`. Without triangles an empty node
 };

@@ -37,7 +37,7 @@ struct ShadowMaps {
   std::vector<std::uint32_t> map_of_light;
   std::vector<ShadowFace> faces;
   std::vector<PlannedFace> planned;
-  std::vector<ShadowTexel, RawArrayAllocator<ShadowTexel>> texels;
+  RawArray<ShadowTexel> texels;
   /// More passes follow, whose lookups reach a little farther. So bins are drawn down to half of the reversed
   /// depth that is needed, and rectangles have a margin of one bin, to avoid drawing them twice.
   bool expects_more = false;

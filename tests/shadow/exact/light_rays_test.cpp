@@ -46,18 +46,15 @@ std::vector<float> planesOf(const Pairs& pairs) {
   return planes;
 }
 
-template <class T>
-using DeviceArray = std::vector<T, RawArrayAllocator<T>>;
-
 Traced trace(OpenedDevice& device, const std::shared_ptr<const TriangleTree>& tree, const Pairs& pairs,
              const std::shared_ptr<const HoleMasks>& masks = nullptr, const std::string& more_defines = "") {
   BeamScene beams;
   prepareBeams(device, {}, tree, masks, 0, beams);
   const std::vector<float> planes = planesOf(pairs);
-  const DeviceArray<float> starts(planes.begin(), planes.end());
-  const DeviceArray<BeamLight> lights(pairs.lights.begin(), pairs.lights.end());
-  const DeviceArray<LightRay> rays(pairs.rays.begin(), pairs.rays.end());
-  DeviceArray<uint> lit(wordsForRays(rays.size()), 0xdeadbeef), unsure(masks ? lit.size() : 0, 0xdeadbeef);
+  const RawArray<float> starts(planes.begin(), planes.end());
+  const RawArray<BeamLight> lights(pairs.lights.begin(), pairs.lights.end());
+  const RawArray<LightRay> rays(pairs.rays.begin(), pairs.rays.end());
+  RawArray<uint> lit(wordsForRays(rays.size()), 0xdeadbeef), unsure(masks ? lit.size() : 0, 0xdeadbeef);
   const Buffer<uint> lit_buffer = borrowedForOutput(device, lit),
                      unsure_buffer = borrowedForOutput(device, unsure);
   FeatureSet features;
@@ -343,7 +340,7 @@ TEST(LightRays, StartWhereBeamsDo) {
       tree->scale = 0.25f;
       BeamScene beams;
       prepareBeams(device, camera, tree, nullptr, 0, beams);
-      DeviceArray<float> starts(3 * gbuffer.pixels());
+      RawArray<float> starts(3 * gbuffer.pixels());
       const Buffer<float> buffer = borrowedForOutput(device, starts);
       FeatureSet features;
       features.set(Feature::kLift, lifted);

@@ -139,7 +139,7 @@ int expectTreeOver(const Scene& scene, const TriangleTree& tree) {
 }
 
 template <class T>
-bool sameArrays(const AlignedArray<T>& a, const AlignedArray<T>& b) {
+bool sameArrays(const RawArray<T>& a, const RawArray<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
