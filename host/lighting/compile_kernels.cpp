@@ -84,9 +84,9 @@ void compileShadows(OpenedDevice& device, const LightPass& pass, const ShadeSett
   const StageInput input{device, nothing, lighting, pass, features, points, empty_list};
   if (choice.beams) decideBeams(input);
   if (!choice.others || !(features.has(Feature::kHoles) || features.has(Feature::kSoftExact))) return;
-  std::vector<TilePairs> no_pairs(1);
   PairShadows pairs;
-  pairs.counts = borrowedForOutput(device, no_pairs);
+  pairs.counts = makeBuffer<TilePairs>(device, 1);
+  fill(device, pairs.counts, {0, 0, 0, 0});
   traceUnsurePairs(input, pairs);
 }
 
