@@ -54,6 +54,7 @@
     "lights with shadows that are sampled, with an interval of the error", kForSampling)                     \
   X(SampledHighlights, SAMPLED_HIGHLIGHTS, "sampled highlights", "highlights of lights that are sampled",    \
     kForSampling)                                                                                            \
-  X(MaterialModels, MATERIAL_MODELS, "material models", "surfaces with models of their own", 0)
+  X(MaterialModels, MATERIAL_MODELS, "material models", "surfaces with models of their own", 0)              \
+  X(UserModels, USER_MODELS, "user models", "models from files of the user's", 0)
 
 #endif

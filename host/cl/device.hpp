@@ -47,6 +47,7 @@ struct OpenedDevice {
   /// The program file whose command `compile` compiles for this device in a process of its own (see
   /// compile_helper.hpp); empty: none does.
   std::string helper;
+  bool owns_stderr = false;          ///< this process may close it for a while (QuietStderr)
   bool makes_one_picture = false;    ///< which may be made by programs that are compiled quickly
   std::function<void()> self_check;  ///< called once, by the thread that compiles a picture's kernels
   std::function<void(const std::string&)> warn;  ///< called with what went wrong, but was made good

@@ -10,8 +10,11 @@
 namespace luciole {
 namespace {
 
-void appendText(std::string_view name, std::string_view text, std::vector<std::string_view>& seen,
-                std::string& source) {
+/// The header that a user's text takes the place of.
+constexpr std::string_view kUserText = "user_text.clh";
+
+void appendText(std::string_view name, std::string_view text, std::string_view user_text,
+                std::vector<std::string_view>& seen, std::string& source) {
   source += fmt::format("#line 1 \"kernels/{}\"\n", name);
   constexpr std::string_view kInclude = "#include \"";
   for (int line_number = 1; !text.empty(); ++line_number) {
@@ -26,7 +29,10 @@ void appendText(std::string_view name, std::string_view text, std::vector<std::s
         line.substr(kInclude.size(), line.find('"', kInclude.size()) - kInclude.size());
     if (std::find(seen.begin(), seen.end(), included) == seen.end()) {
       seen.push_back(included);
-      appendText(included, embeddedText(embeddedKernels(), included), seen, source);
+      if (included == kUserText && !user_text.empty())
+        source += user_text;
+      else
+        appendText(included, embeddedText(embeddedKernels(), included), user_text, seen, source);
       source += fmt::format("#line {} \"kernels/{}\"\n", line_number + 1, name);
     } else {
       source += "\n";
@@ -36,14 +42,14 @@ void appendText(std::string_view name, std::string_view text, std::vector<std::s
 
 }  // namespace
 
-std::string kernelSource(std::string_view name) {
-  return expandKernelSource(name, embeddedText(embeddedKernels(), name));
+std::string kernelSource(std::string_view name, std::string_view user_text) {
+  return expandKernelSource(name, embeddedText(embeddedKernels(), name), user_text);
 }
 
-std::string expandKernelSource(std::string_view name, std::string_view text) {
+std::string expandKernelSource(std::string_view name, std::string_view text, std::string_view user_text) {
   std::vector<std::string_view> seen;
   std::string source;
-  appendText(name, text, seen, source);
+  appendText(name, text, user_text, seen, source);
   return source;
 }
 

@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "base/quiet_stderr.hpp"
 #include "cl/build_program.hpp"
 #include "cl/command_trace.hpp"
 #include "cl/device_error.hpp"
 #include "cl/driver_call.hpp"
 #include "cl/kernel_source.hpp"
 #include "cl/pocl_cache.hpp"
+#include "luciole/error.hpp"
+#include "shaders/shader_text.hpp"
 
 namespace luciole {
 namespace {
@@ -45,16 +49,19 @@ Program build(const OpenedDevice& device, const std::string& source, std::string
 }
 
 /// The kernel `name` of the program with this key and these defines. A program that isn't there yet is built
-/// from what source() returns.
+/// from what source() returns. user_text: that it contains.
 template <class Source>
 Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* name,
-                    const std::string& defines, Source&& source) {
+                    const std::string& defines, const std::string& user_text, Source&& source) {
   const std::lock_guard lock(device.programs_mutex);
   try {
     const std::string options = optionsFor(device, defines);
     auto place = device.programs.find(options + key);
     if (place == device.programs.end()) {
       const TraceSpan span("build program", {{"kernel", name}, {"defines", defines}});
+      // The compiler itself counts errors on standard error.
+      std::optional<QuietStderr> quiet;
+      if (!user_text.empty() && device.owns_stderr) quiet.emplace();
       place = device.programs.emplace(options + key, build(device, source(), options)).first;
     }
     const Program& program = place->second;
@@ -67,6 +74,7 @@ Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* na
       throw deviceError(error, fmt::format("{}: kernel '{}'", device.description.name, name));
     std::string log;
     for (const auto& [where, text] : error.getBuildLog()) log += text;
+    if (!user_text.empty()) throw InputError(shaderError(log, user_text));
     std::replace(log.begin(), log.end(), '\n', ' ');
     throw MachineError(fmt::format("{}: kernel '{}' does not compile: {}", device.description.name, name,
                                    log.substr(0, 1000)));
@@ -123,19 +131,21 @@ std::size_t rowsOf(std::size_t groups, std::size_t group) {
 
 }  // namespace
 
-Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name,
-                  const std::string& defines) {
-  return makeKernelOf(device, file, name, defines, [&] { return kernelSource(file); });
+Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name, const std::string& defines,
+                  const std::string& user_text) {
+  return makeKernelOf(device, file + user_text, name, defines, user_text,
+                      [&] { return kernelSource(file, user_text); });
 }
 
 Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
                             const std::string& defines) {
-  return makeKernelOf(device, source, name, defines, [&] { return source; });
+  return makeKernelOf(device, source, name, defines, {}, [&] { return source; });
 }
 
-bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines) {
+bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines,
+                const std::string& user_text) {
   if (device.pocl_cache.empty()) return true;
-  const std::string source = kernelSource(file), options = optionsFor(device, defines);
+  const std::string source = kernelSource(file, user_text), options = optionsFor(device, defines);
   const auto is_kept = [&](const std::string& with) {
     return isListed(device.pocl_cache, describeProgram(device, source, with));
   };

@@ -129,9 +129,10 @@ struct Kernel {
 /// The kernel `name` of kernels/`file`, compiled with the device's LANES and the -D options in `defines`. A
 /// program is built only once for a device and the same options. Any thread may call it. Throws MachineError
 /// with the first 1000 characters of the compiler's log if it doesn't compile, if memory is short, and if the
-/// platform doesn't tell the kernel's arguments; std::logic_error for a file that isn't there.
-Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name,
-                  const std::string& defines);
+/// platform doesn't tell the kernel's arguments; std::logic_error for a file that isn't there. user_text: see
+/// kernelSource(), of shaderProgram(); InputError if it is why the program doesn't compile.
+Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name, const std::string& defines,
+                  const std::string& user_text = {});
 
 /// The same for any source text whose includes are in place (see expandKernelSource).
 Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
@@ -139,7 +140,8 @@ Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, con
 
 /// Whether makeKernel() would find this program's machine code on disk, as far as is known. Of platforms
 /// other than PoCL it isn't known, and taken so. Throws cl::Error.
-bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines);
+bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines,
+                const std::string& user_text = {});
 
 /// Whether any program of the device was compiled quickly.
 bool hasQuickPrograms(OpenedDevice& device);

@@ -321,10 +321,10 @@ class Conversion {
 
   std::uint32_t modelAt(const LayerPlanes& model, std::size_t pixel) const {
     const float number = coefficient(model, pixel, 0, part_, path_);
-    if (number != std::floor(number) || number > float(std::size(kAllModels)))
+    if (number != std::floor(number) || number > float(kMostModelNumber))
       throw InputError(fmt::format("{}: channel {}: pixel {},{} is {}, expected a model's number, 0 to {}",
                                    path_, model.names[0], pixel % std::size_t(part_.size.x),
-                                   pixel / std::size_t(part_.size.x), number, std::size(kAllModels)));
+                                   pixel / std::size_t(part_.size.x), number, kMostModelNumber));
     return std::uint32_t(number);
   }
 

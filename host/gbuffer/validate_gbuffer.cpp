@@ -45,8 +45,8 @@ void validateGBuffer(const GBuffer& gbuffer) {
   check("lift", gbuffer.lift.size(), 1);
   check("model", gbuffer.model.size(), 1);
   if (std::any_of(gbuffer.model.begin(), gbuffer.model.end(),
-                  [](std::uint32_t number) { return number > std::size(kAllModels); }))
-    throw InputError(fmt::format("gbuffer.model: has a number above {}", std::size(kAllModels)));
+                  [](std::uint32_t number) { return number > kMostModelNumber; }))
+    throw InputError(fmt::format("gbuffer.model: has a number above {}", kMostModelNumber));
   if (const std::string fault = cameraFault(gbuffer.camera); !fault.empty() && gbuffer.knows_camera)
     throw InputError("gbuffer.camera." + fault);
 }

@@ -47,7 +47,7 @@ Number readNumber(std::string_view text, int base = 10) {
 }
 
 /// The arguments of a task before its programs.
-constexpr std::size_t kTaskWords = 10;
+constexpr std::size_t kTaskWords = 11;
 
 }  // namespace
 
@@ -58,6 +58,7 @@ std::vector<std::string> argumentsOf(const OpenedDevice& device, const CompileTa
                            int(task.quickly), settings.log2_degree, settings.exp2_degree, settings.pcf_width,
                            settings.tile_size, settings.soft_samples})
     words.push_back(std::to_string(number));
+  words.push_back(settings.user_text);
   for (const FeatureSet& features : task.programs) words.push_back(fmt::format("{:x}", features.bits()));
   return words;
 }
@@ -66,7 +67,7 @@ DeviceTask readTask(std::span<const std::string> arguments) {
   constexpr std::string_view kDevice = "device=";
   if (arguments.size() < kTaskWords || !arguments[0].starts_with(kDevice))
     throw InputError("compile: expected a task of another process of this program");
-  std::array<int, kTaskWords - 1> numbers{};
+  std::array<int, kTaskWords - 2> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = readNumber<int>(arguments[i + 1]);
   DeviceTask read{arguments[0].substr(kDevice.size()),
                   {{},
@@ -79,6 +80,7 @@ DeviceTask readTask(std::span<const std::string> arguments) {
   settings.pcf_width = numbers[6];
   settings.tile_size = numbers[7];
   settings.soft_samples = numbers[8];
+  settings.user_text = arguments[kTaskWords - 1];
   for (const std::string& program : arguments.subspan(kTaskWords)) {
     const auto bits = readNumber<std::uint64_t>(program, 16);
     FeatureSet& features = read.task.programs.emplace_back();

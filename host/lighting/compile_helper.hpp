@@ -18,7 +18,8 @@ namespace luciole {
 /// Programs to be compiled.
 struct CompileTask {
   std::vector<FeatureSet> programs;
-  ShadeSettings settings;  ///< of which count the degrees, pcf_width, tile_size and soft_samples
+  /// Of which count the degrees, pcf_width, tile_size, soft_samples and user_text.
+  ShadeSettings settings;
   KernelChoice choice = {};
   bool quickly = false;  ///< see OpenedDevice::compiles_quickly
 };

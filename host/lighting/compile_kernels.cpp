@@ -46,7 +46,8 @@ GBuffer emptyTile() {
 
 /// Whether PoCL has kept the optimized programs of beams and of shading.
 bool isKept(const OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings) {
-  return isCompiled(device, "shade/shade.cl", featureDefines(features) + mathDefines(settings)) &&
+  return isCompiled(device, "shade/shade.cl", featureDefines(features) + mathDefines(settings),
+                    userTextFor(features, settings.user_text)) &&
          (!features.has(Feature::kExact) ||
           isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))));
 }
@@ -106,6 +107,7 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
   const Scene nothing;
   Lighting lighting;
   lighting.math_defines = mathDefines(settings);
+  lighting.user_text = settings.user_text;
   lighting.group_log2 = groupLog2(settings.tile_size);
   // An empty map, so that find_needed.cl is launched, and compiled, too.
   if (features.shadowMaps()) {

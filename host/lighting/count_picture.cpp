@@ -96,6 +96,7 @@ std::uint64_t coveredPixels(const GBuffer& gbuffer) {
 void countPass(const GBuffer& gbuffer, const LitPlanes& lit, bool counted, double least_value, Stats& stats) {
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   if (counted) addCount(stats, "pixel_lights_evaluated", lit.evaluated);
+  if (lit.faulty_pixels > 0) addCount(stats, kFaultyPixels, lit.faulty_pixels);
   if (lit.by_beams > 0) addCount(stats, "shadow_pairs_exact", lit.by_beams);
   if (lit.by_maps > 0) addCount(stats, "shadow_pairs_by_maps", lit.by_maps);
   addCount(stats, "list_entries", lit.list_entries);

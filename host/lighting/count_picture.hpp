@@ -10,6 +10,9 @@
 // The counts of Stats::counts, by the names that --stats gives them.
 namespace luciole {
 
+/// The count of pixels to which a user's model gave NaN, or a number below 0 or of no sensible size.
+constexpr const char* kFaultyPixels = "pixels_with_faulty_light";
+
 /// Adds to a count, which begins at 0.
 void addCount(Stats& stats, const std::string& name, std::uint64_t count);
 

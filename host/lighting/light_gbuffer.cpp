@@ -74,15 +74,24 @@ LitPlanes lightGBuffer(OpenedDevice& device, const Scene& scene, Lighting& light
   }
   lit.color = std::move(pass.recycled);
   lit.color.resize(points.stride * (features.has(Feature::kOutputShadow) ? 4 : 3));
-  const Buffer<float> image = borrowedForOutput(device, lit.color);
+  ShadedBuffers out{borrowedForOutput(device, lit.color), {}};
+  std::vector<uint> faulty_pixels(features.has(Feature::kUserModels) ? 1 : 0);
+  if (!faulty_pixels.empty()) {
+    out.faulty_pixels = makeBuffer<uint>(device, 1);
+    fill(device, out.faulty_pixels, 0);
+  }
   TileCounts of_tiles{input.lists.entries, 0};
   timed(stats, Stage::kShade, [&] {
     if (by_tiles)
-      of_tiles = shadeByTiles(input, frame, image);
+      of_tiles = shadeByTiles(input, frame, out);
     else
-      shadeByLists(input, frame, lit.pairs, image);
+      shadeByLists(input, frame, lit.pairs, out);
   });
-  timed(stats, Stage::kReadBack, [&] { download(device, image, lit.color); });
+  timed(stats, Stage::kReadBack, [&] {
+    download(device, out.image, lit.color);
+    if (!faulty_pixels.empty()) download(device, out.faulty_pixels, faulty_pixels);
+  });
+  lit.faulty_pixels = faulty_pixels.empty() ? 0 : faulty_pixels[0];
   lit.list_entries = of_tiles.entries;
   lit.evaluated = of_tiles.pairs;
   lit.clustered = bounded.cluster_counts;

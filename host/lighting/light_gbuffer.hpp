@@ -29,12 +29,13 @@ struct LitPlanes {
   Plane light_count = {};  ///< lights in range of each pixel, if asked for
   Plane list_length =
       {};  ///< lights in the list of each pixel's square, if asked for; without lists all lights
-  std::uint64_t list_entries = 0;  ///< of Lighting::lists; without lists in memory, of the tile kernel
-  PairShadows pairs = {};          ///< with Feature::kExact: the shadows of the entries of Lighting::lists
-  TracedPairs traced = {};         ///< of these, the pairs of a pixel and a light that were decided by rays
-  std::uint64_t evaluated = 0;     ///< pixel-light pairs that the shade kernel went through, if asked for
-  std::uint64_t by_beams = 0;      ///< of these, with lights whose shadows are exact
-  std::uint64_t by_maps = 0;       ///< and with lights that have shadow maps
+  std::uint64_t list_entries = 0;   ///< of Lighting::lists; without lists in memory, of the tile kernel
+  PairShadows pairs = {};           ///< with Feature::kExact: the shadows of the entries of Lighting::lists
+  TracedPairs traced = {};          ///< of these, the pairs of a pixel and a light that were decided by rays
+  std::uint64_t evaluated = 0;      ///< pixel-light pairs that the shade kernel went through, if asked for
+  std::uint64_t by_beams = 0;       ///< of these, with lights whose shadows are exact
+  std::uint64_t by_maps = 0;        ///< and with lights that have shadow maps
+  std::uint64_t faulty_pixels = 0;  ///< to which a user's model gave NaN or other numbers that are no light
 };
 
 /// The input of a pass: points and lights.

@@ -61,6 +61,7 @@ void prepareLighting(OpenedDevice& device, const Scene& scene, const Camera& cam
   if (!kept) kept = &none;
   lighting.features = features;
   lighting.math_defines = mathDefines(settings);
+  lighting.user_text = settings.user_text;
   lighting.unlit = !scene.lighting;
   lighting.lights.frame = makeFrame(scene, camera, settings);
   lighting.group_log2 = groupLog2(settings.tile_size);

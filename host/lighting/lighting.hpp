@@ -28,6 +28,7 @@ struct VertexError {
 struct Lighting {
   FeatureSet features;
   std::string math_defines;  ///< as by mathDefines
+  std::string user_text;     ///< ShadeSettings::user_text
   unsigned group_log2 = 0;   ///< see CullArguments
   bool unlit = false;        ///< Scene::lighting is off: the diffuse colour takes the place of ambient
   MapScene maps;

@@ -4,16 +4,17 @@
 namespace luciole {
 namespace {
 
-std::string shadeDefines(const StageInput& input) {
-  return featureDefines(input.compiled) + input.lighting.math_defines;
+ShadeProgram programOf(const StageInput& input) {
+  return {featureDefines(input.compiled) + input.lighting.math_defines,
+          userTextFor(input.compiled, input.lighting.user_text)};
 }
 
 }  // namespace
 
 void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairShadows& pairs,
-                  const Buffer<float>& image) {
+                  const ShadedBuffers& out) {
   const MapScene& maps = input.lighting.maps;
-  shade(input.device, shadeDefines(input),
+  shade(input.device, programOf(input),
         {.frame = frame,
          .gbuffer = input.points.buffers,
          .lights = input.pass.lights.light_buffer,
@@ -25,13 +26,14 @@ void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairSh
          .ray_bits = pairs.unsure,
          .first_share = pairs.first_share,
          .shares = pairs.shares,
-         .image = image});
+         .image = out.image,
+         .faulty_pixels = out.faulty_pixels});
 }
 
-TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const Buffer<float>& image) {
+TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const ShadedBuffers& out) {
   const int tiles_x = input.pass.gbuffer.tiles_x, tiles_y = input.pass.gbuffer.tiles_y;
   const LightSet& lights = input.pass.lights;
-  return shadeTiles(input.device, shadeDefines(input),
+  return shadeTiles(input.device, programOf(input),
                     {.frame = frame,
                      .gbuffer = input.points.buffers,
                      .tiles_x = tiles_x,
@@ -40,7 +42,8 @@ TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const 
                      .lights = lights.light_buffer,
                      .tree = lights.tree_buffer,
                      .tree_stride = lights.tree.stride,
-                     .image = image});
+                     .image = out.image,
+                     .faulty_pixels = out.faulty_pixels});
 }
 
 }  // namespace luciole

@@ -52,11 +52,17 @@ BoundedLight sumClusters(const StageInput& input, const ShadeFrame& frame);
 /// Adds the light of sampled lights, and their intervals.
 void sampleLights(const StageInput& input, const ShadeFrame& frame, BoundedLight& result);
 
-/// Shades by lists, or by all lights where there are none. image: out, see LitPlanes::color.
+/// What shading writes.
+struct ShadedBuffers {
+  Buffer<float> image;         ///< see LitPlanes::color
+  Buffer<uint> faulty_pixels;  ///< LitPlanes::faulty_pixels, to be raised, with Feature::kUserModels only
+};
+
+/// Shades by lists, or by all lights where there are none.
 void shadeByLists(const StageInput& input, const ShadeFrame& frame, const PairShadows& pairs,
-                  const Buffer<float>& image);
+                  const ShadedBuffers& out);
 
 /// Culls and shades in one kernel, without lists in memory.
-TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const Buffer<float>& image);
+TileCounts shadeByTiles(const StageInput& input, const ShadeFrame& frame, const ShadedBuffers& out);
 
 }  // namespace luciole

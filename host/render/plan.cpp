@@ -6,6 +6,7 @@
 
 #include "render/memory.hpp"
 #include "shade/shadow_ways.hpp"
+#include "shaders/shader_text.hpp"
 
 namespace luciole {
 namespace {
@@ -86,6 +87,7 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
   plan.shade = settings.shade;
   plan.shade.shadow_layer = settings.wants(Aov::kShadow);
   chooseModel(surfaces.models, plan.shade);
+  plan.shade.user_text = shaderProgram(scene.user_models, ShaderKind::kModel);
   plan.layers = lightLayers(scene, settings);
   const StandIns stand_ins = standIns(scene, view, surfaces, plan.shade);
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)

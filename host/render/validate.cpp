@@ -39,8 +39,9 @@ void checkSize(const char* field, const glm::ivec2& size) {
         fmt::format("{}: {}x{} pixels, expected 1 to {} a side", field, size.x, size.y, kLargestSide));
 }
 
-void validateShading(const ShadeSettings& shade, std::size_t lights) {
-  checkEnum("settings.shade.model", shade.model, *std::rbegin(kAllModels));
+void validateShading(const ShadeSettings& shade, const Scene& scene) {
+  const std::size_t lights = scene.lights.size();
+  checkEnum("settings.shade.model", shade.model, Model(kNumberOfModels + scene.user_models.size() - 1));
   checkEnum("settings.shade.culling", shade.culling, Culling::kTiles);
   if (shade.tile_size != 4 && shade.tile_size != 8 && shade.tile_size != 16)
     throw InputError(fmt::format("settings.shade.tile_size: {}, expected 4, 8 or 16", shade.tile_size));
@@ -70,7 +71,7 @@ void validate(const Scene& scene, const RenderSettings& settings, const KeptShad
   checkRange("settings.samples", settings.samples, 1, kMostSamples);
   checkEnum("settings.sample_shading", settings.sample_shading, SampleShading::kAll);
   checkEnum("settings.shading", settings.shading, Shading::kPhong);
-  validateShading(settings.shade, scene.lights.size());
+  validateShading(settings.shade, scene);
   for (const Aov aov : settings.aovs) checkEnum("settings.aovs", aov, Aov(kAovCount - 1));
   if (settings.shading == Shading::kGouraud && wantsLightLayers(settings))
     throw InputError("settings.shading: layers of light are lit at each pixel, not kGouraud");

@@ -1,11 +1,32 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "luciole/error.hpp"
 #include "luciole/scene.hpp"
 #include "scene/models.hpp"
+#include "shaders/shader_text.hpp"
 
 namespace luciole {
 
-const char* modelName(Model model) { return kModelNames[std::size_t(model)]; }
+const char* modelName(Model model) {
+  return isUserModel(model) ? "a file's" : kModelNames[std::size_t(model)];
+}
+
+Model addUserModel(const std::string& path, Scene& scene) {
+  Shader shader = readShader(path, ShaderKind::kModel);
+  const auto known = std::find(scene.user_models.begin(), scene.user_models.end(), shader);
+  const auto index = std::size_t(known - scene.user_models.begin());
+  if (index == kMostUserModels)
+    throw InputError(fmt::format("{}: the scene has {} models in files already, expected that many at most",
+                                 path, kMostUserModels));
+  if (known == scene.user_models.end()) {
+    for (const std::string& place : shaderFacts(shader, ShaderKind::kModel).loose)
+      scene.warnings.push_back({place, "arithmetic that devices round differently"});
+    scene.user_models.push_back(std::move(shader));
+  }
+  return userModel(index);
+}
 
 ModelChoices modelChoices(const Scene& scene) {
   ModelChoices choices;

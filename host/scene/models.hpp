@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "kernels/models.h"
 #include "luciole/model.hpp"
@@ -41,9 +42,11 @@ inline double mostCookTorrance(double f0, double n) {
   return std::max(f0, std::min(50 * f0, 1.0)) / (2 * alpha2 * std::sqrt(alpha2));
 }
 
-/// The bounds that a model's row in kernels/models.h states. f0: a channel of the specular colour, ≥ 0; n:
-/// the shininess, ≥ 0.
+/// The bounds that a model's row in kernels/models.h states; none for a user's model. f0: a channel of the
+/// specular colour, ≥ 0; n: the shininess, ≥ 0.
 inline ModelBounds modelBounds(Model model, double f0, double n) {
+  if (isUserModel(model))
+    return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 #define MODEL_BOUNDS(name, typed, shown, meaning, diffuse, specular) ModelBounds{diffuse, specular},
   return std::array{EACH_MODEL(MODEL_BOUNDS)}[std::size_t(model)];
 #undef MODEL_BOUNDS

@@ -134,14 +134,19 @@ void withFields(T& warning, Visit&& visit) {
   auto& [text, kind, repaired] = warning;
   visit(text, kind, repaired);
 }
+template <Is<Shader> T, class Visit>
+void withFields(T& shader, Visit&& visit) {
+  auto& [path, text] = shader;
+  visit(path, text);
+}
 template <Is<Scene> T, class Visit>
 void withFields(T& scene, Visit&& visit) {
   auto& [name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
-         meshes, objects, lights, light_groups, cameras, size, background, ambient, fog, says_light,
-         adds_camera, adds_lights, lighting, animation] = scene;
+         user_models, meshes, objects, lights, light_groups, cameras, size, background, ambient, fog,
+         says_light, adds_camera, adds_lights, lighting, animation] = scene;
   visit(name, warnings, missing_textures, ignored_extensions, variants, animations, textures, materials,
-        meshes, objects, lights, light_groups, cameras, size, background, ambient, fog, says_light,
-        adds_camera, adds_lights, lighting, animation);
+        user_models, meshes, objects, lights, light_groups, cameras, size, background, ambient, fog,
+        says_light, adds_camera, adds_lights, lighting, animation);
 }
 
 }  // namespace luciole

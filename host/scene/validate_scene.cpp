@@ -237,7 +237,7 @@ std::string materialFault(const Scene& scene, const Material& material) {
   if (!std::isfinite(material.alpha)) return wrong("alpha", material.alpha, "a finite number");
   if (!std::isfinite(material.alpha_cutoff))
     return wrong("alpha_cutoff", material.alpha_cutoff, "a finite number");
-  if (material.model && !isOneOf(*material.model, *std::rbegin(kAllModels)))
+  if (material.model && std::size_t(*material.model) >= kNumberOfModels + scene.user_models.size())
     return wrong("model", int(*material.model), "a Model");
   if (material.facets && !areFinite(material.facets->f0))
     return wrong("facets.f0", material.facets->f0, "finite numbers");

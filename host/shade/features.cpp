@@ -51,8 +51,8 @@ void chooseModel(const ModelChoices& choices, ShadeSettings& settings) {
   if (models[0]) models.set(modelNumber(settings.model));
   models.reset(0);
   settings.material_models = models.count() > 1;
-  for (const Model model : kAllModels)
-    if (models.count() == 1 && models[modelNumber(model)]) settings.model = model;
+  for (std::uint32_t number = 1; number < models.size(); ++number)
+    if (models.count() == 1 && models[number]) settings.model = modelOfNumber(number, {});
 }
 
 ShadowWay shadowWay(const Scene& scene, std::size_t light, const ShadeSettings& settings) {
@@ -195,8 +195,8 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
   const bool lit = !scene.lights.empty();
   if (!settings.material_models || surfaces.models[0]) features.set(featureOf(settings.model), lit);
   if (settings.material_models)
-    for (const Model model : kAllModels)
-      if (surfaces.models[modelNumber(model)]) features.set(featureOf(model), lit);
+    for (std::uint32_t number = 1; number < surfaces.models.size(); ++number)
+      if (surfaces.models[number]) features.set(featureOf(modelOfNumber(number, {})), lit);
   features.set(Feature::kMaterialModels, settings.material_models && lit);
 
   // What clusters and samples give a pixel reaches the shading kernels as light that the surface emits.
@@ -239,8 +239,8 @@ bool isGeneral(const FeatureSet& features) {
 
 PlaneSet neededPlanes(const FeatureSet& features) {
   return {.specular = features.has(Feature::kSpecular) || features.has(Feature::kClusteredHighlights) ||
-                      features.has(Feature::kSampledHighlights) ||
-                      features.has(Feature::kOrenNayar),  // for the shininess
+                      features.has(Feature::kSampledHighlights) || features.has(Feature::kOrenNayar) ||
+                      features.has(Feature::kUserModels),  // for the shininess
           .ambient = features.has(Feature::kAmbient),
           .emission = features.has(Feature::kEmission),
           .geometric_normal = features.shadowMaps() && !features.has(Feature::kNormalMaps),
@@ -251,6 +251,10 @@ PlaneSet neededPlanes(const FeatureSet& features) {
 
 std::string featureDefines(const FeatureSet& features) {
   return fmt::format("-DFEATURES=0x{:x}ul ", features.bits());
+}
+
+std::string userTextFor(const FeatureSet& features, const std::string& user_text) {
+  return features.has(Feature::kUserModels) ? user_text : "";
 }
 
 std::string mathDefines(const ShadeSettings& settings) {

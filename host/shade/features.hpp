@@ -79,7 +79,9 @@ struct SurfaceTraits {
 SurfaceTraits materialTraits(const Scene& scene);
 
 /// The feature of a program that compiles this model.
-constexpr Feature featureOf(Model model) { return Feature(unsigned(Feature::kPhong) + unsigned(model)); }
+constexpr Feature featureOf(Model model) {
+  return isUserModel(model) ? Feature::kUserModels : Feature(unsigned(Feature::kPhong) + unsigned(model));
+}
 
 constexpr bool isModel(Feature feature) {
   return feature >= Feature::kPhong && unsigned(feature) < unsigned(Feature::kPhong) + kModelNames.size();
@@ -128,6 +130,9 @@ PlaneSet neededPlanes(const FeatureSet& features);
 
 /// The compiler's -D option for these features.
 std::string featureDefines(const FeatureSet& features);
+
+/// A picture's ShadeSettings::user_text for a program of these features: empty without Feature::kUserModels.
+std::string userTextFor(const FeatureSet& features, const std::string& user_text);
 
 /// The compiler's -D options for other settings: the degrees of polynomials and the width of PCF.
 std::string mathDefines(const ShadeSettings& settings);

@@ -21,8 +21,8 @@ GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
           .lift = borrowed(device, lift)};
 }
 
-void shade(OpenedDevice& device, const std::string& defines, const ShadeArguments& arguments) {
-  Kernel kernel = makeKernel(device, "shade/shade.cl", "shade", defines);
+void shade(OpenedDevice& device, const ShadeProgram& program, const ShadeArguments& arguments) {
+  Kernel kernel = makeKernel(device, "shade/shade.cl", "shade", program.defines, program.user_text);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const auto lanes = std::size_t(device.description.lanes);
   const std::size_t pixels_per_item = lanes * ROWS_PER_ITEM(lanes, arguments.lists.tiles > 0);
@@ -48,7 +48,8 @@ void shade(OpenedDevice& device, const std::string& defines, const ShadeArgument
           {"ray_bits", arguments.ray_bits},
           {"first_share", arguments.first_share},
           {"shares", arguments.shares},
-          {"image", arguments.image}},
+          {"image", arguments.image},
+          {"faulty_pixels", arguments.faulty_pixels}},
          {.items = arguments.frame.plane_stride / pixels_per_item, .group = kTilePixels / pixels_per_item});
   finish(device);
 }

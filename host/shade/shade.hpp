@@ -26,6 +26,12 @@ GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
                                const PackedNormals& surface_normal, const Plane& lift,
                                const ModelPlane& model, bool unlit);
 
+/// What a program that shades is compiled for.
+struct ShadeProgram {
+  std::string defines;    ///< featureDefines() and mathDefines()
+  std::string user_text;  ///< with Feature::kUserModels: see makeKernel()
+};
+
 struct ShadeArguments {
   const ShadeFrame& frame;
   const GBufferBuffers& gbuffer;
@@ -38,11 +44,12 @@ struct ShadeArguments {
   Buffer<const uint> ray_bits;              ///< PairShadows::unsure, with Feature::kSoftExact only
   Buffer<const uint> first_share;           ///< likewise
   Buffer<const float> shares;               ///< likewise
-  Buffer<float> image;  ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
+  Buffer<float> image;         ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
+  Buffer<uint> faulty_pixels;  ///< one, to be raised, with Feature::kUserModels only
 };
 
-/// Launches kernels/shade/shade.cl on every pixel of the G-buffer and waits for it. defines: the program's
-/// features (featureDefines) and mathDefines. Throws MachineError.
-void shade(OpenedDevice& device, const std::string& defines, const ShadeArguments& arguments);
+/// Launches kernels/shade/shade.cl on every pixel of the G-buffer and waits for it. Throws as makeKernel()
+/// and launch().
+void shade(OpenedDevice& device, const ShadeProgram& program, const ShadeArguments& arguments);
 
 }  // namespace luciole

@@ -39,9 +39,10 @@ TileBlock chooseBlock(int tiles_x, int tiles_y, std::size_t threads) {
 }
 static_assert(kBlockTiles == 4 * 4);
 
-TileCounts shadeTiles(OpenedDevice& device, const std::string& defines,
+TileCounts shadeTiles(OpenedDevice& device, const ShadeProgram& program,
                       const ShadeTilesArguments& arguments) {
-  Kernel kernel = makeKernel(device, "shade/shade_tiles.cl", "shade_tiles", defines);
+  Kernel kernel =
+      makeKernel(device, "shade/shade_tiles.cl", "shade_tiles", program.defines, program.user_text);
   const GBufferBuffers& gbuffer = arguments.gbuffer;
   const std::size_t blocks = blockCount(arguments.block, arguments.tiles_x, arguments.tiles_y);
   const std::size_t runs = (blocks + kBlockRun - 1) / kBlockRun;
@@ -69,7 +70,8 @@ TileCounts shadeTiles(OpenedDevice& device, const std::string& defines,
           {"tree", arguments.tree},
           {"lights", arguments.lights},
           {"image", arguments.image},
-          {"counts", counts_buffer}},
+          {"counts", counts_buffer},
+          {"faulty_pixels", arguments.faulty_pixels}},
          {.items = runs * kBlockRun});
   download(device, counts_buffer, counts);
   TileCounts sums;

@@ -24,6 +24,7 @@ struct ShadeTilesArguments {
   Buffer<const float> tree;         ///< see LightTree
   std::size_t tree_stride;          ///< floats
   Buffer<float> image;              ///< out: planes r, g, b
+  Buffer<uint> faulty_pixels;       ///< see ShadeArguments
 };
 
 /// The counts of shadeTiles().
@@ -33,8 +34,8 @@ struct TileCounts {
 };
 
 /// Launches kernels/shade/shade_tiles.cl on every pixel of the G-buffer and waits for it: the same picture as
-/// by cull() and shade(), without lists in memory. defines: the program's features (featureDefines), without
-/// shadows, and mathDefines. Throws MachineError.
-TileCounts shadeTiles(OpenedDevice& device, const std::string& defines, const ShadeTilesArguments& arguments);
+/// by cull() and shade(), without lists in memory. The program has no shadows. Throws as shade() does.
+TileCounts shadeTiles(OpenedDevice& device, const ShadeProgram& program,
+                      const ShadeTilesArguments& arguments);
 
 }  // namespace luciole

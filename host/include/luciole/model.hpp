@@ -17,19 +17,25 @@ enum class Model : std::uint8_t {
 };
 inline constexpr std::size_t kNumberOfModels = 5;
 
-/// The model's name in scene files: "phong" …
+/// Models from files of the user's (Scene::user_models) have the numbers after those.
+inline constexpr std::size_t kMostUserModels = 16;
+inline constexpr Model userModel(std::size_t index) { return Model(kNumberOfModels + index); }
+inline constexpr bool isUserModel(Model model) { return std::size_t(model) >= kNumberOfModels; }
+
+/// The model's name in scene files: "phong" …; "a file's" for a user's.
 const char* modelName(Model model);
 
 /// The number of a material's model in G-buffers: 0 if it has none of its own.
 inline constexpr std::uint32_t modelNumber(const std::optional<Model>& chosen) {
   return chosen ? std::uint32_t(*chosen) + 1 : 0;
 }
+inline constexpr std::uint32_t kMostModelNumber = std::uint32_t(kNumberOfModels + kMostUserModels);
 /// The model behind such a number, in a picture of this model.
 inline constexpr Model modelOfNumber(std::uint32_t number, Model of_picture) {
   return number > 0 ? Model(number - 1) : of_picture;
 }
 
 /// The models that surfaces have: bit i is set if one has the modelNumber() i.
-using ModelChoices = std::bitset<kNumberOfModels + 1>;
+using ModelChoices = std::bitset<kNumberOfModels + kMostUserModels + 1>;
 
 }  // namespace luciole

@@ -11,6 +11,7 @@
 
 #include "luciole/animation.hpp"
 #include "luciole/model.hpp"
+#include "luciole/shader.hpp"
 #include "luciole/texture.hpp"
 #include "luciole/warning.hpp"
 
@@ -188,6 +189,7 @@ struct Scene {
   std::vector<std::string> animations = {};  ///< of a glTF file: their names, or indices where they have none
   std::vector<Texture> textures = {};
   std::vector<Material> materials = {};
+  std::vector<Shader> user_models = {};  ///< ShaderKind::kModel; userModel(i) is that with the index i
   std::vector<Mesh> meshes = {};
   std::vector<Object> objects = {};
   std::vector<Light> lights = {};
@@ -212,6 +214,10 @@ struct GltfChoice {
 
 /// The models of the scene's surfaces. O(triangles) if any material has a model of its own.
 ModelChoices modelChoices(const Scene& scene);
+
+/// The model of a shader's file, which is added to the scene's unless it is there already. Throws as
+/// readShader(), and InputError for more than kMostUserModels.
+Model addUserModel(const std::string& path, Scene& scene);
 
 /// Sets `specular` and `shininess` of materials with `facets` and no model of their own to what
 /// Model::kCookTorrance takes: f0, and 2/α² − 2. For scenes that are shown by that model.

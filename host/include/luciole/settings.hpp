@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "luciole/scene.hpp"
@@ -57,6 +58,8 @@ struct ShadeSettings {
   Model model = Model::kPhong;  ///< of surfaces that choose none
   /// Surfaces have different models: those of GBuffer::model. Set by render() and shade().
   bool material_models = false;
+  /// The text of the models from files that surfaces have. Set by render() and shade().
+  std::string user_text = {};
   Culling culling = Culling::kTiles;
   int tile_size = 4;  ///< pixels a side of the squares that share a light list: 4, 8 or 16
   ShadowMethod shadows = ShadowMethod::kHard;

@@ -63,11 +63,17 @@ TextureUse readMap(const JsonNode& node, const SearchFolders& where, Scene& scen
   return use;
 }
 
-Model readModel(const JsonNode& node) {
+Model readModel(const JsonNode& node, const SearchFolders& where, Scene& scene) {
   const std::string name = readText(node);
+  if (name.ends_with(kShaderExtension)) {
+    const std::string path = pathOf(node, where);
+    if (const std::string fault = faultOfPath(path); !fault.empty()) refuse(node, fault);
+    return addUserModel(path, scene);
+  }
   for (const Model model : kAllModels)
     if (name == modelName(model)) return model;
-  refuse(node, fmt::format("no model \"{}\"; expected \"{}\"", name, fmt::join(kModelNames, "\", \"")));
+  refuse(node, fmt::format("no model \"{}\"; expected \"{}\", or a file *{}", name,
+                           fmt::join(kModelNames, "\", \""), kShaderExtension));
 }
 
 }  // namespace
@@ -110,7 +116,7 @@ void readMaterial(const JsonNode& node, const SearchFolders& where, Scene& scene
   if (const auto n = find(node, "alpha_cutoff"))
     material.alpha_cutoff = static_cast<float>(readNumber(*n, 0, 1));
   if (const auto n = find(node, "double_sided")) material.double_sided = readBool(*n);
-  if (const auto n = find(node, "model")) material.model = readModel(*n);
+  if (const auto n = find(node, "model")) material.model = readModel(*n, where, scene);
   // They are another surface's than the file's facets.
   if (find(node, "specular") || find(node, "shininess")) material.facets.reset();
 }

@@ -193,6 +193,7 @@ void bake(CommandContext& context, BakeOptions& options) {
                       writeOptions(options, space.gbuffer));
   });
   reportHalves(options, limited, stats);
+  reportFaultyLight(options, stats);
   reportLightError(options, stats);
   reportStats(options, stats, frame);
 }

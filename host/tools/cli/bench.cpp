@@ -74,8 +74,9 @@ int bench(const BenchOptions& options) {
   if (!options.picture.size.empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
   if (!options.gbuffer.empty()) {
-    choice.given = {options.gbuffer, readGBuffer(options.gbuffer),
-                    openScene(options.lights, 1, options.picture), modelOf(options.picture)};
+    Scene lights = openScene(options.lights, 1, options.picture);
+    const Model model = modelOf(options.picture, lights);
+    choice.given = {options.gbuffer, readGBuffer(options.gbuffer), std::move(lights), model};
     if (choice.only.empty()) choice.only = {kCullAndShade};
   }
   const BenchResult result = runBench(scene, settings, choice);

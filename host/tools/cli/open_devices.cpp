@@ -104,6 +104,7 @@ std::list<Sharer> openAllDevices(const PictureOptions& options, CommandContext& 
 void startCheckedDevice(const PictureOptions& options, CommandContext& context, bool makes_one_picture) {
   OpenedDevice& device = context.device;
   device.helper = helperProgram();
+  device.owns_stderr = true;
   device.makes_one_picture = makes_one_picture && !options.require_exact;
   if (!options.quiet) device.warn = reportWarning;
   if (options.require_exact)

@@ -157,8 +157,12 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
   return command
       .add_option("--model", options.model,
                   "how surfaces reflect light whose materials don't say it: with highlights of (R.V)^n, of "
-                  "(N.H)^n, in flat steps, as rough ones do, or as rough matte ones do")
-      ->check(oneOf({kModelNames.begin(), kModelNames.end()}))
+                  "(N.H)^n, in flat steps, as rough ones do, or as rough matte ones do; or a file of one's "
+                  "own, *.clh")
+      ->check([](const std::string& model) {
+        return model.ends_with(kShaderExtension) ? std::string()
+                                                 : oneOf({kModelNames.begin(), kModelNames.end()})(model);
+      })
       ->capture_default_str();
 }
 
@@ -439,7 +443,7 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},
                       {"milliseconds", eventMilliseconds(milliseconds)}});
-  if (modelOf(options) == Model::kCookTorrance) takeFacets(scene);
+  takeModel(options, scene);
   castShadows(options, scene);
   if (!options.quiet) reportWarnings(scene.warnings);
   return scene;
@@ -495,7 +499,14 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
 
 float exposureOf(const PictureOptions& options) { return float(exposureStops(options.exposure).value_or(0)); }
 
-Model modelOf(const PictureOptions& options) {
+void takeModel(const PictureOptions& options, Scene& scene) {
+  if (options.model.ends_with(kShaderExtension)) addUserModel(options.model, scene);
+  if (modelOf(options, scene) == Model::kCookTorrance) takeFacets(scene);
+}
+
+Model modelOf(const PictureOptions& options, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.user_models.size(); ++i)
+    if (scene.user_models[i].path == options.model) return userModel(i);
   std::size_t model = 0;  // one of them it is: the option's check lets no other name through
   while (model + 1 < kModelNames.size() && options.model != kModelNames[model]) ++model;
   return kAllModels[model];
@@ -518,7 +529,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shading = options.shading == "flat"      ? Shading::kFlat
                      : options.shading == "gouraud" ? Shading::kGouraud
                                                     : Shading::kPhong;
-  settings.shade.model = modelOf(options);
+  settings.shade.model = modelOf(options, scene);
   settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
   settings.shade.tile_size = options.tile;
   settings.shade.shadows = options.shadows == "off"          ? ShadowMethod::kOff

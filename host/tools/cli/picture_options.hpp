@@ -111,8 +111,11 @@ std::vector<Aov> aovsOf(const PictureOptions& options);
 /// The stops that --exposure names; 0 for auto and without it.
 float exposureOf(const PictureOptions& options);
 
-/// The model that --model names.
-Model modelOf(const PictureOptions& options);
+/// Makes a scene ready for the model that --model names: adds it if it is in a file. Throws as
+/// addUserModel().
+void takeModel(const PictureOptions& options, Scene& scene);
+/// The model that --model names, in a scene that takeModel() made ready.
+Model modelOf(const PictureOptions& options, const Scene& scene);
 
 /// The settings that the options mean for this scene. The picture's size comes from --size, else from the
 /// scene, else it is 1280x720; the camera is found by name or index. Throws InputError that names the option.

@@ -14,6 +14,7 @@
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
 #include "image/film.hpp"
+#include "lighting/count_picture.hpp"
 #include "lighting/light_layers.hpp"
 #include "luciole/error.hpp"
 #include "scene/json/mesh_file.hpp"
@@ -152,6 +153,16 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
       "{}: {} pixel{} brighter than {}, the most that the file holds, and became that; darken by "
       "--exposure, or take 32-bit floats and a lossless --compression",
       options.output, limited, limited == 1 ? " was" : "s were", largestColor(fileOptions(options))));
+  if (!options.quiet) reportWarning(stats.warnings.back());
+}
+
+void reportFaultyLight(const PictureOptions& options, Stats& stats) {
+  const std::uint64_t pixels = countOf(stats, kFaultyPixels);
+  if (pixels == 0) return;
+  stats.warnings.push_back(fmt::format(
+      "a model from a file gave NaN, infinite or negative light at {}, which counts as 0 there: luciole "
+      "check-model tells where",
+      pixels == 1 ? "1 pixel" : fmt::format("{} pixels", pixels)));
   if (!options.quiet) reportWarning(stats.warnings.back());
 }
 

@@ -52,10 +52,10 @@ struct Piece {
 };
 
 /// rays: of the scene; empty without shadows. The settings refer to all arguments, which must outlive them.
-ReferenceSettings referenceSettings(const ReferenceOptions& options, const std::optional<RayScene>& rays,
-                                    ProgressLine& progress) {
+ReferenceSettings referenceSettings(const ReferenceOptions& options, const Scene& scene,
+                                    const std::optional<RayScene>& rays, ProgressLine& progress) {
   ReferenceSettings settings;
-  settings.model = modelOf(options);
+  settings.model = modelOf(options, scene);
   settings.shadow_rays = rays ? &*rays : nullptr;
   settings.shadow_samples = options.shadow_samples;
   settings.on_progress = [&](std::size_t done, std::size_t pixels) {
@@ -203,7 +203,7 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
       const auto rays = shadowRays(options, scene, settings.camera);
       ProgressLine progress(options.quiet);
       const double stops = referenceExposure(scene, settings.camera, settings.size, settings.shading,
-                                             referenceSettings(options, rays, progress));
+                                             referenceSettings(options, scene, rays, progress));
       progress.clear();
       return stops;
     });
@@ -227,7 +227,7 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
     const auto rays = shadowRays(options, scene, settings.camera);
     ProgressLine progress(options.quiet);
     auto shaded = referencePicture(scene, view, settings.shading, settings.samples, pixels,
-                                   referenceSettings(options, rays, progress));
+                                   referenceSettings(options, scene, rays, progress));
     progress.clear();
     return shaded;
   });
@@ -265,7 +265,7 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   const std::vector<glm::dvec3> colors = timed(stats, Stage::kShade, [&] {
     const auto rays = shadowRays(options, scene, gbuffer.camera);
     ProgressLine progress(options.quiet);
-    auto shaded = referencePixels(scene, gbuffer, pixels, referenceSettings(options, rays, progress));
+    auto shaded = referencePixels(scene, gbuffer, pixels, referenceSettings(options, scene, rays, progress));
     progress.clear();
     return shaded;
   });

@@ -104,6 +104,7 @@ void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOpt
       if (!share.error.empty())
         reportWarning(fmt::format("{}; the other devices made its rows", share.error));
   if (hash) stats.hash = hash->hex();
+  reportFaultyLight(options, stats);
   reportLightError(options, stats);
 }
 

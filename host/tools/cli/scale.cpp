@@ -90,7 +90,7 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
     scene = loadScene(options.scene, options.frame, options.picture.load);
   else
     scene.cameras = {gbuffer->camera};
-  if (modelOf(options.picture) == Model::kCookTorrance) takeFacets(scene);
+  takeModel(options.picture, scene);
   std::erase(scene.warnings, noLightWarning(scene));
   if (!options.picture.quiet) reportWarnings(scene.warnings);
   ScaleExperiment experiment = planExperiment(command, options, scene, std::move(gbuffer));
