@@ -31,6 +31,7 @@ const std::vector<Needs>& needs() {
       {kSmoothWindow, {kPointLights, kSpotLights}},
       {kKhrWindow, {kSpotLights, kPointLights}},
       {kMaterialModels, {kDirectionalLights, kPointLights, kSpotLights}},
+      {kTangents, {kPointLights, kSpotLights, kDirectionalLights}},
       {kPointLights, {kPhong, kBlinnPhong, kToon, kCookTorrance, kOrenNayar, kWard}},
       {kDirectionalLights, {kCookTorrance, kToon, kWard, kOrenNayar, kBlinnPhong, kPhong}},
       {kSpotLights, {kToon, kPhong, kOrenNayar, kCookTorrance, kWard, kBlinnPhong}},
