@@ -46,6 +46,9 @@ Number readNumber(std::string_view text, int base = 10) {
   return value;
 }
 
+/// What stands before ShadeSettings::user_text.
+const std::string kText = "text=";
+
 /// The arguments of a task before its programs.
 constexpr std::size_t kTaskWords = 11;
 
@@ -58,7 +61,7 @@ std::vector<std::string> argumentsOf(const OpenedDevice& device, const CompileTa
                            int(task.quickly), settings.log2_degree, settings.exp2_degree, settings.pcf_width,
                            settings.tile_size, settings.soft_samples})
     words.push_back(std::to_string(number));
-  words.push_back(settings.user_text);
+  words.push_back(kText + settings.user_text);
   for (const FeatureSet& features : task.programs) words.push_back(fmt::format("{:x}", features.bits()));
   return words;
 }
@@ -80,7 +83,8 @@ DeviceTask readTask(std::span<const std::string> arguments) {
   settings.pcf_width = numbers[6];
   settings.tile_size = numbers[7];
   settings.soft_samples = numbers[8];
-  settings.user_text = arguments[kTaskWords - 1];
+  if (!arguments[kTaskWords - 1].starts_with(kText)) throw InputError("compile: expected a text");
+  settings.user_text = arguments[kTaskWords - 1].substr(kText.size());
   for (const std::string& program : arguments.subspan(kTaskWords)) {
     const auto bits = readNumber<std::uint64_t>(program, 16);
     FeatureSet& features = read.task.programs.emplace_back();

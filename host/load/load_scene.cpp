@@ -12,6 +12,7 @@
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/tangents.hpp"
+#include "shaders/shader_text.hpp"
 
 namespace luciole {
 namespace {
@@ -115,7 +116,7 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
     scene.warnings.push_back({texture + "; drawn without", "missing texture"});
   // Before any pose: deformations keep those at rest.
   addTangents(scene);
-  if (settings.tangents) addAllTangents(scene);
+  if (settings.tangents || usesTangents(scene.user_models)) addAllTangents(scene);
   addLightFields(light_fields, scene);
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);

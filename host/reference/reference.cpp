@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "gbuffer/packed_normal.hpp"
+#include "gbuffer/tangent_plane.hpp"
 #include "gbuffer/validate_gbuffer.hpp"
 #include "luciole/error.hpp"
 #include "luciole/validate_scene.hpp"
@@ -120,6 +121,11 @@ std::optional<ShownPoint> shownPoint(const GBuffer& gbuffer, const glm::ivec2& p
   point.ambient = triple(gbuffer.ambient, stride, place);
   point.emission = triple(gbuffer.emission, stride, place);
   point.shininess = gbuffer.specular.empty() ? 0.0 : double(gbuffer.specular[place + 3 * stride]);
+  // As the rounded direction lies in the surface, and without a plane around the upright axis.
+  const glm::dmat3 to_view = glm::transpose(glm::dmat3(to_world));
+  const glm::dvec3 along = gbuffer.tangent.empty() ? glm::dvec3(0.0) : unpackNormal(gbuffer.tangent[place]);
+  point.tangent =
+      glm::dmat3(to_world) * unitOrZero(tangentOf(along, unitOrZero(to_view * point.normal), to_view));
   const std::uint32_t seed = pixelSeed(pixel + gbuffer.crop_origin);
   // Shadow rays start on the smooth surface above the facet (Hanika 2021, see raster/lift.hpp).
   glm::dvec3 start = point.position;

@@ -7,6 +7,7 @@
 #include "luciole/validate_scene.hpp"
 #include "rays/shadow_rays.hpp"
 #include "scene/tangents.hpp"
+#include "shaders/shader_text.hpp"
 
 namespace luciole {
 namespace {
@@ -44,7 +45,8 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
                           .emission = true,
                           .unbent_normal = shading == Shading::kPhong && hasNormalMaps(scene),
                           .lift = settings.shadow_rays != nullptr,
-                          .model = true};
+                          .model = true,
+                          .tangent = usesTangents(scene.user_models)};
     const GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
     ReferenceSettings of_sample = settings;
     if (settings.on_progress)

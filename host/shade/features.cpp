@@ -13,6 +13,7 @@
 #include "shade/clustered_light.hpp"
 #include "shade/sampled_light.hpp"
 #include "shade/shadow_ways.hpp"
+#include "shaders/shader_text.hpp"
 #include "shadow/maps/shadow_views.hpp"
 
 namespace luciole {
@@ -198,6 +199,7 @@ FeatureSet neededFeatures(const Scene& scene, const Camera& camera, SurfaceTrait
     for (std::uint32_t number = 1; number < surfaces.models.size(); ++number)
       if (surfaces.models[number]) features.set(featureOf(modelOfNumber(number, {})), lit);
   features.set(Feature::kMaterialModels, settings.material_models && lit);
+  features.set(Feature::kTangents, features.has(Feature::kUserModels) && usesTangents(scene.user_models));
 
   // What clusters and samples give a pixel reaches the shading kernels as light that the surface emits.
   features.set(Feature::kClusteredHighlights, surfaces.specular && clusters_specular);

@@ -19,10 +19,16 @@ namespace {
 
 using Text = std::string_view;
 
-constexpr const char* kHeaders[] = {
-    "lanes.clh",           "math.clh",       "quotient.clh",      "random.clh",
-    "shade/phong.clh",     "shade/toon.clh", "shade/surface.clh", "shade/cook_torrance.clh",
-    "shade/oren_nayar.clh"};
+constexpr const char* kHeaders[] = {"lanes.clh",
+                                    "math.clh",
+                                    "quotient.clh",
+                                    "random.clh",
+                                    "shade/phong.clh",
+                                    "shade/toon.clh",
+                                    "shade/surface.clh",
+                                    "shade/cook_torrance.clh",
+                                    "shade/oren_nayar.clh",
+                                    "shade/ward.clh"};
 
 struct Token {
   Text text;
@@ -635,6 +641,12 @@ ShaderFacts shaderFacts(const Shader& shader, ShaderKind kind) {
     throw InputError(
         fmt::format("{}: has {} lines, expected {} at most", shader.path, lines, kMostShaderLines));
   return Checker(shader, kind).check();
+}
+
+bool usesTangents(std::span<const Shader> models) {
+  return std::any_of(models.begin(), models.end(), [](const Shader& model) {
+    return shaderFacts(model, ShaderKind::kModel).uses_tangents;
+  });
 }
 
 Shader readShader(const std::string& path, ShaderKind kind) {

@@ -43,6 +43,9 @@ struct ShaderFacts {
 /// Throws InputError, "FILE:LINE:COLUMN: …", for a text that breaks a rule, or lacks its kind's function.
 ShaderFacts shaderFacts(const Shader& shader, ShaderKind kind);
 
+/// Whether one of these models names tangents.
+bool usesTangents(std::span<const Shader> models);
+
 /// The text that takes the place of kernels/user_text.clh in a program with these shaders, which must have
 /// passed shaderFacts(). Its lines have the files' names and numbers. The function of the shader with the
 /// index i is called `reflect_light_i`, `surface_i` or `screen_i`. Empty without shaders.

@@ -27,6 +27,7 @@ CompileTask someTask() {
   task.settings.pcf_width = 3;
   task.settings.tile_size = 16;
   task.settings.soft_samples = 99;
+  task.settings.user_text = "INLINE floatL f(floatL x) { return x; }\n";
   task.choice.others = false;
   task.quickly = true;
   return task;
@@ -41,6 +42,7 @@ TEST(CompileTask, IsReadAsItWasWritten) {
     EXPECT_EQ(read.task.programs, someTask().programs);
     EXPECT_EQ(argumentsOf(device, read.task), argumentsOf(device, someTask()));
     EXPECT_EQ(read.task.settings.soft_samples, 99);
+    EXPECT_EQ(read.task.settings.user_text, someTask().settings.user_text);
     EXPECT_TRUE(read.task.quickly && read.task.choice.beams && !read.task.choice.others);
   }
 }
@@ -54,7 +56,7 @@ TEST(CompileTask, OfOthersIsRefused) {
       EXPECT_THROW(readTask(words), InputError) << i << " " << wrong;
     }
   EXPECT_THROW(readTask({}), InputError);
-  EXPECT_THROW(readTask(std::span(good).first(9)), InputError);
+  EXPECT_THROW(readTask(std::span(good).first(10)), InputError);
 }
 
 TEST(HelperProcess, ThatFailsIsToldAndOneThatCantBeStartedIsNone) {

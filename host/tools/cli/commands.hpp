@@ -56,6 +56,7 @@ void addGenerateCommand(CLI::App& app, CommandContext& context);
 void addGltfLightsCommand(CLI::App& generate, CommandContext& context);
 void addInfoCommand(CLI::App& app, CommandContext& context);
 void addCompileCommand(CLI::App& app, CommandContext& context);
+void addCheckModelCommand(CLI::App& app, CommandContext& context);
 void addDevicesCommand(CLI::App& app, CommandContext& context);
 
 // These print what `app`, the program, and all commands in it are when they run. It must outlive its parsing.

@@ -259,6 +259,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addScaleCommand(app, context);
   addGenerateCommand(app, context);
   addInfoCommand(app, context);
+  addCheckModelCommand(app, context);
   addDevicesCommand(app, context);
   addCompileCommand(app, context);
   addManCommand(app);

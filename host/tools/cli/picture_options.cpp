@@ -21,6 +21,7 @@
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/models.hpp"
+#include "shaders/shader_text.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "tools/cli/cameras.hpp"
@@ -439,12 +440,19 @@ void addThreadsOption(CLI::App& command) {
 
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
   Scene scene;
-  const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, options.load); });
+  LoadSettings load = options.load;
+  if (options.model.ends_with(kShaderExtension))
+    load.tangents |= usesTangents(std::vector{readShader(options.model, ShaderKind::kModel)});
+  const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, load); });
   logEvent("loaded", {{"scene", path},
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},
                       {"milliseconds", eventMilliseconds(milliseconds)}});
   takeModel(options, scene);
+  for (const Shader& model : scene.user_models)
+    if (const auto loose = shaderFacts(model, ShaderKind::kModel).loose;
+        options.require_exact && !loose.empty())
+      throw InputError("--require-exact: " + loose.front());
   castShadows(options, scene);
   if (!options.quiet) reportWarnings(scene.warnings);
   return scene;

@@ -11,22 +11,8 @@
 #include "tools/figures/log_axis.hpp"
 
 namespace luciole {
-namespace {
 
-// Pixels.
-constexpr double kFont = 12, kTitleFont = 14, kHeadFont = 17;
-constexpr double kMargin = 16, kHead = 32;                          ///< around the picture; its title
-constexpr double kLeft = 78, kRight = 12, kOver = 28, kUnder = 46;  ///< of a panel, around its area
-constexpr double kSwatch = 30, kSwatchGap = 8, kEntry = 20, kLegendGap = 16;
-constexpr double kTickGap = 48;  ///< between labelled ticks, at least
-constexpr const char *kInk = "#222222", *kMuted = "#555555", *kGrid = "#d9d9d9", *kFineGrid = "#f0f0f0";
-
-std::string number(double value) {
-  return fmt::format("{:g}", std::round(value * 100) / 100 + 0.0);  // + 0: no "-0"
-}
-
-/// Text escaped for use between tags or in an attribute.
-std::string escaped(const std::string& text) {
+std::string svgText(const std::string& text) {
   const std::string valid = utf8Of(text);
   constexpr const char* kReplacement = "\uFFFD";
   std::string out;
@@ -50,6 +36,20 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+namespace {
+
+// Pixels.
+constexpr double kFont = 12, kTitleFont = 14, kHeadFont = 17;
+constexpr double kMargin = 16, kHead = 32;                          ///< around the picture; its title
+constexpr double kLeft = 78, kRight = 12, kOver = 28, kUnder = 46;  ///< of a panel, around its area
+constexpr double kSwatch = 30, kSwatchGap = 8, kEntry = 20, kLegendGap = 16;
+constexpr double kTickGap = 48;  ///< between labelled ticks, at least
+constexpr const char *kInk = "#222222", *kMuted = "#555555", *kGrid = "#d9d9d9", *kFineGrid = "#f0f0f0";
+
+std::string number(double value) {
+  return fmt::format("{:g}", std::round(value * 100) / 100 + 0.0);  // + 0: no "-0"
+}
+
 enum class Anchor { kStart, kMiddle, kEnd };
 
 /// A line of text, vertically centred at `at`. more: attributes.
@@ -57,7 +57,7 @@ std::string textAt(const glm::dvec2& at, Anchor anchor, const std::string& text,
                    const std::string& more = "") {
   static constexpr const char* kAnchors[] = {"", " text-anchor=\"middle\"", " text-anchor=\"end\""};
   return fmt::format("<text x=\"{}\" y=\"{}\" dy=\".35em\"{}{}>{}</text>\n", number(at.x), number(at.y),
-                     kAnchors[int(anchor)], more, escaped(text));
+                     kAnchors[int(anchor)], more, svgText(text));
 }
 
 std::string lineBetween(const glm::dvec2& a, const glm::dvec2& b) {
@@ -327,7 +327,7 @@ std::string svgPlot(const Plot& plot) {
              "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"sans-serif\" "
              "font-size=\"{2}\" fill=\"{3}\">\n<title>{4}</title>\n<rect width=\"{0}\" height=\"{1}\" "
              "fill=\"#ffffff\"/>\n",
-             width, height, kFont, kInk, escaped(plot.title)) +
+             width, height, kFont, kInk, svgText(plot.title)) +
          textAt({kMargin, kMargin + kHead / 2}, Anchor::kStart, plot.title,
                 fmt::format(" font-size=\"{}\" font-weight=\"bold\"", kHeadFont)) +
          panels + "</svg>\n";

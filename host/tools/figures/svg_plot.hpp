@@ -49,8 +49,11 @@ struct Plot {
   std::vector<std::vector<PlotPanel>> rows{};
 };
 
-/// The plot as an SVG picture in UTF-8, as large as its panels need. In texts, what isn't valid UTF-8 or
-/// isn't allowed in XML becomes U+FFFD.
+/// A text for SVG, between tags or in an attribute. What isn't valid UTF-8, or isn't allowed in XML, becomes
+/// U+FFFD.
+std::string svgText(const std::string& text);
+
+/// The plot as an SVG picture in UTF-8, as large as its panels need.
 std::string svgPlot(const Plot& plot);
 
 }  // namespace luciole
