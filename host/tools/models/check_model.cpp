@@ -378,7 +378,7 @@ void measureTime(OpenedDevice& device, const CheckedModel& model, ModelCheck& ch
 }
 
 std::string placeText(const Place& place) {
-  return fmt::format("light {:.4g} and eye {:.4g} degrees from the normal, {:.0f} between, shininess {:g}",
+  return fmt::format("light {:.6g} and eye {:.6g} degrees from the normal, {:.0f} between, shininess {:g}",
                      place.light, place.eye, place.between, place.shininess);
 }
 

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 std::string angles(const Place& at) {
-  return fmt::format("light {:.4g}, eye {:.4g}, {:.0f} between", at.light, at.eye, at.between);
+  return fmt::format("light {:.6g}, eye {:.6g}, {:.0f} between", at.light, at.eye, at.between);
 }
 
 Json placeJson(const Place& at) {
