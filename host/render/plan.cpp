@@ -79,6 +79,16 @@ double pairsOf(const Scene& scene, const FeatureSet& features, double points) {
   return points * (1 + unbounded + std::min(double(ranged), kMostInRange));
 }
 
+/// The screens of the settings. Throws InputError.
+std::vector<ScreenProgram> screenPrograms(const std::vector<Shader>& screens) {
+  std::vector<ScreenProgram> programs;
+  for (const Shader& shader : screens) {
+    const std::size_t at = shader.text.find("#define RADIUS ");
+    programs.push_back({shader, at == std::string::npos ? 0 : std::stoi(shader.text.substr(at + 15))});
+  }
+  return programs;
+}
+
 /// The part of a plan that is the same for a scene's picture and for a G-buffer. view: of the whole picture.
 /// points_a_pixel: see shadowWays.
 PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const SurfaceTraits& surfaces,
@@ -89,6 +99,7 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
   chooseModel(surfaces.models, plan.shade);
   plan.shade.user_text = shaderProgram(scene.user_models, ShaderKind::kModel);
   plan.layers = lightLayers(scene, settings);
+  plan.screens = screenPrograms(settings.screens);
   const StandIns stand_ins = standIns(scene, view, surfaces, plan.shade);
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
     plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits,

@@ -337,6 +337,11 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
           "--light-groups", options.light_groups,
           "extra layers of an EXR, whose sum is the picture: light_groups.NAME of the lights of each "
           "group, light_groups.rest of all that no light gives; luciole mix weighs them anew");
+      command
+          .add_option("--screen", options.screens,
+                      "FILE.clh: a function that changes the lit colours by what is around a pixel, as "
+                      "contours and hatching do; several go one after another")
+          ->allow_extra_args(false);
       command.add_option("--aov", options.aovs, "extra layers of an EXR: " + aovNames(","));
     }
   }
@@ -550,6 +555,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;
+  for (const std::string& path : options.screens) settings.screens.push_back({path, readFile(path)});
   settings.aovs = aovsOf(options);
   settings.light_groups = options.light_groups;
   settings.exposure = exposureOf(options);

@@ -40,6 +40,7 @@ struct PictureOptions {
   int pcf_width = ShadeSettings{}.pcf_width;
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   int shadow_size = ShadowLimits{}.size;
+  std::vector<std::string> screens;  ///< files
   std::string aovs;
   bool light_groups = false;
   std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
