@@ -93,7 +93,7 @@ struct SampleLister final : PointLister {
         timed(picture.stats, Stage::kScreens, [&] { return applyScreens(picture, drawn, color, inner); });
     screened.frame = of_sample.frame;
     const std::size_t count = of_sample.color.size();
-    addPlane(std::move(of_sample.color), count, screened.color);
+    picture.recycled.screens.before = addPlane(std::move(of_sample.color), count, screened.color);
   }
 
   void takeLayer(std::size_t layer, LitPlanes lit) override {

@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -12,18 +14,19 @@
 #include "kernels/shared.h"
 #include "lighting/count_picture.hpp"
 #include "luciole/error.hpp"
+#include "raster/square.hpp"
 #include "render/assemble.hpp"
 
 namespace luciole {
 namespace {
 
-/// The planes that screens name. A name in a comment makes one that isn't read.
-struct ScreenPlanes {
+/// The planes that screens name. One that only a comment names isn't read.
+struct NamedPlanes {
   bool from_eye = false, depth = false, normal = false, object = false, material = false;
 };
 
-ScreenPlanes planesOf(const std::vector<ScreenProgram>& screens) {
-  ScreenPlanes planes;
+NamedPlanes planesOf(const std::vector<ScreenProgram>& screens) {
+  NamedPlanes planes;
   for (const ScreenProgram& screen : screens) {
     const auto names = [&](std::string_view name) {
       return screen.shader.text.find(name) != std::string::npos;
@@ -64,40 +67,97 @@ ScreenFrame frameOf(const GBuffer& gbuffer, const PixelRectangle& inner) {
           .pad1 = 0};
 }
 
-/// Calls visit(place in the G-buffer, place in planes of rows) for each pixel, in parallel.
-template <class Visit>
-void forEachPlace(const GBuffer& gbuffer, const ScreenFrame& frame, const Visit& visit) {
-  tbb::parallel_for(0, gbuffer.height, [&](int y) {
-    const std::size_t row = std::size_t(y) * std::size_t(frame.row_stride) + kScreenPad;
-    for (int x = 0; x < gbuffer.width; ++x) visit(gbuffer.index(x, y), row + std::size_t(x));
+/// The places in a square (kSquareLayout) of its pixels row by row.
+constexpr std::array<std::array<int, kSquareSize>, kSquareSize> kSquareRows = [] {
+  std::array<std::array<int, kSquareSize>, kSquareSize> rows{};
+  for (int i = 0; i < kSquarePixels; ++i) rows[kSquareLayout.y[i]][kSquareLayout.x[i]] = i;
+  return rows;
+}();
+
+/// Lays kCount planes in rows, which go on beyond their ends as they end. set(place, square): sets the
+/// square's values from those at the place of its first pixel in the G-buffer.
+template <std::size_t kCount, class T, class Set>
+void layRows(const GBuffer& gbuffer, const ScreenFrame& frame, const Set& set, ScreenPlane<T>& planes) {
+  planes.resize(kCount * frame.plane_stride);
+  tbb::parallel_for(0, (frame.rows + kSquareSize - 1) / kSquareSize, [&](int square_row) {
+    const int first_row = square_row * kSquareSize, rows = std::min(kSquareSize, frame.rows - first_row);
+    T* const out = planes.data() + std::size_t(first_row) * std::size_t(frame.row_stride) + kScreenPad;
+    for (int x = 0; x < frame.columns; x += kSquareSize) {
+      std::array<Lanes<T>, kCount> square;
+      set(gbuffer.index(x, first_row), square);
+      for (std::size_t c = 0; c < kCount; ++c)
+        for (int y = 0; y < rows; ++y)
+          for (int i = 0; i < kSquareSize; ++i)
+            out[c * frame.plane_stride + std::size_t(y * frame.row_stride + x + i)] =
+                square[c][kSquareRows[y][i]];
+    }
+    for (std::size_t c = 0; c < kCount; ++c)
+      for (int y = 0; y < rows; ++y) {
+        T *const first = out + c * frame.plane_stride + std::ptrdiff_t(y) * frame.row_stride,
+                 *const end = first + frame.columns;
+        std::fill(first - kScreenPad, first, *first);
+        std::fill(end, first - kScreenPad + frame.row_stride, end[-1]);
+      }
   });
 }
 
-/// Makes rows go on beyond their ends as they end, in all planes.
-template <class Values>
-void padRows(const ScreenFrame& frame, Values& planes) {
-  const std::size_t rows = planes.size() / std::size_t(frame.row_stride);
-  tbb::parallel_for(std::size_t(0), rows, [&](std::size_t y) {
-    const auto row = planes.begin() + std::ptrdiff_t(y) * frame.row_stride, first = row + kScreenPad,
-               end = first + frame.columns;
-    std::fill(row, first, *first);
-    std::fill(end, row + frame.row_stride, end[-1]);
-  });
+/// The depths of a square's pixels that see nothing.
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
+
+/// Vectors x y z of a G-buffer, turned to the world; 0 for pixels that see nothing.
+void layVectors(const GBuffer& gbuffer, const ScreenFrame& frame, const Plane& vectors,
+                ScreenPlane<float>& planes) {
+  const std::size_t n = gbuffer.pixels();
+  const glm::dmat3 turn(gbuffer.camera.camera_to_world);
+  layRows<3>(
+      gbuffer, frame,
+      [&](std::size_t place, std::array<Lanes<float>, 3>& square) {
+        const float *x = vectors.data() + place, *y = x + n, *z = y + n,
+                    *depth = gbuffer.position.data() + 2 * n + place;
+        for (int i = 0; i < kSquarePixels; ++i)
+          for (int c = 0; c < 3; ++c) {
+            const double turned = turn[0][c] * x[i] + turn[1][c] * y[i] + turn[2][c] * z[i];
+            square[std::size_t(c)][i] = depth[i] > kNothing ? float(turned) : 0.0f;
+          }
+      },
+      planes);
 }
 
-/// `count` planes of rows. value(place, c): of plane c, for a pixel at that place in the G-buffer.
-template <class T, class Value>
-std::vector<T, ArrayAllocator<T>> layRows(const GBuffer& gbuffer, const ScreenFrame& frame, bool wanted,
-                                          std::size_t count, const Value& value) {
-  std::vector<T, ArrayAllocator<T>> planes;
-  if (!wanted) return planes;
-  planes.resize(count * frame.plane_stride);
-  forEachPlace(gbuffer, frame, [&](std::size_t place, std::size_t out) {
-    const auto values = value(place);
-    for (std::size_t c = 0; c < count; ++c) planes[out + c * frame.plane_stride] = values[int(c)];
-  });
-  padRows(frame, planes);
-  return planes;
+/// Colours with exposure.
+void layColors(const GBuffer& gbuffer, const ScreenFrame& frame, const Plane& color, float exposure,
+               ScreenPlane<float>& planes) {
+  const std::size_t n = gbuffer.pixels();
+  layRows<3>(
+      gbuffer, frame,
+      [&](std::size_t place, std::array<Lanes<float>, 3>& square) {
+        for (std::size_t c = 0; c < 3; ++c)
+          for (int i = 0; i < kSquarePixels; ++i)
+            square[c][i] = finiteColor(color[place + c * n + std::size_t(i)] * exposure);
+      },
+      planes);
+}
+
+void layDepths(const GBuffer& gbuffer, const ScreenFrame& frame, ScreenPlane<float>& planes) {
+  const float* const z = gbuffer.position.data() + 2 * gbuffer.pixels();
+  layRows<1>(
+      gbuffer, frame,
+      [&](std::size_t place, std::array<Lanes<float>, 1>& square) {
+        for (int i = 0; i < kSquarePixels; ++i) square[0][i] = -z[place + std::size_t(i)];
+      },
+      planes);
+}
+
+/// Numbers in the scene; 0 where the G-buffer has none, -1 for pixels that see nothing.
+template <class Ids>
+void layIds(const GBuffer& gbuffer, const ScreenFrame& frame, const Ids& ids, ScreenPlane<int>& planes) {
+  const float* const z = gbuffer.position.data() + 2 * gbuffer.pixels();
+  layRows<1>(
+      gbuffer, frame,
+      [&](std::size_t place, std::array<Lanes<int>, 1>& square) {
+        for (std::size_t i = 0; i < kSquarePixels; ++i)
+          square[0][i] = !(z[place + i] > kNothing) ? -1 : ids.empty() ? 0 : int(ids[place + i]);
+      },
+      planes);
 }
 
 }  // namespace
@@ -117,51 +177,38 @@ View withMargin(const View& view, const PicturePlan& plan) {
 ScreenedColors applyScreens(ReadyPicture& picture, const GBuffer& gbuffer, const Plane& color,
                             const PixelRectangle& inner) {
   OpenedDevice& device = picture.device;
-  const ScreenPlanes wanted = planesOf(picture.plan.screens);
+  const NamedPlanes wanted = planesOf(picture.plan.screens);
   const ScreenFrame frame = frameOf(gbuffer, inner);
-  const std::size_t n = gbuffer.pixels();
-  const glm::dmat3 to_world(gbuffer.camera.camera_to_world);
-  const float exposure = std::exp2(picture.settings.exposure);
-  const auto isSeen = [&](std::size_t place) { return std::isfinite(gbuffer.position[place + 2 * n]); };
-  const auto vectorAt = [&](const Plane& plane, std::size_t place) {
-    return glm::vec3(plane[place], plane[place + n], plane[place + 2 * n]);
-  };
-  Plane before = layRows<float>(gbuffer, frame, true, 3, [&](std::size_t place) {
-    const glm::vec3 exposed = vectorAt(color, place) * exposure;
-    return glm::vec3(finiteColor(exposed.x), finiteColor(exposed.y), finiteColor(exposed.z));
-  });
-  const Plane from_eye = layRows<float>(gbuffer, frame, wanted.from_eye, 3, [&](std::size_t place) {
-    return isSeen(place) ? glm::vec3(to_world * glm::dvec3(vectorAt(gbuffer.position, place))) : glm::vec3(0);
-  });
-  const Plane depth = layRows<float>(gbuffer, frame, wanted.depth, 1, [&](std::size_t place) {
-    return glm::vec1(-gbuffer.position[place + 2 * n]);
-  });
-  const Plane normal = layRows<float>(gbuffer, frame, wanted.normal, 3, [&](std::size_t place) {
-    return glm::vec3(to_world * glm::dvec3(vectorAt(gbuffer.normal, place)));
-  });
-  const auto idsOf = [&](bool names, const auto& plane) {
-    return layRows<int>(gbuffer, frame, names, 1, [&](std::size_t place) {
-      return glm::ivec1(!isSeen(place) ? -1 : plane.empty() ? 0 : int(plane[place]));
-    });
-  };
+  ScreenMemory& planes = picture.recycled.screens;
+  layColors(gbuffer, frame, color, std::exp2(picture.settings.exposure), planes.before);
+  planes.after.resize(planes.before.size());
+  if (wanted.from_eye) layVectors(gbuffer, frame, gbuffer.position, planes.from_eye);
+  if (wanted.depth) layDepths(gbuffer, frame, planes.depth);
+  if (wanted.normal) layVectors(gbuffer, frame, gbuffer.normal, planes.normal);
   const ModelPlane none;
-  const auto object = idsOf(wanted.object, none), material = idsOf(wanted.material, none);
-  Plane after(3 * std::size_t(frame.plane_stride));
-  const auto orNone = [&](const auto& plane) {
-    return plane.empty() ? decltype(borrowed(device, plane)){} : borrowed(device, plane);
+  if (wanted.object) layIds(gbuffer, frame, none, planes.object);
+  if (wanted.material) layIds(gbuffer, frame, none, planes.material);
+  const auto orNone = [&](bool is_wanted, const auto& plane) {
+    return is_wanted ? borrowed(device, plane) : decltype(borrowed(device, plane)){};
   };
   for (std::size_t i = 0; i < picture.plan.screens.size(); ++i) {
     const ScreenProgram& screen = picture.plan.screens[i];
-    const Buffer<float> image = borrowedForOutput(device, after);
+    const Buffer<float> image = borrowedForOutput(device, planes.after);
     const ScreenMarks marks = screenRows(device, screen,
-                                         {frame, borrowed(device, before), orNone(from_eye), orNone(depth),
-                                          orNone(normal), orNone(object), orNone(material), image});
-    download(device, image, after);
+                                         {.frame = frame,
+                                          .color = borrowed(device, planes.before),
+                                          .from_eye = orNone(wanted.from_eye, planes.from_eye),
+                                          .depth = orNone(wanted.depth, planes.depth),
+                                          .normal = orNone(wanted.normal, planes.normal),
+                                          .object = orNone(wanted.object, planes.object),
+                                          .material = orNone(wanted.material, planes.material),
+                                          .image = image});
+    download(device, image, planes.after);
     if (!marks.beyond.empty()) throw InputError(marks.beyond);
     addCount(picture.stats, fmt::format("screen_{}_bad_pixels", i + 1), marks.bad_colors);
-    std::swap(before, after);
+    std::swap(planes.before, planes.after);
   }
-  return {frame, std::move(before)};
+  return {frame, std::move(planes.before)};
 }
 
 void setScreenedColors(const ScreenedColors& sum, int samples, Image& image) {
