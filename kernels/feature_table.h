@@ -55,6 +55,7 @@
   X(SampledHighlights, SAMPLED_HIGHLIGHTS, "sampled highlights", "highlights of lights that are sampled",    \
     kForSampling)                                                                                            \
   X(MaterialModels, MATERIAL_MODELS, "material models", "surfaces with models of their own", 0)              \
-  X(UserModels, USER_MODELS, "user models", "models from files of the user's", 0)
+  X(UserModels, USER_MODELS, "user models", "models from files of the user's", 0)                            \
+  X(Tangents, TANGENTS, "surface tangents", "models that reflect differently along and across a surface", 0)
 
 #endif

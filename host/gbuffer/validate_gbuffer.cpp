@@ -44,6 +44,10 @@ void validateGBuffer(const GBuffer& gbuffer) {
     throw InputError("gbuffer.unbent_normal: beside geometric_normal, expected one of them");
   check("lift", gbuffer.lift.size(), 1);
   check("model", gbuffer.model.size(), 1);
+  check("tangent", gbuffer.tangent.size(), 1);
+  check("uv", gbuffer.uv.size(), 2);
+  check("object", gbuffer.object.size(), 1);
+  check("material", gbuffer.material.size(), 1);
   if (std::any_of(gbuffer.model.begin(), gbuffer.model.end(),
                   [](std::uint32_t number) { return number > kMostModelNumber; }))
     throw InputError(fmt::format("gbuffer.model: has a number above {}", kMostModelNumber));

@@ -113,7 +113,9 @@ Scene loadScene(const std::string& path, double frame, const LoadSettings& setti
   refuseFaults(scene, settings);
   for (const std::string& texture : scene.missing_textures)
     scene.warnings.push_back({texture + "; drawn without", "missing texture"});
-  addTangents(scene);  // before any pose: deformations keep those at rest
+  // Before any pose: deformations keep those at rest.
+  addTangents(scene);
+  if (settings.tangents) addAllTangents(scene);
   addLightFields(light_fields, scene);
   poseScene(scene, 1);
   completeScene(scene, is_mesh_file);

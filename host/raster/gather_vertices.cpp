@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "gbuffer/packed_normal.hpp"
+#include "gbuffer/tangent_plane.hpp"
 #include "kernels/shared.h"
 #include "luciole/planes.hpp"
 #include "raster/empty_gbuffer.hpp"
@@ -26,14 +27,14 @@ std::vector<const Material*> vertexMaterials(const Scene& scene, const PlacedObj
   return materials;
 }
 
-void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Material& material,
-                  bool perspective, GBuffer& gbuffer) {
+void gatherVertex(const Scene& scene, const View& view, const PlacedObject& object, std::uint32_t vertex,
+                  const Material& material, GBuffer& gbuffer) {
   const Mesh& mesh = *object.mesh;
   const glm::dvec3 position(object.object_to_view * glm::dvec4(mesh.positions[vertex], 1.0));
   const glm::dvec3 sum = object.normal_to_view * glm::dvec3(mesh.normals[vertex]);
   const double length = glm::length(sum);
   glm::dvec3 normal = length > 0.0 && std::isfinite(length) ? sum / length : glm::dvec3(0.0, 0.0, 1.0);
-  if (material.double_sided && !eyeInFront(normal, position, perspective)) normal = -normal;
+  if (material.double_sided && !eyeInFront(normal, position, isPerspective(view))) normal = -normal;
   const glm::vec3 color = mesh.colors.empty() ? glm::vec3(1.0f) : glm::vec3(mesh.colors[vertex]);
 
   const std::size_t place = object.first_vertex + vertex;
@@ -47,6 +48,15 @@ void gatherVertex(const PlacedObject& object, std::uint32_t vertex, const Materi
   // A vertex belongs to several triangles: its own normal stands for theirs.
   if (!gbuffer.geometric_normal.empty()) gbuffer.geometric_normal[place] = packNormal(normal);
   if (!gbuffer.model.empty()) gbuffer.model[place] = modelNumber(material.model);
+  if (!gbuffer.tangent.empty()) {
+    const glm::dvec3 along = mesh.tangents.empty() ? glm::dvec3(0.0) : glm::dvec3(mesh.tangents[vertex]);
+    gbuffer.tangent[place] = packNormal(tangentOf(glm::dmat3(object.object_to_view) * along,
+                                                  glm::dvec3(glm::vec3(normal)), view.world_to_view));
+  }
+  if (!gbuffer.uv.empty() && !mesh.uvs.empty())
+    for (int c = 0; c < 2; ++c) gbuffer.uv[c * stride + place] = mesh.uvs[vertex][c];
+  if (!gbuffer.object.empty()) gbuffer.object[place] = object.number;
+  if (!gbuffer.material.empty()) gbuffer.material[place] = std::uint32_t(&material - scene.materials.data());
   if (!gbuffer.specular.empty()) {
     storePixel(material.specular, place, stride, gbuffer.specular);
     gbuffer.specular[3 * stride + place] = material.shininess;
@@ -65,7 +75,7 @@ GBuffer gatherVertices(const Scene& scene, std::span<const std::uint32_t> object
     const PlacedObject& object = placed[i];
     const std::vector<const Material*> materials = vertexMaterials(scene, object);
     for (std::uint32_t vertex = 0; vertex < materials.size(); ++vertex)
-      if (materials[vertex]) gatherVertex(object, vertex, *materials[vertex], isPerspective(view), gbuffer);
+      if (materials[vertex]) gatherVertex(scene, view, object, vertex, *materials[vertex], gbuffer);
   });
   return gbuffer;
 }

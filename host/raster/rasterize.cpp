@@ -29,7 +29,8 @@ GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, co
   GBuffer gbuffer = emptyGBuffer(view, planes, std::move(recycled));
   const ViewPlane plane = viewPlane(view);
   const HoleTest holes{scene, geometry.objects, plane, view.number};
-  const ResolveInput input{scene, geometry.objects, plane, shading, vertex_colors, planes};
+  const ResolveInput input{scene,  geometry.objects,  plane, shading, vertex_colors,
+                           planes, view.world_to_view};
   RasterCounts own_counts;
   if (!counts) counts = &own_counts;
   counts->covering.resize(geometry.triangle_count);

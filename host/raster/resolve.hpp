@@ -17,6 +17,7 @@ struct ResolveInput {
   Shading shading;
   std::span<const glm::vec3> vertex_colors;  ///< as in rasterize(); used for kGouraud only
   const PlaneSet& planes;                    ///< of the G-buffer
+  glm::dmat3 world_to_view{1.0};             ///< of the view space of `objects`
   /// For texture space, else null: the same triangles, placed where `plane` sees them. Attributes are those
   /// of the front of `objects`.
   const std::vector<PlacedObject>* flattened_objects = nullptr;

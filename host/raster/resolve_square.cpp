@@ -42,7 +42,7 @@ SquareValues valuesSeen(const ResolveInput& input, const SquarePlace& place, Lan
   SquareValues values = show(lane, mask);
   while ((lane = nextSeen(triangles, lane + 1)) < kSquarePixels) {
     const SquareValues others = show(lane, mask);
-    copyValues(others, mask, values);
+    copyValues(others, mask, input.planes, values);
   }
   applyMaps(input.scene, place, values);
   return values;
@@ -102,6 +102,10 @@ void store(const SquareValues& values, const Lanes<std::uint32_t>& triangles, st
     store(values.surface_normal, drawn, whole, gbuffer.unbent_normal.data() + place);
   if (!gbuffer.lift.empty()) store(values.lift, drawn, whole, gbuffer.lift.data() + place);
   if (!gbuffer.model.empty()) store(values.model, drawn, whole, gbuffer.model.data() + place);
+  if (!gbuffer.tangent.empty()) store(values.tangent, drawn, whole, gbuffer.tangent.data() + place);
+  store(values.uv, place, drawn, whole, gbuffer.uv);
+  if (!gbuffer.object.empty()) store(values.object, drawn, whole, gbuffer.object.data() + place);
+  if (!gbuffer.material.empty()) store(values.material, drawn, whole, gbuffer.material.data() + place);
 }
 
 }  // namespace

@@ -19,6 +19,12 @@ Interpolant<glm::dvec3> normals(const Surface& surface, const glm::dvec3& facing
   return {to_view * in_object.first, to_view * in_object.to_second, to_view * in_object.to_third};
 }
 
+Interpolant<glm::dvec3> tangents(const Surface& surface) {
+  const glm::dmat3 to_view(surface.object->object_to_view);
+  const auto in_object = between<glm::dvec3>(surface.object->mesh->tangents.data(), surface.corners);
+  return {to_view * in_object.first, to_view * in_object.to_second, to_view * in_object.to_third};
+}
+
 /// The lift on the side that is seen.
 Lift liftOf(const Surface& surface, const Interpolant<glm::dvec3>& normal) {
   const glm::bvec3 bent = bentCorners(*surface.object->mesh, surface.corners);
@@ -47,7 +53,10 @@ SeenSurface makeSeenSurface(const ResolveInput& input, std::uint32_t triangle) {
   const bool any_map =
       surface.material->diffuse_map.texture >= 0 || surface.material->emission_map.texture >= 0;
   seen.mapped = any_map && !mesh.uvs.empty();
-  if (seen.mapped) seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
+  if (seen.mapped || (input.planes.uv && !mesh.uvs.empty()))
+    seen.uv = between<glm::dvec2>(mesh.uvs.data(), surface.corners);
+  seen.has_tangent = input.planes.tangent && !mesh.tangents.empty();
+  if (seen.has_tangent) seen.tangent = tangents(surface);
   seen.has_normal_map =
       surface.material->normal_map.texture >= 0 && input.shading == Shading::kPhong && !mesh.tangents.empty();
   // Lit vertex colours are multiplied by the diffuse map, so they need no other coordinates.

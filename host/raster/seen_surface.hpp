@@ -26,7 +26,9 @@ struct SeenSurface {
   Interpolant<glm::dvec3> normal;      ///< on the viewer's side, of any length
   Lift lift;                           ///< for ResolveInput::planes with lift
   bool mapped = false;                 ///< it has diffuse or emission maps and texture coordinates
-  Interpolant<glm::dvec2> uv;          ///< if mapped
+  Interpolant<glm::dvec2> uv;          ///< if mapped or in ResolveInput::planes, and the mesh has it
+  bool has_tangent = false;            ///< it is in ResolveInput::planes, and the mesh has it
+  Interpolant<glm::dvec3> tangent;     ///< if has_tangent; of any length
   bool has_normal_map = false;         ///< for Shading::kPhong
   bool has_emission_uv = false;        ///< its emission map has other texture coordinates, emission_uv
   Interpolant<glm::dvec2> emission_uv;

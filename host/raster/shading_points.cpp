@@ -45,7 +45,7 @@ bool agreeAt(const SeenSurface& a, const SeenSurface& b, const glm::dvec3& p, co
   const PlaneAttributes of_a = planeAttributes(a, p), of_b = planeAttributes(b, p);
   if (!(glm::distance(of_a.normal, of_b.normal) <= kSameShade)) return false;
   if (!(glm::distance(of_a.color, of_b.color) <= kSameShade)) return false;
-  if (a.has_normal_map) {
+  if (a.has_normal_map || a.has_tangent) {
     const glm::dvec4 tangent = tangentAt(a.surface, weightsInPlane(a.surface, p)),
                      other = tangentAt(b.surface, weightsInPlane(b.surface, p));
     if (!(glm::distance(tangent, other) <= kSameShade)) return false;
@@ -207,8 +207,8 @@ void toPlane(const ViewPlane& plane, SquarePlace& place) {
 }
 
 ResolveInput resolveInput(const SampledView& sampled) {
-  return {sampled.scene,   sampled.objects,       sampled.plane,
-          sampled.shading, sampled.vertex_colors, sampled.planes};
+  return {sampled.scene,  sampled.objects,           sampled.plane, sampled.shading, sampled.vertex_colors,
+          sampled.planes, sampled.view.world_to_view};
 }
 
 /// Groups the samples of a part of a strip, resolves the pixels' first points, and appends the others to

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "gbuffer/packed_normal.hpp"
+#include "gbuffer/tangent_plane.hpp"
 
 namespace luciole {
 namespace {
@@ -307,6 +308,19 @@ void bendNormals(const ResolveInput& input, const SeenSurface& seen, const Squar
   }
 }
 
+/// The tangents of the pixels that see a surface.
+void setTangents(const ResolveInput& input, const SeenSurface& seen, const SquareWeights& weights,
+                 const LaneMask& mask, SquareValues& values) {
+  Lanes3<double> along{};
+  if (seen.has_tangent)
+    for (int c = 0; c < 3; ++c) along[c] = interpolate(seen.tangent, c, weights);
+  for (int i = 0; i < kSquarePixels; ++i)
+    if (mask[i])
+      values.tangent[i] = packNormal(
+          tangentOf({along[0][i], along[1][i], along[2][i]},
+                    {values.normal[0][i], values.normal[1][i], values.normal[2][i]}, input.world_to_view));
+}
+
 }  // namespace
 
 SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel) {
@@ -338,14 +352,19 @@ SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const 
     values.surface_normal.fill(seen.geometric_normal);
   }
   if (seen.has_normal_map) bendNormals(input, seen, place, crossing, weights, mask, values);
-  values.has_models = input.planes.model;
-  if (values.has_models) values.model.fill(modelNumber(surface.material->model));
+  if (input.planes.model) values.model.fill(modelNumber(surface.material->model));
+  if (input.planes.tangent) setTangents(input, seen, weights, mask, values);
+  if (input.planes.uv)
+    for (int c = 0; c < 2; ++c) values.uv[c] = rounded(interpolate(seen.uv, c, weights));
+  if (input.planes.object) values.object.fill(surface.object->number);
+  if (input.planes.material)
+    values.material.fill(std::uint32_t(surface.material - input.scene.materials.data()));
   setMaterial(input, seen, weights, values);
   if (seen.mapped) setMaps(input, seen, crossing, weights, mask, values);
   return values;
 }
 
-void copyValues(const SquareValues& values, const LaneMask& mask, SquareValues& out) {
+void copyValues(const SquareValues& values, const LaneMask& mask, const PlaneSet& planes, SquareValues& out) {
   copyComponents(values.position, mask, out.position);
   copyComponents(values.normal, mask, out.normal);
   copyComponents(values.diffuse, mask, out.diffuse);
@@ -354,7 +373,11 @@ void copyValues(const SquareValues& values, const LaneMask& mask, SquareValues& 
   copyComponents(values.emission, mask, out.emission);
   copyLanes(values.surface_normal, mask, out.surface_normal);
   copyLanes(values.lift, mask, out.lift);
-  if (values.has_models) copyLanes(values.model, mask, out.model);
+  if (planes.model) copyLanes(values.model, mask, out.model);
+  if (planes.tangent) copyLanes(values.tangent, mask, out.tangent);
+  if (planes.uv) copyComponents(values.uv, mask, out.uv);
+  if (planes.object) copyLanes(values.object, mask, out.object);
+  if (planes.material) copyLanes(values.material, mask, out.material);
   if (!values.mapped && !out.mapped) return;
   out.mapped = true;
   copyLanes(values.reflection_map, mask, out.reflection_map);

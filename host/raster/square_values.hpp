@@ -18,8 +18,12 @@ struct SquareValues {
   Lanes3<float> emission;
   Lanes<std::uint32_t> surface_normal;  ///< unbent_normal where that is wanted, else geometric_normal
   Lanes<float> lift;
-  bool has_models = false;     ///< as ResolveInput::planes.model
-  Lanes<std::uint32_t> model;  ///< a ModelPlane's, where has_models
+  /// Of the members below only those of ResolveInput::planes are set.
+  Lanes<std::uint32_t> model;
+  Lanes<std::uint32_t> tangent;  ///< of the pixels that see the surface
+  std::array<Lanes<float>, 2> uv;
+  Lanes<std::uint32_t> object;
+  Lanes<std::uint32_t> material;
   /// The maps that applyMaps() multiplies in.
   bool mapped = false;  ///< any pixel has one; otherwise the members below are undefined
   Lanes<const TextureUse*> reflection_map{};  ///< into diffuse and ambient; null: none
@@ -44,8 +48,8 @@ SquarePlace squarePlace(const ViewPlane& plane, const glm::ivec2& first_pixel);
 SquareValues valuesOf(const ResolveInput& input, const SeenSurface& seen, const SquarePlace& place,
                       const LaneMask& mask);
 
-/// Copies the values of the pixels in `mask` to `out`.
-void copyValues(const SquareValues& values, const LaneMask& mask, SquareValues& out);
+/// Copies the values of the pixels in `mask` to `out`. planes: as ResolveInput::planes.
+void copyValues(const SquareValues& values, const LaneMask& mask, const PlaneSet& planes, SquareValues& out);
 
 /// Multiplies the reflection map into diffuse and ambient, and the emission map into emission. A pixel that
 /// is shaded for several samples takes the mean of four lookups, whose places have the samples' mean and

@@ -25,7 +25,7 @@ namespace {
 constexpr int kSamplesOfATexel = 16;
 
 /// Of a texel: all groups of a G-buffer, and three labels.
-constexpr double kBytesPerTexel = (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1 + 3) * 4;
+constexpr double kBytesPerTexel = (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1 + 1 + 2 + 1 + 1 + 3) * 4;
 
 /// A scene of the object alone, flattened into texture space: a parallel camera at the origin sees the map.
 /// Triangles keep their order, or are reversed.
@@ -118,11 +118,11 @@ TextureSpace rasterizeTextureSpace(const Scene& scene, std::uint32_t object, glm
   }
 
   const std::uint32_t drawn[] = {object};
-  const std::vector<PlacedObject> objects =
-      placeObjects(scene, drawn, cameraView(camera, size).world_to_view);
+  const glm::dmat4 world_to_view = worldToView(camera);
+  const std::vector<PlacedObject> objects = placeObjects(scene, drawn, world_to_view);
   const std::vector<PlacedObject> spread = placeObjects(flat, allObjects(flat), view.world_to_view);
   const ViewPlane plane = viewPlane(view);
-  const ResolveInput input{scene, objects, plane, Shading::kPhong, {}, planes, &spread};
+  const ResolveInput input{scene, objects, plane, Shading::kPhong, {}, planes, world_to_view, &spread};
   tbb::parallel_for(0, (size.y + kSquareSize - 1) / kSquareSize, [&](int row) {
     SurfaceCache surfaces(input);
     for (int x = 0; x < size.x; x += kSquareSize) {

@@ -25,7 +25,9 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
       (features.lightError() ? 9 : 0) + (features.has(Feature::kSampledLights) ? 3 : 0);
   const std::size_t gbuffer = 9 + bounded + (planes.specular ? 4 : 0) + (planes.ambient ? 3 : 0) +
                               (planes.emission ? 3 : 0) + (planes.geometric_normal ? 1 : 0) +
-                              (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) + (planes.model ? 1 : 0);
+                              (planes.unbent_normal ? 1 : 0) + (planes.lift ? 1 : 0) +
+                              (planes.model ? 1 : 0) + (planes.tangent ? 1 : 0) + (planes.uv ? 2 : 0) +
+                              (planes.object ? 1 : 0) + (planes.material ? 1 : 0);
   const std::size_t lit = features.has(Feature::kOutputShadow) ? 4 : 3;
   const std::size_t counted = settings.count_lights || settings.wants(Aov::kLightCount) ? 1 : 0;
   const std::size_t light_layers = layerChannels(settings) * plan.layers.size();

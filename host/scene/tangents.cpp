@@ -42,13 +42,15 @@ glm::dvec3 flattened(const glm::dvec3& vector, const glm::dvec3& normal) {
   return length > 1e-12 * glm::length(vector) && std::isfinite(length) ? flat / length : glm::dvec3(0.0);
 }
 
-/// For each vertex the first one with the same position, normal and texture coordinates.
-std::vector<std::uint32_t> weld(const Mesh& mesh) {
+/// For each vertex the first one with the same position, normal and, unless across_seams, texture
+/// coordinates.
+std::vector<std::uint32_t> weld(const Mesh& mesh, bool across_seams) {
   using Key = std::array<float, 8>;
   const std::vector<glm::vec2>& uvs = uvsOf(mesh);
   const auto key = [&](std::uint32_t i) {
     const glm::vec3 p = mesh.positions[i], n = mesh.normals[i];
-    return Key{p.x, p.y, p.z, n.x, n.y, n.z, uvs[i].x, uvs[i].y};
+    const glm::vec2 uv = across_seams ? glm::vec2(0.0f) : uvs[i];
+    return Key{p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y};
   };
   std::vector<std::uint32_t> order(mesh.positions.size()), first(order.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -86,6 +88,18 @@ struct Edge {
   }
 };
 
+/// Whether texture coordinates change alike along two triangles' edge, as where a texture goes on beyond a
+/// seam.
+bool goesOn(const Mesh& mesh, const Edge& a, const Edge& b) {
+  const std::vector<glm::vec2>& uvs = uvsOf(mesh);
+  const auto uv = [&](std::uint32_t corner) {
+    return glm::dvec2(uvs[mesh.triangles[corner / 3][int(corner % 3)]]);
+  };
+  const glm::dvec2 step_a = uv(a.high_corner) - uv(a.low_corner),
+                   step_b = uv(b.high_corner) - uv(b.low_corner);
+  return glm::distance(step_a, step_b) <= 0x1p-10 * (glm::length(step_a) + glm::length(step_b));
+}
+
 Groups groupCorners(const Mesh& mesh, const std::vector<Facet>& facets,
                     const std::vector<std::uint32_t>& welded) {
   Groups groups;
@@ -108,7 +122,7 @@ Groups groupCorners(const Mesh& mesh, const std::vector<Facet>& facets,
     for (; end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high;
          ++end) {
       const Edge*& other = of_side[facets[edges[end].low_corner / 3].mirrored];
-      if (other) {
+      if (other && goesOn(mesh, *other, edges[end])) {
         groups.join(other->low_corner, edges[end].low_corner);
         groups.join(other->high_corner, edges[end].high_corner);
       }
@@ -128,11 +142,11 @@ double angleAt(const Mesh& mesh, const glm::uvec3& corners, int corner, const gl
 }
 
 /// A tangent for each corner, zero where there is none.
-std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>& wanted) {
+std::vector<glm::vec4> cornerTangents(const Mesh& mesh, const std::vector<bool>& wanted, bool across_seams) {
   std::vector<Facet> facets(mesh.triangles.size());
   for (std::size_t t = 0; t < facets.size(); ++t)
     if (wanted[t]) facets[t] = facetOf(mesh, mesh.triangles[t]);
-  const std::vector<std::uint32_t> welded = weld(mesh);
+  const std::vector<std::uint32_t> welded = weld(mesh, across_seams);
   Groups groups = groupCorners(mesh, facets, welded);
   std::vector<glm::dvec3> sums(3 * facets.size());
   std::vector<std::uint32_t> group_of_vertex(mesh.positions.size(), kNone);  // any one, of a welded vertex
@@ -178,6 +192,32 @@ std::uint32_t copyVertex(std::uint32_t from, Mesh& mesh) {
   return std::uint32_t(mesh.positions.size() - 1);
 }
 
+/// Adds the tangents that corners lack: those of materials with a normal map, or all, across seams.
+void addMissing(Scene& scene, bool all) {
+  std::vector<std::vector<bool>> wanted(scene.meshes.size());
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    if (uvsOf(mesh).empty()) continue;
+    std::vector<bool>& triangles = wanted[object.mesh];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const std::uint32_t material =
+          object.material >= 0 ? std::uint32_t(object.material) : mesh.triangle_materials[t];
+      if (scene.materials[material].normal_map.texture < 0 && !all) continue;
+      const glm::uvec3& corners = mesh.triangles[t];
+      const auto has = [&](int i) {
+        return !mesh.tangents.empty() && mesh.tangents[corners[i]] != glm::vec4(0);
+      };
+      if (has(0) && has(1) && has(2)) continue;
+      triangles.resize(mesh.triangles.size(), false);
+      triangles[t] = true;
+    }
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (!wanted[i].empty()) addTangents(wanted[i], scene.meshes[i], all);
+  for (Deformation& deformation : scene.animation.deformations)
+    deformation.tangents = scene.meshes[deformation.mesh].tangents;
+}
+
 }  // namespace
 
 bool hasNormalMaps(const Scene& scene) {
@@ -185,8 +225,8 @@ bool hasNormalMaps(const Scene& scene) {
                      [](const Material& material) { return material.normal_map.texture >= 0; });
 }
 
-void addTangents(const std::vector<bool>& wanted, Mesh& mesh) {
-  const std::vector<glm::vec4> tangents = cornerTangents(mesh, wanted);
+void addTangents(const std::vector<bool>& wanted, Mesh& mesh, bool across_seams) {
+  const std::vector<glm::vec4> tangents = cornerTangents(mesh, wanted, across_seams);
   const std::size_t before = mesh.positions.size();
   mesh.tangents.resize(before, glm::vec4(0));
   std::vector<bool> used(before, false);  // by a triangle that keeps what the vertex has
@@ -214,29 +254,17 @@ void addTangents(const std::vector<bool>& wanted, Mesh& mesh) {
 }
 
 void addTangents(Scene& scene) {
-  if (!hasNormalMaps(scene)) return;
-  std::vector<std::vector<bool>> wanted(scene.meshes.size());
-  for (const Object& object : scene.objects) {
-    const Mesh& mesh = scene.meshes[object.mesh];
-    if (uvsOf(mesh).empty()) continue;
-    std::vector<bool>& triangles = wanted[object.mesh];
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const std::uint32_t material =
-          object.material >= 0 ? std::uint32_t(object.material) : mesh.triangle_materials[t];
-      if (scene.materials[material].normal_map.texture < 0) continue;
-      const glm::uvec3& corners = mesh.triangles[t];
-      const auto has = [&](int i) {
-        return !mesh.tangents.empty() && mesh.tangents[corners[i]] != glm::vec4(0);
-      };
-      if (has(0) && has(1) && has(2)) continue;
-      triangles.resize(mesh.triangles.size(), false);
-      triangles[t] = true;
-    }
+  if (hasNormalMaps(scene)) addMissing(scene, false);
+}
+
+void addAllTangents(Scene& scene) {
+  addMissing(scene, true);
+  for (Mesh& mesh : scene.meshes) {
+    if (!mesh.divided || uvsOf(*mesh.divided).empty()) continue;
+    Mesh divided = *mesh.divided;
+    addTangents(std::vector<bool>(divided.triangles.size(), true), divided, true);
+    mesh.divided = std::make_shared<const Mesh>(std::move(divided));
   }
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (!wanted[i].empty()) addTangents(wanted[i], scene.meshes[i]);
-  for (Deformation& deformation : scene.animation.deformations)
-    deformation.tangents = scene.meshes[deformation.mesh].tangents;
 }
 
 }  // namespace luciole

@@ -17,7 +17,12 @@ bool hasNormalMaps(const Scene& scene);
 /// O(n log n).
 void addTangents(Scene& scene);
 
+/// The same for all materials, after those with a normal map, and for the meshes' divided forms: for shaders.
+/// What they get differs where texture coordinates jump along an edge but go on alike beyond it, as around a
+/// sphere: there the triangles of both sides share a tangent, so that highlights along it show no seam.
+void addAllTangents(Scene& scene);
+
 /// The same for one mesh and the triangles for which `wanted` is true.
-void addTangents(const std::vector<bool>& wanted, Mesh& mesh);
+void addTangents(const std::vector<bool>& wanted, Mesh& mesh, bool across_seams = false);
 
 }  // namespace luciole

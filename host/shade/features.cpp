@@ -246,7 +246,8 @@ PlaneSet neededPlanes(const FeatureSet& features) {
           .geometric_normal = features.shadowMaps() && !features.has(Feature::kNormalMaps),
           .unbent_normal = features.has(Feature::kNormalMaps),
           .lift = features.has(Feature::kLift),
-          .model = features.has(Feature::kMaterialModels)};
+          .model = features.has(Feature::kMaterialModels),
+          .tangent = features.has(Feature::kTangents)};
 }
 
 std::string featureDefines(const FeatureSet& features) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gbuffer/packed_normal.hpp"
+#include "gbuffer/tangent_plane.hpp"
 
 namespace luciole {
 namespace {
@@ -44,8 +45,12 @@ Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const Featur
   if (asks_surfaces && surfaceNormals(gbuffer).empty()) packed = packNormals(gbuffer);
   ModelPlane default_model(features.has(Feature::kMaterialModels) && gbuffer.model.empty() ? stride : 0);
   const PackedNormals& surface_normal = packed.empty() ? surfaceNormals(gbuffer) : packed;
+  PackedNormals tangents;
+  if (features.has(Feature::kTangents) && gbuffer.tangent.empty()) tangents = tangentsOf(gbuffer);
+  const PackedNormals& tangent = tangents.empty() ? gbuffer.tangent : tangents;
   const ModelPlane& model = default_model.empty() ? gbuffer.model : default_model;
-  GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, surface_normal, gbuffer.lift, model, unlit);
+  GBufferBuffers buffers =
+      borrowedGBuffer(device, gbuffer, surface_normal, gbuffer.lift, model, tangent, unlit);
   Plane zeros = zerosFor(gbuffer, features);
   if (!zeros.empty()) {
     const Buffer<const float> zero = borrowed(device, zeros);
@@ -56,9 +61,11 @@ Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const Featur
   }
   const std::size_t floats = gbuffer.position.size() + gbuffer.normal.size() + gbuffer.diffuse.size() +
                              gbuffer.specular.size() + gbuffer.ambient.size() + gbuffer.emission.size() +
-                             surface_normal.size() + gbuffer.lift.size() + zeros.size() + model.size();
-  return {gbuffer, std::move(packed),     std::move(zeros), std::move(default_model), buffers,
-          stride,  floats * sizeof(float)};
+                             surface_normal.size() + gbuffer.lift.size() + zeros.size() + model.size() +
+                             tangent.size();
+  return {gbuffer,          std::move(packed),        std::move(tangents),
+          std::move(zeros), std::move(default_model), buffers,
+          stride,           floats * sizeof(float)};
 }
 
 CullArguments cullArguments(const Points& points, const LightSet& lights, unsigned group_log2,

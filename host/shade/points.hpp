@@ -14,6 +14,7 @@ namespace luciole {
 struct Points {
   const GBuffer& gbuffer;
   PackedNormals normal_packed;  ///< in the place of surfaceNormals() that the G-buffer lacks
+  PackedNormals tangents;       ///< likewise: tangentsOf()
   Plane zeros;                  ///< likewise in the place of specular, ambient, emission and lift
   ModelPlane default_model;     ///< likewise: the picture's model
   GBufferBuffers buffers;

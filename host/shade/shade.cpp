@@ -7,7 +7,7 @@ namespace luciole {
 
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
                                const PackedNormals& surface_normal, const Plane& lift,
-                               const ModelPlane& model, bool unlit) {
+                               const ModelPlane& model, const PackedNormals& tangent, bool unlit) {
   // One buffer, also if unlit: two OpenCL buffers in the same host memory are undefined behaviour.
   const Buffer<const float> diffuse = borrowed(device, gbuffer.diffuse);
   return {.position = borrowed(device, gbuffer.position),
@@ -18,6 +18,7 @@ GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
           .emission = borrowed(device, gbuffer.emission),
           .surface_normal = borrowed(device, surface_normal),
           .model = borrowed(device, model),
+          .tangent = borrowed(device, tangent),
           .lift = borrowed(device, lift)};
 }
 
@@ -38,6 +39,7 @@ void shade(OpenedDevice& device, const ShadeProgram& program, const ShadeArgumen
           {"surface_normal", gbuffer.surface_normal},
           {"lift", gbuffer.lift},
           {"model", gbuffer.model},
+          {"tangent", gbuffer.tangent},
           {"lights", arguments.lights},
           {"list_starts", arguments.lists.starts},
           {"list", arguments.lists.list},

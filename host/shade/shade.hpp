@@ -11,7 +11,7 @@ namespace luciole {
 /// A G-buffer's groups on the device. A group that the G-buffer lacks is a buffer of 16 bytes.
 struct GBufferBuffers {
   Buffer<const float> position, normal, diffuse, specular, ambient, emission;
-  Buffer<const uint> surface_normal, model;
+  Buffer<const uint> surface_normal, model, tangent;
   Buffer<const float> lift;
 };
 
@@ -20,11 +20,11 @@ inline const PackedNormals& surfaceNormals(const GBuffer& gbuffer) {
   return gbuffer.unbent_normal.empty() ? gbuffer.geometric_normal : gbuffer.unbent_normal;
 }
 
-/// The planes of a G-buffer, borrowed (see Buffer), with the surface normals, lift and models given instead
-/// of its own. unlit: the diffuse colour takes the place of ambient.
+/// The planes of a G-buffer, borrowed (see Buffer), with the surface normals, lift, models and tangents given
+/// instead of its own. unlit: the diffuse colour takes the place of ambient.
 GBufferBuffers borrowedGBuffer(OpenedDevice& device, const GBuffer& gbuffer,
                                const PackedNormals& surface_normal, const Plane& lift,
-                               const ModelPlane& model, bool unlit);
+                               const ModelPlane& model, const PackedNormals& tangent, bool unlit);
 
 /// What a program that shades is compiled for.
 struct ShadeProgram {

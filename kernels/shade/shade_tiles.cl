@@ -250,10 +250,11 @@ KERNEL void shade_tiles(ShadeTilesFrame frame, __global const float* position, _
                         __global const float* diffuse, __global const float* specular,
                         __global const float* ambient, __global const float* emission,
                         __global const uint* surface_normal, __global const uint* model,
-                        __global const float* tree, __global const ShadeLight* lights, __global float* image,
-                        __global uint* counts, __global uint* faulty_pixels) {
-  Planes planes = {position, normal,         diffuse, specular, ambient,
-                   emission, surface_normal, 0,       model,    faulty_pixels};
+                        __global const uint* tangent, __global const float* tree,
+                        __global const ShadeLight* lights, __global float* image, __global uint* counts,
+                        __global uint* faulty_pixels) {
+  Planes planes = {position,       normal, diffuse, specular,      ambient, emission,
+                   surface_normal, 0,      model,   faulty_pixels, tangent};
   uint width = frame.block_width, height = frame.block_height;
   uint blocks_x = (frame.tiles_x + width - 1) / width, blocks_y = (frame.tiles_y + height - 1) / height;
   uint blocks = blocks_x * blocks_y, runs = (blocks + kBlockRun - 1) / kBlockRun, item = work_item();

@@ -6,10 +6,11 @@ namespace luciole {
 namespace {
 
 std::size_t capacities(const GBuffer& gbuffer) {
-  std::size_t sum =
-      gbuffer.geometric_normal.capacity() + gbuffer.unbent_normal.capacity() + gbuffer.model.capacity();
+  std::size_t sum = gbuffer.geometric_normal.capacity() + gbuffer.unbent_normal.capacity() +
+                    gbuffer.model.capacity() + gbuffer.tangent.capacity() + gbuffer.object.capacity() +
+                    gbuffer.material.capacity();
   for (const Plane* group : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular,
-                             &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift})
+                             &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift, &gbuffer.uv})
     sum += group->capacity();
   return sum;
 }
@@ -22,9 +23,13 @@ TEST(Planes, FreedOnesKeepNoMemory) {
                   .geometric_normal = true,
                   .unbent_normal = true,
                   .lift = true,
-                  .model = true},
+                  .model = true,
+                  .tangent = true,
+                  .uv = true,
+                  .object = true,
+                  .material = true},
                  gbuffer);
-  EXPECT_GE(capacities(gbuffer), 22 * gbuffer.pixels());
+  EXPECT_GE(capacities(gbuffer), 27 * gbuffer.pixels());
   freePlanes(gbuffer);
   EXPECT_EQ(capacities(gbuffer), 0u);
 }

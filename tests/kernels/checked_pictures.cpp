@@ -136,7 +136,7 @@ bool lightByClusters(int lanes) {
   const Buffer<float> light_buffer = borrowedForOutput(device, light);
   clusteredLight(device, mathDefines({}),
                  {.frame = frame,
-                  .gbuffer = borrowedGBuffer(device, gbuffer, {}, {}, {}, false),
+                  .gbuffer = borrowedGBuffer(device, gbuffer, {}, {}, {}, {}, false),
                   .tiles_x = gbuffer.tiles_x,
                   .tiles_y = gbuffer.tiles_y,
                   .clusters = clusters,

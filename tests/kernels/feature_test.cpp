@@ -31,6 +31,7 @@ const std::vector<Needs>& needs() {
       {kSmoothWindow, {kPointLights, kSpotLights}},
       {kKhrWindow, {kSpotLights, kPointLights}},
       {kMaterialModels, {kDirectionalLights, kPointLights, kSpotLights}},
+      {kTangents, {kPointLights, kSpotLights, kDirectionalLights}},
       {kPointLights, {kPhong, kBlinnPhong, kToon, kCookTorrance, kOrenNayar}},
       {kDirectionalLights, {kCookTorrance, kToon, kOrenNayar, kBlinnPhong, kPhong}},
       {kSpotLights, {kToon, kPhong, kOrenNayar, kCookTorrance, kBlinnPhong}},

@@ -7,6 +7,7 @@
 
 #include "kernels/shared.h"
 #include "raster/raster_scenes.hpp"
+#include "scene/tangents.hpp"
 
 namespace luciole::test {
 namespace {
@@ -49,11 +50,19 @@ Scene busyScene() {
   scene.materials[2].blended = true;
   for (std::size_t i = 0; i < mesh.triangle_materials.size(); i += 2)
     mesh.triangle_materials[i] = 1 + i / 2 % 2;
+  addAllTangents(scene);
   return scene;
 }
 
-constexpr PlaneSet kAll{
-    .specular = true, .ambient = true, .emission = true, .geometric_normal = true, .lift = true};
+constexpr PlaneSet kAll{.specular = true,
+                        .ambient = true,
+                        .emission = true,
+                        .geometric_normal = true,
+                        .lift = true,
+                        .tangent = true,
+                        .uv = true,
+                        .object = true,
+                        .material = true};
 
 TEST(Invariance, ACropIsACutOutBitForBit) {
   const Scene scene = busyScene();
@@ -90,6 +99,10 @@ TEST(Invariance, ACropIsACutOutBitForBit) {
         expect_same(part.emission, whole.emission, 3);
         ASSERT_EQ(part.geometric_normal[i], whole.geometric_normal[j]);
         ASSERT_EQ(part.lift[i], whole.lift[j]);
+        expect_same(part.uv, whole.uv, 2);
+        ASSERT_EQ(part.tangent[i], whole.tangent[j]);
+        ASSERT_EQ(part.object[i], whole.object[j]);
+        ASSERT_EQ(part.material[i], whole.material[j]);
         ASSERT_TRUE(sameTexel(part_depth[std::size_t(y) * crop.z + x],
                               whole_depth[std::size_t(y + crop.y) * 211 + x + crop.x]))
             << x << ',' << y;
@@ -117,6 +130,10 @@ TEST(Invariance, TheNumberOfThreadsChangesNothing) {
     EXPECT_EQ(one.emission, many.emission);
     EXPECT_EQ(one.geometric_normal, many.geometric_normal);
     EXPECT_EQ(one.lift, many.lift);
+    EXPECT_EQ(one.tangent, many.tangent);
+    EXPECT_EQ(one.uv, many.uv);
+    EXPECT_EQ(one.object, many.object);
+    EXPECT_EQ(one.material, many.material);
     EXPECT_TRUE(std::ranges::equal(one_depth, many_depth, sameTexel));
     EXPECT_EQ(one_outside, many_outside);
   }
@@ -141,6 +158,10 @@ TEST(Invariance, TheMemoryOfAUsedGBufferLeavesNothingInTheNextOne) {
       EXPECT_EQ(next.emission, fresh.emission);
       EXPECT_EQ(next.geometric_normal, fresh.geometric_normal);
       EXPECT_EQ(next.lift, fresh.lift);
+      EXPECT_EQ(next.tangent, fresh.tangent);
+      EXPECT_EQ(next.uv, fresh.uv);
+      EXPECT_EQ(next.object, fresh.object);
+      EXPECT_EQ(next.material, fresh.material);
     }
   }
 }

@@ -291,8 +291,15 @@ TEST(ShadingPoints, EverySampleOfAChosenPixelIsAPointWhereItIsAsked) {
 using Facts = std::map<std::tuple<int, int, std::uint32_t>, std::vector<float>>;
 
 Facts factsOf(const Scene& scene, const View& view, int samples, Margin margin = Margin::kPixel) {
-  const PlaneSet all{
-      .specular = true, .ambient = true, .emission = true, .geometric_normal = true, .lift = true};
+  const PlaneSet all{.specular = true,
+                     .ambient = true,
+                     .emission = true,
+                     .geometric_normal = true,
+                     .lift = true,
+                     .tangent = true,
+                     .uv = true,
+                     .object = true,
+                     .material = true};
   const std::vector<std::uint32_t> objects = allObjects(scene);
   const SampledView sampled = setupSamples(scene, objects, view, margin, samples, Shading::kPhong, all, {});
   RasterCounts counts;
@@ -303,10 +310,13 @@ Facts factsOf(const Scene& scene, const View& view, int samples, Margin margin =
   const auto valuesAt = [](const GBuffer& gbuffer, std::size_t place) {
     std::vector<float> values;
     for (const Plane* group : {&gbuffer.position, &gbuffer.normal, &gbuffer.diffuse, &gbuffer.specular,
-                               &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift})
+                               &gbuffer.ambient, &gbuffer.emission, &gbuffer.lift, &gbuffer.uv})
       for (std::size_t i = place; i < group->size(); i += gbuffer.pixels()) values.push_back((*group)[i]);
-    values.push_back(float(gbuffer.geometric_normal[place] & 0xffff));
-    values.push_back(float(gbuffer.geometric_normal[place] >> 16));
+    for (const std::uint32_t packed : {gbuffer.geometric_normal[place], gbuffer.tangent[place],
+                                       gbuffer.object[place], gbuffer.material[place]}) {
+      values.push_back(float(packed & 0xffff));
+      values.push_back(float(packed >> 16));
+    }
     return values;
   };
   // A margin is drawn, too.

@@ -290,6 +290,10 @@ TEST(Validate, AGBufferWhosePlanesDontFitIsRefused) {
       {"gbuffer.specular: has 1 numbers, expected 1024", [](GBuffer& g) { g.specular.resize(1); }},
       {"gbuffer.unbent_normal: has 1 numbers, expected 256", [](GBuffer& g) { g.unbent_normal.resize(1); }},
       {"gbuffer.unbent_normal: beside geometric_normal", [](GBuffer& g) { g.unbent_normal.resize(256); }},
+      {"gbuffer.tangent: has 1 numbers, expected 256", [](GBuffer& g) { g.tangent.resize(1); }},
+      {"gbuffer.uv: has 1 numbers, expected 512", [](GBuffer& g) { g.uv.resize(1); }},
+      {"gbuffer.object: has 1 numbers, expected 256", [](GBuffer& g) { g.object.resize(1); }},
+      {"gbuffer.material: has 1 numbers, expected 256", [](GBuffer& g) { g.material.resize(1); }},
       {"gbuffer.model: has a number above", [](GBuffer& g) { g.model[3] = 99; }},
       {"gbuffer.camera.near: -1", [](GBuffer& g) { g.camera.near = -1; }},
       {"gbuffer.picture_size: 0x0", [](GBuffer& g) {

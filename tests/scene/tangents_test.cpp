@@ -110,6 +110,54 @@ TEST(Tangents, OfASphereGoRoundItsAxisAndAreUnit) {
   }
 }
 
+// Around a cylinder u ends where it begins: there the tangent is the mean of both sides, as everywhere else.
+// By symmetry that is the circle's own direction.
+TEST(Tangents, ForShadersGoOnAcrossTheSeamOfATurn) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes.push_back(
+      makePrimitive({.kind = PrimitiveKind::kCylinder, .segments = 12, .lit_segments = 24}, 0));
+  scene.objects.push_back({});
+  addAllTangents(scene);
+  const Mesh& whole = scene.meshes[0];
+  for (const Mesh* mesh : {&whole, whole.divided.get()}) {
+    int on_the_side = 0;
+    ASSERT_EQ(mesh->tangents.size(), mesh->positions.size());
+    for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
+      const glm::vec3 p = mesh->positions[i];
+      if (mesh->normals[i].y != 0) continue;
+      ++on_the_side;
+      expectNear(mesh->tangents[i], {p.z, 0, -p.x, 1});
+    }
+    EXPECT_GE(on_the_side, 26);
+  }
+}
+
+TEST(Tangents, ForShadersOfChartsThatAreTurnedStayApart) {
+  Mesh mesh = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  // The second triangle with vertices of its own, its picture turned by 90 degrees.
+  mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {1, 1, 0}});
+  mesh.normals.assign(6, {0, 0, 1});
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {6, 0}, {5, 0}, {6, 1}};
+  mesh.triangles[1] = {4, 5, 3};
+  addTangents({true, true}, mesh, true);
+  for (const int i : {0, 1, 2}) expectNear(mesh.tangents[i], {1, 0, 0, 1});
+  for (const int i : {4, 5, 3}) expectNear(mesh.tangents[i], {0, 1, 0, 1});
+}
+
+TEST(Tangents, ForShadersLeaveThoseOfNormalMapsAsTheyAre) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].normal_map.texture = 0;
+  scene.meshes.push_back(makePrimitive({.kind = PrimitiveKind::kCylinder, .segments = 12}, 0));
+  scene.objects.push_back({});
+  addTangents(scene);
+  const std::vector<glm::vec4> before = scene.meshes[0].tangents;
+  addTangents(scene);
+  addAllTangents(scene);
+  EXPECT_EQ(scene.meshes[0].tangents, before);
+}
+
 TEST(Tangents, ScenesWithoutNormalMapsGetNone) {
   Scene scene;
   scene.materials.resize(1);

@@ -35,7 +35,7 @@ Lit lightBy(OpenedDevice& device, const GBuffer& gbuffer, const Lights& lights, 
   Lit lit;
   lit.light.assign(3 * gbuffer.pixels(), -1.0f);
   lit.bound.assign(3 * gbuffer.pixels(), -1.0f);
-  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, {}, {}, {}, false);
+  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, {}, {}, {}, {}, false);
   const Buffer<float> light = borrowedForOutput(device, lit.light);
   const Buffer<float> bound = borrowedForOutput(device, lit.bound);
   lit.counts = clusteredLight(device, featureDefines(features) + mathDefines({}),

@@ -23,7 +23,7 @@ LitTiles litByTiles(OpenedDevice& device, const Lighting& lighting, const GBuffe
   ShadeFrame frame = lighting.lights.frame;
   frame.plane_stride = uint(gbuffer.pixels());
   frame.texel_count = 1;
-  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, {}, {}, {}, lighting.unlit);
+  const GBufferBuffers buffers = borrowedGBuffer(device, gbuffer, {}, {}, {}, {}, lighting.unlit);
   LitTiles lit;
   lit.color.assign(3 * gbuffer.pixels(), -1.0f);
   const Buffer<float> image = borrowedForOutput(device, lit.color);

@@ -20,6 +20,10 @@ using Plane = std::vector<float, ArrayAllocator<float>>;
 using PackedNormals = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
 /// A plane of reflection models: 0 where a surface has the picture's, else modelNumber() of its own.
 using ModelPlane = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
+/// A plane of indices into a list of the scene.
+using IndexPlane = std::vector<std::uint32_t, ArrayAllocator<std::uint32_t>>;
+/// Stands for no element in an IndexPlane.
+inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 /// Bits 0 to 3 of v, moved to bits 0, 2, 4 and 6.
 constexpr std::size_t everyOtherBit(std::size_t v) {
@@ -39,8 +43,8 @@ constexpr std::size_t everyOtherBit(std::size_t v) {
 ///
 /// Space is view space: the eye is the origin, x right, y up, −z ahead (metres), so precision does not depend
 /// on where in the world the camera stands. A pixel that shows nothing, or lies in a tile beyond the
-/// picture's edge, has position (0, 0, −inf) and zeros everywhere else. A group that no feature needs is
-/// empty.
+/// picture's edge, has position (0, 0, −inf), kNoIndex for indices, and zeros everywhere else. A group that
+/// no feature needs is empty.
 struct GBuffer {
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
@@ -61,7 +65,13 @@ struct GBuffer {
   /// surface which the vertex normals describe, so that facets don't shadow themselves at the terminator
   /// (J. Hanika, "Hacking the Shadow Terminator", 2021).
   Plane lift = {};
-  ModelPlane model = {};       ///< optional
+  ModelPlane model = {};  ///< optional
+  /// The direction in which the texture coordinate u grows, perpendicular to `normal`; optional. Where the
+  /// surface has no such direction: tangentOf() of the normal alone (gbuffer/tangent_plane.hpp).
+  PackedNormals tangent = {};
+  Plane uv = {};               ///< u v, as Mesh::uvs; zeros where the mesh has none; optional
+  IndexPlane object = {};      ///< in Scene::objects; optional
+  IndexPlane material = {};    ///< in Scene::materials; optional
   Camera camera = {};          ///< defines view space
   bool knows_camera = true;    ///< false: a file without a camera, or without its field of view
   glm::ivec2 picture_size{0};  ///< of the whole picture, of which this may be a crop
@@ -89,6 +99,10 @@ struct PlaneSet {
   bool unbent_normal = false;  ///< instead of geometric_normal
   bool lift = false;
   bool model = false;
+  bool tangent = false;
+  bool uv = false;
+  bool object = false;
+  bool material = false;
 };
 
 }  // namespace luciole

@@ -19,6 +19,7 @@ struct LoadSettings {
   bool strict = false;                ///< what breaks a format's rules is refused, not repaired
   std::vector<std::string> search{};  ///< folders to look in for files that aren't where the scene says
   GltfChoice choice{};                ///< of a glTF file
+  bool tangents = false;              ///< all surfaces get tangents, for shaders: see addAllTangents()
   /// Values to replace in the scene, each "PATH=VALUE": a PATH is keys by dots and elements as [0], such as
   /// lights[0].intensity; VALUE is JSON, or else a text.
   std::vector<std::string> changes{};
