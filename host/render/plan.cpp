@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "render/memory.hpp"
+#include "render/screens.hpp"
 #include "shade/shadow_ways.hpp"
 #include "shaders/shader_text.hpp"
 
@@ -82,10 +83,8 @@ double pairsOf(const Scene& scene, const FeatureSet& features, double points) {
 /// The screens of the settings. Throws InputError.
 std::vector<ScreenProgram> screenPrograms(const std::vector<Shader>& screens) {
   std::vector<ScreenProgram> programs;
-  for (const Shader& shader : screens) {
-    const std::size_t at = shader.text.find("#define RADIUS ");
-    programs.push_back({shader, at == std::string::npos ? 0 : std::stoi(shader.text.substr(at + 15))});
-  }
+  for (const Shader& shader : screens)
+    programs.push_back({shader, shaderFacts(shader, ShaderKind::kScreen).radius});
   return programs;
 }
 
@@ -138,6 +137,9 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
   if (settings.wants(Aov::kMaterial))
     plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;
+  const ScreenGroups groups = groupsOf(plan.screens);
+  plan.planes.object |= groups.object;
+  plan.planes.material |= groups.material;
   addProgram(plan.pixels, plan.programs);
   if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);
   addLayersPrograms(plan);

@@ -20,26 +20,6 @@
 namespace luciole {
 namespace {
 
-/// The planes that screens name. One that only a comment names isn't read.
-struct NamedPlanes {
-  bool from_eye = false, depth = false, normal = false, object = false, material = false;
-};
-
-NamedPlanes planesOf(const std::vector<ScreenProgram>& screens) {
-  NamedPlanes planes;
-  for (const ScreenProgram& screen : screens) {
-    const auto names = [&](std::string_view name) {
-      return screen.shader.text.find(name) != std::string::npos;
-    };
-    planes.from_eye |= names("position_at") || names("from_eye_at") || names("to_eye_at");
-    planes.depth |= names("depth_at") || names("pixel_size_at");
-    planes.normal |= names("normal_at");
-    planes.object |= names("object_at");
-    planes.material |= names("material_at");
-  }
-  return planes;
-}
-
 ScreenFrame frameOf(const GBuffer& gbuffer, const PixelRectangle& inner) {
   const Camera& camera = gbuffer.camera;
   const int row = (gbuffer.width + kScreenPad - 1) / kScreenPad * kScreenPad + 2 * kScreenPad;
@@ -148,8 +128,8 @@ void layDepths(const GBuffer& gbuffer, const ScreenFrame& frame, ScreenPlane<flo
 }
 
 /// Numbers in the scene; 0 where the G-buffer has none, -1 for pixels that see nothing.
-template <class Ids>
-void layIds(const GBuffer& gbuffer, const ScreenFrame& frame, const Ids& ids, ScreenPlane<int>& planes) {
+void layIds(const GBuffer& gbuffer, const ScreenFrame& frame, const IndexPlane& ids,
+            ScreenPlane<int>& planes) {
   const float* const z = gbuffer.position.data() + 2 * gbuffer.pixels();
   layRows<1>(
       gbuffer, frame,
@@ -161,6 +141,21 @@ void layIds(const GBuffer& gbuffer, const ScreenFrame& frame, const Ids& ids, Sc
 }
 
 }  // namespace
+
+ScreenGroups groupsOf(const std::vector<ScreenProgram>& screens) {
+  ScreenGroups groups;
+  for (const ScreenProgram& screen : screens) {
+    const auto names = [&](std::string_view name) {
+      return screen.shader.text.find(name) != std::string::npos;
+    };
+    groups.from_eye |= names("position_at") || names("from_eye_at") || names("to_eye_at");
+    groups.depth |= names("depth_at") || names("pixel_size_at");
+    groups.normal |= names("normal_at");
+    groups.object |= names("object_at");
+    groups.material |= names("material_at");
+  }
+  return groups;
+}
 
 View withMargin(const View& view, const PicturePlan& plan) {
   if (plan.screens.empty()) return view;
@@ -177,7 +172,7 @@ View withMargin(const View& view, const PicturePlan& plan) {
 ScreenedColors applyScreens(ReadyPicture& picture, const GBuffer& gbuffer, const Plane& color,
                             const PixelRectangle& inner) {
   OpenedDevice& device = picture.device;
-  const NamedPlanes wanted = planesOf(picture.plan.screens);
+  const ScreenGroups wanted = groupsOf(picture.plan.screens);
   const ScreenFrame frame = frameOf(gbuffer, inner);
   ScreenMemory& planes = picture.recycled.screens;
   layColors(gbuffer, frame, color, std::exp2(picture.settings.exposure), planes.before);
@@ -185,9 +180,8 @@ ScreenedColors applyScreens(ReadyPicture& picture, const GBuffer& gbuffer, const
   if (wanted.from_eye) layVectors(gbuffer, frame, gbuffer.position, planes.from_eye);
   if (wanted.depth) layDepths(gbuffer, frame, planes.depth);
   if (wanted.normal) layVectors(gbuffer, frame, gbuffer.normal, planes.normal);
-  const ModelPlane none;
-  if (wanted.object) layIds(gbuffer, frame, none, planes.object);
-  if (wanted.material) layIds(gbuffer, frame, none, planes.material);
+  if (wanted.object) layIds(gbuffer, frame, gbuffer.object, planes.object);
+  if (wanted.material) layIds(gbuffer, frame, gbuffer.material, planes.material);
   const auto orNone = [&](bool is_wanted, const auto& plane) {
     return is_wanted ? borrowed(device, plane) : decltype(borrowed(device, plane)){};
   };

@@ -8,6 +8,12 @@
 // Screens change the colours of lit pixels by what is around them: RenderSettings::screens.
 namespace luciole {
 
+/// The groups of planes that screens name. One that only a comment names isn't read.
+struct ScreenGroups {
+  bool from_eye = false, depth = false, normal = false, object = false, material = false;
+};
+ScreenGroups groupsOf(const std::vector<ScreenProgram>& screens);
+
 /// The part of a picture to draw for what `view` shows: with the neighbours that all screens together look
 /// at, as far as the picture goes. Where the pixels of a tile share light it is all tiles of the picture that
 /// hold these, so that every band has the same light.

@@ -3,34 +3,41 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdlib>
+#include <sstream>
 #include <utility>
 
-#include "cl/kernel_source.hpp"
 #include "cl/launch.hpp"
 #include "luciole/error.hpp"
 #include "luciole/gbuffer.hpp"
+#include "shaders/shader_text.hpp"
 
 namespace luciole {
 namespace {
 
-/// A note of note_beyond() in kernels/screens/screen.clh, for people.
+/// A note of note_beyond() in kernels/screens/screen.clh, for people. It has the line alone: the column is
+/// that of the first call there that looks at a neighbour.
 std::string beyondText(const ScreenProgram& screen, uint note) {
+  const uint line = note >> 20;
+  std::istringstream lines(screen.shader.text);
+  std::string text;
+  for (uint i = 0; i < line; ++i) std::getline(lines, text);
+  const std::size_t call = text.find("_at(");
+  const std::size_t before =
+      call == text.npos ? text.npos : text.find_last_not_of("abcdefghijklmnopqrstuvwxyz_", call);
+  const std::size_t column = before == text.npos ? 1 : before + 2;
   const int dx = int(note >> 10 & 1023) - 512, dy = int(note & 1023) - 512;
-  return fmt::format("{}:{}: this reads the pixel ({}, {}) away, beyond the screen's RADIUS of {}",
-                     screen.shader.path, note >> 20, dx, dy, screen.radius);
+  return fmt::format(
+      "{}:{}:{}: this looks at the pixel ({}, {}) from its own, beyond the screen's RADIUS of {}",
+      screen.shader.path, line, column, dx, dy, screen.radius);
 }
 
 }  // namespace
 
 ScreenMarks screenRows(OpenedDevice& device, const ScreenProgram& screen,
                        const ScreenRowsArguments& arguments) {
-  std::string source = kernelSource("screens/screen_rows.cl");
-  const std::string place = "#line 1 \"kernels/user_text.clh\"\n";
-  source.insert(source.find(place) + place.size(),
-                fmt::format("#line 1 \"{}\"\n{}\n", screen.shader.path, screen.shader.text));
-  Kernel kernel = makeKernelFromSource(device, source, "screen_rows",
-                                       fmt::format("-DHAS_SCREEN -DSCREEN_RADIUS={}", screen.radius));
+  Kernel kernel = makeKernel(device, "screens/screen_rows.cl", "screen_rows",
+                             fmt::format("-DHAS_SCREEN -DSCREEN_RADIUS={}", screen.radius),
+                             shaderProgram({&screen.shader, 1}, ShaderKind::kScreen));
   constexpr uint kNowhere = 0xffffffff;
   std::array<uint, 2> marks{0, kNowhere};
   const Buffer<uint> marks_buffer = makeBuffer<uint>(device, marks.size());

@@ -156,7 +156,9 @@ struct Refused {
   Text word;
   const char* reason;
 };
-constexpr const char* kLoops = "the only loop is UNROLLED(i, n) {...}, with a number for n";
+constexpr const char* kLoops =
+    "the only loop is UNROLLED(i, n) {...}, with a number for n; a screen also has EACH_NEIGHBOR(dx, dy) "
+    "{...}";
 constexpr const char* kJumps = "a shader has no jumps but if, break, continue and return";
 constexpr const char* kTypes = "a shader defines functions alone, and no types or variables of its own file";
 constexpr const char* kMemory = "a shader reads and writes what its function is given alone";
@@ -422,6 +424,7 @@ class Checker {
         false;              ///< of a parenthesis: before it stands a function that pointers are given to
     std::size_t turns = 1;  ///< of a loop's body
     bool is_loop = false;
+    std::size_t loops_around = 0;  ///< of a loop's body: the variables of the loops around it
   };
 
   /// From behind a function's { to behind its }. Returns its weight.
@@ -434,8 +437,10 @@ class Checker {
       if (now.of_directive) fail(now, "directives stand outside of functions");
       checkWord(now);
       const Text word = now.text;
-      if (word == "UNROLLED") {
-        open.push_back({'{', false, loopHeader(), true});
+      if (word == "UNROLLED" || isNeighborLoop(word)) {
+        const std::size_t loops_around = loops_.size();
+        open.push_back(
+            {'{', false, word == "UNROLLED" ? loopHeader() : neighborHeader(), true, loops_around});
         if (turns > kMostRepeated) checkWeight(now, turns);
         turns *= open.back().turns;
       } else if (word == "{" || word == "(") {
@@ -445,7 +450,7 @@ class Checker {
         if (open.back().sign != (word == "}" ? '{' : '('))
           fail(now, fmt::format("this {} closes nothing", word));
         turns /= open.back().turns;
-        if (open.back().is_loop) loops_.pop_back();
+        if (open.back().is_loop) loops_.resize(open.back().loops_around);
         open.pop_back();
       } else {
         checkUse(now, open.back());
@@ -496,6 +501,29 @@ class Checker {
     if (text(at_) != "{") fail(loop, "a loop's body stands in { }");
     loops_.push_back(variable);
     return turns;
+  }
+
+  bool isNeighborLoop(Text word) const { return kind_ == ShaderKind::kScreen && word == "EACH_NEIGHBOR"; }
+
+  /// EACH_NEIGHBOR(dx, dy) {, up to the {. Returns the turns.
+  std::size_t neighborHeader() {
+    constexpr const char* kExpected = "a loop over all neighbours is EACH_NEIGHBOR(dx, dy) {...}";
+    const Token& loop = here();
+    if (!has_radius_) fail(loop, "the #define RADIUS stands above its neighbours");
+    ++at_;
+    for (const Text sign : {"(", ","}) {
+      expect(sign, kExpected);
+      const Text variable = text(at_);
+      if (!isName(variable) || isIn(kKeywords, variable) || macros_.contains(variable))
+        fail(here(), kExpected);
+      checkWord(here());
+      ++at_;
+      loops_.push_back(variable);
+    }
+    expect(")", kExpected);
+    if (text(at_) != "{") fail(loop, "a loop's body stands in { }");
+    const auto side = std::size_t(2 * facts_.radius + 1);
+    return side * side;
   }
 
   /// Whether the token before ends a value, so that * and & after it have two operands.

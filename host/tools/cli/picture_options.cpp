@@ -9,7 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/text_file.hpp"
 #include "base/threads.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
@@ -555,7 +554,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;
-  for (const std::string& path : options.screens) settings.screens.push_back({path, readFile(path)});
+  for (const std::string& path : options.screens)
+    settings.screens.push_back(readShader(path, ShaderKind::kScreen));
   settings.aovs = aovsOf(options);
   settings.light_groups = options.light_groups;
   settings.exposure = exposureOf(options);
