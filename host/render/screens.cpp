@@ -1,6 +1,5 @@
 #include "render/screens.hpp"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -199,7 +198,7 @@ ScreenedColors applyScreens(ReadyPicture& picture, const GBuffer& gbuffer, const
                                           .image = image});
     download(device, image, planes.after);
     if (!marks.beyond.empty()) throw InputError(marks.beyond);
-    addCount(picture.stats, fmt::format("screen_{}_bad_pixels", i + 1), marks.bad_colors);
+    if (marks.bad_colors > 0) addCount(picture.stats, faultyScreenPixels(i), marks.bad_colors);
     std::swap(planes.before, planes.after);
   }
   return {frame, std::move(planes.before)};

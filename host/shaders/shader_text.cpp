@@ -717,8 +717,9 @@ std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind) {
 std::string shaderError(const std::string& log, const std::string& user_text) {
   std::istringstream lines(log);
   std::string first;
-  // clang writes "FILE:LINE:COLUMN: error: what", and PoCL "error: FILE:LINE:COLUMN: what".
-  const std::regex place("(?:error: )?(.+):(\\d+):(\\d+): (?:fatal )?(?:error: )?(.*)");
+  // clang writes "FILE:LINE:COLUMN: error: what", and PoCL "error: FILE:LINE:COLUMN: what", with the place of
+  // the kernels' own macros behind the user's.
+  const std::regex place("(?:error: )?(.+):(\\d+):(\\d+)(?: <Spelling=[^>]*>)?: (?:fatal )?(?:error: )?(.*)");
   for (std::string line; std::getline(lines, line);) {
     std::smatch parts;
     if (line.find("error: ") == line.npos || !std::regex_match(line, parts, place)) continue;

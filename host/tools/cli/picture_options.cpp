@@ -165,6 +165,14 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
       ->capture_default_str();
 }
 
+void addScreenOption(CLI::App& command, PictureOptions& options) {
+  command
+      .add_option("--screen", options.screens,
+                  "FILE.clh: a function of one's own that changes the lit colours by what is around each "
+                  "pixel, as for contours and hatching; several go one after another")
+      ->allow_extra_args(false);
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
   const bool is_one_picture = !(groups & kManyPictures);
   if (is_one_picture)
@@ -336,11 +344,6 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
           "--light-groups", options.light_groups,
           "extra layers of an EXR, whose sum is the picture: light_groups.NAME of the lights of each "
           "group, light_groups.rest of all that no light gives; luciole mix weighs them anew");
-      command
-          .add_option("--screen", options.screens,
-                      "FILE.clh: a function that changes the lit colours by what is around a pixel, as "
-                      "contours and hatching do; several go one after another")
-          ->allow_extra_args(false);
       command.add_option("--aov", options.aovs, "extra layers of an EXR: " + aovNames(","));
     }
   }
