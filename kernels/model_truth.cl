@@ -7,6 +7,7 @@
 #include "shade/phong.clh"
 #include "shade/surface.clh"
 #include "shade/toon.clh"
+#include "shade/ward.clh"
 #include "user_text.clh"
 
 #ifndef USER_MODEL_COUNT

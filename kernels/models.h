@@ -13,6 +13,8 @@
   X(CookTorrance, "cook-torrance", "Cook-Torrance", "the model of rough surfaces, D G F / (4 N.L N.V)", 1,  \
     mostCookTorrance(f0, n))                                                                                \
   X(OrenNayar, "oren-nayar", "Oren-Nayar", "the model of rough matte surfaces, with Phong's highlights", 1, \
-    f0)
+    f0)                                                                                                     \
+  X(Ward, "ward", "Ward", "the model of rough surfaces, exp(-tan^2 / a^2) h.h / (a^2 (h.N)^4)", 1,          \
+    mostWard(f0, n))
 
 #endif

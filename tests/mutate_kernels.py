@@ -35,6 +35,7 @@ FALLOFF = ("kernels", "FalloffKernels.*")
 FOG = ("kernels", "FogKernels.*")
 PHONG = ("kernels", "PhongKernels.*")
 COOK_TORRANCE = ("kernels", "CookTorranceKernel.*")
+WARD = ("kernels", "WardKernel.*")
 OREN_NAYAR = ("kernels", "OrenNayarKernel.*")
 MODELS = ("pictures", "*MaterialModels.LightEach*")
 TOON = ("kernels", "ToonKernels.*")
@@ -121,6 +122,7 @@ TESTS = {
     "sampled/sampled_light.cl": [FEW_SAMPLED, SAMPLED_PICTURES, CALIBRATED, HARD_SAMPLED],
     "sampled/strata.clh": [SAMPLED, FEW_SAMPLED],
     "shade/toon.clh": [TOON],
+    "shade/ward.clh": [WARD],
     "exact/wide_integer.h": [EXACT_SIGN],
 }
 
@@ -242,6 +244,24 @@ MUTANTS = {
         Mutant("(n_dot_l, 0.625f)", "(n_dot_l, 0.6f)"),
         Mutant("fma_lanes(0.25f, toon_step", "fma_lanes(0.26f, toon_step"),
     ],
+    "shade/ward.clh": [
+        Mutant("fma_lanes(0.5f, shininess, 1.0f)", "fma_lanes(0.5f, shininess, 2.0f)"),
+        Mutant("0x1p40f", "0x1p36f"),
+        Mutant("n_dot_l + max_lanes(n_dot_v, (floatL)(0.0f))", "n_dot_l + n_dot_v"),
+        Mutant("(floatL)(0x1p-20f)", "(floatL)(0x1p-60f)"),
+        Mutant("height * height", "height"),
+        Mutant("(1.0f + tangent2) *", "tangent2 *"),
+        Mutant("-1.4426950408889634f", "-1.0f"),
+        Mutant("exp2_from(-63.0f,", "exp2_from(-8.0f,"),
+        Mutant("max_lanes(n_dot_l, (floatL)(0.0f)) *", "n_dot_l *"),
+        Mutant("fma_lanes(-along, normal.y, to_light.y + to_eye.y)", "to_light.y + to_eye.y"),
+        Mutant("floatL along = n_dot_l + n_dot_v", "floatL along = n_dot_l"),
+        Mutant("tangent2 * sharpness) * sharpness", "tangent2 * sharpness)"),
+        Mutant("floatL least = 0x1p-20f", "floatL least = 0.0f"),
+        Mutant("scaled_y = y * sharp_y", "scaled_y = y * sharp_x"),
+        Mutant("fma_lanes(x, x, y * y)", "fma_lanes(x, x, 0.0f * y)"),
+        Mutant("(sharp_x * sharp_y)", "(sharp_x * sharp_x)"),
+    ],
     "long_sum.clh": [
         Mutant("x - (sum - *total)", "0.0f"),
         Mutant("sum.lost.y + block->y", "block->y"),
@@ -282,7 +302,7 @@ MUTANTS = {
         Mutant("MODEL_IS(kBlinnPhongModel) ? halved : shininess", "shininess"),
         Mutant("pixels->model == (int)kBlinnPhongModel ? halved : shininess", "shininess"),
         Mutant("chosen > 0 ? chosen - 1 : (intL)((int)of_picture)", "chosen - 1"),
-        Mutant("!HAS_MODEL(number) || !(models >> number & 1)", "!HAS_MODEL(number)", same="only work is saved"),
+        Mutant("!IS_COMPILED(number) || !(models >> number & 1)", "!HAS_MODEL(number)", same="only work is saved"),
         Mutant("takes_it ? by_model[k].highlight : pairs[k].highlight", "by_model[k].highlight"),
         Mutant("takes_it ? by_model[k].grazing : pairs[k].grazing", "by_model[k].grazing"),
         Mutant("k < count ?", "k <= count ?"),

@@ -138,8 +138,8 @@ Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* nam
 }
 
 Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
-                            const std::string& defines) {
-  return makeKernelOf(device, source, name, defines, {}, [&] { return source; });
+                            const std::string& defines, const std::string& user_text) {
+  return makeKernelOf(device, source, name, defines, user_text, [&] { return source; });
 }
 
 bool isCompiled(const OpenedDevice& device, const std::string& file, const std::string& defines,

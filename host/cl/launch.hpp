@@ -34,6 +34,10 @@ constexpr std::string_view kernelTypeName<float>() {
   return "float";
 }
 template <>
+constexpr std::string_view kernelTypeName<double>() {
+  return "double";
+}
+template <>
 constexpr std::string_view kernelTypeName<float4>() {
   return "float4";
 }
@@ -138,9 +142,10 @@ struct Kernel {
 Kernel makeKernel(OpenedDevice& device, const std::string& file, const char* name, const std::string& defines,
                   const std::string& user_text = {});
 
-/// The same for any source text whose includes are in place (see expandKernelSource).
+/// The same for any source text whose includes are in place (see expandKernelSource). user_text: that it
+/// contains.
 Kernel makeKernelFromSource(OpenedDevice& device, const std::string& source, const char* name,
-                            const std::string& defines);
+                            const std::string& defines, const std::string& user_text = {});
 
 /// Whether makeKernel() would find this program's machine code on disk, as far as is known. Of platforms
 /// other than PoCL it isn't known, and taken so. Throws cl::Error.

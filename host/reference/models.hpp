@@ -37,4 +37,12 @@ double orenNayar(const Directions& directions, double shininess);
 /// The Cook-Torrance model's specular part, N·L included. f0: a channel of the specular colour.
 double cookTorrance(const Directions& directions, double f0, double shininess);
 
+/// Ward's highlight, N·L included, for N·L > 0 (factor of the specular colour). Of brushed surfaces alpha.x
+/// is the roughness along the tangent, alpha.y along the bitangent: unit, at right angles to each other and
+/// the normal. h·N counts as at least kLeastWardHeight.
+double ward(const Directions& directions, double shininess);
+double wardAnisotropic(const Directions& directions, const glm::dvec3& tangent, const glm::dvec3& bitangent,
+                       const glm::dvec2& alpha);
+inline constexpr double kLeastWardHeight = 0x1p-20;
+
 }  // namespace luciole

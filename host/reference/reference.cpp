@@ -14,6 +14,7 @@
 #include "gbuffer/validate_gbuffer.hpp"
 #include "luciole/error.hpp"
 #include "luciole/validate_scene.hpp"
+#include "reference/model_truth.hpp"
 #include "reference/models.hpp"
 
 namespace luciole {
@@ -131,15 +132,6 @@ std::optional<ShownPoint> shownPoint(const GBuffer& gbuffer, const glm::ivec2& p
   return shown;
 }
 
-glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
-                      const ReferenceSettings& settings) {
-  const std::optional<ShownPoint> shown = shownPoint(gbuffer, pixel, settings);
-  if (!shown) return scene.background;
-  const glm::dvec3 radiance =
-      referenceRadiance(scene, gbuffer.camera, shown->point, shown->model, shown->visibility);
-  return settings.fog ? referenceFog(scene.fog, gbuffer.camera, shown->point.position, radiance) : radiance;
-}
-
 }  // namespace
 
 /// The sine of the angle by which a packed normal may be off, with some to spare: a light that is so little
@@ -151,7 +143,7 @@ static constexpr double kPackedNormalMargin = 0x1p-13;
 // a local viewer. Its highlight is replaced by Phong's, or by another model's.
 template <class Take>
 static void eachLightTerm(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
-                          const Visibility& visibility, const Take& take) {
+                          const Visibility& visibility, UserReflections& user, const Take& take) {
   // Normalized again in double: an exponent of 10⁶ turns an error in a float's last bit into one of 10 %.
   const glm::dvec3 normal = unitOrZero(point.normal);
   const glm::dvec3 to_eye =
@@ -166,12 +158,19 @@ static void eachLightTerm(const Scene& scene, const Camera& camera, const Surfac
     term.ambient = glm::dvec3(light.ambient) * point.ambient;
     term.n_dot_l = glm::dot(normal, incoming.to_light);
     const bool behind = glm::dot(point.unbent_normal, incoming.to_light) <= -kPackedNormalMargin;
-    term.visibility = term.n_dot_l <= 0 || behind  ? 0.0
-                      : light.shadow && visibility ? visibility(light)
-                                                   : 1.0;
+    const bool faces = term.n_dot_l > 0 && !behind;
+    term.visibility = !faces ? 0.0 : light.shadow && visibility ? visibility(light) : 1.0;
+    Reflected by_user;
+    if (faces && isUserModel(model)) {
+      const glm::dmat3 to_view = glm::transpose(glm::dmat3(camera.camera_to_world));
+      by_user = user.next(model, {to_view * normal, to_view * incoming.to_light, to_view * to_eye,
+                                  to_view * point.tangent, point.diffuse, point.specular, point.shininess});
+    }
     if (term.visibility > 0) {
       const auto [diffuse, specular] =
-          reflectedLight(model, {normal, incoming.to_light, to_eye}, point.specular, point.shininess);
+          isUserModel(model)
+              ? by_user
+              : reflectedLight(model, {normal, incoming.to_light, to_eye}, point.specular, point.shininess);
       term.diffuse = glm::dvec3(light.diffuse) * point.diffuse * (diffuse * term.visibility);
       term.specular = glm::dvec3(light.specular) * specular * term.visibility;
     }
@@ -185,13 +184,29 @@ static glm::dvec3 ownRadiance(const Scene& scene, const SurfacePoint& point) {
                         : point.emission + point.diffuse;
 }
 
-glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
-                             const Visibility& visibility) {
+static glm::dvec3 radianceOf(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
+                             const Visibility& visibility, UserReflections& user) {
   glm::dvec3 radiance = ownRadiance(scene, point);
   if (scene.lighting)
-    eachLightTerm(scene, camera, point, model, visibility,
+    eachLightTerm(scene, camera, point, model, visibility, user,
                   [&](const LightTerm& term) { radiance += term.sum(); });
   return radiance;
+}
+
+glm::dvec3 referenceRadiance(const Scene& scene, const Camera& camera, const SurfacePoint& point, Model model,
+                             const Visibility& visibility) {
+  return withUserReflections(scene, [&](UserReflections& user, bool is_asking) {
+    return radianceOf(scene, camera, point, model, is_asking ? Visibility() : visibility, user);
+  });
+}
+
+static glm::dvec3 shadePixel(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
+                             const ReferenceSettings& settings, UserReflections& user, bool is_asking) {
+  const std::optional<ShownPoint> shown = shownPoint(gbuffer, pixel, settings);
+  if (!shown) return scene.background;
+  const glm::dvec3 radiance = radianceOf(scene, gbuffer.camera, shown->point, shown->model,
+                                         is_asking ? Visibility() : shown->visibility, user);
+  return settings.fog ? referenceFog(scene.fog, gbuffer.camera, shown->point.position, radiance) : radiance;
 }
 
 std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuffer, const glm::ivec2& pixel,
@@ -213,12 +228,15 @@ std::optional<PixelTerms> referenceTerms(const Scene& scene, const GBuffer& gbuf
   terms.model = shown->model;
   terms.own = ownRadiance(scene, terms.point) - terms.point.emission;
   glm::dvec3 radiance = ownRadiance(scene, terms.point);
-  if (scene.lighting)
-    eachLightTerm(scene, gbuffer.camera, terms.point, terms.model, shown->visibility,
-                  [&](const LightTerm& term) {
+  withUserReflections(scene, [&](UserReflections& user, bool is_asking) {
+    if (!scene.lighting) return;
+    eachLightTerm(scene, gbuffer.camera, terms.point, terms.model,
+                  is_asking ? Visibility() : shown->visibility, user, [&](const LightTerm& term) {
+                    if (is_asking) return;
                     radiance += term.sum();
                     take(term);
                   });
+  });
   terms.fog_share = referenceFog(
       {scene.fog.mode, scene.fog.radial, scene.fog.density, scene.fog.start, scene.fog.end, glm::vec3(0.0f)},
       gbuffer.camera, terms.point.position, glm::dvec3(1.0));
@@ -261,8 +279,15 @@ std::vector<glm::dvec3> referencePixels(const Scene& scene, const GBuffer& gbuff
   std::size_t done = 0;
   std::mutex progress;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      colors[i] = shadePixel(scene, gbuffer, pixels[i], settings);
+    // Models from files are asked for the lights of some pixels at once.
+    const std::size_t together = std::max<std::size_t>(1, (1 << 18) / (scene.lights.size() + 1));
+    for (std::size_t first = range.begin(); first < range.end(); first += together) {
+      const std::size_t end = std::min(first + together, range.end());
+      withUserReflections(scene, [&](UserReflections& user, bool is_asking) {
+        for (std::size_t i = first; i < end; ++i)
+          colors[i] = shadePixel(scene, gbuffer, pixels[i], settings, user, is_asking);
+      });
+    }
     if (!settings.on_progress) return;
     const std::lock_guard lock(progress);
     done += range.size();

@@ -24,6 +24,7 @@ struct SurfacePoint {
   glm::dvec3 unbent_normal{0.0};
   glm::dvec3 ambient{0.0}, diffuse{0.0}, specular{0.0}, emission{0.0};
   double shininess = 0.0;
+  glm::dvec3 tangent{0.0};  ///< unit, world, across the normal: for models from files
 };
 
 /// Returns the visible share of a light, in [0, 1], at the point that is lit.

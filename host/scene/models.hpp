@@ -28,6 +28,9 @@ static_assert(hasRowsOfKernels());
 inline constexpr std::array kModelNames{EACH_MODEL(MODEL_NAME)};
 #undef MODEL_NAME
 
+/// Whether the model's highlights are those of facets, of a roughness by the shininess: see takeFacets().
+constexpr bool takesFacets(Model model) { return model == Model::kCookTorrance || model == Model::kWard; }
+
 /// Upper bounds of a model's reflection of an unshadowed light of 1, for any directions, before rounding.
 struct ModelBounds {
   double diffuse;   ///< a factor of the diffuse colour
@@ -41,6 +44,9 @@ inline double mostCookTorrance(double f0, double n) {
   const double alpha2 = std::max(1 / (0.5 * n + 1), 0x1p-40);
   return std::max(f0, std::min(50 * f0, 1.0)) / (2 * alpha2 * std::sqrt(alpha2));
 }
+
+/// Upper bound of Ward's highlight: 2^20/α² times the specular colour, see kernels/shade/ward.clh.
+inline double mostWard(double f0, double n) { return f0 * 0x1p20 * std::min(0.5 * n + 1, 0x1p40); }
 
 /// The bounds that a model's row in kernels/models.h states; none for a user's model. f0: a channel of the
 /// specular colour, ≥ 0; n: the shininess, ≥ 0.

@@ -219,7 +219,8 @@ FeatureSet generalFeatures() {
   // What `auto` and `exact` do in pictures without shadow maps, normal maps, holes and bounds of light.
   using enum Feature;
   FeatureSet general;
-  for (const Model model : kAllModels) general.set(featureOf(model));
+  // Ward's would cost every picture its machine code, and few ask for it.
+  for (const Model model : kAllModels) general.set(featureOf(model), model != Model::kWard);
   for (const Feature feature :
        {kPointLights,  kDirectionalLights, kSpotLights,    kSpotExponent, kSpotCone,
         kAttenuation,  kSmoothWindow,      kKhrWindow,     kSpecular,     kAmbient,

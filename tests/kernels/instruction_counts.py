@@ -18,6 +18,7 @@ FEATURE_SETS = [  # name, scene, options
     ("points, pcf", "fireflies.json", ["--shadows", "pcf"]),
     ("spots, hard", "spheres.json", ["--shadows", "hard"]),
     ("cook-torrance", "spheres.json", ["--shadows", "off", "--model", "cook-torrance"]),
+    ("ward", "spheres.json", ["--shadows", "off", "--model", "ward"]),
     ("blinn, soft", "city.json", ["--shadows", "soft", "--model", "blinn-phong"]),
     ("no lists", "cornell.json", ["--shadows", "off", "--culling", "none"]),
 ]

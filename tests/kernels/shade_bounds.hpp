@@ -170,6 +170,60 @@ inline Interval cookTorranceInterval(const glm::dvec3& normal, const WayToLight&
   return (facets * light * eye * color).widened(60 * kUnit);
 }
 
+/// A number of the kernels' and what it may be off by.
+struct Rounded {
+  double value, error;
+
+  double least() const { return std::max(std::abs(value) - error, 0.0); }
+  double most() const { return std::abs(value) + error; }
+};
+
+/// Ward's highlight. x, y: the parts of h = L + V along two axes across the normal. (1 + T)·e^-P falls with
+/// both and grows with h·N, for P ≥ T. What rounds in kernels/shade/ward.clh: 1/(h·N)² 2 times, 1 more with
+/// N·L; 1 + T 6 times of a brushed surface, by its squares' 2, 1/(h·N)²'s 2, a product and the sum; e^-P 3
+/// times; 1/(αx αy) 3 times, and 3 products: 18. Of any other surface 1 + T has 1 more and 1/α² 2 less. P has
+/// 6 of the scaled squares, 3 of 1/(h·N)² and its product, and 0.3 of log2(e): 10.
+inline Interval wardInterval(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye,
+                             Rounded x, Rounded y, glm::dvec2 alpha) {
+  const double n_dot_l = glm::dot(normal, way.unit), n_dot_v = glm::dot(normal, to_eye);
+  const Interval light =
+      growing(n_dot_l, way.error + 6 * kUnit, [](double cosine) { return std::max(cosine, 0.0); });
+  const Interval height = growing(std::max(n_dot_l, 0.0) + std::max(n_dot_v, 0.0), way.error + 20 * kUnit,
+                                  [](double h) { return std::max(h, kLeastWardHeight); });
+  const auto spread = [&](double at_x, double at_y, double at_height, double sign) {
+    const double power =
+        (std::pow(at_x / alpha.x, 2) + std::pow(at_y / alpha.y, 2)) / (at_height * at_height);
+    const double rest = std::exp(-power) * (1 + sign * std::min((18 + 10 * power) * kUnit, 1.0));
+    // The kernel's 0 below 2⁻⁶³, and what double loses below 2⁻¹⁰²².
+    return std::max(rest + (sign < 0 ? -0x1p-63 : 0x1p-1000), 0.0) *
+           (1 + (at_x * at_x + at_y * at_y) / (at_height * at_height));
+  };
+  const Interval inverse{1 / (height.high * height.high), 1 / (height.low * height.low)};
+  const Interval lobe{spread(x.most(), y.most(), height.low, -1),
+                      spread(x.least(), y.least(), height.high, 1)};
+  return light * inverse * lobe * (1 / (alpha.x * alpha.y));
+}
+
+/// The vector h − (h·N)·N has L's error, V's 5 units, 2 of the sum and 2 of the difference. Along N is left
+/// what h·N and N's length are off by.
+inline Interval wardInterval(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye,
+                             double shininess) {
+  const glm::dvec3 sum = way.unit + to_eye;
+  const double across = glm::length(sum - glm::dot(normal, sum) * normal);
+  return wardInterval(normal, way, to_eye, {across, way.error + 12 * kUnit}, {0, way.error + 40 * kUnit},
+                      glm::dvec2(std::sqrt(2 / (shininess + 2))));
+}
+
+/// h·X has L's error, V's 5 units, 2 of the sum, 6 of the product and 8 of X's length.
+inline Interval wardAnisotropicInterval(const glm::dvec3& normal, const WayToLight& way,
+                                        const glm::dvec3& to_eye, const glm::dvec3& tangent,
+                                        const glm::dvec3& bitangent, glm::dvec2 alpha) {
+  const glm::dvec3 sum = way.unit + to_eye;
+  const double error = way.error + 24 * kUnit;
+  return wardInterval(normal, way, to_eye, {glm::dot(sum, tangent), error}, {glm::dot(sum, bitangent), error},
+                      alpha);
+}
+
 /// The Oren-Nayar model's diffuse part, A·x + B·max(L·V − x·v, 0)·x/max(x, v) with x = N·L and v = N·V. The
 /// directions' errors are those of the cosines. A and B round 6 times each, and 8 roundings join all.
 inline Interval orenNayarInterval(const glm::dvec3& normal, const WayToLight& way, const glm::dvec3& to_eye,
@@ -211,6 +265,8 @@ inline ReflectedInterval reflectedInterval(Model model, const glm::dvec3& normal
     case Model::kOrenNayar:
       return {orenNayarInterval(normal, way, to_eye, shininess),
               lobe(mirrorCosine(normal, way, to_eye)) * f0};
+    case Model::kWard:
+      return {cosine, wardInterval(normal, way, to_eye, shininess) * f0};
   }
   throw std::logic_error("a model without an interval");
 }

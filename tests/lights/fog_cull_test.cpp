@@ -159,8 +159,9 @@ TEST(FogCull, HidesNothingThatABrightLightShows) {
 }
 
 TEST(FogCull, HidesNothingThatAHighlightOrExposureShows) {
-  // The sun stands behind the spheres, for Cook and Torrance's highlight at a glance.
-  for (const Model model : {Model::kPhong, Model::kBlinnPhong, Model::kToon, Model::kCookTorrance})
+  // The sun stands behind the spheres, for Cook and Torrance's highlight at a glance, and Ward's.
+  for (const Model model :
+       {Model::kPhong, Model::kBlinnPhong, Model::kToon, Model::kCookTorrance, Model::kWard})
     for (const double intensity : {1e-3, 1.0, 1e6})
       for (const float exposure : {-10.0f, 0.0f, 10.0f}) {
         SCOPED_TRACE(fmt::format("{} {} {}", modelName(model), intensity, exposure));

@@ -22,7 +22,8 @@ TEST(LightUse, TellsWhyALightIsSummed) {
     return lightUse(light, {Model::kPhong, shadows});
   };
   EXPECT_EQ(lightUse(everywhere(), {Model::kToon, ShadowMethod::kHard}), LightUse::kByModel);
-  EXPECT_EQ(lightUse(everywhere(), {Model::kCookTorrance, ShadowMethod::kHard}), LightUse::kByModel);
+  for (const Model model : {Model::kCookTorrance, Model::kWard})
+    EXPECT_EQ(lightUse(everywhere(), {model, ShadowMethod::kHard}), LightUse::kByModel);
   EXPECT_EQ(reasonOf([](Light& light) { light.kind = LightKind::kDirectional; }), LightUse::kByKind);
   EXPECT_EQ(reasonOf([](Light& light) { light.kind = LightKind::kSpot; }), LightUse::kByKind);
   EXPECT_EQ(reasonOf([](Light& light) { light.range = 1e30f; }), LightUse::kByRange);

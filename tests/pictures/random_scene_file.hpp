@@ -182,7 +182,7 @@ inline SceneJson randomSceneFile(unsigned seed) {
   for (int i = 0; i < kMaterials && of_their_own; ++i)
     if (!free || random.chance(0.7))
       scene["materials"][fmt::format("m{}", i)]["model"] =
-          modelName(kAllModels[free ? random.below(kModels) : 2 * i % kModels]);
+          modelName(kAllModels[free ? random.below(kModels) : 5 * i % kModels]);
   if (!free) {
     scene["materials"]["m0"]["specular"] = {0.3, 0.4, 0.5};
     scene["materials"]["m0"]["emission"] = {0.1, 0.0, 0.2};

@@ -101,6 +101,84 @@ TEST(OrenNayarModel, IsLambertsWhereSmoothAndLightAndEyeMayChangePlaces) {
   EXPECT_NEAR(orenNayar({kUp, l, v}, 1) / l.z, orenNayar({kUp, v, l}, 1) / v.z, kRounding);
 }
 
+TEST(WardModel, PeaksAtNPlusTwoEighthsAndGrowsAtAGlance) {
+  for (const double n : {0.0, 1.0, 30.0, 1e4, 1e6}) {
+    EXPECT_NEAR(ward({kUp, kUp, kUp}, n), (n + 2) / 8, kRounding * (n + 2)) << n;
+    // Towards the mirror h is along the normal: N·L (n + 2)/2 / (2 N·L)².
+    for (const double angle : {0.4, 1.2, 1.55}) {
+      const double mirrored = ward({kUp, leaning(angle), leaning(angle, std::numbers::pi)}, n);
+      EXPECT_NEAR(mirrored * std::cos(angle) * 8 / (n + 2), 1, kRounding * (n + 2)) << n << " " << angle;
+    }
+  }
+}
+
+TEST(WardModel, IsThePapersFormulaAwayFromThePeak) {
+  const double tangent = std::tan(0.3), expected = std::exp(-tangent * tangent * 16) * 16;
+  // L = V, so δ = 0.3, h·h = 4 and h·N = 2 cos 0.3.
+  EXPECT_NEAR(ward({kUp, leaning(0.3, 1), leaning(0.3, 1)}, 30), expected * 0.25 / std::pow(std::cos(0.3), 3),
+              40 * kRounding);
+}
+
+TEST(WardModel, LightAndEyeMayChangePlaces) {
+  const glm::dvec3 a = leaning(0.3, 1), b = leaning(1.2, 2);
+  for (const double n : {0.0, 3.0, 20.0})
+    EXPECT_NEAR(ward({kUp, a, b}, n) / a.z, ward({kUp, b, a}, n) / b.z, kRounding * 20) << n;
+  const glm::dvec3 x{0.6, 0.8, 0}, y{-0.8, 0.6, 0};
+  EXPECT_NEAR(wardAnisotropic({kUp, a, b}, x, y, {0.2, 0.7}) / a.z,
+              wardAnisotropic({kUp, b, a}, x, y, {0.2, 0.7}) / b.z, kRounding * 20);
+}
+
+TEST(WardModel, OfABrushedSurfaceSpreadsAcrossTheGroove) {
+  const glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, along = leaning(0.6, 0),
+                                           across = leaning(0.6, std::numbers::pi / 2);
+  const auto seen = [&](const glm::dvec3& to_light) {
+    return wardAnisotropic({kUp, to_light, kUp}, x, y, {0.1, 0.5});
+  };
+  EXPECT_GT(seen(across), 100 * seen(along));
+  EXPECT_NEAR(wardAnisotropic({kUp, along, across}, x, y, glm::dvec2(0.25)), ward({kUp, along, across}, 30),
+              40 * kRounding);
+}
+
+/// The share of a parallel light that goes anywhere, of a white surface. Slopes of h are those that the
+/// exponential spreads evenly, r² = −ln u around: dω = 4 (V·h) cos³δ αx αy /(2u) du dψ, by midpoints.
+double wardReflectance(glm::dvec2 alpha, double angle, double around) {
+  constexpr int kSteps = 200;
+  const glm::dvec3 to_eye = leaning(angle, around);
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < 4 * kSteps; ++j) {
+      const double u = (i + 0.5) / kSteps, turn = (j + 0.5) / (2 * kSteps) * std::numbers::pi;
+      const glm::dvec2 slope = std::sqrt(-std::log(u)) * alpha * glm::dvec2(std::cos(turn), std::sin(turn));
+      const glm::dvec3 half_way = glm::normalize(glm::dvec3(slope, 1));
+      const double v_dot_h = glm::dot(to_eye, half_way);
+      const glm::dvec3 to_light = 2 * v_dot_h * half_way - to_eye;
+      if (v_dot_h <= 0 || to_light.z <= 0) continue;
+      const double angles = 4 * v_dot_h * std::pow(half_way.z, 3) * alpha.x * alpha.y / (2 * u);
+      sum += wardAnisotropic({kUp, to_light, to_eye}, {1, 0, 0}, {0, 1, 0}, alpha) * angles;
+    }
+  return sum / (2.0 * kSteps * kSteps);
+}
+
+// What 2010's correction is for. What is summed is 2 N·L/(N·L + N·V), so all of the light where the surface
+// is smooth, and at a glance, where it is 2 for the half of the slopes that face the light.
+TEST(WardModel, NeverReflectsMoreThanItGetsAndNearlyAllWhereSmoothOrAtAGlance) {
+  for (const double wide : {1.0, 0.5, 0.1, 0.01})
+    for (const double narrow : {1.0, 0.3})
+      for (const double angle : {0.0, 0.8, 1.4, 1.55, 1.5707})
+        for (const double around : {0.0, 0.7, 1.5}) {
+          const double share = wardReflectance({wide, narrow * wide}, angle, around);
+          // A row of midpoints at the edge of N·L > 0 may count to its end.
+          EXPECT_LE(share, 1 + 1.0 / 400) << wide << " " << narrow << " " << angle << " " << around;
+          EXPECT_GE(share, wide < 0.05 && angle < 1.5 ? 0.98 : 0.35)
+              << wide << " " << narrow << " " << angle << " " << around;
+        }
+  // From above a slope of T reflects 1 − T of its light, and T spreads as e^-(T/α²).
+  for (const double alpha : {1.0, 0.5})
+    EXPECT_NEAR(wardReflectance({alpha, alpha}, 0, 0),
+                1 - alpha * alpha * (1 - std::exp(-1 / (alpha * alpha))), 1e-4);
+  EXPECT_GE(wardReflectance({1, 1}, 1.5707, 0), 0.99);
+}
+
 // Also at a glance, where Cook and Torrance's highlight is brightest, and with the light almost behind. Each
 // bound of diffuse light is reached by some surface.
 TEST(Models, StayWithinTheBoundsThatTheyState) {

@@ -22,7 +22,7 @@ namespace luciole {
 ///     lift                       metres along N to where shadow tests start (see GBuffer::lift)
 ///     model                      modelNumber() of a surface's own model, if any surface has one: 0 none, 1
 ///     phong,
-///                                2 blinn-phong, 3 toon, 4 cook-torrance, 5 oren-nayar
+///                                2 blinn-phong, 3 toon, 4 cook-torrance, 5 oren-nayar, 6 ward
 ///
 /// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC, and with all digits in attributes
 /// luciole:cameraToWorld, luciole:projection and luciole:cameraName. A crop becomes the data window inside

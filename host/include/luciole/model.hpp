@@ -14,8 +14,9 @@ enum class Model : std::uint8_t {
   kToon,          ///< light in flat steps
   kCookTorrance,  ///< rough surfaces, D G F / (4 N·L N·V)
   kOrenNayar,     ///< rough matte surfaces, with Phong's highlights
+  kWard,          ///< rough surfaces by Ward's highlights
 };
-inline constexpr std::size_t kNumberOfModels = 5;
+inline constexpr std::size_t kNumberOfModels = 6;
 
 /// Models from files of the user's (Scene::user_models) have the numbers after those.
 inline constexpr std::size_t kMostUserModels = 16;

@@ -220,7 +220,7 @@ ModelChoices modelChoices(const Scene& scene);
 Model addUserModel(const std::string& path, Scene& scene);
 
 /// Sets `specular` and `shininess` of materials with `facets` and no model of their own to what
-/// Model::kCookTorrance takes: f0, and 2/α² − 2. For scenes that are shown by that model.
+/// Model::kCookTorrance and Model::kWard take: f0, and 2/α² − 2. For scenes that are shown by one of them.
 void takeFacets(Scene& scene);
 
 /// The indices of all objects of the scene.

@@ -154,10 +154,11 @@ std::vector<int> parseInts(const std::string& text, char separator, std::size_t 
 
 CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
   return command
-      .add_option("--model", options.model,
-                  "how surfaces reflect light whose materials don't say it: with highlights of (R.V)^n, of "
-                  "(N.H)^n, in flat steps, as rough ones do, or as rough matte ones do; or a file of one's "
-                  "own, *.clh")
+      .add_option(
+          "--model", options.model,
+          "how surfaces reflect light whose materials don't say it: with highlights of (R.V)^n, of "
+          "(N.H)^n, in flat steps, as rough ones do, as rough matte ones do, or as rough ones by Ward's "
+          "lobe; or a file of one's own, *.clh")
       ->check([](const std::string& model) {
         return model.ends_with(kShaderExtension) ? std::string()
                                                  : oneOf({kModelNames.begin(), kModelNames.end()})(model);
@@ -508,7 +509,7 @@ float exposureOf(const PictureOptions& options) { return float(exposureStops(opt
 
 void takeModel(const PictureOptions& options, Scene& scene) {
   if (options.model.ends_with(kShaderExtension)) addUserModel(options.model, scene);
-  if (modelOf(options, scene) == Model::kCookTorrance) takeFacets(scene);
+  if (takesFacets(modelOf(options, scene))) takeFacets(scene);
 }
 
 Model modelOf(const PictureOptions& options, const Scene& scene) {

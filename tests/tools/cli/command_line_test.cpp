@@ -146,7 +146,7 @@ TEST_F(CommandLine, FlatGouraudAndPhongDiffer) {
 TEST_F(CommandLine, EveryModelMakesAnotherPictureThanPhongs) {
   succeed("luciole render scene.json -o usual.npy && luciole render scene.json --model phong -o phong.npy");
   EXPECT_EQ(runLine(folder, "luciole compare usual.npy phong.npy --max-abs 0").status, 0);
-  for (const std::string model : {"blinn-phong", "toon", "cook-torrance"}) {
+  for (const std::string model : {"blinn-phong", "toon", "cook-torrance", "ward"}) {
     succeed("luciole render scene.json --model " + model + " -o other.npy");
     EXPECT_EQ(runLine(folder, "luciole compare usual.npy other.npy --max-abs 0.01").status, 1) << model;
   }
