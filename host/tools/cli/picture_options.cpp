@@ -20,6 +20,7 @@
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/models.hpp"
+#include "shaders/shader_text.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "tools/cli/cameras.hpp"
@@ -452,6 +453,10 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
                       {"lights", scene.lights.size()},
                       {"milliseconds", eventMilliseconds(milliseconds)}});
   takeModel(options, scene);
+  for (const std::string& screen : options.screens)
+    for (const std::string& place :
+         shaderFacts(readShader(screen, ShaderKind::kScreen), ShaderKind::kScreen).loose)
+      scene.warnings.push_back({place, "arithmetic that devices round differently"});
   castShadows(options, scene);
   if (!options.quiet) reportWarnings(scene.warnings);
   return scene;
