@@ -116,6 +116,27 @@ typedef struct {
 } HoleTriangle;
 SHARED_SIZE(HoleTriangle, 64);
 
+// Pixels beyond each end of a row of a screen's planes, which hold the row's last one. At least the largest
+// radius of a screen, and as many as align rows to lanes.
+enum { kScreenPad = 16 };
+
+// The part of a picture that a screen is drawn on. Pixel (x, y) of the part lies in a plane at y · row_stride
+// + kScreenPad + x.
+typedef struct {
+  float4 eye;            // in the world, metres; w unused
+  float4 to_eye;         // the direction to it from a place p from the eye on is xyz + w · p
+  float pixel_base;      // metres that a pixel is wide: pixel_base + pixel_slope · depth
+  float pixel_slope;     //
+  uint plane_stride;     // floats of a plane
+  int row_stride;        // floats of a row
+  int columns, rows;     // of the part
+  int first_x, first_y;  // its top left corner in the whole picture
+  int width, height;     // of the whole picture
+  int inner_left, inner_top, inner_right, inner_bottom;  // of the part: its pixels without the margin
+  int pad0, pad1;
+} ScreenFrame;
+SHARED_SIZE(ScreenFrame, 96);
+
 enum { kPointLight = 0, kDirectionalLight = 1, kSpotLight = 2 };
 
 // Values of ShadeLight.shadow that aren't a map's index: the light casts no shadow, or beam_shadows.cl

@@ -78,6 +78,10 @@ constexpr std::string_view kernelTypeName<ShadeFrame>() {
   return "ShadeFrame";
 }
 template <>
+constexpr std::string_view kernelTypeName<ScreenFrame>() {
+  return "ScreenFrame";
+}
+template <>
 constexpr std::string_view kernelTypeName<CullFrame>() {
   return "CullFrame";
 }

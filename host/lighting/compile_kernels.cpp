@@ -130,8 +130,9 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
 }
 
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
-                                   const ShadeSettings& settings, double pairs) {
-  return std::async(std::launch::async, [&device, &programs, &settings, pairs] {
+                                   const ShadeSettings& settings, double pairs,
+                                   const std::vector<ScreenProgram>& screens) {
+  return std::async(std::launch::async, [&device, &programs, &settings, pairs, &screens] {
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
@@ -150,6 +151,7 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
     startBeams(device, picture, helper);
     for (const FeatureSet& features : picture.programs)
       compileKernels(device, features, settings, {.beams = false});
+    for (const ScreenProgram& screen : screens) compileScreen(device, screen);
     checkItself(device);
     if (!helper.await() && device.warn)
       device.warn("a process that compiled kernels failed; they are compiled in this one");

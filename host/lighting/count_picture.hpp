@@ -13,6 +13,11 @@ namespace luciole {
 /// The count of pixels to which a user's model gave NaN, or a number below 0 or of no sensible size.
 constexpr const char* kFaultyPixels = "pixels_with_faulty_light";
 
+/// The count of pixels of all samples to which the screen with this index gave no colour.
+inline std::string faultyScreenPixels(std::size_t screen) {
+  return "pixels_with_faulty_screen_" + std::to_string(screen);
+}
+
 /// Adds to a count, which begins at 0.
 void addCount(Stats& stats, const std::string& name, std::uint64_t count);
 

@@ -38,6 +38,7 @@ const char* stageName(Stage stage) {
       "sampled light",
       "shade",
       "read back",
+      "screens",
       "resolve",
       "count lights",
       "check G-buffer",

@@ -50,12 +50,6 @@ void forEachPixel(const GBuffer& gbuffer, Image& image, Visit visit) {
   });
 }
 
-/// Clamps to finite floats, as finite_color() in the kernels does: the sum of bright samples may overflow.
-float finiteColor(float color) {
-  constexpr float kLargest = std::numeric_limits<float>::max();
-  return std::max(color < kLargest ? color : kLargest, -kLargest);
-}
-
 /// The factor from a sum over a pixel's samples to the exposed mean.
 float scaleOf(const RenderSettings& settings) {
   return std::exp2(settings.exposure) / float(settings.samples);
@@ -70,6 +64,24 @@ float boundOfMean(float sum, float mean, int samples, float scale) {
 }
 
 }  // namespace
+
+float finiteColor(float color) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  return std::max(color < kLargest ? color : kLargest, -kLargest);
+}
+
+Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
+  if (size == glm::ivec2(picture.width, picture.height)) return picture;
+  Image part{size.x, size.y, picture.channels, {}};
+  const std::size_t step = picture.channels.size();
+  part.pixels.reserve(std::size_t(size.x) * size.y * step);
+  for (int y = first.y; y < first.y + size.y; ++y) {
+    const auto row =
+        picture.pixels.begin() + std::ptrdiff_t((std::size_t(y) * picture.width + first.x) * step);
+    part.pixels.insert(part.pixels.end(), row, row + std::ptrdiff_t(std::size_t(size.x) * step));
+  }
+  return part;
+}
 
 bool boundsLayers(const RenderSettings& settings) {
   return settings.shade.light_error > 0 && settings.wants(Aov::kLightError);

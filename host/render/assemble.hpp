@@ -10,6 +10,12 @@
 
 namespace luciole {
 
+/// Clamps to finite floats, as finite_color() in the kernels does: the sum of bright samples may overflow.
+float finiteColor(float color);
+
+/// A rectangle of a picture.
+Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size);
+
 /// The index of an AOV's first channel in the picture; empty if the settings don't ask for it.
 std::optional<std::size_t> channelOf(const Image& image, const RenderSettings& settings, Aov aov);
 

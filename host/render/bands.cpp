@@ -15,6 +15,7 @@
 #include "raster/surface_ids.hpp"
 #include "render/assemble.hpp"
 #include "render/light_points.hpp"
+#include "render/screens.hpp"
 
 namespace luciole {
 namespace {
@@ -108,10 +109,10 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
                                    {"objects", std::int64_t(scene.objects.size())},
                                    {"lights", std::int64_t(scene.lights.size())}});
   ReadyPicture picture{device, scene, settings, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade, plan.pairs);
-  picture.objects = settings.alpha
-                        ? allObjects(scene)
-                        : objectsInSight(scene, plan.view, settings.exposure, settings.shade.model);
+  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade, plan.pairs, plan.screens);
+  picture.objects = settings.alpha ? allObjects(scene)
+                                   : objectsInSight(scene, withMargin(plan.view, plan), settings.exposure,
+                                                    settings.shade.model);
   prepareLights(picture, settings.camera, kept);
   picture.lighting.maps.host.expects_more = settings.samples > 1;
   awaitKernels(compiling, device, settings, stats);

@@ -7,6 +7,7 @@
 #include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
 #include "render/light_points.hpp"
+#include "render/screens.hpp"
 
 namespace luciole {
 namespace {
@@ -25,6 +26,7 @@ Plane addPlane(Plane more, std::size_t count, Plane& sum) {
 /// Lists a band's pixels once for each sample.
 struct SampleLister final : PointLister {
   ReadyPicture& picture;
+  PixelRectangle inner;  ///< the pixels wanted of the view's
   View view;
   RasterCounts& triangles;
   const std::function<void()>& on_sample;
@@ -32,12 +34,15 @@ struct SampleLister final : PointLister {
   GBuffer drawn;
   PixelSums sums;
   std::vector<PixelSums> layer_sums;  ///< colours and bounds alone
+  ScreenedColors screened;            ///< with screens only
   Image image;
   std::optional<TraceSpan> span;
 
   SampleLister(ReadyPicture& ready, const View& band, RasterCounts& counted,
                const std::function<void()>& report)
-      : picture(ready), view(band), triangles(counted), on_sample(report) {
+      : picture(ready), view(withMargin(band, ready.plan)), triangles(counted), on_sample(report) {
+    const glm::ivec2 first = band.crop_origin - view.crop_origin;
+    inner = {first, first + band.crop_size};
     layer_sums.resize(picture.layers.size());
     recycled = std::move(picture.recycled.color);
   }
@@ -66,6 +71,7 @@ struct SampleLister final : PointLister {
 
   void take(LitPlanes lit) override {
     countPass(drawn, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
+    if (!picture.plan.screens.empty()) takeScreened(lit.color);
     timed(picture.stats, Stage::kResolve, [&] {
       if (sample == 0)
         image = startPicture(drawn, lit, picture.settings, layerNames(picture),
@@ -75,8 +81,19 @@ struct SampleLister final : PointLister {
       addPlane(std::move(lit.half_width), widths, sums.half_width);
       recycled = addPlane(std::move(lit.color), 3 * drawn.pixels(), sums.color);
       if (countsCovered(picture.settings)) countCovered(drawn, sums.covered);
-      if (isLast()) setColors(drawn, sums, picture.settings, image);
+      if (!isLast()) return;
+      setColors(drawn, sums, picture.settings, image);
+      if (!screened.color.empty()) setScreenedColors(screened, samples(), image);
     });
+  }
+
+  /// Adds what the screens make of a sample.
+  void takeScreened(const Plane& color) {
+    ScreenedColors of_sample =
+        timed(picture.stats, Stage::kScreens, [&] { return applyScreens(picture, drawn, color, inner); });
+    screened.frame = of_sample.frame;
+    const std::size_t count = of_sample.color.size();
+    picture.recycled.screens.before = addPlane(std::move(of_sample.color), count, screened.color);
   }
 
   void takeLayer(std::size_t layer, LitPlanes lit) override {
@@ -99,7 +116,7 @@ Image lightAllSamples(ReadyPicture& picture, const View& band, RasterCounts& tri
   SampleLister lister(picture, band, triangles, on_sample);
   lightPoints(picture, picture.plan.pixels, lister);
   picture.recycled.color = std::move(lister.sums.color);
-  return std::move(lister.image);
+  return cutOut(std::move(lister.image), lister.inner.first, band.crop_size);
 }
 
 }  // namespace luciole

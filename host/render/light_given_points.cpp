@@ -3,6 +3,7 @@
 #include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
 #include "render/light_points.hpp"
+#include "render/screens.hpp"
 
 namespace luciole {
 namespace {
@@ -24,11 +25,17 @@ struct GivenLister final : PointLister {
 
   void take(LitPlanes lit) override {
     countPass(given, lit, counts.evaluated, picture.plan.shade.light_error_floor, picture.stats);
+    ScreenedColors screened;
+    if (!picture.plan.screens.empty())
+      screened = timed(picture.stats, Stage::kScreens, [&] {
+        return applyScreens(picture, given, lit.color, {{0, 0}, {given.width, given.height}});
+      });
     timed(picture.stats, Stage::kResolve, [&] {
       image = startPicture(given, lit, picture.settings, layerNames(picture));
       PixelSums sums{std::move(lit.color), {}, {}, std::move(lit.light_error), std::move(lit.half_width)};
       if (countsCovered(picture.settings)) countCovered(given, sums.covered);
       setColors(given, sums, picture.settings, image);
+      if (!screened.color.empty()) setScreenedColors(screened, 1, image);
     });
   }
 

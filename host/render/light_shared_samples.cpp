@@ -33,20 +33,6 @@ void removePoints(const std::vector<std::uint8_t>& pixels, SharedSamples& shared
   });
 }
 
-/// A rectangle of a picture.
-Image cutOut(Image picture, const glm::ivec2& first, const glm::ivec2& size) {
-  if (size == glm::ivec2(picture.width, picture.height)) return picture;
-  Image part{size.x, size.y, picture.channels, {}};
-  const std::size_t step = picture.channels.size();
-  part.pixels.reserve(std::size_t(size.x) * size.y * step);
-  for (int y = first.y; y < first.y + size.y; ++y) {
-    const auto row =
-        picture.pixels.begin() + std::ptrdiff_t((std::size_t(y) * picture.width + first.x) * step);
-    part.pixels.insert(part.pixels.end(), row, row + std::ptrdiff_t(std::size_t(size.x) * step));
-  }
-  return part;
-}
-
 glm::vec3 backgroundOf(const LightSet& lights) {
   const float4& color = lights.frame.background;
   return {color.x, color.y, color.z};

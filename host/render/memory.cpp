@@ -67,7 +67,8 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
 }
 
 bool sharesSamples(const RenderSettings& settings) {
-  return settings.samples > 1 && settings.sample_shading == SampleShading::kShared;
+  return settings.samples > 1 && settings.sample_shading == SampleShading::kShared &&
+         settings.screens.empty();
 }
 
 std::size_t pointsAPass(std::size_t pixels) { return std::max<std::size_t>(pixels / kPixelsAPoint, 1 << 16); }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "render/memory.hpp"
+#include "render/screens.hpp"
 #include "shade/shadow_ways.hpp"
 #include "shaders/shader_text.hpp"
 
@@ -79,6 +80,14 @@ double pairsOf(const Scene& scene, const FeatureSet& features, double points) {
   return points * (1 + unbounded + std::min(double(ranged), kMostInRange));
 }
 
+/// The screens of the settings. Throws InputError.
+std::vector<ScreenProgram> screenPrograms(const std::vector<Shader>& screens) {
+  std::vector<ScreenProgram> programs;
+  for (const Shader& shader : screens)
+    programs.push_back({shader, shaderFacts(shader, ShaderKind::kScreen).radius});
+  return programs;
+}
+
 /// The part of a plan that is the same for a scene's picture and for a G-buffer. view: of the whole picture.
 /// points_a_pixel: see shadowWays.
 PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const SurfaceTraits& surfaces,
@@ -89,6 +98,7 @@ PicturePlan planLight(const Scene& scene, const RenderSettings& settings, const 
   chooseModel(surfaces.models, plan.shade);
   plan.shade.user_text = shaderProgram(scene.user_models, ShaderKind::kModel);
   plan.layers = lightLayers(scene, settings);
+  plan.screens = screenPrograms(settings.screens);
   const StandIns stand_ins = standIns(scene, view, surfaces, plan.shade);
   if (plan.shade.shadows == ShadowMethod::kAuto && plan.shade.shadow_ways.empty() && scene.lighting)
     plan.shade.shadow_ways = shadowWays(scene, view, points_a_pixel, plan.shade.shadow_limits,
@@ -127,6 +137,9 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
   if (settings.wants(Aov::kMaterial))
     plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;
+  const ScreenGroups groups = groupsOf(plan.screens);
+  plan.planes.object |= groups.object;
+  plan.planes.material |= groups.material;
   addProgram(plan.pixels, plan.programs);
   if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);
   addLayersPrograms(plan);

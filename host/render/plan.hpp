@@ -9,6 +9,7 @@
 #include "raster/view.hpp"
 #include "render/render.hpp"
 #include "shade/features.hpp"
+#include "shade/screen_rows.hpp"
 
 namespace luciole {
 
@@ -23,9 +24,10 @@ struct PicturePlan {
   std::vector<LightLayer> layers;
   std::vector<FeatureSet> programs;  ///< feature sets of all passes, each once
   double pairs = 0;                  ///< of a point and a light that lights it, about
-  bool shares_samples = false;       ///< samples that see the same surface share a shading point
-  std::size_t pixel_bytes = 0;       ///< see bytesPerPixel
-  int band_height = 0;               ///< rows of a band, at most
+  std::vector<ScreenProgram> screens;
+  bool shares_samples = false;  ///< samples that see the same surface share a shading point
+  std::size_t pixel_bytes = 0;  ///< see bytesPerPixel
+  int band_height = 0;          ///< rows of a band, at most
 };
 
 /// The plan of a scene's picture. O(vertices + lights). Nothing is drawn and no time is measured, so the same

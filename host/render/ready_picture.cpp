@@ -1,6 +1,7 @@
 #include "render/ready_picture.hpp"
 
 #include "lighting/count_picture.hpp"
+#include "render/screens.hpp"
 
 namespace luciole {
 
@@ -13,8 +14,8 @@ TrafficMeter::~TrafficMeter() {
 
 void prepareLights(ReadyPicture& picture, const Camera& camera, KeptShadows* kept) {
   const PicturePlan& plan = picture.plan;
-  prepareLighting(picture.device, picture.scene, camera, plan.view, plan.features, plan.shade,
-                  picture.lighting, picture.stats, kept);
+  prepareLighting(picture.device, picture.scene, camera, withMargin(plan.view, plan), plan.features,
+                  plan.shade, picture.lighting, picture.stats, kept);
   if (picture.settings.alpha) picture.lighting.lights.frame.background = {};
   picture.layers = timed(picture.stats, Stage::kPrepareLights, [&] {
     return prepareLayers(picture.device, picture.scene, camera, picture.lighting, plan.pixels, plan.shade,

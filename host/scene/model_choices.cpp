@@ -5,7 +5,6 @@
 #include "luciole/error.hpp"
 #include "luciole/scene.hpp"
 #include "scene/models.hpp"
-#include "shaders/shader_text.hpp"
 
 namespace luciole {
 
@@ -20,11 +19,7 @@ Model addUserModel(const std::string& path, Scene& scene) {
   if (index == kMostUserModels)
     throw InputError(fmt::format("{}: the scene has {} models in files already, expected that many at most",
                                  path, kMostUserModels));
-  if (known == scene.user_models.end()) {
-    for (const std::string& place : shaderFacts(shader, ShaderKind::kModel).loose)
-      scene.warnings.push_back({place, "arithmetic that devices round differently"});
-    scene.user_models.push_back(std::move(shader));
-  }
+  if (known == scene.user_models.end()) scene.user_models.push_back(std::move(shader));
   return userModel(index);
 }
 

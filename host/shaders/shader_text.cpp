@@ -162,7 +162,9 @@ struct Refused {
   Text word;
   const char* reason;
 };
-constexpr const char* kLoops = "the only loop is UNROLLED(i, n) {...}, with a number for n";
+constexpr const char* kLoops =
+    "the only loop is UNROLLED(i, n) {...}, with a number for n; a screen also has EACH_NEIGHBOR(dx, dy) "
+    "{...}";
 constexpr const char* kJumps = "a shader has no jumps but if, break, continue and return";
 constexpr const char* kTypes = "a shader defines functions alone, and no types or variables of its own file";
 constexpr const char* kMemory = "a shader reads and writes what its function is given alone";
@@ -428,6 +430,7 @@ class Checker {
         false;              ///< of a parenthesis: before it stands a function that pointers are given to
     std::size_t turns = 1;  ///< of a loop's body
     bool is_loop = false;
+    std::size_t loops_around = 0;  ///< of a loop's body: the variables of the loops around it
   };
 
   /// From behind a function's { to behind its }. Returns its weight.
@@ -440,8 +443,10 @@ class Checker {
       if (now.of_directive) fail(now, "directives stand outside of functions");
       checkWord(now);
       const Text word = now.text;
-      if (word == "UNROLLED") {
-        open.push_back({'{', false, loopHeader(), true});
+      if (word == "UNROLLED" || isNeighborLoop(word)) {
+        const std::size_t loops_around = loops_.size();
+        open.push_back(
+            {'{', false, word == "UNROLLED" ? loopHeader() : neighborHeader(), true, loops_around});
         if (turns > kMostRepeated) checkWeight(now, turns);
         turns *= open.back().turns;
       } else if (word == "{" || word == "(") {
@@ -451,7 +456,7 @@ class Checker {
         if (open.back().sign != (word == "}" ? '{' : '('))
           fail(now, fmt::format("this {} closes nothing", word));
         turns /= open.back().turns;
-        if (open.back().is_loop) loops_.pop_back();
+        if (open.back().is_loop) loops_.resize(open.back().loops_around);
         open.pop_back();
       } else {
         checkUse(now, open.back());
@@ -502,6 +507,29 @@ class Checker {
     if (text(at_) != "{") fail(loop, "a loop's body stands in { }");
     loops_.push_back(variable);
     return turns;
+  }
+
+  bool isNeighborLoop(Text word) const { return kind_ == ShaderKind::kScreen && word == "EACH_NEIGHBOR"; }
+
+  /// EACH_NEIGHBOR(dx, dy) {, up to the {. Returns the turns.
+  std::size_t neighborHeader() {
+    constexpr const char* kExpected = "a loop over all neighbours is EACH_NEIGHBOR(dx, dy) {...}";
+    const Token& loop = here();
+    if (!has_radius_) fail(loop, "the #define RADIUS stands above its neighbours");
+    ++at_;
+    for (const Text sign : {"(", ","}) {
+      expect(sign, kExpected);
+      const Text variable = text(at_);
+      if (!isName(variable) || isIn(kKeywords, variable) || macros_.contains(variable))
+        fail(here(), kExpected);
+      checkWord(here());
+      ++at_;
+      loops_.push_back(variable);
+    }
+    expect(")", kExpected);
+    if (text(at_) != "{") fail(loop, "a loop's body stands in { }");
+    const auto side = std::size_t(2 * facts_.radius + 1);
+    return side * side;
   }
 
   /// Whether the token before ends a value, so that * and & after it have two operands.
@@ -701,8 +729,9 @@ std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind) {
 std::string shaderError(const std::string& log, const std::string& user_text) {
   std::istringstream lines(log);
   std::string first;
-  // clang writes "FILE:LINE:COLUMN: error: what", and PoCL "error: FILE:LINE:COLUMN: what".
-  const std::regex place("(?:error: )?(.+):(\\d+):(\\d+): (?:fatal )?(?:error: )?(.*)");
+  // clang writes "FILE:LINE:COLUMN: error: what", and PoCL "error: FILE:LINE:COLUMN: what", with the place of
+  // the kernels' own macros behind the user's.
+  const std::regex place("(?:error: )?(.+):(\\d+):(\\d+)(?: <Spelling=[^>]*>)?: (?:fatal )?(?:error: )?(.*)");
   for (std::string line; std::getline(lines, line);) {
     std::smatch parts;
     if (line.find("error: ") == line.npos || !std::regex_match(line, parts, place)) continue;

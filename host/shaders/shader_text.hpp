@@ -11,7 +11,8 @@
 // 1.00, Appendix A) and more:
 //
 // - A file holds functions and directives. The only loop is UNROLLED(i, n) {…}, n a number, whose body
-//   leaves i as it is. Text is counted as often as loops, calls and macros repeat it, and that is limited.
+//   leaves i as it is, and a screen's EACH_NEIGHBOR(dx, dy) {…}. Text is counted as often as loops, calls and
+//   macros repeat it, and that is limited.
 // - A function is defined before it is called, and doesn't call itself.
 // - The only pointers are those to a Surface or a Screen that a function is given. They are followed by ->,
 //   or given on to functions of the file.

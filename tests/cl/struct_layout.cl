@@ -166,6 +166,29 @@ __kernel void report_shade_tiles_frame(__global uint* out) {
   *out++ = OFFSET(pad1);
 }
 
+__kernel void report_screen_frame(__global uint* out) {
+  ScreenFrame value;
+  *out++ = sizeof(ScreenFrame);
+  *out++ = OFFSET(eye);
+  *out++ = OFFSET(to_eye);
+  *out++ = OFFSET(pixel_base);
+  *out++ = OFFSET(pixel_slope);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(row_stride);
+  *out++ = OFFSET(columns);
+  *out++ = OFFSET(rows);
+  *out++ = OFFSET(first_x);
+  *out++ = OFFSET(first_y);
+  *out++ = OFFSET(width);
+  *out++ = OFFSET(height);
+  *out++ = OFFSET(inner_left);
+  *out++ = OFFSET(inner_top);
+  *out++ = OFFSET(inner_right);
+  *out++ = OFFSET(inner_bottom);
+  *out++ = OFFSET(pad0);
+  *out++ = OFFSET(pad1);
+}
+
 __kernel void report_cluster_frame(__global uint* out) {
   ClusterFrame value;
   *out++ = sizeof(ClusterFrame);

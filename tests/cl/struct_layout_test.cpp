@@ -130,6 +130,18 @@ TEST(StructLayout, ShadeTilesFrame) {
                 offsetof(ShadeTilesFrame, pad0), offsetof(ShadeTilesFrame, pad1)});
 }
 
+TEST(StructLayout, ScreenFrame) {
+  expectLayout(
+      "report_screen_frame",
+      {sizeof(ScreenFrame), offsetof(ScreenFrame, eye), offsetof(ScreenFrame, to_eye),
+       offsetof(ScreenFrame, pixel_base), offsetof(ScreenFrame, pixel_slope),
+       offsetof(ScreenFrame, plane_stride), offsetof(ScreenFrame, row_stride), offsetof(ScreenFrame, columns),
+       offsetof(ScreenFrame, rows), offsetof(ScreenFrame, first_x), offsetof(ScreenFrame, first_y),
+       offsetof(ScreenFrame, width), offsetof(ScreenFrame, height), offsetof(ScreenFrame, inner_left),
+       offsetof(ScreenFrame, inner_top), offsetof(ScreenFrame, inner_right),
+       offsetof(ScreenFrame, inner_bottom), offsetof(ScreenFrame, pad0), offsetof(ScreenFrame, pad1)});
+}
+
 TEST(StructLayout, ClusterFrame) {
   expectLayout(
       "report_cluster_frame",

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "luciole/scene.hpp"
+#include "luciole/shader.hpp"
 
 namespace luciole {
 
@@ -140,6 +141,9 @@ struct RenderSettings {
   /// emission, fog and background. Their sum is the picture. With these or with parts of the light
   /// Shading::kGouraud is refused, and Aov::kLightError adds a layer of bounds to each of them.
   bool light_groups = false;
+  /// Functions that change the lit colours, after exposure, by what is around a pixel, one after another.
+  /// Every sample of a pixel is lit and goes through them before the mean is taken. Layers and alpha stay.
+  std::vector<Shader> screens = {};
   float exposure = 0;  ///< stops: colours are multiplied by 2^exposure
   /// Adds a channel A: the share of a pixel's samples that show a surface. The colours are then those of the
   /// surfaces alone, times A: what they lack is (1 − A) × 2^exposure × the scene's background. Objects that

@@ -34,6 +34,7 @@ enum class Stage : std::uint8_t {
   kSampledLight,
   kShade,
   kReadBack,
+  kScreens,
   kResolve,
   kCountLights,
   kCheckGBuffer,

@@ -9,7 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/text_file.hpp"
 #include "base/threads.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"
@@ -166,6 +165,14 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
                                                  : oneOf({kModelNames.begin(), kModelNames.end()})(model);
       })
       ->capture_default_str();
+}
+
+void addScreenOption(CLI::App& command, PictureOptions& options) {
+  command
+      .add_option("--screen", options.screens,
+                  "FILE.clh: a function of one's own that changes the lit colours by what is around each "
+                  "pixel, as for contours and hatching; several go one after another")
+      ->allow_extra_args(false);
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
@@ -438,6 +445,20 @@ void addThreadsOption(CLI::App& command) {
       ->check(CLI::Range(1, 1024));
 }
 
+/// Of all shaders, in Scene::warnings. Throws InputError with --require-exact.
+static void warnOfLooseArithmetic(const PictureOptions& options, Scene& scene) {
+  std::vector<std::string> loose;
+  const auto add = [&](const Shader& shader, ShaderKind kind) {
+    for (std::string& place : shaderFacts(shader, kind).loose) loose.push_back(std::move(place));
+  };
+  for (const Shader& model : scene.user_models) add(model, ShaderKind::kModel);
+  for (const std::string& screen : options.screens)
+    add(readShader(screen, ShaderKind::kScreen), ShaderKind::kScreen);
+  if (options.require_exact && !loose.empty()) throw InputError("--require-exact: " + loose.front());
+  for (const std::string& place : loose)
+    scene.warnings.push_back({place, "arithmetic that devices round differently"});
+}
+
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
   Scene scene;
   LoadSettings load = options.load;
@@ -449,10 +470,7 @@ Scene openScene(const std::string& path, double frame, const PictureOptions& opt
                       {"lights", scene.lights.size()},
                       {"milliseconds", eventMilliseconds(milliseconds)}});
   takeModel(options, scene);
-  for (const Shader& model : scene.user_models)
-    if (const auto loose = shaderFacts(model, ShaderKind::kModel).loose;
-        options.require_exact && !loose.empty())
-      throw InputError("--require-exact: " + loose.front());
+  warnOfLooseArithmetic(options, scene);
   castShadows(options, scene);
   if (!options.quiet) reportWarnings(scene.warnings);
   return scene;
@@ -559,6 +577,8 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
   settings.shade.pcf_width = options.pcf_width;
   settings.shade.shadow_limits.bytes = std::size_t(options.shadow_memory) << 20;
   settings.shade.shadow_limits.size = options.shadow_size;
+  for (const std::string& path : options.screens)
+    settings.screens.push_back(readShader(path, ShaderKind::kScreen));
   settings.aovs = aovsOf(options);
   settings.light_groups = options.light_groups;
   settings.exposure = exposureOf(options);

@@ -40,6 +40,7 @@ struct PictureOptions {
   int pcf_width = ShadeSettings{}.pcf_width;
   int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
   int shadow_size = ShadowLimits{}.size;
+  std::vector<std::string> screens;  ///< files
   std::string aovs;
   bool light_groups = false;
   std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
@@ -85,6 +86,8 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options);
 /// Adds the option --shadows, whose values depend on the command.
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values);
+/// Adds the option --screen.
+void addScreenOption(CLI::App& command, PictureOptions& options);
 void addCastShadowsOption(CLI::App& command, PictureOptions& options);
 /// Adds the options of how a scene's files are read: --missing-textures, --strict, --search, --set.
 void addLoadOptions(CLI::App& command, LoadSettings& settings);

@@ -166,6 +166,18 @@ void reportFaultyLight(const PictureOptions& options, Stats& stats) {
   if (!options.quiet) reportWarning(stats.warnings.back());
 }
 
+void reportFaultyScreens(const PictureOptions& options, Stats& stats) {
+  for (std::size_t i = 0; i < options.screens.size(); ++i) {
+    const std::uint64_t count = countOf(stats, faultyScreenPixels(i));
+    if (count == 0) continue;
+    const char* what = stats.samples > 1 ? "samples of pixels" : count == 1 ? "pixel" : "pixels";
+    stats.warnings.push_back(fmt::format(
+        "{}: screen() gave NaN, infinite or negative colours to {} {}, which keep the ones before it",
+        options.screens[i], count, what));
+    if (!options.quiet) reportWarning(stats.warnings.back());
+  }
+}
+
 void reportLightError(const PictureOptions& options, Stats& stats) {
   const bool relative = options.light_error_relative > 0;
   const std::string option = relative ? fmt::format("--light-error-relative {}", options.light_error_relative)

@@ -45,6 +45,9 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
 /// --quiet and in the statistics.
 void reportFaultyLight(const PictureOptions& options, Stats& stats);
 
+/// Likewise of those to which a screen gave numbers that are no colour.
+void reportFaultyScreens(const PictureOptions& options, Stats& stats);
+
 /// Warns if bounds of --light-error are larger than allowed, because rounding of floats exceeds it.
 void reportLightError(const PictureOptions& options, Stats& stats);
 

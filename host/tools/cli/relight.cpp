@@ -169,11 +169,25 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   OpenedDevice& device = context.device;
   RenderSettings settings = renderSettings(options, scene);
   const bool adds = !picture.pixels.empty();
+  if (adds && !settings.screens.empty())
+    throw InputError("--screen: changes a whole picture, and --add makes the light that is added alone");
   const float exposure = settings.exposure;
   if (adds) settings.exposure = 0;
   logEvent("frame_begun", {{"frame", frame}});
   ProgressLine progress(options.quiet);
   settings.on_long_compile = compileReporter(progress);
+  const bool measures = measuresExposure(options, scene_path);
+  if (measures && !settings.screens.empty()) {
+    // Screens see colours after exposure, which is measured without them.
+    RenderSettings without = settings;
+    without.screens.clear();
+    timed(stats, Stage::kMeasureExposure, [&] {
+      Stats of_measuring;
+      stats.measured_exposure =
+          measureExposure(shadeGBuffer(device, scene, gbuffer, without, of_measuring), gbuffer);
+    });
+    settings.exposure = float(*stats.measured_exposure);
+  }
   Image image = shadeGBuffer(device, scene, gbuffer, settings, stats);
   progress.clear();
   logDevice(device.description);
@@ -181,7 +195,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
     image = sumOf(picture, image);
     expose(image, exposure);
   }
-  if (measuresExposure(options, scene_path)) {
+  if (measures && settings.screens.empty()) {
     timed(stats, Stage::kMeasureExposure, [&] {
       stats.measured_exposure = measureExposure(image, gbuffer);
       expose(image, *stats.measured_exposure);
@@ -197,6 +211,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
   });
   reportHalves(options, limited, stats);
   reportFaultyLight(options, stats);
+  reportFaultyScreens(options, stats);
   reportLightError(options, stats);
   reportStats(options, stats, frame);
 }
@@ -250,6 +265,7 @@ void addShadeCommand(CLI::App& app, CommandContext& context) {
   addPictureOptions(
       *command, *options,
       kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kExactOption);
+  addScreenOption(*command, *options);
   command->callback([&context, options, gbuffer_path, scene_path] {
     const int frame = useFrame(*options, "shade");
     checkOutput(*options);
@@ -303,6 +319,7 @@ void addRelightCommand(CLI::App& app, CommandContext& context) {
   addPictureOptions(
       *command, *options,
       kModelOptions | kShadeOptions | kCastOption | kDeviceOption | kFrameOption | kExactOption);
+  addScreenOption(*command, *options);
   command->callback([&context, options] { relight(context, *options); });
 }
 

@@ -105,6 +105,7 @@ void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOpt
         reportWarning(fmt::format("{}; the other devices made its rows", share.error));
   if (hash) stats.hash = hash->hex();
   reportFaultyLight(options, stats);
+  reportFaultyScreens(options, stats);
   reportLightError(options, stats);
 }
 
@@ -471,6 +472,7 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
   addPictureOptions(*command, *options,
                     kViewOptions | kSampleOption | kModelOptions | kShadeOptions | kCastOption |
                         kDeviceOption | kExactOption);
+  addScreenOption(*command, *options);
   command->add_option(
       "--frames", options->frames,
       "frame A, frames A-B, each Nth of them, A-BxN, or a list of these, 1,3,10-100x5, of a scene that moves "

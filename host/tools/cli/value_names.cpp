@@ -14,7 +14,7 @@ const std::map<std::string, std::string> kValueNames{
     {"crop", "X,Y,W,H"},   {"camera", "NAME"}, {"format", "NAME"},       {"device", "NAME"},
     {"field", "NAME"},     {"shape", "NAME"},  {"frames", "FRAMES"},     {"shard", "I/N"},
     {"exposure", "STOPS"}, {"aov", "LAYERS"},  {"probe", "X,Y"},         {"lights", "COUNTS"},
-    {"trace", "FILE"}};
+    {"trace", "FILE"},     {"screen", "FILE"}};
 
 }  // namespace
 
