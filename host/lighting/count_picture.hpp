@@ -13,6 +13,10 @@ namespace luciole {
 /// The count of pixels to which a user's model gave NaN, or a number below 0 or of no sensible size.
 constexpr const char* kFaultyPixels = "pixels_with_faulty_light";
 
+/// The count of points to which a user's function of surfaces gave a number below 0, no number, or no
+/// direction.
+constexpr const char* kFaultySurfaces = "points_with_faulty_surface";
+
 /// Adds to a count, which begins at 0.
 void addCount(Stats& stats, const std::string& name, std::uint64_t count);
 

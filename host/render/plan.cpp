@@ -110,7 +110,11 @@ void addLayersPrograms(PicturePlan& plan) {
 }  // namespace
 
 PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
-  const SurfaceTraits surfaces = surfaceTraits(scene, settings.shading);
+  const SurfaceProgram program = surfaceProgram(settings.surfaces);
+  SurfaceTraits surfaces = surfaceTraits(scene, settings.shading);
+  surfaces.specular |= program.changes(kSpecularGroup);
+  surfaces.emission |= program.changes(kEmissionGroup);
+  surfaces.normal_maps |= program.changes(kNormalGroup);
   const bool shares_samples = sharesSamples(settings);
   PicturePlan plan =
       planLight(scene, settings, surfaces, settings.camera, cameraView(settings.camera, settings.size),
@@ -127,6 +131,8 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   if (!scene.lighting) plan.planes.ambient = false;  // diffuse takes its place
   if (settings.wants(Aov::kMaterial))
     plan.planes.specular = plan.planes.ambient = plan.planes.emission = true;
+  plan.surface = program;
+  if (settings.shading != Shading::kGouraud) addGroups(program, plan.planes);
   addProgram(plan.pixels, plan.programs);
   if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);
   addLayersPrograms(plan);

@@ -22,7 +22,7 @@ Model addUserModel(const std::string& path, Scene& scene) {
                                  path, kMostUserModels));
   if (known == scene.user_models.end()) {
     for (const std::string& place : shaderFacts(shader, ShaderKind::kModel).loose)
-      scene.warnings.push_back({place, "arithmetic that devices round differently"});
+      scene.warnings.push_back({place, kLooseArithmetic});
     scene.user_models.push_back(std::move(shader));
   }
   return userModel(index);

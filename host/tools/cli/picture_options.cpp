@@ -21,6 +21,7 @@
 #include "scene/json/json_scene.hpp"
 #include "scene/json/mesh_file.hpp"
 #include "scene/models.hpp"
+#include "shaders/shader_text.hpp"
 #include "shadow/exact/light_samples.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
 #include "tools/cli/cameras.hpp"
@@ -166,6 +167,16 @@ CLI::Option* addModelOption(CLI::App& command, PictureOptions& options) {
       ->capture_default_str();
 }
 
+void addSurfaceOption(CLI::App& command, PictureOptions& options) {
+  command
+      .add_option("--surface", options.surfaces,
+                  "a file of one's own, *.clh, whose function changes the materials or normals of surfaces "
+                  "before they are lit; may stand several times, one after another")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
   const bool is_one_picture = !(groups & kManyPictures);
   if (is_one_picture)
@@ -216,6 +227,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(oneOf({"shared", "all"}))
         ->capture_default_str();
   if (groups & kModelOptions) addModelOption(command, options);
+  if (groups & kModelOptions) addSurfaceOption(command, options);
   if (groups & (kModelOptions | kColorOptions)) {
     if (is_one_picture && (groups & kModelOptions))
       command
@@ -437,8 +449,16 @@ void addThreadsOption(CLI::App& command) {
 }
 
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
+  LoadSettings load = options.load;
+  std::vector<Warning> loose;
+  for (const Shader& shader : surfacesOf(options)) {
+    const ShaderFacts facts = shaderFacts(shader, ShaderKind::kSurface);
+    load.tangents |= facts.uses_tangents;
+    for (const std::string& place : facts.loose) loose.push_back({place, kLooseArithmetic});
+  }
   Scene scene;
-  const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, options.load); });
+  const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, load); });
+  scene.warnings.insert(scene.warnings.end(), loose.begin(), loose.end());
   logEvent("loaded", {{"scene", path},
                       {"objects", scene.objects.size()},
                       {"lights", scene.lights.size()},
@@ -499,6 +519,12 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
 
 float exposureOf(const PictureOptions& options) { return float(exposureStops(options.exposure).value_or(0)); }
 
+std::vector<Shader> surfacesOf(const PictureOptions& options) {
+  std::vector<Shader> surfaces;
+  for (const std::string& path : options.surfaces) surfaces.push_back(readShader(path, ShaderKind::kSurface));
+  return surfaces;
+}
+
 void takeModel(const PictureOptions& options, Scene& scene) {
   if (options.model.ends_with(kShaderExtension)) addUserModel(options.model, scene);
   if (modelOf(options, scene) == Model::kCookTorrance) takeFacets(scene);
@@ -530,6 +556,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                      : options.shading == "gouraud" ? Shading::kGouraud
                                                     : Shading::kPhong;
   settings.shade.model = modelOf(options, scene);
+  settings.surfaces = surfacesOf(options);
   settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
   settings.shade.tile_size = options.tile;
   settings.shade.shadows = options.shadows == "off"          ? ShadowMethod::kOff

@@ -156,14 +156,18 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
   if (!options.quiet) reportWarning(stats.warnings.back());
 }
 
-void reportFaultyLight(const PictureOptions& options, Stats& stats) {
-  const std::uint64_t pixels = countOf(stats, kFaultyPixels);
-  if (pixels == 0) return;
-  stats.warnings.push_back(fmt::format(
-      "a model from a file gave NaN, infinite or negative light at {}, which counts as 0 there: luciole "
-      "check-model tells where",
-      pixels == 1 ? "1 pixel" : fmt::format("{} pixels", pixels)));
-  if (!options.quiet) reportWarning(stats.warnings.back());
+void reportFaults(const PictureOptions& options, Stats& stats) {
+  const auto report = [&](const char* count, const char* what, const char* unit, const char* then) {
+    const std::uint64_t faults = countOf(stats, count);
+    if (faults == 0) return;
+    stats.warnings.push_back(
+        fmt::format("{} at {} {}{}, {}", what, faults, unit, faults == 1 ? "" : "s", then));
+    if (!options.quiet) reportWarning(stats.warnings.back());
+  };
+  report(kFaultyPixels, "a model from a file gave NaN, infinite or negative light", "pixel",
+         "which counts as 0 there: luciole check-model tells where");
+  report(kFaultySurfaces, "a file of --surface gave NaN, infinite or negative numbers, or no direction",
+         "point", "where what is negative counts as 0 and all else stays as it was");
 }
 
 void reportLightError(const PictureOptions& options, Stats& stats) {
