@@ -329,6 +329,31 @@ typedef struct {
 } BeamFrame;
 SHARED_SIZE(BeamFrame, 96);
 
+// Groups of a G-buffer's planes, as bits.
+enum {
+  kNormalGroup = 1,
+  kDiffuseGroup = 2,
+  kSpecularGroup = 4,
+  kAmbientGroup = 8,
+  kEmissionGroup = 16,
+  kLiftGroup = 32,
+  kTangentGroup = 64,
+  kUvGroup = 128,
+  kObjectGroup = 256,
+  kMaterialGroup = 512
+};
+
+// Of surface.cl.
+typedef struct {
+  float4 to_world_x, to_world_y, to_world_z;  // xyz: the rows of the rotation from view space to the world's
+                                              // axes; w: the eye, metres
+  float4 eye;                                 // ShadeFrame::eye
+  uint plane_stride;                          // floats from a plane of the G-buffer to the next
+  uint given, changed;                        // groups that there are, and that are written: kNormalGroup …
+  uint pad;
+} SurfaceFrame;
+SHARED_SIZE(SurfaceFrame, 80);
+
 // Pairs of a tile's pixels and the lights of its list.
 typedef struct {
   uint unsure;               // rays decide

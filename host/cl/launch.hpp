@@ -86,6 +86,10 @@ constexpr std::string_view kernelTypeName<CullFrame>() {
   return "CullFrame";
 }
 template <>
+constexpr std::string_view kernelTypeName<SurfaceFrame>() {
+  return "SurfaceFrame";
+}
+template <>
 constexpr std::string_view kernelTypeName<BeamFrame>() {
   return "BeamFrame";
 }

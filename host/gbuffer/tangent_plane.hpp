@@ -23,6 +23,9 @@ inline glm::dvec3 tangentOf(const glm::dvec3& along, const glm::dvec3& normal,
   return is_some(around_up, normal) ? around_up : glm::cross(world_to_view[0], normal);
 }
 
+/// The normals of a G-buffer, packed; 0 where it has none.
+PackedNormals packedNormals(const GBuffer& gbuffer);
+
 /// GBuffer::tangent of normals alone: what a G-buffer's surfaces have without texture coordinates.
 PackedNormals tangentsOf(const GBuffer& gbuffer);
 

@@ -18,6 +18,10 @@ inline std::string faultyScreenPixels(std::size_t screen) {
   return "pixels_with_faulty_screen_" + std::to_string(screen);
 }
 
+/// The count of points to which a user's function of surfaces gave a number below 0, no number, or no
+/// direction.
+constexpr const char* kFaultySurfaces = "points_with_faulty_surface";
+
 /// Adds to a count, which begins at 0.
 void addCount(Stats& stats, const std::string& name, std::uint64_t count);
 

@@ -29,6 +29,7 @@ const char* stageName(Stage stage) {
       "prepare lights",
       "gather vertices",
       "rasterize",
+      "change surfaces",
       "cull",
       "find shadow texels",
       "shadow maps",

@@ -47,6 +47,7 @@ void gatherVertex(const Scene& scene, const View& view, const PlacedObject& obje
   if (!gbuffer.emission.empty()) storePixel(glow, place, stride, gbuffer.emission);
   // A vertex belongs to several triangles: its own normal stands for theirs.
   if (!gbuffer.geometric_normal.empty()) gbuffer.geometric_normal[place] = packNormal(normal);
+  if (!gbuffer.unbent_normal.empty()) gbuffer.unbent_normal[place] = packNormal(normal);
   if (!gbuffer.model.empty()) gbuffer.model[place] = modelNumber(material.model);
   if (!gbuffer.tangent.empty()) {
     const glm::dvec3 along = mesh.tangents.empty() ? glm::dvec3(0.0) : glm::dvec3(mesh.tangents[vertex]);

@@ -44,6 +44,10 @@ struct ReferenceSettings {
   bool fog = true;                        ///< false for vertices: fog is applied to their colours in pixels
   const RayScene* shadow_rays = nullptr;  ///< of this scene, by buildShadowRays; null: nothing casts a shadow
   int shadow_samples = 64;  ///< rays from a pixel to a light that has a size; one to a light without
+  /// Changes the surfaces of G-buffers of a scene before they are lit, if set. surface_planes: groups that
+  /// these have for it, besides those of which light is made.
+  std::function<void(GBuffer& gbuffer)> change_surfaces = {};
+  PlaneSet surface_planes = {};
   /// Called now and then with the number of pixels that are done, if set.
   std::function<void(std::size_t done, std::size_t pixels)> on_progress = {};
 };

@@ -17,8 +17,13 @@ std::vector<glm::vec3> lightVertices(const Scene& scene, const std::vector<std::
                                      const View& view, const ReferenceSettings& settings) {
   ReferenceSettings clear = settings;
   clear.fog = false;
-  const GBuffer vertices = gatherVertices(
-      scene, objects, view, {.specular = true, .ambient = true, .emission = true, .model = true});
+  PlaneSet planes = settings.surface_planes;
+  planes.specular = planes.ambient = planes.emission = planes.model = true;
+  GBuffer vertices = gatherVertices(scene, objects, view, planes);
+  if (settings.change_surfaces) {
+    vertices.camera = viewCamera(view);
+    settings.change_surfaces(vertices);
+  }
   const std::vector<glm::ivec2> places = allPixels({vertices.width, vertices.height});
   const std::vector<glm::dvec3> colors = referencePixels(scene, vertices, places, clear);
   std::vector<glm::vec3> of_vertex(vertices.pixels());
@@ -40,14 +45,13 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const View& view, S
   View sample_view = view;
   for (int sample = 0; sample < samples; ++sample) {
     takeSample(sample_view, {sample, samples});
-    const PlaneSet planes{.specular = true,
-                          .ambient = true,
-                          .emission = true,
-                          .unbent_normal = shading == Shading::kPhong && hasNormalMaps(scene),
-                          .lift = settings.shadow_rays != nullptr,
-                          .model = true,
-                          .tangent = usesTangents(scene.user_models)};
-    const GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
+    PlaneSet planes = settings.surface_planes;
+    planes.specular = planes.ambient = planes.emission = planes.model = true;
+    planes.unbent_normal |= shading == Shading::kPhong && hasNormalMaps(scene);
+    planes.tangent |= usesTangents(scene.user_models);
+    planes.lift = settings.shadow_rays != nullptr;
+    GBuffer gbuffer = rasterize(scene, objects, sample_view, shading, planes, vertex_colors);
+    if (settings.change_surfaces && shading != Shading::kGouraud) settings.change_surfaces(gbuffer);
     ReferenceSettings of_sample = settings;
     if (settings.on_progress)
       of_sample.on_progress = [&](std::size_t done, std::size_t count) {

@@ -6,6 +6,7 @@
 #include "base/trace.hpp"
 #include "lighting/count_picture.hpp"
 #include "render/assemble.hpp"
+#include "render/change_surfaces.hpp"
 #include "render/light_points.hpp"
 #include "render/screens.hpp"
 
@@ -64,6 +65,7 @@ struct SampleLister final : PointLister {
                        picture.vertex_colors, &triangles, std::move(picture.recycled.gbuffer));
     });
     drawn.camera = picture.settings.camera;
+    if (picture.settings.shading != Shading::kGouraud) changeSurfaces(picture, drawn);
     gbuffer = &drawn;
     counts = wantedCounts(picture.settings, sample);
     return true;

@@ -9,6 +9,7 @@
 #include "raster/shading_points.hpp"
 #include "raster/uneven_pixels.hpp"
 #include "render/assemble.hpp"
+#include "render/change_surfaces.hpp"
 #include "render/light_points.hpp"
 #include "render/memory.hpp"
 #include "render/pixel_sums.hpp"
@@ -66,6 +67,7 @@ struct SharedLister final : PointLister {
   SharedLister(ReadyPicture& ready, SampledView view, SharedSamples points_shared)
       : picture(ready), sampled(std::move(view)), shared(std::move(points_shared)) {
     shared.gbuffer.camera = picture.settings.camera;
+    changePoints(shared.gbuffer);
     most_points = pointsAPass(shared.gbuffer.pixels());
     layer_sums.resize(picture.layers.size());
     const auto has_background = [](const auto& layer) {
@@ -74,6 +76,11 @@ struct SharedLister final : PointLister {
     counted = {countsCovered(picture.settings) || has_background(picture.lighting) ||
                    std::any_of(picture.layers.begin(), picture.layers.end(), has_background),
                picture.settings.wants(Aov::kShadingCount)};
+  }
+
+  void changePoints(GBuffer& of_pixels) {
+    // Colours lit at vertices are of changed surfaces.
+    if (picture.settings.shading != Shading::kGouraud) changeSurfaces(picture, of_pixels);
   }
 
   bool next() override {
@@ -108,6 +115,7 @@ struct SharedLister final : PointLister {
       return gatherPoints(sampled, *points, first_list, end_list, std::move(gathered));
     });
     gathered.camera = picture.settings.camera;
+    changePoints(gathered);
     return true;
   }
 

@@ -2,6 +2,7 @@
 
 #include "lighting/count_picture.hpp"
 #include "raster/rasterize.hpp"
+#include "render/change_surfaces.hpp"
 #include "render/light_points.hpp"
 
 namespace luciole {
@@ -17,9 +18,12 @@ struct VertexLister final : PointLister {
   bool next() override {
     if (gbuffer) return false;
     vertices = timed(picture.stats, Stage::kGatherVertices, [&] {
-      return gatherVertices(picture.scene, picture.objects, picture.plan.view,
-                            neededPlanes(picture.plan.vertices));
+      PlaneSet planes = neededPlanes(picture.plan.vertices);
+      addGroups(picture.plan.surface, planes);
+      return gatherVertices(picture.scene, picture.objects, picture.plan.view, planes);
     });
+    vertices.camera = picture.settings.camera;
+    changeSurfaces(picture, vertices);
     gbuffer = &vertices;
     return true;
   }

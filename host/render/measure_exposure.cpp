@@ -16,6 +16,7 @@ double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSet
   small.camera = settings.camera;
   small.shading = settings.shading;
   small.shade = settings.shade;
+  small.surfaces = settings.surfaces;
   small.aovs = {Aov::kDepth};
   small.on_long_compile = settings.on_long_compile;
   Stats of_small;

@@ -17,7 +17,8 @@ inline constexpr std::size_t kBandBytes = std::size_t(512) << 20;
 
 /// A pixel of a G-buffer with all groups: position, normal, diffuse, specular and shininess, ambient,
 /// emission, geometric or unbent normal, lift.
-inline constexpr std::size_t kGBufferBytesPerPixel = (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1) * sizeof(float);
+inline constexpr std::size_t kGBufferBytesPerPixel =
+    (3 + 3 + 3 + 4 + 3 + 3 + 1 + 1 + 1 + 1 + 2 + 1 + 1) * sizeof(float);
 
 /// A light: as the scene has it, as the kernels take it, and its share of the tree over the lights, which has
 /// 7 floats a node and a node for every kTreeArity below it.

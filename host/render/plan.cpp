@@ -120,7 +120,11 @@ void addLayersPrograms(PicturePlan& plan) {
 }  // namespace
 
 PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
-  const SurfaceTraits surfaces = surfaceTraits(scene, settings.shading);
+  const SurfaceProgram program = surfaceProgram(settings.surfaces);
+  SurfaceTraits surfaces = surfaceTraits(scene, settings.shading);
+  surfaces.specular |= program.changes(kSpecularGroup);
+  surfaces.emission |= program.changes(kEmissionGroup);
+  surfaces.normal_maps |= program.changes(kNormalGroup);
   const bool shares_samples = sharesSamples(settings);
   PicturePlan plan =
       planLight(scene, settings, surfaces, settings.camera, cameraView(settings.camera, settings.size),
@@ -140,6 +144,8 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   const ScreenGroups groups = groupsOf(plan.screens);
   plan.planes.object |= groups.object;
   plan.planes.material |= groups.material;
+  plan.surface = program;
+  if (settings.shading != Shading::kGouraud) addGroups(program, plan.planes);
   addProgram(plan.pixels, plan.programs);
   if (settings.shading == Shading::kGouraud) addProgram(plan.vertices, plan.programs);
   addLayersPrograms(plan);

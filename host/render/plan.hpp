@@ -10,17 +10,19 @@
 #include "render/render.hpp"
 #include "shade/features.hpp"
 #include "shade/screen_rows.hpp"
+#include "shade/surface.hpp"
 
 namespace luciole {
 
 /// All decisions about a picture that don't depend on the device.
 struct PicturePlan {
-  View view;            ///< of the picture, or of its crop
-  ShadeSettings shade;  ///< those of the settings, with the model and shadow ways decided
-  FeatureSet features;  ///< of all passes together
-  FeatureSet pixels;    ///< of the pass that lights pixels
-  FeatureSet vertices;  ///< of the pass that lights vertices, with Shading::kGouraud only
-  PlaneSet planes;      ///< the G-buffer groups of the pass that lights pixels
+  View view;               ///< of the picture, or of its crop
+  ShadeSettings shade;     ///< those of the settings, with the model and shadow ways decided
+  FeatureSet features;     ///< of all passes together
+  FeatureSet pixels;       ///< of the pass that lights pixels
+  FeatureSet vertices;     ///< of the pass that lights vertices, with Shading::kGouraud only
+  PlaneSet planes;         ///< the G-buffer groups of the pass that lights pixels
+  SurfaceProgram surface;  ///< RenderSettings::surfaces
   std::vector<LightLayer> layers;
   std::vector<FeatureSet> programs;  ///< feature sets of all passes, each once
   double pairs = 0;                  ///< of a point and a light that lights it, about

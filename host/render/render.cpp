@@ -15,6 +15,7 @@
 #include "raster/lift.hpp"
 #include "raster/view.hpp"
 #include "render/bands.hpp"
+#include "render/change_surfaces.hpp"
 #include "render/light_points.hpp"
 #include "render/memory.hpp"
 #include "render/validate.hpp"
@@ -65,6 +66,8 @@ GBuffer rasterizeScene(OpenedDevice* device, const Scene& scene, const RenderSet
   const bool gouraud = settings.shading == Shading::kGouraud;
   if (gouraud && !device)
     throw InputError("settings.shading: kGouraud lights vertices, expected a device for that");
+  if (!settings.surfaces.empty() && !device)
+    throw InputError("settings.surfaces: functions of surfaces, expected a device for them");
   const PicturePlan plan = planPicture(scene, settings);
   const glm::ivec2 size = plan.view.crop_size;
   requireMemory(double(kGBufferBytesPerPixel) * size.x * size.y,
@@ -86,28 +89,31 @@ GBuffer rasterizeScene(OpenedDevice* device, const Scene& scene, const RenderSet
   GBuffer gbuffer = timed(stats, Stage::kRasterize, [&] {
     const bool smooth = settings.shading == Shading::kPhong && hasBentCorners(scene);
     const SurfaceTraits surfaces = materialTraits(scene);
-    const bool bent = settings.shading == Shading::kPhong && surfaces.normal_maps;
-    return rasterize(scene, objects, plan.view, settings.shading,
-                     {.specular = true,
-                      .ambient = true,
-                      .emission = true,
-                      .geometric_normal = !bent,
-                      .unbent_normal = bent,
-                      .lift = smooth,
-                      .model = surfaces.models.to_ulong() > 1},
-                     vertex_colors, &triangles);
+    const bool bent = (settings.shading == Shading::kPhong && surfaces.normal_maps) ||
+                      (!gouraud && plan.surface.changes(kNormalGroup));
+    PlaneSet planes{.specular = true,
+                    .ambient = true,
+                    .emission = true,
+                    .geometric_normal = !bent,
+                    .unbent_normal = bent,
+                    .lift = smooth,
+                    .model = surfaces.models.to_ulong() > 1};
+    if (!gouraud) addGroups(plan.surface, planes);
+    return rasterize(scene, objects, plan.view, settings.shading, planes, vertex_colors, &triangles);
   });
   gbuffer.camera = settings.camera;
+  if (!gouraud && device) changeSurfaces(*device, plan.surface, gbuffer, stats);
   addCount(stats, "pixels_lit", coveredPixels(gbuffer));
   addRasterCounts(triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - objects.size());
   return gbuffer;
 }
 
-Image shadeGBuffer(OpenedDevice& device, const Scene& scene, const GBuffer& gbuffer,
-                   const RenderSettings& settings, Stats& stats) {
-  validateGBuffer(gbuffer);
+/// shadeGBuffer() after the functions of surfaces.
+static Image lightGBufferAsIs(OpenedDevice& device, const Scene& scene, const GBuffer& gbuffer,
+                              const RenderSettings& settings, Stats& stats) {
   RenderSettings one_sample = settings;
+  one_sample.surfaces.clear();
   one_sample.samples = 1;
   one_sample.camera = gbuffer.camera;
   one_sample.size = gbuffer.picture_size;
@@ -128,6 +134,17 @@ Image shadeGBuffer(OpenedDevice& device, const Scene& scene, const GBuffer& gbuf
   Image image = lightGivenPoints(picture, gbuffer);
   countLighting(picture);
   return image;
+}
+
+Image shadeGBuffer(OpenedDevice& device, const Scene& scene, const GBuffer& gbuffer,
+                   const RenderSettings& settings, Stats& stats) {
+  validateGBuffer(gbuffer);
+  const SurfaceProgram program = surfaceProgram(settings.surfaces);
+  if (settings.surfaces.empty()) return lightGBufferAsIs(device, scene, gbuffer, settings, stats);
+  GBuffer changed = gbuffer;
+  prepareForSurfaces(program, changed);
+  changeSurfaces(device, program, changed, stats);
+  return lightGBufferAsIs(device, scene, changed, settings, stats);
 }
 
 }  // namespace luciole

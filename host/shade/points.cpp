@@ -1,25 +1,12 @@
 #include "shade/points.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
-#include "gbuffer/packed_normal.hpp"
 #include "gbuffer/tangent_plane.hpp"
 
 namespace luciole {
 namespace {
-
-PackedNormals packNormals(const GBuffer& gbuffer) {
-  const std::size_t pixels = gbuffer.pixels();
-  PackedNormals packed(pixels);
-  tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t i) {
-    const glm::dvec3 normal(gbuffer.normal[i], gbuffer.normal[i + pixels], gbuffer.normal[i + 2 * pixels]);
-    if (normal != glm::dvec3(0.0)) packed[i] = packNormal(normal);
-  });
-  return packed;
-}
 
 /// As many zeros as the largest group has that these features read and the G-buffer lacks.
 Plane zerosFor(const GBuffer& gbuffer, const FeatureSet& features) {
@@ -42,7 +29,7 @@ Points pointsOnDevice(OpenedDevice& device, const GBuffer& gbuffer, const Featur
   const std::size_t stride = gbuffer.pixels();
   const bool asks_surfaces = features.shadowMaps() || features.has(Feature::kNormalMaps);
   PackedNormals packed;
-  if (asks_surfaces && surfaceNormals(gbuffer).empty()) packed = packNormals(gbuffer);
+  if (asks_surfaces && surfaceNormals(gbuffer).empty()) packed = packedNormals(gbuffer);
   ModelPlane default_model(features.has(Feature::kMaterialModels) && gbuffer.model.empty() ? stride : 0);
   const PackedNormals& surface_normal = packed.empty() ? surfaceNormals(gbuffer) : packed;
   PackedNormals tangents;

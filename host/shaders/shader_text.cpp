@@ -28,7 +28,8 @@ constexpr const char* kHeaders[] = {"lanes.clh",
                                     "shade/surface.clh",
                                     "shade/cook_torrance.clh",
                                     "shade/oren_nayar.clh",
-                                    "shade/ward.clh"};
+                                    "shade/ward.clh",
+                                    "shade/noise.clh"};
 
 struct Token {
   Text text;
@@ -310,6 +311,9 @@ class Checker {
       const Text quoted = at_ + 3 == end ? text(at_ + 2) : Text();
       if (quoted.size() < 2 || quoted[0] != '"' || !isIn(kHeaders, quoted.substr(1, quoted.size() - 2)))
         fail(here(), fmt::format("a shader may include \"{}\"", fmt::join(kHeaders, "\", \"")));
+      if (kind_ == ShaderKind::kModel && quoted == "\"shade/noise.clh\"")
+        fail(here(),
+             "noise is of surfaces: a model is compiled in double, too, where floats have other bits");
     } else if (name == "define") {
       checkMacro(end);
     } else {
@@ -591,8 +595,17 @@ class Checker {
     const bool is_member = at_ > 0 && text(at_ - 1) == "->";
     facts_.uses_tangents |= word == "tangent" || word == "bitangent";
     facts_.uses_grazing |= word == "grazing";
+    if (is_member) facts_.named.emplace(word);
+    if (is_member && isChanged()) facts_.changed.emplace(word);
     facts_.uses_colors |= is_member && (word == "diffuse" || word == "specular");
     if (word == "/" || text(at_ + 1) == "(") noteLoose(now);
+  }
+
+  /// Whether the member at_, or a component of it, is changed. What changes is named without parentheses.
+  bool isChanged() const {
+    const std::size_t next = text(at_ + 1) == "." ? at_ + 3 : at_ + 1;
+    const Text before = at_ >= 3 ? text(at_ - 3) : Text();
+    return isIn(kAssignments, text(next)) || before == "++" || before == "--";
   }
 
   /// Notes arithmetic that OpenCL doesn't fix.
@@ -717,7 +730,7 @@ std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind) {
         program += fmt::format("if (number == {0}) return reflect_light_{0}(s, to_light, n_dot_l);\n", i);
       return program + "return reflect_light_0(s, to_light, n_dot_l);\n}\n";
     case ShaderKind::kSurface:
-      program += "INLINE void user_surface(Surface *s) {\n";
+      program += "#define USER_SURFACES\nINLINE void user_surface(Surface *s) {\n";
       for (std::size_t i = 0; i < shaders.size(); ++i) program += fmt::format("surface_{}(s);\n", i);
       return program + "}\n";
     case ShaderKind::kScreen:

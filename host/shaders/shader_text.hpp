@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ inline constexpr std::size_t kMostShaderBytes = 64 << 10, kMostShaderLines = 200
 inline constexpr std::size_t kMostStatement = 1000, kMostRepeated = 100'000;
 /// Turns of a loop.
 inline constexpr unsigned kMostTurns = 64;
+/// The kind of warnings of ShaderFacts::loose.
+inline constexpr const char* kLooseArithmetic = "arithmetic that devices round differently";
 /// A screen's largest radius, in pixels.
 inline constexpr int kMostScreenRadius = 8;
 
@@ -37,6 +40,8 @@ struct ShaderFacts {
   bool uses_colors = false;    ///< a model names `s->diffuse` or `s->specular`
   bool uses_grazing = false;   ///< it names `grazing`
   int radius = 0;              ///< a screen's RADIUS
+  /// The members that it names behind ->, and those of them that it changes.
+  std::set<std::string, std::less<>> named, changed;
   /// Arithmetic whose last bits differ between devices, since OpenCL doesn't fix it: "FILE:LINE:COLUMN: …".
   std::vector<std::string> loose;
 };

@@ -115,6 +115,19 @@ __kernel void report_shade_frame(__global uint* out) {
   *out++ = OFFSET(texel_count);
 }
 
+__kernel void report_surface_frame(__global uint* out) {
+  SurfaceFrame value;
+  *out++ = sizeof(SurfaceFrame);
+  *out++ = OFFSET(to_world_x);
+  *out++ = OFFSET(to_world_y);
+  *out++ = OFFSET(to_world_z);
+  *out++ = OFFSET(eye);
+  *out++ = OFFSET(plane_stride);
+  *out++ = OFFSET(given);
+  *out++ = OFFSET(changed);
+  *out++ = OFFSET(pad);
+}
+
 __kernel void report_cull_frame(__global uint* out) {
   CullFrame value;
   *out++ = sizeof(CullFrame);

@@ -99,6 +99,14 @@ TEST(StructLayout, ShadeFrame) {
        offsetof(ShadeFrame, fog_radial), offsetof(ShadeFrame, texel_count)});
 }
 
+TEST(StructLayout, SurfaceFrame) {
+  expectLayout("report_surface_frame",
+               {sizeof(SurfaceFrame), offsetof(SurfaceFrame, to_world_x), offsetof(SurfaceFrame, to_world_y),
+                offsetof(SurfaceFrame, to_world_z), offsetof(SurfaceFrame, eye),
+                offsetof(SurfaceFrame, plane_stride), offsetof(SurfaceFrame, given),
+                offsetof(SurfaceFrame, changed), offsetof(SurfaceFrame, pad)});
+}
+
 TEST(StructLayout, CullFrame) {
   expectLayout("report_cull_frame",
                {sizeof(CullFrame), offsetof(CullFrame, plane_stride), offsetof(CullFrame, tree_stride),

@@ -197,6 +197,20 @@ TEST(ShaderText, FactsAreOfWhatTheTextNames) {
   EXPECT_TRUE(factsOf(modelOf("Reflection q; q.grazing = 1;")).uses_grazing);
 }
 
+TEST(ShaderText, MembersThatAreOnlyReadArentChanged) {
+  const auto facts = [](const std::string& body) {
+    return shaderFacts({"mine.clh", "INLINE void surface(Surface *s) {\n" + body + "\n}\n"},
+                       ShaderKind::kSurface);
+  };
+  const ShaderFacts read =
+      facts("floatL x = s->normal.x + s->uv.y; s->diffuse.x = x == s->exponent ? x : -s->normal.y;");
+  EXPECT_EQ(read.named, (std::set<std::string, std::less<>>{"normal", "uv", "diffuse", "exponent"}));
+  EXPECT_EQ(read.changed, (std::set<std::string, std::less<>>{"diffuse"}));
+  for (const char* change : {"s->normal = s->to_eye;", "s->normal.x += 1.0f;", "s->normal.y *= s->exponent;",
+                             "s->normal.y++;", "++s->normal.x;"})
+    EXPECT_TRUE(facts(change).changed.contains("normal")) << change;
+}
+
 TEST(ShaderText, ProgramsKeepTheUsersLinesAndPlaces) {
   const Shader shader{"dir/mine.clh",
                       "#include \"math.clh\"\n#define K 2\n" + modelOf("  n_dot_l = K / n_dot_v;")};

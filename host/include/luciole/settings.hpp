@@ -134,6 +134,9 @@ struct RenderSettings {
   SampleShading sample_shading = SampleShading::kShared;
   Shading shading = Shading::kPhong;
   ShadeSettings shade = {};
+  /// Functions of the user's (ShaderKind::kSurface) that change surfaces before they are lit, one after
+  /// another.
+  std::vector<Shader> surfaces = {};
   /// Layers. kLightError, kShadingCount, Cryptomattes and parts of the light are of all samples; the others
   /// show the first sample, or the point that is shaded for it.
   std::vector<Aov> aovs = {};

@@ -25,6 +25,7 @@ enum class Stage : std::uint8_t {
   kPrepareLights,
   kGatherVertices,
   kRasterize,
+  kChangeSurfaces,
   kCull,
   kFindShadowTexels,
   kShadowMaps,

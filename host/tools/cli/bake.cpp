@@ -15,6 +15,7 @@
 #include "raster/lift.hpp"
 #include "raster/surface_ids.hpp"
 #include "raster/texture_space.hpp"
+#include "render/change_surfaces.hpp"
 #include "render/render.hpp"
 #include "scene/bounds.hpp"
 #include "scene/gltf/write_gltf.hpp"
@@ -156,17 +157,22 @@ void bake(CommandContext& context, BakeOptions& options) {
   settings.camera = bakeCamera(scene, object, options.eye);
   logEvent("frame_begun", {{"frame", frame}});
   const SurfaceTraits traits = materialTraits(scene);
+  const SurfaceProgram program = surfaceProgram(settings.surfaces);
+  settings.surfaces.clear();  // they come before what is kept of the light
   TextureSpace space = timed(stats, Stage::kRasterize, [&] {
-    return rasterizeTextureSpace(scene, object, settings.size, settings.camera,
-                                 {.specular = true,
-                                  .ambient = true,
-                                  .emission = true,
-                                  .geometric_normal = !traits.normal_maps,
-                                  .unbent_normal = traits.normal_maps,
-                                  .lift = hasBentCorners(scene),
-                                  .model = traits.models.to_ulong() > 1});
+    PlaneSet planes{.specular = true,
+                    .ambient = true,
+                    .emission = true,
+                    .geometric_normal = !traits.normal_maps,
+                    .unbent_normal = traits.normal_maps,
+                    .lift = hasBentCorners(scene),
+                    .model = traits.models.to_ulong() > 1};
+    addGroups(program, planes);
+    return rasterizeTextureSpace(scene, object, settings.size, settings.camera, planes);
   });
   checkOverlap(options, space);
+  prepareForSurfaces(program, space.gbuffer);
+  changeSurfaces(context.device, program, space.gbuffer, stats);
   keepLightOnly(options, space.gbuffer);
   ProgressLine progress(options.quiet);
   settings.on_long_compile = compileReporter(progress);
@@ -193,7 +199,7 @@ void bake(CommandContext& context, BakeOptions& options) {
                       writeOptions(options, space.gbuffer));
   });
   reportHalves(options, limited, stats);
-  reportFaultyLight(options, stats);
+  reportFaults(options, stats);
   reportLightError(options, stats);
   reportStats(options, stats, frame);
 }

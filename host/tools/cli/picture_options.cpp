@@ -175,6 +175,16 @@ void addScreenOption(CLI::App& command, PictureOptions& options) {
       ->allow_extra_args(false);
 }
 
+void addSurfaceOption(CLI::App& command, PictureOptions& options) {
+  command
+      .add_option("--surface", options.surfaces,
+                  "a file of one's own, *.clh, whose function changes the materials or normals of surfaces "
+                  "before they are lit; may stand several times, one after another")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned groups) {
   const bool is_one_picture = !(groups & kManyPictures);
   if (is_one_picture)
@@ -225,6 +235,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
         ->check(oneOf({"shared", "all"}))
         ->capture_default_str();
   if (groups & kModelOptions) addModelOption(command, options);
+  if (groups & kModelOptions) addSurfaceOption(command, options);
   if (groups & (kModelOptions | kColorOptions)) {
     if (is_one_picture && (groups & kModelOptions))
       command
@@ -452,16 +463,18 @@ static void warnOfLooseArithmetic(const PictureOptions& options, Scene& scene) {
     for (std::string& place : shaderFacts(shader, kind).loose) loose.push_back(std::move(place));
   };
   for (const Shader& model : scene.user_models) add(model, ShaderKind::kModel);
+  for (const Shader& surface : surfacesOf(options)) add(surface, ShaderKind::kSurface);
   for (const std::string& screen : options.screens)
     add(readShader(screen, ShaderKind::kScreen), ShaderKind::kScreen);
   if (options.require_exact && !loose.empty()) throw InputError("--require-exact: " + loose.front());
-  for (const std::string& place : loose)
-    scene.warnings.push_back({place, "arithmetic that devices round differently"});
+  for (const std::string& place : loose) scene.warnings.push_back({place, kLooseArithmetic});
 }
 
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {
-  Scene scene;
   LoadSettings load = options.load;
+  for (const Shader& shader : surfacesOf(options))
+    load.tangents |= shaderFacts(shader, ShaderKind::kSurface).uses_tangents;
+  Scene scene;
   if (options.model.ends_with(kShaderExtension))
     load.tangents |= usesTangents(std::vector{readShader(options.model, ShaderKind::kModel)});
   const double milliseconds = millisecondsOf([&] { scene = loadScene(path, frame, load); });
@@ -526,6 +539,12 @@ std::vector<Aov> aovsOf(const PictureOptions& options) {
 
 float exposureOf(const PictureOptions& options) { return float(exposureStops(options.exposure).value_or(0)); }
 
+std::vector<Shader> surfacesOf(const PictureOptions& options) {
+  std::vector<Shader> surfaces;
+  for (const std::string& path : options.surfaces) surfaces.push_back(readShader(path, ShaderKind::kSurface));
+  return surfaces;
+}
+
 void takeModel(const PictureOptions& options, Scene& scene) {
   if (options.model.ends_with(kShaderExtension)) addUserModel(options.model, scene);
   if (takesFacets(modelOf(options, scene))) takeFacets(scene);
@@ -557,6 +576,7 @@ RenderSettings renderSettings(const PictureOptions& options, const Scene& scene)
                      : options.shading == "gouraud" ? Shading::kGouraud
                                                     : Shading::kPhong;
   settings.shade.model = modelOf(options, scene);
+  settings.surfaces = surfacesOf(options);
   settings.shade.culling = options.culling == "none" ? Culling::kNone : Culling::kTiles;
   settings.shade.tile_size = options.tile;
   settings.shade.shadows = options.shadows == "off"          ? ShadowMethod::kOff

@@ -27,6 +27,7 @@ struct PictureOptions {
   std::string crop;
   std::string shading = "phong";
   std::string model = "phong";
+  std::vector<std::string> surfaces;  ///< files
   std::string culling = "auto";
   int tile = ShadeSettings{}.tile_size;
   std::string shadows = "auto";
@@ -63,7 +64,7 @@ struct PictureOptions {
 enum OptionGroup : unsigned {
   kViewOptions = 1,   ///< --size, --camera, --crop, --shading
   kSampleOption = 2,  ///< --samples
-  kModelOptions = 4,  ///< --model, --exposure, --dither, --tone, --bits, --half, --alpha
+  kModelOptions = 4,  ///< --model, --surface, --exposure, --dither, --tone, --bits, --half, --alpha
   kShadeOptions =
       8,  ///< --culling, --tile, --shadows, --soft-samples, --pcf-width, --shadow-memory, --shadow-size,
           ///< --light-error, --light-error-relative, --confidence, --seed, --light-groups, --aov;
@@ -83,6 +84,8 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
 
 /// Adds the option --model.
 CLI::Option* addModelOption(CLI::App& command, PictureOptions& options);
+/// Adds the option --surface.
+void addSurfaceOption(CLI::App& command, PictureOptions& options);
 /// Adds the option --shadows, whose values depend on the command.
 CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
                               const std::vector<std::string>& values);
@@ -113,6 +116,9 @@ std::vector<Aov> aovsOf(const PictureOptions& options);
 
 /// The stops that --exposure names; 0 for auto and without it.
 float exposureOf(const PictureOptions& options);
+
+/// The functions in the files that --surface names. Throws as readShader().
+std::vector<Shader> surfacesOf(const PictureOptions& options);
 
 /// Makes a scene ready for the model that --model names: adds it if it is in a file. Throws as
 /// addUserModel().

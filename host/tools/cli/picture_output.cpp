@@ -156,26 +156,22 @@ void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& s
   if (!options.quiet) reportWarning(stats.warnings.back());
 }
 
-void reportFaultyLight(const PictureOptions& options, Stats& stats) {
-  const std::uint64_t pixels = countOf(stats, kFaultyPixels);
-  if (pixels == 0) return;
-  stats.warnings.push_back(fmt::format(
-      "a model from a file gave NaN, infinite or negative light at {}, which counts as 0 there: luciole "
-      "check-model tells where",
-      pixels == 1 ? "1 pixel" : fmt::format("{} pixels", pixels)));
-  if (!options.quiet) reportWarning(stats.warnings.back());
-}
-
-void reportFaultyScreens(const PictureOptions& options, Stats& stats) {
-  for (std::size_t i = 0; i < options.screens.size(); ++i) {
-    const std::uint64_t count = countOf(stats, faultyScreenPixels(i));
-    if (count == 0) continue;
-    const char* what = stats.samples > 1 ? "samples of pixels" : count == 1 ? "pixel" : "pixels";
-    stats.warnings.push_back(fmt::format(
-        "{}: screen() gave NaN, infinite or negative colours to {} {}, which keep the ones before it",
-        options.screens[i], count, what));
+void reportFaults(const PictureOptions& options, Stats& stats) {
+  const auto report = [&](const std::string& count, const std::string& what, const char* units,
+                          const char* then) {
+    const std::uint64_t faults = countOf(stats, count);
+    if (faults == 0) return;
+    stats.warnings.push_back(fmt::format("{} at {} {}, {}", what, faults, units, then));
     if (!options.quiet) reportWarning(stats.warnings.back());
-  }
+  };
+  const char* const pixels = stats.samples > 1 ? "samples of pixels" : "pixels";
+  report(kFaultyPixels, "a model from a file gave NaN, infinite or negative light", pixels,
+         "where it counts as 0: luciole check-model tells for which directions");
+  report(kFaultySurfaces, "a file of --surface gave NaN, infinite or negative numbers, or no direction",
+         "points", "where what is negative counts as 0 and all else stays as it was");
+  for (std::size_t i = 0; i < options.screens.size(); ++i)
+    report(faultyScreenPixels(i), options.screens[i] + ": screen() gave NaN, infinite or negative colours",
+           pixels, "which keep the ones before it");
 }
 
 void reportLightError(const PictureOptions& options, Stats& stats) {

@@ -41,12 +41,9 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
 /// the file. limited: as writeImage returns.
 void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats);
 
-/// Tells of pixels to which a model from a file gave numbers that are no light, on standard error unless
-/// --quiet and in the statistics.
-void reportFaultyLight(const PictureOptions& options, Stats& stats);
-
-/// Likewise of those to which a screen gave numbers that are no colour.
-void reportFaultyScreens(const PictureOptions& options, Stats& stats);
+/// Tells of what shaders gave that is no light, no surface or no colour, with the counts, on standard error
+/// unless --quiet and in the statistics.
+void reportFaults(const PictureOptions& options, Stats& stats);
 
 /// Warns if bounds of --light-error are larger than allowed, because rounding of floats exceeds it.
 void reportLightError(const PictureOptions& options, Stats& stats);

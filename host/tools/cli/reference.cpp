@@ -13,6 +13,7 @@
 #include "luciole/gbuffer_file.hpp"
 #include "reference/gbuffer_check.hpp"
 #include "reference/reference_picture.hpp"
+#include "render/change_surfaces.hpp"
 #include "render/memory.hpp"
 #include "scene/scene_digest.hpp"
 #include "tools/cli/commands.hpp"
@@ -51,10 +52,31 @@ struct Piece {
   Crop window;
 };
 
+/// The functions of --surface, which run on a device. What they change is lit in double.
+struct SurfaceChange {
+  OpenedDevice& device;
+  Stats& stats;
+  SurfaceProgram program;
+
+  /// Opens the device if there are functions.
+  SurfaceChange(const ReferenceOptions& options, OpenedDevice& on, Stats& of_picture)
+      : device(on), stats(of_picture), program(surfaceProgram(surfacesOf(options))) {
+    if (!program.user_text.empty() && !device.context()) openDevice("", device);
+  }
+};
+
 /// rays: of the scene; empty without shadows. The settings refer to all arguments, which must outlive them.
 ReferenceSettings referenceSettings(const ReferenceOptions& options, const Scene& scene,
-                                    const std::optional<RayScene>& rays, ProgressLine& progress) {
+                                    const std::optional<RayScene>& rays, SurfaceChange& change,
+                                    ProgressLine& progress) {
   ReferenceSettings settings;
+  if (!change.program.user_text.empty()) {
+    addGroups(change.program, settings.surface_planes);
+    settings.surface_planes.unbent_normal = change.program.changes(kNormalGroup);
+    settings.change_surfaces = [&](GBuffer& gbuffer) {
+      changeSurfaces(change.device, change.program, gbuffer, change.stats);
+    };
+  }
   settings.model = modelOf(options, scene);
   settings.shadow_rays = rays ? &*rays : nullptr;
   settings.shadow_samples = options.shadow_samples;
@@ -102,10 +124,13 @@ Image makePicture(const glm::ivec2& size, const std::vector<glm::ivec2>& pixels,
 /// A text that is equal for two crops if they are parts of the same picture.
 std::string requestText(const ReferenceOptions& options, const Scene& scene, const RenderSettings& settings) {
   return fmt::format(
-      "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure {}{}{}",
-      options.scene, sceneDigest(scene), options.frame, settings.size.x, settings.size.y,
-      settings.camera.name, settings.samples, options.shading, options.model, options.shadows,
-      options.shadow_samples, settings.exposure, options.alpha ? " alpha" : "", options.half ? " half" : "");
+             "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure "
+             "{}{}{}",
+             options.scene, sceneDigest(scene), options.frame, settings.size.x, settings.size.y,
+             settings.camera.name, settings.samples, options.shading, options.model, options.shadows,
+             options.shadow_samples, settings.exposure, options.alpha ? " alpha" : "",
+             options.half ? " half" : "") +
+         surfaceProgram(settings.surfaces).user_text;
 }
 
 /// The union of two rectangles if it is a rectangle.
@@ -196,14 +221,16 @@ void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Sta
 }
 
 /// Makes the reference picture of a scene, and compares the rasterizer's G-buffer with rays.
-void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats& stats) {
+void referenceOfScene(const ReferenceOptions& options, const Scene& scene, OpenedDevice& device,
+                      Stats& stats) {
+  SurfaceChange change(options, device, stats);
   RenderSettings settings = renderSettings(options, scene);
   if (measuresExposure(options, options.scene)) {
     stats.measured_exposure = timed(stats, Stage::kMeasureExposure, [&] {
       const auto rays = shadowRays(options, scene, settings.camera);
       ProgressLine progress(options.quiet);
       const double stops = referenceExposure(scene, settings.camera, settings.size, settings.shading,
-                                             referenceSettings(options, scene, rays, progress));
+                                             referenceSettings(options, scene, rays, change, progress));
       progress.clear();
       return stops;
     });
@@ -227,7 +254,7 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
     const auto rays = shadowRays(options, scene, settings.camera);
     ProgressLine progress(options.quiet);
     auto shaded = referencePicture(scene, view, settings.shading, settings.samples, pixels,
-                                   referenceSettings(options, scene, rays, progress));
+                                   referenceSettings(options, scene, rays, change, progress));
     progress.clear();
     return shaded;
   });
@@ -247,6 +274,7 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
   });
   describeScene(scene, {}, stats);
   reportHalves(options, limited, stats);
+  reportFaults(options, stats);
   stats.width = view.crop_size.x;
   stats.height = view.crop_size.y;
   stats.samples = settings.samples;
@@ -255,17 +283,21 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Stats
 }
 
 /// Makes the reference picture of a G-buffer file.
-void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
+void referenceOfGBuffer(const ReferenceOptions& options, OpenedDevice& device, Stats& stats) {
+  SurfaceChange change(options, device, stats);
   Scene scene =
       timed(stats, Stage::kLoadScene, [&] { return openScene(options.lights, options.frame, options); });
   removeBackground(options, scene);
-  const GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(options.gbuffer); });
+  GBuffer gbuffer = timed(stats, Stage::kReadGBuffer, [&] { return readGBuffer(options.gbuffer); });
+  prepareForSurfaces(change.program, gbuffer);
+  changeSurfaces(device, change.program, gbuffer, stats);
   const glm::ivec2 size(gbuffer.width, gbuffer.height);
   const std::vector<glm::ivec2> pixels = choosePixels(size, options.pixels, options.seed);
   const std::vector<glm::dvec3> colors = timed(stats, Stage::kShade, [&] {
     const auto rays = shadowRays(options, scene, gbuffer.camera);
     ProgressLine progress(options.quiet);
-    auto shaded = referencePixels(scene, gbuffer, pixels, referenceSettings(options, scene, rays, progress));
+    auto shaded =
+        referencePixels(scene, gbuffer, pixels, referenceSettings(options, scene, rays, change, progress));
     progress.clear();
     return shaded;
   });
@@ -282,6 +314,7 @@ void referenceOfGBuffer(const ReferenceOptions& options, Stats& stats) {
   });
   describeScene(scene, {}, stats);
   reportHalves(options, limited, stats);
+  reportFaults(options, stats);
   stats.width = gbuffer.width;
   stats.height = gbuffer.height;
   stats.counts.emplace_back("pixels_shaded", pixels.size());
@@ -331,7 +364,7 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
     stats.command = context.command_line;
     logEvent("frame_begun", {{"frame", options->frame}});
     if (!options->gbuffer.empty()) {
-      referenceOfGBuffer(*options, stats);
+      referenceOfGBuffer(*options, context.device, stats);
       reportStats(*options, stats, options->frame);
       return;
     }
@@ -342,7 +375,7 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
     for (const PictureOptions& picture : optionsOfCameras(*options, scene)) {
       checkOutput(picture);
       static_cast<PictureOptions&>(*options) = picture;
-      referenceOfScene(*options, scene, stats);
+      referenceOfScene(*options, scene, context.device, stats);
       reportStats(picture, stats, options->frame);
       stats = laterStats(context.command_line);
     }

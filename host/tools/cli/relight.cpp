@@ -210,8 +210,7 @@ void lightAndWrite(CommandContext& context, const PictureOptions& options, const
     return writeImage(image, options.output, pictureMetadata(stats, &device), writeOptions(options, gbuffer));
   });
   reportHalves(options, limited, stats);
-  reportFaultyLight(options, stats);
-  reportFaultyScreens(options, stats);
+  reportFaults(options, stats);
   reportLightError(options, stats);
   reportStats(options, stats, frame);
 }

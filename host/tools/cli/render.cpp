@@ -104,8 +104,7 @@ void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOpt
       if (!share.error.empty())
         reportWarning(fmt::format("{}; the other devices made its rows", share.error));
   if (hash) stats.hash = hash->hex();
-  reportFaultyLight(options, stats);
-  reportFaultyScreens(options, stats);
+  reportFaults(options, stats);
   reportLightError(options, stats);
 }
 
@@ -608,6 +607,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
                    "of a picture that isn't an EXR: the layer to show, such as normal, position or depth")
       ->type_name("LAYER");
   addModelOption(*command, *options);
+  addSurfaceOption(*command, *options);
   addPictureOptions(*command, *options, kViewOptions | kCastOption | kDeviceOption | kFrameOption);
   command->callback([&context, options, scene_path, layer] {
     const int frame = useFrame(*options, "gbuffer");
@@ -626,10 +626,10 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     const Scene scene =
         timed(stats, Stage::kLoadScene, [&] { return openLitScene(*scene_path, frame, *options); });
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
-    // Only Gouraud shading needs a device to rasterize: it lights the vertices.
+    // Rasterizing needs no device, but Gouraud shading lights vertices, and --surface changes what is drawn.
     OpenedDevice& device = context.device;
-    const bool lit = options->shading == "gouraud";
-    if (lit) {
+    const bool needs_device = options->shading == "gouraud" || !options->surfaces.empty();
+    if (needs_device) {
       openDevice(options->device, device);
       addStage(stats, Stage::kOpenDevice, device.milliseconds_to_open);
       logDevice(device.description);
@@ -638,13 +638,14 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     for (const PictureOptions& picture : pictures) {
       checkDataOutput(picture, "a G-buffer");
       const RenderSettings settings = renderSettings(picture, scene);
-      if (lit) stats.device = device.description;
-      const GBuffer gbuffer = rasterizeScene(lit ? &device : nullptr, scene, settings, stats);
+      if (needs_device) stats.device = device.description;
+      const GBuffer gbuffer = rasterizeScene(needs_device ? &device : nullptr, scene, settings, stats);
       timed(stats, Stage::kWrite, [&] {
         if (shows_layer) return showGBuffer(gbuffer, *layer, picture, stats);
-        writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, lit ? &device : nullptr), picture.format,
-                     picture.compression);
+        writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, needs_device ? &device : nullptr),
+                     picture.format, picture.compression);
       });
+      reportFaults(picture, stats);
       reportStats(picture, stats, frame);
       stats = laterStats(context.command_line);
     }
