@@ -3,9 +3,22 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <sstream>
+
 #include "base/cleanup.hpp"
 
 namespace luciole {
+
+std::string programFile(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string file = (folder.empty() ? "." : folder) + "/" + name;
+    if (access(file.c_str(), X_OK) == 0) return file;
+  }
+  return "";
+}
 
 int spawnProgram(const std::string& path, std::vector<std::string> arguments,
                  const posix_spawn_file_actions_t& actions, short flags, pid_t& child) {

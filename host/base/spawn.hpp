@@ -8,6 +8,9 @@
 
 namespace luciole {
 
+/// The file that PATH leads to for a program's name; empty where there is none.
+std::string programFile(const std::string& name);
+
 /// Starts a program file in a process of its own. It takes signals, whatever this process does with them.
 /// arguments: the first is its name. flags: more of posix_spawnattr_setflags. Sets `child`. Returns 0, or the
 /// error's number.

@@ -75,17 +75,6 @@ const FilmFormat* findFormat(const std::string& path, const std::string& format)
   return found == all.end() ? nullptr : &*found;
 }
 
-/// The file that PATH leads to for a program's name; empty where there is none.
-std::string findProgram(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string file = (folder.empty() ? "." : folder) + "/" + name;
-    if (access(file.c_str(), X_OK) == 0) return file;
-  }
-  return "";
-}
-
 /// The descriptor that ffmpeg knows the film's file by.
 constexpr int kFilmDescriptor = 3;
 
@@ -163,7 +152,7 @@ struct Film::State {
     posix_spawn_file_actions_adddup2(&actions, file.descriptor(), kFilmDescriptor);
     const auto lock = holdSignals();
     const int error =
-        spawnProgram(findProgram("ffmpeg"), ffmpegArguments(format, width, height, rate), actions, 0, child);
+        spawnProgram(programFile("ffmpeg"), ffmpegArguments(format, width, height, rate), actions, 0, child);
     posix_spawn_file_actions_destroy(&actions);
     if (error == 0) return void(killing.emplace([pid = child] { kill(pid, SIGKILL); }));
     child = -1;
@@ -231,7 +220,7 @@ void checkFilm(const std::string& path, const std::string& format) {
   if (leadsToStream(path))
     throw InputError(fmt::format("{}: a film can't be written to a stream, expected a file", path));
   checkPlace(path);
-  if (findProgram("ffmpeg").empty())
+  if (programFile("ffmpeg").empty())
     throw MachineError(
         fmt::format("{}: films are encoded by the program ffmpeg, which isn't here; install ffmpeg, or make "
                     "pictures, as -o frame.####.png",

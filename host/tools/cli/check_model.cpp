@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "base/write_file.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 struct CheckOptions {
   std::string model, device, json, plot;
+  bool probe_only = false;
 };
 
 CheckedModel modelNamed(const std::string& name) {
@@ -37,8 +39,11 @@ void addCheckModelCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--plot", options->plot, "also draw the lobes and the albedo, as SVG");
   command->add_option("--device", options->device,
                       "which OpenCL device computes: a number or a part of its name");
+  command->add_flag("--probe-only", options->probe_only, "for Oclgrind, which this command runs")->group("");
   command->callback([&context, options] {
-    const ModelCheck check = checkModel(modelNamed(options->model), options->device);
+    if (options->probe_only) return probeFew(modelNamed(options->model));
+    const ModelCheck check = checkModel(modelNamed(options->model), options->device,
+                                        std::filesystem::read_symlink("/proc/self/exe"));
     if (!options->plot.empty()) writeTextFile(options->plot, modelPlot(check));
     if (!options->json.empty()) writeTextFile(options->json, modelCheckJson(check));
     if (options->json != "-") fmt::print("{}", modelCheckText(check));

@@ -39,7 +39,7 @@ const Terms kManualVariables{
     {"SLURM_STEP_NUM_TASKS", "must not be more than 1 then: several processes would do the same part"},
     {"XDG_DATA_HOME, HOME, XDG_DATA_DIRS",
      "in the folders fonts of these places DejaVuSans.ttf is looked for, which labels are drawn with"},
-    {"PATH", "where the program ffmpeg is looked for, which makes films"},
+    {"PATH", "where the programs ffmpeg, which makes films, and oclgrind, for check-model, are looked for"},
     {"POCL_CACHE_DIR", "read by PoCL: where it keeps the kernels that it compiled"},
     {"POCL_KERNEL_CACHE", "read by PoCL: 0 lets it keep none"},
     {"LUCIOLE_HELPERS",

@@ -9,7 +9,10 @@
 #include <glm/glm.hpp>
 #include <iterator>
 #include <numbers>
+#include <sstream>
 
+#include "base/spawn.hpp"
+#include "base/text_file.hpp"
 #include "cl/device.hpp"
 #include "cl/launch.hpp"
 #include "lighting/stats.hpp"
@@ -20,6 +23,7 @@
 #include "scene/models.hpp"
 #include "shade/features.hpp"
 #include "shaders/shader_text.hpp"
+#include "tools/bench/child_process.hpp"
 #include "tools/bench/shading_rate.hpp"
 #include "tools/figures/rounds.hpp"
 
@@ -397,9 +401,33 @@ void judge(ModelCheck& check) {
                                        worst->of_allowed.value, placeText(worst->of_allowed.at)));
 }
 
+/// Oclgrind interprets kernels and reports reads of what was never written, and of what isn't there.
+void runUnderOclgrind(const CheckedModel& model, const std::string& program, ModelCheck& check) {
+  const std::string oclgrind = programFile("oclgrind");
+  if (oclgrind.empty()) return;
+  const ScratchFolder folder;
+  runChild(
+      oclgrind,
+      {"--uninitialized", "--check-api", "--max-errors", "3", "--log", folder / "reports", "--build-options",
+       "-disable-llvm-passes -DSTANDARD_ONLY", program, "check-model", model.name, "--probe-only"},
+      {});
+  std::istringstream reports(isFile(folder / "reports") ? readFile(folder / "reports") : "");
+  check.oclgrind.emplace();
+  while (check.oclgrind->empty() && std::getline(reports, *check.oclgrind)) continue;
+  if (!check.oclgrind->empty()) check.broken.push_back("Oclgrind reports: " + forMessage(*check.oclgrind));
+}
+
 }  // namespace
 
-ModelCheck checkModel(const CheckedModel& model, const std::string& selector) {
+void probeFew(const CheckedModel& model) {
+  OpenedDevice device;
+  openDevice("", device);
+  std::vector<Pair> pairs = hardPairs();
+  pairs.resize(64);
+  probe(device, model, pairs);
+}
+
+ModelCheck checkModel(const CheckedModel& model, const std::string& selector, const std::string& program) {
   ModelCheck check;
   check.name = model.name;
   if (model.shader) check.loose = shaderFacts(*model.shader, ShaderKind::kModel).loose;
@@ -417,6 +445,7 @@ ModelCheck checkModel(const CheckedModel& model, const std::string& selector) {
   drawLobes(model, check);
   measureTime(device, model, check);
   judge(check);
+  if (!program.empty()) runUnderOclgrind(model, program, check);
   return check;
 }
 

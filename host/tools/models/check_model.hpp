@@ -69,12 +69,19 @@ struct ModelCheck {
   std::vector<Lobe> lobes;
   Repeated nanoseconds, phong_nanoseconds, roof_nanoseconds;  ///< a pair
   std::vector<std::string> loose;                             ///< see ShaderFacts
-  std::vector<std::string> broken;                            ///< promises that don't hold, a line each
+  std::optional<std::string>
+      oclgrind;                     ///< Oclgrind's first report; empty: none. No value: it isn't installed
+  std::vector<std::string> broken;  ///< promises that don't hold, a line each
 };
 
-/// Checks a model on PoCL's device, or on the one of `selector`. Takes some seconds. Throws as openDevice()
-/// and makeKernel().
-ModelCheck checkModel(const CheckedModel& model, const std::string& selector);
+/// Checks a model on PoCL's device, or on the one of `selector`. Takes some seconds. program: luciole itself,
+/// to run probeFew() under Oclgrind where that is installed; empty: not. Throws as openDevice() and
+/// makeKernel().
+ModelCheck checkModel(const CheckedModel& model, const std::string& selector,
+                      const std::string& program = {});
+
+/// Computes a few pairs on the first device, for Oclgrind to look at. Throws likewise.
+void probeFew(const CheckedModel& model);
 
 /// The check as lines for people, and as JSON.
 std::string modelCheckText(const ModelCheck& check);

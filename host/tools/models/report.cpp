@@ -66,6 +66,9 @@ std::string modelCheckText(const ModelCheck& check) {
   line("reciprocal, specular", reciprocityText(check.reciprocity));
   line("most energy, colour 1", energyText("diffuse", largestAlbedo(check, &AlbedoCurve::diffuse)));
   line("", energyText("specular", largestAlbedo(check, &AlbedoCurve::specular)));
+  line("under Oclgrind", !check.oclgrind           ? "not installed"
+                         : check.oclgrind->empty() ? "no report"
+                                                   : *check.oclgrind);
   line("time a pair",
        fmt::format("{:.2f} ns ± {:.2f}; Phong {:.2f}, {:.2f} times that; the roof {:.2f}",
                    check.nanoseconds.median, check.nanoseconds.spread, check.phong_nanoseconds.median,
@@ -110,6 +113,7 @@ std::string modelCheckJson(const ModelCheck& check) {
         {"phong", timeJson(check.phong_nanoseconds)},
         {"roof", timeJson(check.roof_nanoseconds)}}},
       {"loose_arithmetic", check.loose},
+      {"oclgrind", check.oclgrind ? Json(*check.oclgrind) : Json()},
       {"broken", check.broken}};
   for (const ModelError& error : check.errors)
     json["errors"].push_back({{"shininess", error.shininess},
