@@ -119,7 +119,10 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
   if (settings.shading == Shading::kGouraud) lightVertices(picture);
   describePicture(picture, size);
   const int tallest = std::min(plan.band_height, size.y);
-  requireMemory(double(plan.pixel_bytes) * size.x * tallest,
+  View band = plan.view;
+  band.crop_size.y = tallest;
+  const glm::ivec2 drawn = withMargin(band, plan).crop_size;
+  requireMemory(double(plan.pixel_bytes) * drawn.x * drawn.y,
                 fmt::format("a band of {}x{} pixels", size.x, tallest));
   BandMaker maker{picture, matteIds(scene, settings)};
   BandLimits limits = bandLimits(plan);

@@ -9,6 +9,7 @@
 #include "raster/bins.hpp"
 #include "render/aov_table.hpp"
 #include "render/assemble.hpp"
+#include "render/screens.hpp"
 
 namespace luciole {
 namespace {
@@ -36,7 +37,8 @@ std::size_t bytesPerPixel(const Scene& scene, const RenderSettings& settings, co
   // from the second sample on the sums.
   const std::size_t covered = countsCovered(settings) ? 1 : 0;
   const std::size_t sums = settings.samples > 1 ? lit + covered + light_layers : 0;
-  const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums;
+  const std::size_t screens = screenFloats(plan.screens, settings.samples);
+  const std::size_t lighting = gbuffer + 2 * lit + 2 * counted + channels + sums + screens;
   std::size_t assembling = gbuffer + lit + counted + channels + covered;
   for (const Aov aov : settings.aovs) assembling += std::size_t(aovRow(aov).computed_floats);
   if (settings.wants(Aov::kListLength)) ++assembling;

@@ -156,6 +156,13 @@ ScreenGroups groupsOf(const std::vector<ScreenProgram>& screens) {
   return groups;
 }
 
+std::size_t screenFloats(const std::vector<ScreenProgram>& screens, int samples) {
+  if (screens.empty()) return 0;
+  const ScreenGroups groups = groupsOf(screens);
+  return 6 + (samples > 1 ? 3 : 0) + (groups.from_eye ? 3 : 0) + (groups.depth ? 1 : 0) +
+         (groups.normal ? 3 : 0) + (groups.object ? 1 : 0) + (groups.material ? 1 : 0);
+}
+
 View withMargin(const View& view, const PicturePlan& plan) {
   if (plan.screens.empty()) return view;
   int radius = 0;

@@ -14,6 +14,9 @@ struct ScreenGroups {
 };
 ScreenGroups groupsOf(const std::vector<ScreenProgram>& screens);
 
+/// Floats that a pixel takes for screens in a picture of so many samples, about.
+std::size_t screenFloats(const std::vector<ScreenProgram>& screens, int samples);
+
 /// The part of a picture to draw for what `view` shows: with the neighbours that all screens together look
 /// at, as far as the picture goes. Where the pixels of a tile share light it is all tiles of the picture that
 /// hold these, so that every band has the same light.
