@@ -78,6 +78,7 @@ __kernel void probe(__global const float *in, __global uint *out) {
   out[9] = as_uint(convert_float16((int16)(i)).sf + convert_float4((uint4)(u)).x);
   out[10] = convert_int4((float4)(-x)).y;
   atomic_min(out + 11, u);
+  atomic_add(out + 11, u);
   UNDECLARED
 }
 )";

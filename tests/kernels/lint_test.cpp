@@ -154,8 +154,8 @@ TEST(KernelLint, EachFeatureAloneAndNoneWithoutWarnings) {
 /// Functions of others that may be called, by their mangled names: work-items and bits; integers; conversions
 /// between float and int; what IEEE 754 rounds.
 const std::regex kFixedFunctions(
-    "_Z13get_global_idj|_Z15get_global_sizej|_Z(3clz|8popcount)[jm]|_Z3(min|max)(ii|jj|mm)|_Z10atomic_min.*"
-    "jj|_Z10atomic_inc.*j"
+    "_Z13get_global_idj|_Z15get_global_sizej|_Z(3clz|8popcount)[jm]|_Z3(min|max)(ii|jj|mm)|_Z10atomic_(min|"
+    "add).*jj|_Z10atomic_inc.*j"
     "|_Z\\d+convert_(float\\d*(i|j|Dv\\d+_[ij])|int\\d*(f|Dv\\d+_f))|_Z3fma(fff|Dv\\d+_fS_S_)"
     "|llvm\\.(lifetime\\.|memcpy\\.|memset\\.|prefetch\\.|vector\\.reduce\\.(or|smin|smax)\\.|ctlz\\.|"
     "ctpop\\.).*"
