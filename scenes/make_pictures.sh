@@ -10,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 part=${1-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-ln -s "$root/luciole" "$root/scenes" "$work"
+ln -s "$root/luciole" "$root/scenes" "$root/kernels" "$work"
 cd "$work"
 
 wanted() { [[ $1 == *"$part"* ]]; }
@@ -61,6 +61,16 @@ picture scenes/lesson/shadows_pcf.jpg render scenes/lesson/shadows.json --shadow
 picture scenes/lesson/shadows_soft.jpg render scenes/lesson/shadows.json --shadows soft --samples 16 -o
 picture scenes/lesson/shadows_exact.jpg render scenes/lesson/shadows.json --shadows exact --shadow-size 128 --samples 16 -o
 picture scenes/lesson/shadow_map.png shadow-map scenes/lesson/shadows.json --light 0 --shadow-size 128 -o
+picture scenes/lesson/retro_phong.jpg render scenes/lesson/shaders.json --set 'lights[0].position=[0.6,3.2,7]' --samples 16 --shadows pcf -o
+picture scenes/lesson/retro.jpg render scenes/lesson/shaders.json --set 'lights[0].position=[0.6,3.2,7]' --model scenes/lesson/retro.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/ward.jpg render scenes/lesson/shaders.json --model kernels/examples/ward.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/brushed.jpg render scenes/lesson/shaders.json --model kernels/examples/ward_anisotropic.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/minnaert.jpg render scenes/lesson/shaders.json --model kernels/examples/minnaert.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/cloth.jpg render scenes/lesson/shaders.json --model kernels/examples/cloth.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/rim.jpg render scenes/lesson/shaders.json --model kernels/examples/rim.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/marble.jpg render scenes/lesson/shaders.json --surface kernels/examples/marble.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/contours.jpg render scenes/lesson/shaders.json --model toon --screen kernels/examples/contours.clh --samples 16 --shadows pcf -o
+picture scenes/lesson/hatching.jpg render scenes/lesson/shaders.json --screen kernels/examples/hatching.clh --screen kernels/examples/contours.clh --samples 16 --shadows pcf -o
 
 picture scenes/colonnade_rays.jpg reference scenes/colonnade.json --size 960x540 -o
 if wanted scenes/colonnade_error.png; then

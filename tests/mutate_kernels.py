@@ -302,7 +302,7 @@ MUTANTS = {
         Mutant("MODEL_IS(kBlinnPhongModel) ? halved : shininess", "shininess"),
         Mutant("pixels->model == (int)kBlinnPhongModel ? halved : shininess", "shininess"),
         Mutant("chosen > 0 ? chosen - 1 : (intL)((int)of_picture)", "chosen - 1"),
-        Mutant("!IS_COMPILED(number) || !(models >> number & 1)", "!HAS_MODEL(number)", same="only work is saved"),
+        Mutant("!IS_COMPILED(number) || !(models >> number & 1)", "!IS_COMPILED(number)", same="only work is saved"),
         Mutant("takes_it ? by_model[k].highlight : pairs[k].highlight", "by_model[k].highlight"),
         Mutant("takes_it ? by_model[k].grazing : pairs[k].grazing", "by_model[k].grazing"),
         Mutant("k < count ?", "k <= count ?"),

@@ -24,9 +24,11 @@ constexpr const char* kReadmes[] = {"README.md",
                                     "host/tools/cli/README.md",
                                     "host/tools/scale/README.md",
                                     "kernels/README.md",
+                                    "kernels/examples/README.md",
                                     "scenes/FORMATS.md",
                                     "scenes/README.md",
                                     "scenes/lesson/README.md",
+                                    "scenes/lesson/shaders.md",
                                     "tests/README.md"};
 
 /// What no test types, by how it begins.
@@ -173,7 +175,7 @@ std::string atLittleCost(std::string command) {
 /// A folder that looks like a checkout whose launcher has built the program.
 void prepareCheckout(const TemporaryFolder& folder) {
   fs::create_symlink(LUCIOLE_BINARY, folder / "luciole");
-  fs::create_symlink(kSource + "/scenes", folder / "scenes");
+  for (const char* room : {"scenes", "kernels"}) fs::create_symlink(kSource + "/" + room, folder / room);
 }
 
 class SectionOfReadme : public testing::TestWithParam<Section> {};
