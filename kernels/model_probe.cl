@@ -17,10 +17,12 @@ KERNEL void model_probe(uint stride, uint model, __global const float* surfaces,
   pixels.normal = load_vec3(surfaces, stride);
   pair.to_light = load_vec3(surfaces + 3 * stride, stride);
   pixels.to_eye = load_vec3(surfaces + 6 * stride, stride);
-  pixels.diffuse = load_vec3(surfaces + 12 * stride, stride);
-  pixels.specular = load_vec3(surfaces + 15 * stride, stride);
-  pixels.tangent = load_vec3(surfaces + 9 * stride, stride);
-  pixels.bitangent = cross3(pixels.normal, pixels.tangent);
+  if (USER_MODELS) {
+    pixels.for_users->diffuse = load_vec3(surfaces + 12 * stride, stride);
+    pixels.for_users->specular = load_vec3(surfaces + 15 * stride, stride);
+    pixels.for_users->tangent = load_vec3(surfaces + 9 * stride, stride);
+    pixels.for_users->bitangent = cross3(pixels.normal, pixels.for_users->tangent);
+  }
   floatL shininess = load_lanes(surfaces + 18 * stride);
   pair.inverse_d = load_lanes(surfaces + 19 * stride);
   pair.n_dot_l = max_lanes(dot3(pixels.normal, pair.to_light) * pair.inverse_d, (floatL)(0.0f));
