@@ -15,7 +15,8 @@ namespace {
 
 /// Adds `more` to `sum`, count floats; an empty `sum` becomes `more`. Returns a plane whose memory can be
 /// reused.
-Plane addPlane(Plane more, std::size_t count, Plane& sum) {
+template <class Values>
+Values addPlane(Values more, std::size_t count, Values& sum) {
   if (sum.empty()) {
     sum = std::move(more);
     return {};

@@ -9,15 +9,12 @@
 
 namespace luciole {
 
-/// A plane of rows as screens take it (ScreenFrame).
-template <class T>
-using ScreenPlane = std::vector<T, ArrayAllocator<T>>;
-
-/// The planes of a part of a picture as screens take them; those that they don't name may be empty.
+/// The planes of a part of a picture as screens take them (ScreenFrame); those that they don't name may be
+/// empty.
 struct ScreenMemory {
-  ScreenPlane<float> before, after;  ///< a screen's colours r g b
-  ScreenPlane<float> from_eye, depth, normal;
-  ScreenPlane<int> object, material;
+  RawArray<float> before, after;  ///< a screen's colours r g b
+  RawArray<float> from_eye, depth, normal;
+  RawArray<int> object, material;
 };
 
 /// Memory of the last band, to be reused by the next one: the system takes as long to clear fresh memory as

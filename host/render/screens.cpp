@@ -56,7 +56,7 @@ constexpr std::array<std::array<int, kSquareSize>, kSquareSize> kSquareRows = []
 /// Lays kCount planes in rows, which go on beyond their ends as they end. set(place, square): sets the
 /// square's values from those at the place of its first pixel in the G-buffer.
 template <std::size_t kCount, class T, class Set>
-void layRows(const GBuffer& gbuffer, const ScreenFrame& frame, const Set& set, ScreenPlane<T>& planes) {
+void layRows(const GBuffer& gbuffer, const ScreenFrame& frame, const Set& set, RawArray<T>& planes) {
   planes.resize(kCount * frame.plane_stride);
   tbb::parallel_for(0, (frame.rows + kSquareSize - 1) / kSquareSize, [&](int square_row) {
     const int first_row = square_row * kSquareSize, rows = std::min(kSquareSize, frame.rows - first_row);
@@ -85,7 +85,7 @@ constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 /// Vectors x y z of a G-buffer, turned to the world; 0 for pixels that see nothing.
 void layVectors(const GBuffer& gbuffer, const ScreenFrame& frame, const Plane& vectors,
-                ScreenPlane<float>& planes) {
+                RawArray<float>& planes) {
   const std::size_t n = gbuffer.pixels();
   const glm::dmat3 turn(gbuffer.camera.camera_to_world);
   layRows<3>(
@@ -104,7 +104,7 @@ void layVectors(const GBuffer& gbuffer, const ScreenFrame& frame, const Plane& v
 
 /// Colours with exposure.
 void layColors(const GBuffer& gbuffer, const ScreenFrame& frame, const Plane& color, float exposure,
-               ScreenPlane<float>& planes) {
+               RawArray<float>& planes) {
   const std::size_t n = gbuffer.pixels();
   layRows<3>(
       gbuffer, frame,
@@ -116,7 +116,7 @@ void layColors(const GBuffer& gbuffer, const ScreenFrame& frame, const Plane& co
       planes);
 }
 
-void layDepths(const GBuffer& gbuffer, const ScreenFrame& frame, ScreenPlane<float>& planes) {
+void layDepths(const GBuffer& gbuffer, const ScreenFrame& frame, RawArray<float>& planes) {
   const float* const z = gbuffer.position.data() + 2 * gbuffer.pixels();
   layRows<1>(
       gbuffer, frame,
@@ -127,8 +127,7 @@ void layDepths(const GBuffer& gbuffer, const ScreenFrame& frame, ScreenPlane<flo
 }
 
 /// Numbers in the scene; 0 where the G-buffer has none, -1 for pixels that see nothing.
-void layIds(const GBuffer& gbuffer, const ScreenFrame& frame, const IndexPlane& ids,
-            ScreenPlane<int>& planes) {
+void layIds(const GBuffer& gbuffer, const ScreenFrame& frame, const IndexPlane& ids, RawArray<int>& planes) {
   const float* const z = gbuffer.position.data() + 2 * gbuffer.pixels();
   layRows<1>(
       gbuffer, frame,

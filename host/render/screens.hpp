@@ -25,7 +25,7 @@ View withMargin(const View& view, const PicturePlan& plan);
 /// Planes r g b of a part of a picture, laid out as ScreenFrame says.
 struct ScreenedColors {
   ScreenFrame frame = {};
-  Plane color = {};
+  RawArray<float> color = {};
 };
 
 /// Applies the plan's screens, one after another, to a lit G-buffer. color: its light r g b before exposure.
