@@ -131,8 +131,9 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
 
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,
                                    const ShadeSettings& settings, double pairs,
+                                   const SurfaceProgram& surfaces,
                                    const std::vector<ScreenProgram>& screens) {
-  return std::async(std::launch::async, [&device, &programs, &settings, pairs, &screens] {
+  return std::async(std::launch::async, [&device, &programs, &settings, pairs, &surfaces, &screens] {
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
@@ -151,6 +152,7 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
     startBeams(device, picture, helper);
     for (const FeatureSet& features : picture.programs)
       compileKernels(device, features, settings, {.beams = false});
+    if (GBuffer empty = emptyTile(); !surfaces.user_text.empty()) surface(device, surfaces, empty);
     for (const ScreenProgram& screen : screens) compileScreen(device, screen);
     checkItself(device);
     if (!helper.await() && device.warn)

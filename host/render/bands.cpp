@@ -109,7 +109,8 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
                                    {"objects", std::int64_t(scene.objects.size())},
                                    {"lights", std::int64_t(scene.lights.size())}});
   ReadyPicture picture{device, scene, settings, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade, plan.pairs, plan.screens);
+  std::future<double> compiling =
+      startCompiling(device, plan.programs, plan.shade, plan.pairs, plan.surface, plan.screens);
   picture.objects = settings.alpha ? allObjects(scene)
                                    : objectsInSight(scene, withMargin(plan.view, plan), settings.exposure,
                                                     settings.shade.model);

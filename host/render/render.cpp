@@ -127,7 +127,8 @@ static Image lightGBufferAsIs(OpenedDevice& device, const Scene& scene, const GB
   requireMemory(double(gbuffer.width) * gbuffer.height * 3 * double(layers) * sizeof(float),
                 fmt::format("{} layers of {}x{} pixels", layers, gbuffer.width, gbuffer.height));
   ReadyPicture picture{device, scene, one_sample, plan, stats};
-  std::future<double> compiling = startCompiling(device, plan.programs, plan.shade, plan.pairs, plan.screens);
+  std::future<double> compiling =
+      startCompiling(device, plan.programs, plan.shade, plan.pairs, plan.surface, plan.screens);
   prepareLights(picture, gbuffer.camera, nullptr);
   awaitKernels(compiling, device, settings, stats);
   describePicture(picture, {gbuffer.width, gbuffer.height});

@@ -27,7 +27,7 @@ LitTiles litByTiles(OpenedDevice& device, const Lighting& lighting, const GBuffe
   LitTiles lit;
   lit.color.assign(3 * gbuffer.pixels(), -1.0f);
   const Buffer<float> image = borrowedForOutput(device, lit.color);
-  lit.counts = shadeTiles(device, featureDefines(lighting.features) + lighting.math_defines,
+  lit.counts = shadeTiles(device, {featureDefines(lighting.features) + lighting.math_defines, {}},
                           {.frame = frame,
                            .gbuffer = buffers,
                            .tiles_x = gbuffer.tiles_x,
