@@ -81,7 +81,7 @@ TEST_F(UserModelCommands, CheckModelSaysWhatIsBrokenByItsStatus) {
   write("bad.clh", "  Reflection r = {-n_dot_l};\n  return r;\n");
   succeed("luciole check-model good.clh --json good.json --plot good.svg");
   EXPECT_TRUE(std::filesystem::exists(folder / "good.svg"));
-  EXPECT_TRUE(nlohmann::json::parse(readFile(folder / "good.json"))["broken"].empty());
+  EXPECT_TRUE(nlohmann::json::parse(readText(folder / "good.json"))["broken"].empty());
   const Outcome bad = runLine(folder, "luciole check-model bad.clh --json -");
   EXPECT_EQ(bad.status, 1);
   EXPECT_FALSE(nlohmann::json::parse(bad.out)["broken"].empty());
