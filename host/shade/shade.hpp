@@ -44,8 +44,8 @@ struct ShadeArguments {
   Buffer<const uint> ray_bits;              ///< PairShadows::unsure, with Feature::kSoftExact only
   Buffer<const uint> first_share;           ///< likewise
   Buffer<const float> shares;               ///< likewise
-  Buffer<float> image;         ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
-  Buffer<uint> faulty_pixels;  ///< one, to be raised, with Feature::kUserModels only
+  Buffer<float> image;              ///< out: planes r, g, b, and the shadow layer with Feature::kOutputShadow
+  Buffer<uint> faulty_pixels = {};  ///< one, to be raised, with Feature::kUserModels only
 };
 
 /// Launches kernels/shade/shade.cl on every pixel of the G-buffer and waits for it. Throws as makeKernel()

@@ -24,7 +24,7 @@ struct ShadeTilesArguments {
   Buffer<const float> tree;         ///< see LightTree
   std::size_t tree_stride;          ///< floats
   Buffer<float> image;              ///< out: planes r, g, b
-  Buffer<uint> faulty_pixels;       ///< see ShadeArguments
+  Buffer<uint> faulty_pixels = {};  ///< see ShadeArguments
 };
 
 /// The counts of shadeTiles().

@@ -135,7 +135,7 @@ TEST(WardKernel, IsFiniteAndWithinItsBoundWhereTheFormulaIsNot) {
   const glm::dvec3 up{0, 0, 1}, right{1, 0, 0}, none{0, 0, 0};
   Highlights highlights;
   for (const float shininess : {0.0f, 1e-30f, 1e4f, 1e12f, 3e38f})
-    for (const glm::vec2 alpha : {glm::vec2(1), glm::vec2(1, 0), glm::vec2(0, 1e-30f)}) {
+    for (const glm::vec2& alpha : {glm::vec2(1), glm::vec2(1, 0), glm::vec2(0, 1e-30f)}) {
       highlights.add({up, up, -up}, shininess, alpha, right);                         // h = 0,
       highlights.add({up, {0.6, 0, 0.8}, {-0.6, 0, -0.8}}, shininess, alpha, right);  // here, too,
       highlights.add({up, {1, 0, 1e-20}, {-1, 0, 1e-20}}, shininess, alpha, right);   // and at a glance
