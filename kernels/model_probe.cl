@@ -17,12 +17,12 @@ KERNEL void model_probe(uint stride, uint model, __global const float* surfaces,
   pixels.normal = load_vec3(surfaces, stride);
   pair.to_light = load_vec3(surfaces + 3 * stride, stride);
   pixels.to_eye = load_vec3(surfaces + 6 * stride, stride);
-  if (USER_MODELS) {
-    pixels.for_users->diffuse = load_vec3(surfaces + 12 * stride, stride);
-    pixels.for_users->specular = load_vec3(surfaces + 15 * stride, stride);
-    pixels.for_users->tangent = load_vec3(surfaces + 9 * stride, stride);
-    pixels.for_users->bitangent = cross3(pixels.normal, pixels.for_users->tangent);
-  }
+#if USER_MODEL_COUNT > 0
+  pixels.diffuse = load_vec3(surfaces + 12 * stride, stride);
+  pixels.specular = load_vec3(surfaces + 15 * stride, stride);
+  pixels.tangent = load_vec3(surfaces + 9 * stride, stride);
+  pixels.bitangent = cross3(pixels.normal, pixels.tangent);
+#endif
   floatL shininess = load_lanes(surfaces + 18 * stride);
   pair.inverse_d = load_lanes(surfaces + 19 * stride);
   pair.n_dot_l = max_lanes(dot3(pixels.normal, pair.to_light) * pair.inverse_d, (floatL)(0.0f));
@@ -34,11 +34,12 @@ KERNEL void model_probe(uint stride, uint model, __global const float* surfaces,
   store_lanes(reflections + stride, pair.diffuse);
   store_lanes(reflections + 2 * stride, SPECULAR ? pair.highlight : (floatL)(0.0f));
   store_lanes(reflections + 3 * stride, GRAZING ? pair.grazing : (floatL)(0.0f));
-  if (!USER_MODELS) return;
+#if USER_MODEL_COUNT > 0
   Surface s = surface_of(&pixels, &pair);
   Reflection r =
       user_reflection(model - kModelCount, &s, scale3(pair.to_light, pair.inverse_d), pair.n_dot_l);
   store_lanes(reflections + 4 * stride, r.diffuse);
   store_lanes(reflections + 5 * stride, r.specular);
   store_lanes(reflections + 6 * stride, r.grazing);
+#endif
 }

@@ -34,6 +34,11 @@ def followed(schema):
     return {**SCHEMA["definitions"][name], **schema} if name else schema
 
 
+def chosen(choice):
+    """One of the values that a key may have: a word, or text that ends in something."""
+    return f"`{choice['const']}`" if "const" in choice else f"name of a file `*{choice['pattern'].strip('$').replace(chr(92), '')}`"
+
+
 def values(schema):
     """What a key may hold, in few words."""
     if link(schema):
@@ -42,7 +47,7 @@ def values(schema):
     if "title" in schema:
         return schema["title"]
     if "oneOf" in schema:
-        return ", ".join(f"`{choice['const']}`" for choice in schema["oneOf"])
+        return ", ".join(chosen(choice) for choice in schema["oneOf"])
     kind = schema["type"]
     if kind == "boolean":
         return "true, false"
@@ -64,7 +69,7 @@ def default(name, schema, required):
 
 def meaning(schema):
     lines = [schema["description"]]
-    lines += [f"`{choice['const']}`: {choice['description']}" for choice in followed(schema).get("oneOf", [])]
+    lines += [f"{chosen(choice)}: {choice['description']}" for choice in followed(schema).get("oneOf", [])]
     return "<br>".join(lines)
 
 

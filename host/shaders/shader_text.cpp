@@ -574,10 +574,17 @@ class Checker {
     }
   }
 
+  /// Whether a { begins a list of values: behind = or , or a type in parentheses.
+  bool beginsList(std::size_t index) const {
+    const Text before = text(index - 1);
+    return before == "=" || before == "," ||
+           (before == ")" && isIn(kTypeNames, text(index - 2)) && text(index - 3) == "(");
+  }
+
   /// Whether the token with this index is a statement's first, or stands behind its const.
   bool beginsStatement(std::size_t index) const {
     const Text before = text(index - 1);
-    return before == ";" || before == "{" || before == "}" || before == "const";
+    return before == ";" || before == "}" || before == "const" || (before == "{" && !beginsList(index - 1));
   }
 
   /// Holds a word or a sign against what no shader may have, and notes what programs must know of it.

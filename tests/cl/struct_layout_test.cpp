@@ -100,11 +100,11 @@ TEST(StructLayout, ShadeFrame) {
 }
 
 TEST(StructLayout, SurfaceFrame) {
-  expectLayout("report_surface_frame",
-               {sizeof(SurfaceFrame), offsetof(SurfaceFrame, to_world_x), offsetof(SurfaceFrame, to_world_y),
-                offsetof(SurfaceFrame, to_world_z), offsetof(SurfaceFrame, eye),
-                offsetof(SurfaceFrame, plane_stride), offsetof(SurfaceFrame, given),
-                offsetof(SurfaceFrame, changed), offsetof(SurfaceFrame, pad)});
+  expectLayout(
+      "report_surface_frame",
+      {sizeof(SurfaceFrame), offsetof(SurfaceFrame, to_world_x), offsetof(SurfaceFrame, to_world_y),
+       offsetof(SurfaceFrame, to_world_z), offsetof(SurfaceFrame, eye), offsetof(SurfaceFrame, plane_stride),
+       offsetof(SurfaceFrame, given), offsetof(SurfaceFrame, changed), offsetof(SurfaceFrame, pad)});
 }
 
 TEST(StructLayout, CullFrame) {

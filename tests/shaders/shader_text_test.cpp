@@ -111,6 +111,14 @@ TEST(ShaderText, PointersStayWhatTheFunctionWasGiven) {
               HasSubstr("to a Surface or a Screen"));
 }
 
+TEST(ShaderText, AProductMayBeginAListOfValues) {
+  EXPECT_EQ(refusal(modelOf("Reflection q = {n_dot_l * n_dot_l, s->n_dot_v * n_dot_l};\n"
+                            "vec3L v = (vec3L){n_dot_l * 2, n_dot_l * 3, 0};")),
+            "");
+  for (const char* block : {"{ Pair *p = 0; }", "if (n_dot_l) { Pair *p = 0; }", "{ { Pair *p = 0; } }"})
+    EXPECT_THAT(refusal(modelOf(block)), HasSubstr("pointers are parameters alone")) << block;
+}
+
 TEST(ShaderText, WordsThatReachFurtherAreRefused) {
   for (const char* word :
        {"printf(\"x\");", "asm(\"nop\");", "__global float x;", "global float *x;", "barrier(1);",

@@ -67,7 +67,7 @@ struct GBuffer {
   Plane lift = {};
   ModelPlane model = {};  ///< optional
   /// The direction in which the texture coordinate u grows, perpendicular to `normal`; optional. Where the
-  /// surface has no such direction: tangentOf() of the normal alone (gbuffer/tangent_plane.hpp).
+  /// surface has no such direction: what the normal alone gives, around the upright axis.
   PackedNormals tangent = {};
   Plane uv = {};               ///< u v, as Mesh::uvs; zeros where the mesh has none; optional
   IndexPlane object = {};      ///< in Scene::objects; optional

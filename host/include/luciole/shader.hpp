@@ -4,7 +4,7 @@
 
 namespace luciole {
 
-/// A function in a file of the user's, which kernels call: see "Shaders of one's own" in kernels/README.md.
+/// A function in a file of the user's, which kernels call: INLINE Reflection reflect_light(…) and the like.
 struct Shader {
   std::string path;  ///< as messages name the file
   std::string text;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "scene/models.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {
@@ -209,7 +210,7 @@ TEST_F(BenchCommand, EveryModelIsHeldAgainstItself) {
   const auto json = nlohmann::json::parse(readText(folder / "out.json"));
   ASSERT_EQ(json["groups"].size(), 1u);
   const auto& rows = json["groups"][0]["rows"];
-  ASSERT_EQ(rows.size(), 5u);
+  ASSERT_EQ(rows.size(), std::size(kAllModels));
   std::set<double> brightest;
   for (const auto& row : rows) {
     EXPECT_EQ(row["settings"]["model"], row["name"]);
