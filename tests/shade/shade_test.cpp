@@ -36,7 +36,8 @@ TEST(BorrowedGBuffer, NoTwoBuffersShareHostMemory) {
   const PackedNormals surface_normal(kTilePixels);
   const Plane lift(kTilePixels);
   for (const bool unlit : {false, true}) {
-    const GBufferBuffers buffers = borrowedGBuffer(testDevice(), gbuffer, surface_normal, lift, {}, {}, unlit);
+    const GBufferBuffers buffers =
+        borrowedGBuffer(testDevice(), gbuffer, surface_normal, lift, {}, {}, unlit);
     const std::array<DeviceMemory, 8> all{buffers.position.memory,       buffers.normal.memory,
                                           buffers.diffuse.memory,        buffers.specular.memory,
                                           buffers.ambient.memory,        buffers.emission.memory,

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/write_file.hpp"
+#include "luciole/error.hpp"
 #include "scene/models.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/suggest.hpp"

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/text_file.hpp"
 #include "base/threads.hpp"
 #include "image/exposure.hpp"
 #include "image/file_format.hpp"

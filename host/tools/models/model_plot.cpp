@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <iterator>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "tools/figures/svg_plot.hpp"
