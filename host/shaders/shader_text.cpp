@@ -230,17 +230,14 @@ constexpr std::pair<Text, Text> kLoose[] = {
     {"normalize", "normalize_lanes(v)"}, {"dot", "dot3(a, b)"},
     {"exp", "exp_lanes(x) for x <= 0"},  {"exp2", "exp2_product(a, b)"},
     {"pow", "pow_one_plus(x - 1, n)"},   {"log2", "log2_one_plus(x - 1)"}};
-constexpr Text kAlsoLoose[] = {"acos",   "acosh",         "acospi",        "asin",        "asinh",
-                               "asinpi", "atan",          "atan2",         "atan2pi",     "atanh",
-                               "atanpi", "cbrt",          "cos",           "cosh",        "cospi",
-                               "cross",  "degrees",       "distance",      "erf",         "erfc",
-                               "exp10",  "expm1",         "fast_distance", "fast_length", "fast_normalize",
-                               "fract",  "frexp",         "hypot",         "ldexp",       "length",
-                               "lgamma", "log",           "log10",         "log1p",       "mix",
-                               "modf",   "native_divide", "pown",          "powr",        "radians",
-                               "remquo", "rootn",         "sin",           "sincos",      "sinh",
-                               "sinpi",  "smoothstep",    "tan",           "tanh",        "tanpi",
-                               "tgamma", "fmod",          "remainder"};
+constexpr Text kAlsoLoose[] = {
+    "acos",           "acosh",    "acospi", "asin",     "asinh", "asinpi",     "atan",          "atan2",
+    "atan2pi",        "atanh",    "atanpi", "cbrt",     "cos",   "cosh",       "cospi",         "cross",
+    "degrees",        "distance", "erf",    "erfc",     "exp10", "expm1",      "fast_distance", "fast_length",
+    "fast_normalize", "fract",    "frexp",  "hypot",    "ldexp", "length",     "lgamma",        "log",
+    "log10",          "log1p",    "mix",    "modf",     "pown",  "powr",       "radians",       "remquo",
+    "rootn",          "sin",      "sincos", "sinh",     "sinpi", "smoothstep", "tan",           "tanh",
+    "tanpi",          "tgamma",   "fmod",   "remainder"};
 
 struct Signature {
   const char* name;
@@ -676,6 +673,11 @@ std::string linePath(const std::string& path) {
   return quoted;
 }
 
+/// A compiler's words with the names that functions have in the file.
+std::string asTheUserWrote(const std::string& words) {
+  return std::regex_replace(words, std::regex("\\b__(\\w+)_\\d+\\b"), "$1");
+}
+
 }  // namespace
 
 std::span<const char* const> shaderHeaders() { return kHeaders; }
@@ -719,9 +721,10 @@ std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind) {
     const ShaderFacts facts = shaderFacts(shader, kind);
     grazing |= facts.uses_grazing;
     colors |= facts.uses_colors;
-    // Names of one file are those of others, and of the kernels', without harm.
+    // Names of one file are those of others, and of the kernels', without harm. No user can write the names
+    // that functions get, by which they could call themselves.
     for (const Text name : macros) program += fmt::format("#pragma push_macro(\"{0}\")\n#undef {0}\n", name);
-    for (const Text name : names) program += fmt::format("#define {0} {0}_{1}\n", name, i);
+    for (const Text name : names) program += fmt::format("#define {0} __{0}_{1}\n", name, i);
     program += fmt::format("#line 1 \"{}\"\n{}#line 1 \"{}\"\n", linePath(shader.path),
                            compiledText(shader, tokens), kOwnLines);
     for (const Text name : names) program += fmt::format("#undef {}\n", name);
@@ -734,11 +737,11 @@ std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind) {
                  "INLINE Reflection user_reflection(uint number, const Surface *s, vec3L to_light, floatL "
                  "n_dot_l) {\n";
       for (std::size_t i = 1; i < shaders.size(); ++i)
-        program += fmt::format("if (number == {0}) return reflect_light_{0}(s, to_light, n_dot_l);\n", i);
-      return program + "return reflect_light_0(s, to_light, n_dot_l);\n}\n";
+        program += fmt::format("if (number == {0}) return __reflect_light_{0}(s, to_light, n_dot_l);\n", i);
+      return program + "return __reflect_light_0(s, to_light, n_dot_l);\n}\n";
     case ShaderKind::kSurface:
       program += "#define USER_SURFACES\nINLINE void user_surface(Surface *s) {\n";
-      for (std::size_t i = 0; i < shaders.size(); ++i) program += fmt::format("surface_{}(s);\n", i);
+      for (std::size_t i = 0; i < shaders.size(); ++i) program += fmt::format("__surface_{}(s);\n", i);
       return program + "}\n";
     case ShaderKind::kScreen:
       break;
@@ -767,7 +770,7 @@ std::string shaderError(const std::string& log, const std::string& user_text) {
     std::size_t column = std::size_t(std::stoi(parts[3])) - 1, moved = 0;
     for (std::size_t at = 0; (at = told.find(kQuotient, at)) < column; at += kQuotient.size())
       moved += std::min(column - at, kQuotient.size() - 1);
-    return fmt::format("{}:{}:{}: {}", path, number, column - moved + 1, parts[4].str());
+    return fmt::format("{}:{}:{}: {}", path, number, column - moved + 1, asTheUserWrote(parts[4]));
   }
   const std::size_t path = user_text.find("#line 1 \"") + 9;
   return fmt::format("{}: does not compile: {}", user_text.substr(path, user_text.find('"', path) - path),

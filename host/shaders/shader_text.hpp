@@ -54,7 +54,7 @@ bool usesTangents(std::span<const Shader> models);
 
 /// The text that takes the place of kernels/user_text.clh in a program with these shaders, which must have
 /// passed shaderFacts(). Its lines have the files' names and numbers. The function of the shader with the
-/// index i is called `reflect_light_i`, `surface_i` or `screen_i`. Empty without shaders.
+/// index i is called `__reflect_light_i`, `__surface_i` or `__screen_i`. Empty without shaders.
 std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind);
 
 /// What the user is told of a program with such a text that doesn't compile: "FILE:LINE:COLUMN: what" of the

@@ -4,7 +4,7 @@
 
 // Without a text colours stay as they are.
 #ifndef HAS_SCREEN
-INLINE vec3L screen_0(const Screen* at) { return color_at(at, 0, 0); }
+INLINE vec3L __screen_0(const Screen* at) { return color_at(at, 0, 0); }
 #endif
 
 // Whether a colour can't be shown: NaN, infinite or below 0.
@@ -38,7 +38,7 @@ KERNEL void screen_rows(ScreenFrame frame, __global const float* color, __global
                      &beyond};
   Screen at = {column + frame.first_x + LANE_NUMBERS, (intL)(row + frame.first_y), frame.width, frame.height,
                &rows};
-  vec3L before = color_of(&at, 0), after = screen_0(&at);
+  vec3L before = color_of(&at, 0), after = __screen_0(&at);
   intL is_none = is_no_color(after.x) | is_no_color(after.y) | is_no_color(after.z);
   __global float* out = image + first;
   store_lanes(out, is_none ? before.x : after.x);

@@ -73,6 +73,20 @@ TEST(ShaderText, NoFunctionCallsItself) {
               HasSubstr("is defined where it is declared"));
 }
 
+// A function that knew its name in the program could call itself by it.
+TEST(ShaderText, NoFunctionCanWriteTheNameThatItHasInAProgram) {
+  const std::string helper = "INLINE floatL f(floatL x) { return x; }\n";
+  const std::string program =
+      shaderProgram(std::vector{Shader{"mine.clh", helper + modelOf("")}}, ShaderKind::kModel);
+  for (const char* name : {"f", "reflect_light"}) {
+    EXPECT_THAT(program, HasSubstr(std::string("#define ") + name + " __" + name + "_0\n"));
+    EXPECT_THAT(refusal(helper + modelOf(std::string("__") + name + "_0(n_dot_l);")),
+                HasSubstr("the compiler's"));
+  }
+  EXPECT_EQ(shaderError("mine.clh:1:2: error: no matching function for call to '__f_0'\n", program),
+            "mine.clh:1:2: no matching function for call to 'f'");
+}
+
 TEST(ShaderText, WhatRepeatsTextTooOftenIsRefused) {
   EXPECT_THAT(refusal(modelOf("UNROLLED(i, 64) { UNROLLED(j, 64) { UNROLLED(k, 64) { n_dot_l += 1; } } }")),
               HasSubstr("words and signs"));
