@@ -6,18 +6,15 @@
 #include <array>
 #include <charconv>
 #include <map>
-#include <regex>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
+#include "shaders/shader_tokens.hpp"
 
 namespace luciole {
 namespace {
-
-using Text = std::string_view;
 
 constexpr const char* kHeaders[] = {"lanes.clh",
                                     "math.clh",
@@ -31,132 +28,12 @@ constexpr const char* kHeaders[] = {"lanes.clh",
                                     "shade/ward.clh",
                                     "shade/noise.clh"};
 
-struct Token {
-  Text text;
-  int line = 0, column = 0;   ///< from 1
-  bool of_directive = false;  ///< of a line that begins with #
-};
-
-[[noreturn]] void failAt(const Shader& shader, int line, int column, const std::string& what) {
-  throw InputError(fmt::format("{}:{}:{}: {}", shader.path, line, column, what));
-}
-
-bool isNameStart(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
-bool isName(Text text) { return !text.empty() && isNameStart(text[0]); }
-bool isNumber(Text text) {
-  return !text.empty() && (isDigit(text[0]) || (text[0] == '.' && text.size() > 1 && isDigit(text[1])));
-}
-
 template <class List>
 bool isIn(const List& list, Text text) {
   return std::find(std::begin(list), std::end(list), text) != std::end(list);
 }
 
-/// Operators of several characters. The last five are other spellings of brackets and #.
-constexpr Text kOperators[] = {
-    "<<=", ">>=", "->", "++", "--", "<<", ">>", "<=", ">=", "==", "!=", "&&", "||", "+=",
-    "-=",  "*=",  "/=", "%=", "&=", "|=", "^=", "##", "<:", ":>", "<%", "%>", "%:"};
-
 constexpr Text kAssignments[] = {"=", "+=", "-=", "*=", "/=", "&=", "|=", "^=", "<<=", ">>=", "++", "--"};
-
-/// Reads a text's tokens.
-class Lexer {
- public:
-  explicit Lexer(const Shader& shader) : shader_(shader), rest_(shader.text) {}
-
-  std::vector<Token> tokens() {
-    std::vector<Token> all;
-    while (skipBlanks(), !rest_.empty()) {
-      if (at_line_start_ && rest_[0] == '#') in_directive_ = true;
-      at_line_start_ = false;
-      const std::size_t length = tokenLength();
-      all.push_back({rest_.substr(0, length), line_, column_, in_directive_});
-      take(length);
-    }
-    return all;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const { failAt(shader_, line_, column_, what); }
-
-  /// Goes on. What would end or join lines for a compiler, but not here, is refused also in comments.
-  void take(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const char c = rest_[i];
-      if (c == '\n') {
-        column_ = 1;
-        ++line_;
-        continue;
-      }
-      const std::size_t next = rest_.find_first_not_of(" \t\r", i + 1);
-      if (c == '\\' && (next == rest_.npos || rest_[next] == '\n')) fail("a \\ at a line's end");
-      const bool ends_line = c == '\r' && (i + 1 == rest_.size() || rest_[i + 1] == '\n');
-      if (c != '\t' && !ends_line && static_cast<unsigned char>(c) < 0x20)
-        fail(fmt::format("the control character {}", int(c)));
-      if (rest_.substr(i).starts_with("?"
-                                      "?"))
-        fail("two question marks: C reads them as another character");
-      ++column_;
-    }
-    rest_.remove_prefix(count);
-  }
-
-  /// Skips blanks, comments, and the ends of lines, which end directives.
-  void skipBlanks() {
-    while (!rest_.empty()) {
-      if (rest_[0] == '\n') {
-        in_directive_ = false;
-        at_line_start_ = true;
-        take(1);
-      } else if (rest_[0] == ' ' || rest_[0] == '\t' || rest_[0] == '\r') {
-        take(1);
-      } else if (rest_.starts_with("//")) {
-        take(std::min(rest_.find('\n'), rest_.size()));
-      } else if (rest_.starts_with("/*")) {
-        const std::size_t end = rest_.find("*/", 2);
-        if (end == rest_.npos) fail("this comment has no end");
-        if (in_directive_ && rest_.substr(0, end).find('\n') != rest_.npos)
-          fail("this comment goes on in the next line, and the directive with it");
-        take(end + 2);
-      } else {
-        return;
-      }
-    }
-  }
-
-  std::size_t tokenLength() const {
-    const char c = rest_[0];
-    std::size_t length = 1;
-    const auto next = [&] { return length < rest_.size() ? rest_[length] : '\0'; };
-    if (isNameStart(c)) {
-      while (isNameStart(next()) || isDigit(next())) ++length;
-    } else if (isNumber(rest_)) {
-      const auto is_sign = [&] {
-        return (next() == '+' || next() == '-') && Text("eEpP").find(rest_[length - 1]) != Text::npos;
-      };
-      while (isNameStart(next()) || isDigit(next()) || next() == '.' || is_sign()) ++length;
-    } else if (c == '"') {
-      while (next() != '"' && next() != '\n' && next() != '\0') ++length;
-      if (next() != '"') fail("this text has no closing \"");
-      ++length;
-    } else if (const auto* const found = std::find_if(std::begin(kOperators), std::end(kOperators),
-                                                      [&](Text sign) { return rest_.starts_with(sign); });
-               found != std::end(kOperators)) {
-      length = found->size();
-    } else if (Text("(){};,.+-*/<>=!&|^~?:#[]%").find(c) == Text::npos) {
-      fail("this character has no meaning here");
-    }
-    return length;
-  }
-
-  const Shader& shader_;
-  Text rest_;
-  int line_ = 1, column_ = 1;
-  bool at_line_start_ = true, in_directive_ = false;
-};
-
-std::vector<Token> tokensOf(const Shader& shader) { return Lexer(shader).tokens(); }
 
 /// Words and signs that a shader may not have, with the reason.
 struct Refused {
@@ -640,44 +517,6 @@ class Checker {
   ShaderFacts facts_;
 };
 
-/// Takes the place of / in a program. So a quotient is one of floats also between integers, which would end
-/// the program where the divisor is 0. A product with 1 changes no bit.
-constexpr Text kQuotient = "*1.0F/";
-
-/// A shader's text as it is compiled: without its includes, with safe quotients.
-std::string compiledText(const Shader& shader, const std::vector<Token>& tokens) {
-  std::string text;
-  const char* done = shader.text.data();
-  for (std::size_t i = 0; i < tokens.size(); ++i) {
-    const Text token = tokens[i].text;
-    if (token != "/" && !(token == "#" && i + 1 < tokens.size() && tokens[i + 1].text == "include")) continue;
-    text.append(done, token.data());
-    if (token == "/") {
-      text += kQuotient;
-      done = token.data() + 1;
-    } else {
-      const Text header = tokens[i + 2].text;
-      done = header.data() + header.size();
-    }
-  }
-  return text.append(done, shader.text.data() + shader.text.size()) + "\n";
-}
-
-/// What #line calls lines that are no user's.
-constexpr Text kOwnLines = "shaders";
-
-/// A path as it stands in #line, where " and \ end or change it.
-std::string linePath(const std::string& path) {
-  std::string quoted;
-  for (const char c : path) quoted += c == '"' || c == '\\' || c == '\n' ? '_' : c;
-  return quoted;
-}
-
-/// A compiler's words with the names that functions have in the file.
-std::string asTheUserWrote(const std::string& words) {
-  return std::regex_replace(words, std::regex("\\b__(\\w+)_\\d+\\b"), "$1");
-}
-
 }  // namespace
 
 std::span<const char* const> shaderHeaders() { return kHeaders; }
@@ -704,77 +543,6 @@ Shader readShader(const std::string& path, ShaderKind kind) {
   Shader shader{path, readFile(path)};
   shaderFacts(shader, kind);
   return shader;
-}
-
-std::string shaderProgram(std::span<const Shader> shaders, ShaderKind kind) {
-  if (shaders.empty()) return {};
-  std::string program;
-  bool grazing = false, colors = false;
-  for (std::size_t i = 0; i < shaders.size(); ++i) {
-    const Shader& shader = shaders[i];
-    const std::vector<Token> tokens = tokensOf(shader);
-    std::vector<Text> names, macros;
-    for (std::size_t at = 0; at + 2 < tokens.size(); ++at) {
-      if (tokens[at].text == "INLINE") names.push_back(tokens[at + 2].text);
-      if (tokens[at].of_directive && tokens[at].text == "define") macros.push_back(tokens[at + 1].text);
-    }
-    const ShaderFacts facts = shaderFacts(shader, kind);
-    grazing |= facts.uses_grazing;
-    colors |= facts.uses_colors;
-    // Names of one file are those of others, and of the kernels', without harm. No user can write the names
-    // that functions get, by which they could call themselves.
-    for (const Text name : macros) program += fmt::format("#pragma push_macro(\"{0}\")\n#undef {0}\n", name);
-    for (const Text name : names) program += fmt::format("#define {0} __{0}_{1}\n", name, i);
-    program += fmt::format("#line 1 \"{}\"\n{}#line 1 \"{}\"\n", linePath(shader.path),
-                           compiledText(shader, tokens), kOwnLines);
-    for (const Text name : names) program += fmt::format("#undef {}\n", name);
-    for (const Text name : macros) program += fmt::format("#pragma pop_macro(\"{}\")\n", name);
-  }
-  switch (kind) {
-    case ShaderKind::kModel:
-      program += fmt::format("#define USER_MODEL_COUNT {}\n#define USER_GRAZING {}\n#define USER_COLORS {}\n",
-                             shaders.size(), int(grazing), int(colors)) +
-                 "INLINE Reflection user_reflection(uint number, const Surface *s, vec3L to_light, floatL "
-                 "n_dot_l) {\n";
-      for (std::size_t i = 1; i < shaders.size(); ++i)
-        program += fmt::format("if (number == {0}) return __reflect_light_{0}(s, to_light, n_dot_l);\n", i);
-      return program + "return __reflect_light_0(s, to_light, n_dot_l);\n}\n";
-    case ShaderKind::kSurface:
-      program += "#define USER_SURFACES\nINLINE void user_surface(Surface *s) {\n";
-      for (std::size_t i = 0; i < shaders.size(); ++i) program += fmt::format("__surface_{}(s);\n", i);
-      return program + "}\n";
-    case ShaderKind::kScreen:
-      break;
-  }
-  return program;
-}
-
-std::string shaderError(const std::string& log, const std::string& user_text) {
-  std::istringstream lines(log);
-  std::string first;
-  // clang writes "FILE:LINE:COLUMN: error: what", and PoCL "error: FILE:LINE:COLUMN: what", with the place of
-  // the kernels' own macros behind the user's.
-  const std::regex place("(?:error: )?(.+):(\\d+):(\\d+)(?: <Spelling=[^>]*>)?: (?:fatal )?(?:error: )?(.*)");
-  for (std::string line; std::getline(lines, line);) {
-    std::smatch parts;
-    if (line.find("error: ") == line.npos || !std::regex_match(line, parts, place)) continue;
-    if (first.empty()) first = parts[4];
-    const std::string path = parts[1];
-    const std::size_t begin = user_text.find(fmt::format("#line 1 \"{}\"\n", path));
-    if (begin == user_text.npos || path == kOwnLines) continue;
-    const int number = std::stoi(parts[2]);
-    std::istringstream of_user(user_text.substr(begin));
-    std::string told;
-    for (int i = 0; i <= number; ++i) std::getline(of_user, told);
-    // Each quotient before the place has moved it.
-    std::size_t column = std::size_t(std::stoi(parts[3])) - 1, moved = 0;
-    for (std::size_t at = 0; (at = told.find(kQuotient, at)) < column; at += kQuotient.size())
-      moved += std::min(column - at, kQuotient.size() - 1);
-    return fmt::format("{}:{}:{}: {}", path, number, column - moved + 1, asTheUserWrote(parts[4]));
-  }
-  const std::size_t path = user_text.find("#line 1 \"") + 9;
-  return fmt::format("{}: does not compile: {}", user_text.substr(path, user_text.find('"', path) - path),
-                     first);
 }
 
 }  // namespace luciole
