@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "base/text_file.hpp"
@@ -118,22 +116,23 @@ constexpr Text kAlsoLoose[] = {
 
 struct Signature {
   const char* name;
-  std::vector<Text> before, parameters;  ///< tokens but for the parameters' names
+  Text returned;
+  std::vector<Text> parameters;  ///< tokens but for the names
   const char* shown;
 };
 Signature signatureOf(ShaderKind kind) {
   switch (kind) {
     case ShaderKind::kModel:
       return {"reflect_light",
-              {"INLINE", "Reflection"},
+              "Reflection",
               {"const", "Surface", "*", ",", "vec3L", ",", "floatL"},
               "INLINE Reflection reflect_light(const Surface *s, vec3L to_light, floatL n_dot_l)"};
     case ShaderKind::kSurface:
-      return {"surface", {"INLINE", "void"}, {"Surface", "*"}, "INLINE void surface(Surface *s)"};
+      return {"surface", "void", {"Surface", "*"}, "INLINE void surface(Surface *s)"};
     case ShaderKind::kScreen:
       break;
   }
-  return {"screen", {"INLINE", "vec3L"}, {"const", "Screen", "*"}, "INLINE vec3L screen(const Screen *at)"};
+  return {"screen", "vec3L", {"const", "Screen", "*"}, "INLINE vec3L screen(const Screen *at)"};
 }
 
 /// Goes through a shader's tokens once, holds them against the rules, and collects what programs must know.
@@ -262,7 +261,7 @@ class Checker {
     loops_.clear();
     const std::vector<Text> parameters = takeParameters();
     if (name.text == signature_.name) {
-      const bool returns = text(begin + 1) == signature_.before[1];
+      const bool returns = text(begin + 1) == signature_.returned;
       if (!returns || parameters != signature_.parameters)
         fail(name, fmt::format("expected {}", signature_.shown));
     }
