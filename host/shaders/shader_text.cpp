@@ -405,7 +405,7 @@ class Checker {
     }
     expect(")", kExpected);
     if (text(at_) != "{") fail(loop, "a loop's body stands in { }");
-    const auto side = std::size_t(2 * facts_.radius + 1);
+    const auto side = 2 * std::size_t(facts_.radius) + 1;
     return side * side;
   }
 
