@@ -14,7 +14,7 @@
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/picture_options.hpp"
 #include "tools/cli/picture_output.hpp"
-#include "tools/cli/shown_layer.hpp"
+#include "tools/viewing/shown_layer.hpp"
 
 namespace luciole {
 namespace {

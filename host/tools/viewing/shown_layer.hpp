@@ -26,4 +26,10 @@ std::vector<ShownLayer> shownLayers(const std::vector<PicturePart>& parts);
 ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::string& name,
                           const std::string& where);
 
+/// The layer among the channels of a picture that was made with one of RenderSettings::aovs.
+ShownLayer aovLayer(const std::vector<std::string>& channels);
+
+/// Appends channels of some rows to a picture, whose sizes they were before.
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture);
+
 }  // namespace luciole

@@ -1,4 +1,4 @@
-#include "tools/cli/shown_layer.hpp"
+#include "tools/viewing/shown_layer.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
+#include "base/did_you_mean.hpp"
 #include "base/text_file.hpp"
 #include "gbuffer/layouts.hpp"
 #include "luciole/error.hpp"
-#include "tools/cli/suggest.hpp"
 
 namespace luciole {
 namespace {
@@ -155,6 +155,25 @@ ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::stri
   if (name.empty()) throw InputError(fmt::format("{}: which layer? Expected one of {}", where, list));
   throw InputError(fmt::format("{}: no layer {}{}; expected one of {}", where, forMessage(name),
                                didYouMean(name, names), list));
+}
+
+ShownLayer aovLayer(const std::vector<std::string>& channels) {
+  PicturePart part;
+  part.channels = channels;
+  std::vector<ShownLayer> layers = shownLayers({part});
+  ShownLayer layer = layers.at(1);                 // behind the colours
+  for (std::size_t i = 2; i < layers.size(); ++i)  // the further ranks of a Cryptomatte
+    layer.channels.insert(layer.channels.end(), layers[i].channels.begin(), layers[i].channels.end());
+  return layer;
+}
+
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture) {
+  picture.width = rows.width;
+  picture.height += rows.height;
+  picture.channels.clear();
+  for (const int channel : channels) picture.channels.push_back(rows.channels[std::size_t(channel)]);
+  for (std::size_t at = 0; at < rows.pixels.size(); at += rows.channels.size())
+    for (const int channel : channels) picture.pixels.push_back(rows.pixels[at + std::size_t(channel)]);
 }
 
 }  // namespace luciole
