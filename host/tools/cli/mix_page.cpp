@@ -23,9 +23,11 @@ std::string mixPage(const std::string& path, const std::vector<MixerTerm>& terms
   const nlohmann::json data{{"file", path},         {"width", small.width}, {"height", small.height},
                             {"exposure", exposure}, {"groups", shown},      {"halves", base64(bytes)}};
   const std::vector<EmbeddedFile>& files = mixPageFiles();
+  const std::string_view parts = embeddedText(viewPageFiles(), "parts.js");
   return fillIn(embeddedText(files, "mix.html"),
                 {{"mix.css", std::string(embeddedText(files, "mix.css"))},
                  {"data", embeddableJson(dumpUtf8(data))},
+                 {"parts.js", embeddableScript(std::string(parts))},
                  {"mix.js", embeddableScript(std::string(embeddedText(files, "mix.js")))}});
 }
 

@@ -1,7 +1,7 @@
 "use strict";
 // data: {file, width, height, exposure, groups: [{name, factor, color}], halves: base 64 of 16-bit floats, group after
 // group r g b of all pixels}.
-const data = JSON.parse(document.getElementById("data").textContent);
+const data = JSON.parse(byId("data").textContent);
 const count = 3 * data.width * data.height;
 
 /** The values of all 16-bit floats, by their bits. */
@@ -39,13 +39,13 @@ function codesOfFloats() {
 
 const layers = decodeLayers(), codes = codesOfFloats();
 const sum = new Float32Array(count), sumBits = new Uint32Array(sum.buffer);
-const canvas = document.getElementById("picture"), context = canvas.getContext("2d");
+const canvas = byId("picture"), context = canvas.getContext("2d");
 canvas.width = data.width;
 canvas.height = data.height;
 const pixels = context.createImageData(data.width, data.height);
 pixels.data.fill(255);
 
-const mix = data.groups.map(group => ({...group, on: true}));
+const mix = data.groups.map(group => ({...group, on: true, largest: 4}));
 let exposure = data.exposure;
 
 /** A colour's linear r, g and b. */
@@ -67,19 +67,9 @@ function draw() {
   for (let i = 0, at = 0; i < count; i += 3, at += 4)
     for (let c = 0; c < 3; ++c) pixels.data[at + c] = sumBits[i + c] >>> 31 ? 0 : codes[sumBits[i + c] >>> 15];
   context.putImageData(pixels, 0, 0);
-  document.getElementById("stops").value = exposure.toFixed(1);
-  document.getElementById("exposure").value = exposure;
-  document.getElementById("command").textContent = command();
-}
-
-/** What a shell takes for this text and nothing else. */
-const quoted = text => /^[\w.,=:#\/-]+$/.test(text) && !text.startsWith("#") ? text : "'" + text.replaceAll("'", "'\\''") + "'";
-
-function command() {
-  const changed = mix.filter(group => !group.on || group.factor !== 1 || group.color !== "#ffffff");
-  const terms = changed.map(group => group.name + "=" + (group.on ? group.factor : 0) + (group.color === "#ffffff" ? "" : ":" + group.color));
-  return "luciole mix " + quoted(data.file) + (terms.length ? " --light-mixer " + quoted(terms.join(",")) : "") +
-    (exposure ? " --exposure " + exposure.toFixed(1) : "") + " -o mixed.exr";
+  byId("stops").value = exposure.toFixed(1);
+  byId("exposure").value = exposure;
+  byId("command").textContent = mixCommand(data.file, mix, exposure);
 }
 
 let waiting = false;
@@ -89,50 +79,12 @@ function changed() {
   requestAnimationFrame(() => { waiting = false; draw(); });
 }
 
-/** An input of a group's row, which sets the group's member `name` from its own. */
-function addInput(row, group, name, attributes, read) {
-  const input = document.createElement("input");
-  Object.assign(input, attributes);
-  input.ariaLabel = attributes.label + " of " + group.name;
-  input.addEventListener("input", () => {
-    const value = read(input);
-    if (Number.isNaN(value) || value < 0) return;
-    group[name] = value;
-    showRows();
-    changed();
-  });
-  row.insertCell().append(input);
-  return input;
-}
-
-const rows = mix.map(group => {
-  const row = document.querySelector("#groups tbody").insertRow();
-  row.insertCell().textContent = group.name;
-  return {
-    group,
-    on: addInput(row, group, "on", {type: "checkbox", label: "Light"}, input => input.checked),
-    slider: addInput(row, group, "factor", {type: "range", min: 0, max: 4, step: 0.01, label: "Factor"}, input => input.valueAsNumber),
-    number: addInput(row, group, "factor", {type: "number", min: 0, step: "any", label: "Factor in numbers"}, input => input.valueAsNumber),
-    color: addInput(row, group, "color", {type: "color", label: "Colour"}, input => input.value),
-  };
-});
-
-/** Shows what the mix is, but leaves alone what somebody types into. */
-function showRows() {
-  for (const {group, on, slider, number, color} of rows) {
-    on.checked = group.on;
-    slider.value = group.factor;
-    if (document.activeElement !== number) number.value = group.factor;
-    color.value = group.color;
-  }
-}
-
-document.getElementById("exposure").addEventListener("input", event => { exposure = event.target.valueAsNumber; changed(); });
-document.getElementById("reset").addEventListener("click", () => {
+const rows = lightTable(document.querySelector("#groups tbody"), mix, changed);
+byId("exposure").addEventListener("input", event => { exposure = event.target.valueAsNumber; changed(); });
+byId("reset").addEventListener("click", () => {
   for (const group of mix) Object.assign(group, {on: true, factor: 1, color: "#ffffff"});
   exposure = 0;
-  showRows();
+  for (const {show} of rows) show();
   draw();
 });
-showRows();
 draw();
