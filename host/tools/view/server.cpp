@@ -182,7 +182,7 @@ int listenAt(const ServerSettings& settings) {
   const int socket = ::socket(first->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
   // So that the port of a server that has just ended is free. Not SO_REUSEPORT: two servers would share it.
   if (socket >= 0 && setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) == 0 &&
-      bind(socket, first->ai_addr, first->ai_addrlen) == 0 && listen(socket, 64) == 0)
+      bind(socket, first->ai_addr, first->ai_addrlen) == 0 && listen(socket, SOMAXCONN) == 0)
     return socket;
   const int error = errno;
   close(socket);
@@ -194,10 +194,10 @@ int listenAt(const ServerSettings& settings) {
   throw MachineError(fmt::format("no socket to listen at: {}", std::strerror(error)));
 }
 
-/// What a client does, those first that can be given up.
-enum class Stage { kAsks, kTakes, kIsAnswered };
-
 }  // namespace
+
+/// What a client does, those first that can be given up.
+enum class Server::Stage { kAsks, kTakes, kIsAnswered };
 
 struct Server::Connection {
   int socket;

@@ -53,6 +53,7 @@ class Server {
   void stop();
 
  private:
+  enum class Stage;
   struct Connection;
   void serve(std::list<Connection>::iterator connection);
   bool answerNext(Connection& connection);
