@@ -7,12 +7,8 @@
 #include <mutex>
 #include <string>
 
-#include "tools/view/http_request.hpp"
-
-// A server of HTTP for a page and the programs of one user. It knows nothing of pictures, and no path of a
-// request becomes a file's. Debian's cpp-httplib bounds less (12's has neither lines, fields nor chunked
-// bodies bounded, none has a deadline for a whole request), and OpenSSL and Brotli would come with it into
-// the start of every command.
+// A server of HTTP for the page and the programs of one user. It knows nothing of pictures, and no path of a
+// request becomes a file's.
 namespace luciole {
 
 struct Answer {
@@ -37,8 +33,8 @@ struct ServerSettings {
 /// 128 random bits of the system's, as 32 hexadecimal digits. Throws MachineError.
 std::string randomToken();
 
-/// A thread for each connection, which bounds them: where they are full, the one goes whose request has been
-/// awaited longest. No client is remembered beyond its connection.
+/// Each connection has a thread and is one of 64: where one more comes, that goes whose client has let the
+/// server wait longest. Of no client is anything kept beyond its connection.
 class Server {
  public:
   /// Listens. Throws InputError where it can't at this host and port, and MachineError.
@@ -50,27 +46,24 @@ class Server {
   /// http://HOST:PORT/TOKEN/. Without the token all there is to get is status 404.
   const std::string& address() const { return address_; }
 
-  /// Serves until stop(), and then returns when the last handler has. Throws MachineError.
+  /// Serves until stop(), and then returns when the last handler has.
   void run();
 
   /// Ends run(), from any thread.
   void stop();
 
  private:
+  enum class Stage;
   struct Connection;
-  void accept(int socket);
-  void makeRoom(std::unique_lock<std::mutex>& lock);
+  void serve(std::list<Connection>::iterator connection);
   bool answerNext(Connection& connection);
-  Answer answer(const RequestHead& head, const std::string& path, const std::string& body);
-  Refusal refuse(const RequestHead& head, std::string& path) const;
 
   Handlers handlers_;
   std::string token_, machine_name_, address_;
   int socket_ = -1;
-  std::mutex mutex_;                 ///< for what follows
-  std::condition_variable is_gone_;  ///< a connection
+  std::mutex mutex_;  ///< for what follows
   std::list<Connection> connections_;
-  int answering_ = 0;  ///< handlers that run
+  std::condition_variable is_gone_;  ///< a connection
   bool stops_ = false;
 };
 
