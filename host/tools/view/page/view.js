@@ -428,8 +428,8 @@ function setLayer(name) {
 /** A row with a colour and its strength, which go to a place of the scene's file together. `hex` is of color / strength. */
 function addColor(body, label, path, color, hex, changed = setChange) {
   const [given, strength] = (changeOf(path) || hex + "*" + short(Math.max(1, ...color))).split("*");
-  const picker = element("input", {type: "color", value: given, ariaLabel: label + ", colour"});
-  const number = element("input", {type: "number", min: 0, step: 0.1, value: strength, ariaLabel: label + ", strength"});
+  const picker = element("input", {type: "color", value: given, title: label + ", colour"});
+  const number = element("input", {type: "number", min: 0, step: 0.1, value: strength, title: label + ", strength"});
   picker.oninput = number.oninput = () => { if (number.valueAsNumber >= 0) changed(path, picker.value + "*" + number.valueAsNumber); };
   body.append(element("tr", {}, element("th", {scope: "row", textContent: label}), element("td", {}, picker), element("td", {}, number)));
 }
