@@ -12,7 +12,6 @@ const paneWidth = () => canvas.width / (shown.mode === "side" ? 2 : 1);
 const fittingScale = () => Math.min(paneWidth() / sizeOf(shown.a)[0], canvas.height / sizeOf(shown.a)[1]);
 const scaleNow = () => shown.scale || fittingScale();
 const density = () => canvas.width / frame.clientWidth;
-const within = (value, lowest, highest) => Math.min(Math.max(value, lowest), highest);
 
 /** Draws one picture from `left` to `right`, with its point (x, y) at `middle`. */
 function paintOne(bitmap, middle, left, right) {
@@ -155,6 +154,7 @@ function showFiles(isFirst) {
   showGroups();
   changeFiles();
   if (!isFirst) return;
+  frame.ariaLabel = "The picture: drag to move it, wheel to zoom; a question mark tells the keys";
   layOutFiles();
   fit(0);
   listenFiles();

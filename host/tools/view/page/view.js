@@ -77,6 +77,7 @@ const stage = byId("stage"), frame = byId("frame"), canvas = byId("picture"), co
 const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 const walks = {KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0], KeyE: [0, 1, 0]};
 
+const within = (value, lowest, highest) => Math.min(Math.max(value, lowest), highest);
 const short = number => Number(number.toPrecision(3)).toString();
 const vectorText = values => values.map(short).join("  ");
 const on = (id, type, action) => byId(id).addEventListener(type, event => action(event.target, event));
@@ -110,7 +111,7 @@ function followPointers({moved, pinched, clicked}) {
   });
   frame.addEventListener("pointermove", event => {
     const last = pointers.get(event.pointerId);
-    if (!last || (isClick && distance(event, press) < 4)) return;
+    if (!last || (isClick && distance(event, press) < 6)) return;
     isClick = false;
     pointers.set(event.pointerId, event);
     const other = [...pointers.values()].find(one => one !== event);
@@ -122,7 +123,7 @@ function followPointers({moved, pinched, clicked}) {
     frame.addEventListener(end, event => {
       if (!pointers.delete(event.pointerId) || !isClick || end !== "pointerup") return;
       const box = frame.getBoundingClientRect();
-      clicked((event.clientX - box.x) / box.width, (event.clientY - box.y) / box.height);
+      clicked(within((event.clientX - box.x) / box.width, 0, 1), within((event.clientY - box.y) / box.height, 0, 1));
     });
 }
 
@@ -217,7 +218,7 @@ function pump() {
 
 async function draw(isMoving, samples) {
   const me = flying = {isMoving, controller: new AbortController()}, asked = {serial, ...view};
-  const moved = isMoving ? takeGesture() : null, moving = isMoving ? lastFrame : null;
+  const moved = isMoving ? takeGesture() : null, moving = isMoving ? lastFrame ?? true : null;
   let pause = 0;
   try {
     const about = await askPicture({view, gesture: moved, size: wanted, moving, samples, layer, light: light ?? 0}, me.controller.signal);
@@ -246,7 +247,7 @@ function showPicture(about, isMoving) {
   if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) Object.assign(canvas, {width: bitmap.width, height: bitmap.height});
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
-  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size};
+  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size: about.shows};
   frameTimes = isMoving ? [...frameTimes.filter(time => now - time < 1000), now] : [];
   const speed = frameTimes.length > 2 ? [[((frameTimes.length - 1) * 1000 / (now - frameTimes[0])).toFixed(0), "fps"]] : [];
   readOut([...speed, [size.join(" × "), "pixels"], ...(samples > 1 ? [[samples, "samples"]] : []), [milliseconds.toFixed(milliseconds < 10 ? 1 : 0), "ms"]]);
@@ -427,8 +428,8 @@ function setLayer(name) {
 /** A row with a colour and its strength, which go to a place of the scene's file together. `hex` is of color / strength. */
 function addColor(body, label, path, color, hex, changed = setChange) {
   const [given, strength] = (changeOf(path) || hex + "*" + short(Math.max(1, ...color))).split("*");
-  const picker = element("input", {type: "color", value: given, ariaLabel: label + ", colour"});
-  const number = element("input", {type: "number", min: 0, step: 0.1, value: strength, ariaLabel: label + ", strength"});
+  const picker = element("input", {type: "color", value: given, title: label + ", colour"});
+  const number = element("input", {type: "number", min: 0, step: 0.1, value: strength, title: label + ", strength"});
   picker.oninput = number.oninput = () => { if (number.valueAsNumber >= 0) changed(path, picker.value + "*" + number.valueAsNumber); };
   body.append(element("tr", {}, element("th", {scope: "row", textContent: label}), element("td", {}, picker), element("td", {}, number)));
 }
