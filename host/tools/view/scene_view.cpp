@@ -390,7 +390,7 @@ Answer SceneView::picture(const std::string& body) {
     about["milliseconds"] = millisecondsSinceStart() - begin;
     about["stages"] = Json::array();
     for (const auto& stage : stats.stages)
-      if (const double share = ownShare(stats, stage); share > 0)
+      if (const double share = ownShare(stats, stage); share >= 0.05)
         about["stages"].push_back({stageName(stage.first), share});
     about["bound"] = boundState(stats);
     about["markers"] = markersOf(renderer_->scene(), settings.camera, settings.size);

@@ -205,6 +205,8 @@ function takeGesture() {
 function pump() {
   clearTimeout(timer);
   if (flying || messages.gone || !view) return;
+  // What is shown, for whoever drives the page from outside.
+  Object.assign(frame.dataset, {level: gestures.size ? 0 : level, camera: JSON.stringify(view.camera), size: wanted});
   if (held.size) {
     const now = performance.now(), seconds = Math.min((now - heldSince) / 1000, 0.25);
     for (const [kind, amounts] of held.values()) addGesture(kind, amounts.map(amount => amount * seconds));
