@@ -105,9 +105,11 @@ class ViewPage : public ProgramTest {
   std::string codesShown(Browser& browser) {
     return browser
         .evaluate(
-            "(async () => { const canvas = document.getElementById('picture'); const data = "
-            "canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data; const hash = "
-            "await "
+            "(async () => { const shown = document.getElementById('picture'), copy = new "
+            "OffscreenCanvas(shown.width, "
+            "shown.height), context = copy.getContext('2d', {willReadFrequently: true}); "
+            "context.drawImage(shown, 0, 0); "
+            "const data = context.getImageData(0, 0, copy.width, copy.height).data; const hash = await "
             "crypto.subtle.digest('SHA-256', data); return [...new Uint8Array(hash)].map(byte => "
             "byte.toString(16).padStart(2, '0')).join(''); })()")
         .template get<std::string>();
@@ -160,7 +162,7 @@ TEST_F(ViewPage, TurnsAndShowsTheBitsOfRender) {
   EXPECT_NE(turned, first);
   EXPECT_EQ(turned, rendered(browser));
   // So do keys.
-  browser.press("W", 87);
+  browser.press("ArrowUp", 38);
   await(browser, kAtRest);
   EXPECT_NE(codesShown(browser), turned);
   EXPECT_EQ(codesShown(browser), rendered(browser));
@@ -241,7 +243,8 @@ TEST_F(ViewPage, SavesASceneThatTheCommandRendersToThePictureOfThePage) {
   await(browser, kMoved);
   browser.evaluate("document.getElementById('save').click()");
   await(browser, "document.getElementById('saved').textContent.includes('scene-view-1.png')");
-  const std::string command = browser.evaluate("document.querySelector('#saved_command code').textContent");
+  const std::string command =
+      browser.evaluate("document.getElementById('saved_command').firstElementChild.textContent");
   succeed(command.substr(0, command.rfind(" -o ")) + " --quiet -o again.png");
   EXPECT_EQ(readText(folder / "again.png").size() > 1000, true);
   expectSamePicture("scene-view-1.png", "again.png");
