@@ -198,25 +198,6 @@ bool showsAov(const PictureOptions& options) {
   return !options.aovs.empty() && outputFormat(options.output, options.format).extension != "exr";
 }
 
-ShownLayer aovLayer(const std::vector<std::string>& channels) {
-  PicturePart part;
-  part.channels = channels;
-  std::vector<ShownLayer> layers = shownLayers({part});
-  ShownLayer layer = layers.at(1);                 // behind the colours
-  for (std::size_t i = 2; i < layers.size(); ++i)  // the further ranks of a Cryptomatte
-    layer.channels.insert(layer.channels.end(), layers[i].channels.begin(), layers[i].channels.end());
-  return layer;
-}
-
-void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture) {
-  picture.width = rows.width;
-  picture.height += rows.height;
-  picture.channels.clear();
-  for (const int channel : channels) picture.channels.push_back(rows.channels[std::size_t(channel)]);
-  for (std::size_t at = 0; at < rows.pixels.size(); at += rows.channels.size())
-    for (const int channel : channels) picture.pixels.push_back(rows.pixels[at + std::size_t(channel)]);
-}
-
 void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
                        const Stats& stats, const OpenedDevice* device) {
   const bool is_light = shown.kind == LayerKind::kColor && layer.channels.size() == 3;

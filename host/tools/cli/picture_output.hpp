@@ -10,7 +10,7 @@
 #include "luciole/image.hpp"
 #include "luciole/scene.hpp"
 #include "tools/cli/picture_options.hpp"
-#include "tools/cli/shown_layer.hpp"
+#include "tools/viewing/shown_layer.hpp"
 
 namespace luciole {
 
@@ -50,12 +50,6 @@ void reportLightError(const PictureOptions& options, Stats& stats);
 
 /// Whether the file's format has no layers, so that it shows the one that --aov names.
 bool showsAov(const PictureOptions& options);
-
-/// That layer among the channels of a picture that was made with it.
-ShownLayer aovLayer(const std::vector<std::string>& channels);
-
-/// Appends channels of some rows to a picture, whose sizes they were before.
-void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture);
 
 /// Writes a layer as a picture to look at (see layerPicture), light with the exposure of the options. layer:
 /// its channels alone. Tells what its colours mean where it doesn't itself, unless --quiet. device: as below.

@@ -14,8 +14,8 @@ namespace luciole {
 struct Answer {
   int status = 200;
   std::string type = "application/json";
-  std::string body;
-  std::string nonce;  ///< of a page's scripts and styles, from randomToken(); "": none may run
+  std::string body = {};
+  std::string nonce = {};  ///< of a page's scripts and styles, from randomToken(); "": none may run
 };
 
 /// By the path behind the token: "/", "/state". Several threads call them at once. InputError becomes status

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "image/exr_input.hpp"
 #include "image/layers.hpp"
 #include "tools/viewing/layer_picture.hpp"
 
@@ -25,5 +26,14 @@ std::vector<ShownLayer> shownLayers(const std::vector<PicturePart>& parts);
 /// ..." that lists the layers.
 ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::string& name,
                           const std::string& where);
+
+/// The layer among the channels of a picture that was made with one of RenderSettings::aovs.
+ShownLayer aovLayer(const std::vector<std::string>& channels);
+
+/// Appends channels of some rows to a picture, whose sizes they were before.
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture);
+
+/// A layer's channels, side by side in each pixel, with the file's names. Throws as ExrInput::read().
+Image readShownLayer(ExrInput& input, const ShownLayer& layer);
 
 }  // namespace luciole

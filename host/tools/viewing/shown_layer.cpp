@@ -1,4 +1,4 @@
-#include "tools/cli/shown_layer.hpp"
+#include "tools/viewing/shown_layer.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "base/did_you_mean.hpp"
+#include "base/machine_memory.hpp"
 #include "base/text_file.hpp"
 #include "gbuffer/layouts.hpp"
 #include "luciole/error.hpp"
-#include "tools/cli/suggest.hpp"
 
 namespace luciole {
 namespace {
@@ -155,6 +156,39 @@ ShownLayer findShownLayer(const std::vector<PicturePart>& parts, const std::stri
   if (name.empty()) throw InputError(fmt::format("{}: which layer? Expected one of {}", where, list));
   throw InputError(fmt::format("{}: no layer {}{}; expected one of {}", where, forMessage(name),
                                didYouMean(name, names), list));
+}
+
+ShownLayer aovLayer(const std::vector<std::string>& channels) {
+  PicturePart part;
+  part.channels = channels;
+  std::vector<ShownLayer> layers = shownLayers({part});
+  ShownLayer layer = layers.at(1);                 // behind the colours
+  for (std::size_t i = 2; i < layers.size(); ++i)  // the further ranks of a Cryptomatte
+    layer.channels.insert(layer.channels.end(), layers[i].channels.begin(), layers[i].channels.end());
+  return layer;
+}
+
+void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture) {
+  picture.width = rows.width;
+  picture.height += rows.height;
+  picture.channels.clear();
+  for (const int channel : channels) picture.channels.push_back(rows.channels[std::size_t(channel)]);
+  for (std::size_t at = 0; at < rows.pixels.size(); at += rows.channels.size())
+    for (const int channel : channels) picture.pixels.push_back(rows.pixels[at + std::size_t(channel)]);
+}
+
+Image readShownLayer(ExrInput& input, const ShownLayer& layer) {
+  const PicturePart& part = input.parts()[std::size_t(layer.part)];
+  const ChannelPlanes planes = input.read(layer.part, layer.channels);
+  const std::size_t channels = layer.channels.size(), pixels = planes.size() / channels;
+  requireMemory(double(planes.size()) * sizeof(float),
+                fmt::format("a picture of {} x {} pixels", part.size.x, part.size.y));
+  Image image{part.size.x, part.size.y, {}, {}, part.picture_size, part.crop_origin};
+  for (const int channel : layer.channels) image.channels.push_back(part.channels[std::size_t(channel)]);
+  image.pixels.resize(planes.size());
+  for (std::size_t c = 0; c < channels; ++c)
+    for (std::size_t p = 0; p < pixels; ++p) image.pixels[p * channels + c] = planes[c * pixels + p];
+  return image;
 }
 
 }  // namespace luciole
