@@ -12,7 +12,6 @@
 #include "base/text_file.hpp"
 #include "base/write_file.hpp"
 #include "image/exposure.hpp"
-#include "image/srgb.hpp"
 #include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
@@ -38,19 +37,6 @@ double typedNumber(const std::string& text) {
   const char* const text_end = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), text_end, number);
   return error == std::errc() && end == text_end ? number : std::nan("");
-}
-
-bool isColor(const std::string& text) {
-  return text.size() == 7 && text[0] == '#' &&
-         text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-}
-
-/// The linear r g b of "#rrggbb".
-glm::vec3 linearColor(const std::string& color) {
-  glm::vec3 linear;
-  for (int c = 0; c < 3; ++c)
-    linear[c] = float(decodeSrgb(std::stoi(color.substr(1 + 2 * c, 2), nullptr, 16) / 255.0));
-  return linear;
 }
 
 /// Sets the terms that --light-mixer names: GROUP=FACTOR or GROUP=FACTOR:#rrggbb, by commas. Throws
@@ -81,7 +67,7 @@ void readMixer(const std::string& text, const std::string& file, std::vector<Mix
       refuse(fmt::format("expected a factor from 0 to {}", kLargestFactor));
     if (colon == std::string::npos) continue;
     term->color = part.substr(colon + 1);
-    if (!isColor(term->color)) refuse("expected a colour #rrggbb behind the colon, as sRGB has it");
+    if (!linearColor(term->color)) refuse("expected a colour #rrggbb behind the colon, as sRGB has it");
   }
 }
 
@@ -94,7 +80,7 @@ bool isPage(const MixOptions& options) {
 void writePicture(const CommandContext& context, MixOptions& options, const std::vector<MixerTerm>& terms) {
   std::vector<GroupFactor> factors;
   for (const MixerTerm& term : terms)
-    factors.push_back({term.group, float(term.factor) * linearColor(term.color)});
+    factors.push_back({term.group, float(term.factor) * *linearColor(term.color)});
   WriteOptions how = fileOptions(options);
   Image image = mixLights(options.input, factors, how);
   expose(image, exposureOf(options));

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/clock.hpp"
-#include "base/machine_memory.hpp"
 #include "image/exposure.hpp"
 #include "image/exr_input.hpp"
 #include "tools/cli/commands.hpp"
@@ -24,28 +23,13 @@ struct ShowOptions : PictureOptions {
   std::string layer;
 };
 
-/// The layer's channels, side by side in each pixel.
-Image readLayer(ExrInput& input, const ShownLayer& layer) {
-  const PicturePart& part = input.parts()[std::size_t(layer.part)];
-  const ChannelPlanes planes = input.read(layer.part, layer.channels);
-  const std::size_t channels = layer.channels.size(), pixels = planes.size() / channels;
-  requireMemory(double(planes.size()) * sizeof(float),
-                fmt::format("a picture of {} x {} pixels", part.size.x, part.size.y));
-  Image image{part.size.x, part.size.y, {}, {}, part.picture_size, part.crop_origin};
-  for (const int channel : layer.channels) image.channels.push_back(part.channels[std::size_t(channel)]);
-  image.pixels.resize(planes.size());
-  for (std::size_t c = 0; c < channels; ++c)
-    for (std::size_t p = 0; p < pixels; ++p) image.pixels[p * channels + c] = planes[c * pixels + p];
-  return image;
-}
-
 void show(const CommandContext& context, const ShowOptions& options) {
   checkOutput(options);
   ExrInput input(options.input);
   const ShownLayer layer = findShownLayer(input.parts(), options.layer, options.input);
   Stats stats;
   stats.command = context.command_line;
-  writeLayerPicture(options, layer, readLayer(input, layer), stats, nullptr);
+  writeLayerPicture(options, layer, readShownLayer(input, layer), stats, nullptr);
   if (!options.quiet && !logsEvents())
     fmt::print(stderr, "{}: {} of {}, {:.0f} ms\n", options.output, layer.name, options.input,
                millisecondsSinceStart());

@@ -14,6 +14,7 @@
 #include "image/exr_input.hpp"
 #include "image/file_format.hpp"
 #include "image/light_names.hpp"
+#include "image/srgb.hpp"
 #include "luciole/error.hpp"
 
 namespace luciole {
@@ -85,6 +86,16 @@ float finiteColor(double color) {
 }
 
 }  // namespace
+
+std::optional<glm::vec3> linearColor(const std::string& color) {
+  if (color.size() != 7 || color[0] != '#' ||
+      color.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+    return std::nullopt;
+  glm::vec3 linear;
+  for (int c = 0; c < 3; ++c)
+    linear[c] = float(decodeSrgb(std::stoi(color.substr(1 + 2 * c, 2), nullptr, 16) / 255.0));
+  return linear;
+}
 
 std::vector<GroupFactor> lightGroupsOf(const std::string& path) {
   const ExrInput input(path);

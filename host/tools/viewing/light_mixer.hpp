@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct GroupFactor {
   std::string group;
   glm::vec3 factor{1.0f};
 };
+
+/// The linear r g b of "#rrggbb"; nothing for another text.
+std::optional<glm::vec3> linearColor(const std::string& color);
 
 /// The groups that an EXR has layers of (kLightGroups), each with a factor of 1, in the order of its
 /// channels. Throws InputError, also where there is none.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/did_you_mean.hpp"
+#include "base/machine_memory.hpp"
 #include "base/text_file.hpp"
 #include "gbuffer/layouts.hpp"
 #include "luciole/error.hpp"
@@ -174,6 +175,20 @@ void appendRows(const Image& rows, const std::vector<int>& channels, Image& pict
   for (const int channel : channels) picture.channels.push_back(rows.channels[std::size_t(channel)]);
   for (std::size_t at = 0; at < rows.pixels.size(); at += rows.channels.size())
     for (const int channel : channels) picture.pixels.push_back(rows.pixels[at + std::size_t(channel)]);
+}
+
+Image readShownLayer(ExrInput& input, const ShownLayer& layer) {
+  const PicturePart& part = input.parts()[std::size_t(layer.part)];
+  const ChannelPlanes planes = input.read(layer.part, layer.channels);
+  const std::size_t channels = layer.channels.size(), pixels = planes.size() / channels;
+  requireMemory(double(planes.size()) * sizeof(float),
+                fmt::format("a picture of {} x {} pixels", part.size.x, part.size.y));
+  Image image{part.size.x, part.size.y, {}, {}, part.picture_size, part.crop_origin};
+  for (const int channel : layer.channels) image.channels.push_back(part.channels[std::size_t(channel)]);
+  image.pixels.resize(planes.size());
+  for (std::size_t c = 0; c < channels; ++c)
+    for (std::size_t p = 0; p < pixels; ++p) image.pixels[p * channels + c] = planes[c * pixels + p];
+  return image;
 }
 
 }  // namespace luciole

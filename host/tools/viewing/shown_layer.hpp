@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "image/exr_input.hpp"
 #include "image/layers.hpp"
 #include "tools/viewing/layer_picture.hpp"
 
@@ -31,5 +32,8 @@ ShownLayer aovLayer(const std::vector<std::string>& channels);
 
 /// Appends channels of some rows to a picture, whose sizes they were before.
 void appendRows(const Image& rows, const std::vector<int>& channels, Image& picture);
+
+/// A layer's channels, side by side in each pixel, with the file's names. Throws as ExrInput::read().
+Image readShownLayer(ExrInput& input, const ShownLayer& layer);
 
 }  // namespace luciole

@@ -29,6 +29,12 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr long kMostGrowth = 1 << 20;  ///< KiB: they keep what is freed for a while
+#else
+constexpr long kMostGrowth = 32 << 10;
+#endif
+
 constexpr std::size_t kLargeAnswer = std::size_t(8) << 20;
 
 /// A number of /proc/self/status: VmRSS in KiB, Threads.
@@ -118,6 +124,7 @@ class ViewServer : public testing::Test {
     base = address.substr(address.find('/', 17));
     base.pop_back();
     thread = std::thread([this] { server->run(); });
+    threads = ownStatus("Threads");
   }
   ~ViewServer() override {
     opened.set_value();
@@ -155,13 +162,13 @@ class ViewServer : public testing::Test {
   void expectAnswers() const {
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_EQ(statusOf(get("/state")), 200);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(2000));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
   }
   /// Connections that have ended give their threads back a little later.
-  void expectThreads(long expected) const {
-    for (int tries = 0; tries < 200 && ownStatus("Threads") > expected; ++tries)
+  void expectNoThreadsLeft() const {
+    for (int tries = 0; tries < 1000 && ownStatus("Threads") > threads; ++tries)
       std::this_thread::sleep_for(milliseconds(10));
-    EXPECT_LE(ownStatus("Threads"), expected);
+    EXPECT_LE(ownStatus("Threads"), threads);
   }
 
   std::promise<void> opened;
@@ -169,6 +176,7 @@ class ViewServer : public testing::Test {
   std::atomic<int> waiting = 0;
   std::optional<Server> server;
   std::thread thread;
+  long threads = 0;  ///< without a client
   int port = 0;
   std::string base;  ///< "/TOKEN"
 };
@@ -225,21 +233,21 @@ TEST_F(ViewServer, RefusesOtherHostsAndOtherPages) {
 }
 
 TEST_F(ViewServer, RefusesWhatHasTwoReadings) {
-  const std::string json = "Content-Type: application/json\r\n", path = base + "/echo";
+  const std::string is_json = "Content-Type: application/json\r\n", path = base + "/echo";
   const auto posted = [&](const std::string& fields) {
     return statusOf(head("POST", path, fields + "\r\n") + "[]");
   };
-  EXPECT_EQ(posted(json + "Content-Length: 2\r\nConnection: close\r\n"), 200);
+  EXPECT_EQ(posted(is_json + "Content-Length: 2\r\nConnection: close\r\n"), 200);
   EXPECT_EQ(
       posted("Content-Type: application/json; charset=utf-8\r\nContent-Length: 2\r\nConnection: close\r\n"),
       200);
-  EXPECT_EQ(posted(json), 411);
-  EXPECT_EQ(posted(json + "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n"), 411);
-  EXPECT_EQ(posted(json + "Content-Length: 2\r\nContent-Length: 2\r\n"), 400);
-  EXPECT_EQ(posted(json + "Content-Length: -2\r\n"), 400);
-  EXPECT_EQ(posted(json + "Content-Length: 0x2\r\n"), 400);
-  EXPECT_EQ(posted(json + "Content-Length: 1048577\r\n"), 413);
-  EXPECT_EQ(posted(json + "Content-Length: 99999999999999999999999\r\n"), 413);
+  EXPECT_EQ(posted(is_json), 411);
+  EXPECT_EQ(posted(is_json + "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n"), 411);
+  EXPECT_EQ(posted(is_json + "Content-Length: 2\r\nContent-Length: 2\r\n"), 400);
+  EXPECT_EQ(posted(is_json + "Content-Length: -2\r\n"), 400);
+  EXPECT_EQ(posted(is_json + "Content-Length: 0x2\r\n"), 400);
+  EXPECT_EQ(posted(is_json + "Content-Length: 1048577\r\n"), 413);
+  EXPECT_EQ(posted(is_json + "Content-Length: 99999999999999999999999\r\n"), 413);
   for (const char* type :
        {"text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "application/jsonx"})
     EXPECT_EQ(posted(std::string("Content-Type: ") + type + "\r\nContent-Length: 2\r\n"), 415) << type;
@@ -282,7 +290,7 @@ TEST_F(ViewServer, ErrorsOfHandlersAreTold) {
 }
 
 TEST_F(ViewServer, GigabyteIsRefusedBeforeItIsRead) {
-  const std::string json = "Content-Type: application/json\r\n", block(std::size_t(1) << 20, 'a');
+  const std::string is_json = "Content-Type: application/json\r\n", block(std::size_t(1) << 20, 'a');
   std::string fields;
   while (fields.size() < block.size()) fields += "X" + std::to_string(fields.size()) + ": y\r\n";
   const long memory = ownStatus("VmRSS");
@@ -293,14 +301,14 @@ TEST_F(ViewServer, GigabyteIsRefusedBeforeItIsRead) {
     while (blocks < 1024 && client.send(part)) ++blocks;
     return blocks;
   };
-  EXPECT_LT(sends(head("POST", base + "/echo", json + "Content-Length: 1073741824\r\n\r\n"), block), 64u);
-  EXPECT_LT(sends(head("POST", base + "/echo", json + "Transfer-Encoding: chunked\r\n\r\n"),
+  EXPECT_LT(sends(head("POST", base + "/echo", is_json + "Content-Length: 1073741824\r\n\r\n"), block), 64u);
+  EXPECT_LT(sends(head("POST", base + "/echo", is_json + "Transfer-Encoding: chunked\r\n\r\n"),
                   "100000\r\n" + block + "\r\n"),
             64u);
   EXPECT_LT(sends(head("GET", base + "/state", "X: "), block), 64u);
   EXPECT_LT(sends(head("GET", base + "/state"), fields), 64u);
   EXPECT_LT(sends("", block), 64u);
-  EXPECT_LT(ownStatus("VmRSS") - memory, 32 << 10);
+  EXPECT_LT(ownStatus("VmRSS") - memory, kMostGrowth);
   expectAnswers();
 }
 
@@ -345,8 +353,7 @@ TEST_F(ViewServer, TenThousandRandomRequestsLeaveItAnsweringAndGrowNeitherMemory
     }
   };
   for (int i = 0; i < 200; ++i) ask(get("/state"));
-  expectThreads(2);
-  const long memory = ownStatus("VmRSS"), threads = ownStatus("Threads");
+  const long memory = ownStatus("VmRSS");
   int answered = 0, good = 0;
   for (int i = 0; i < 10000; ++i) {
     const Client client(port);
@@ -360,22 +367,22 @@ TEST_F(ViewServer, TenThousandRandomRequestsLeaveItAnsweringAndGrowNeitherMemory
   EXPECT_GT(answered, 5000);
   EXPECT_GT(good, 100) << "some are left whole";
   EXPECT_LT(good, 5000);
-  expectThreads(threads);
-  EXPECT_LT(ownStatus("VmRSS") - memory, 8 << 10);
+  expectNoThreadsLeft();
+  EXPECT_LT(ownStatus("VmRSS") - memory, kMostGrowth);
   expectAnswers();
 }
 
 TEST_F(ViewServer, ClientsKilledInAnAnswerFreeItsMemoryAndTheirThreads) {
   for (int i = 0; i < 20; ++i) ask(get("/large"));
-  const long memory = ownStatus("VmRSS"), threads = ownStatus("Threads");
+  const long memory = ownStatus("VmRSS");
   for (int i = 0; i < 200; ++i) {
     const Client client(port);
     client.send(get("/large"));
     EXPECT_EQ(client.receive(1000).size(), 1000u);
     client.abort();
   }
-  expectThreads(threads);
-  EXPECT_LT(ownStatus("VmRSS") - memory, 64 << 10);
+  expectNoThreadsLeft();
+  EXPECT_LT(ownStatus("VmRSS") - memory, kMostGrowth);
   expectAnswers();
 }
 
@@ -391,7 +398,7 @@ TEST_F(ViewServer, SlowClientsDoNotKeepAQuickOneOut) {
     slow.back()->send(get("/large"));  // and never takes it
   }
   expectAnswers();
-  EXPECT_LT(ownStatus("Threads"), 64 + 4);
+  EXPECT_LE(ownStatus("Threads"), threads + 65);
 }
 
 TEST_F(ViewServer, RequestThatComesByteByByteEndsAfterSomeSeconds) {
