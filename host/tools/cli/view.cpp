@@ -19,6 +19,7 @@
 #include "tools/cli/open_devices.hpp"
 #include "tools/cli/picture_options.hpp"
 #include "tools/cli/suggest.hpp"
+#include "tools/view/file_view.hpp"
 #include "tools/view/scene_view.hpp"
 #include "tools/view/server.hpp"
 #include "tools/view/view_page.hpp"
@@ -152,6 +153,15 @@ void view(const CLI::App& command, CommandContext& context, const ViewCommandOpt
   if (!std::filesystem::is_directory(options.folder, none))
     throw InputError(
         fmt::format("-o {}: no such folder; expected one where the page may save", options.folder));
+  if (isExr(options.input)) {
+    std::vector<std::string> paths{options.input};
+    if (!options.other.empty()) paths.push_back(options.other);
+    FileView files(paths, options.watch == "on");
+    return serve(options,
+                 {.get = {{"/state", [&] { return files.state(); }}},
+                  .post = {{"/picture", [&](const std::string& body) { return files.picture(body); }},
+                           {"/pick", [&](const std::string& body) { return files.pick(body); }}}});
+  }
   if (!options.other.empty())
     throw InputError(fmt::format("{}: two files are compared where both are .exr", options.other));
   if (options.input == "-") throw InputError("-: the page reads a scene again, expected a file");

@@ -33,6 +33,7 @@
 #include "shaders/shader_text.hpp"
 #include "tools/models/check_model.hpp"
 #include "tools/view/view_camera.hpp"
+#include "tools/view/view_json.hpp"
 #include "tools/viewing/light_map.hpp"
 #include "tools/viewing/shown_layer.hpp"
 
@@ -160,17 +161,6 @@ Answer guarded(const Answering& answering) {
     if (Json shader = shaderFault(error.what()); !shader.is_null()) json["shader"] = shader;
     return {.status = 422, .body = dumpUtf8(json)};
   }
-}
-
-Answer jsonAnswer(Json json) { return {.body = dumpUtf8(std::move(json))}; }
-
-/// A picture and what is told of it, as the page reads it.
-Answer pictureAnswer(const Json& about, const std::string& picture) {
-  const std::string json = dumpUtf8(about);
-  const auto length = std::uint32_t(json.size());
-  std::string body;
-  for (int shift = 0; shift < 32; shift += 8) body += char(length >> shift & 255);
-  return {.type = "application/octet-stream", .body = body + json + picture};
 }
 
 /// Where the lights of the list are in the picture, in shares of it.

@@ -1,10 +1,6 @@
 #include "tools/view/view_request.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "luciole/error.hpp"
+#include "tools/view/view_json.hpp"
 
 namespace luciole {
 namespace {
@@ -13,30 +9,6 @@ using Json = nlohmann::json;
 
 constexpr int kLargestViewSide = 8192;
 constexpr std::size_t kMostChanges = 4096;
-
-[[noreturn]] void refuseMember(const std::string& name) {
-  throw InputError(fmt::format("request: {}: not as the page sends it", name));
-}
-
-/// The member of an object; null where it has none of that name.
-const Json& memberIn(const Json& object, const char* name) {
-  static const Json kNone;
-  const auto found = object.find(name);
-  return found == object.end() ? kNone : *found;
-}
-
-double numberIn(const Json& json, double low, double high, const std::string& name) {
-  if (!json.is_number()) refuseMember(name);
-  const double number = json.get<double>();
-  if (!(number >= low && number <= high)) refuseMember(name);
-  return number;
-}
-
-std::string textIn(const Json& json, const std::string& name) {
-  if (json.is_null()) return "";
-  if (!json.is_string()) refuseMember(name);
-  return json.get<std::string>();
-}
 
 std::vector<std::string> textsIn(const Json& json, const std::string& name) {
   std::vector<std::string> texts;
@@ -72,8 +44,7 @@ SceneChanges changesIn(const Json& view) {
 }  // namespace
 
 ViewRequest readRequest(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object()) throw InputError("request: expected a JSON object");
+  const Json json = requestIn(body);
   ViewRequest request;
   request.page = textIn(memberIn(json, "page"), "page").substr(0, 64);
   if (const Json& number = memberIn(json, "number"); !number.is_null())

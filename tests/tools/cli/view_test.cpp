@@ -260,7 +260,8 @@ TEST_F(ViewPage, ShowsAnExrsLayers) {
   browser.openAddress(served.address());
   await(browser, "state && state.kind === 'files'");
   await(browser, "document.getElementById('picture').width > 16");
-  EXPECT_THAT(browser.evaluate("document.body.innerText").get<std::string>(), HasSubstr("normal"));
+  EXPECT_THAT(browser.evaluate("document.body.innerText").get<std::string>(),
+              HasSubstr("light_groups.default"));
   EXPECT_TRUE(browser.complaints().empty()) << browser.complaints().front();
 }
 
