@@ -121,6 +121,10 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
   if (is_stream_ && offset != size_)
     throw MachineError(name() + ": can't go back to where something was written, expected a file");
   size_ += bytes.size();
+  if (memory_) {
+    memory_->append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return;
+  }
   while (!bytes.empty()) {
     const ssize_t written = retryInterrupted([&] {
       return is_stream_ ? write(descriptor_, bytes.data(), bytes.size())
@@ -134,7 +138,7 @@ void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes)
 }
 
 void OutputFile::putInPlace() {
-  if (path_ == "-") return;
+  if (path_ == "-" || memory_) return;
   // Some file systems can't sync, which is no error.
   if (!is_stream_ && retryInterrupted([&] { return fsync(descriptor_); }) != 0 && errno != EINVAL &&
       errno != ENOTSUP)

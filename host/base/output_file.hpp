@@ -21,12 +21,14 @@ auto retryInterrupted(Call call) {
 /// beside the path, which the destructor removes, or cleanUp(). Symbolic links stay; the file that they lead
 /// to is replaced.
 /// The path "-" is standard output. Standard output, and any path that is neither a regular file nor a folder
-/// (a device, a FIFO), is a stream: bytes reach it at once and in order.
+/// (a device, a FIFO), is a stream: bytes reach it at once and in order. So is a text in memory.
 class OutputFile {
  public:
   /// Opening a FIFO waits until it has a reader. Throws InputError (no such folder, read-only folder) or
   /// MachineError.
   explicit OutputFile(const std::string& path);
+  /// Appends to a text, which must outlive it.
+  explicit OutputFile(std::string& memory) : is_stream_(true), memory_(&memory) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -53,6 +55,7 @@ class OutputFile {
   std::string beside_;     ///< the hidden name beside it
   bool has_name_ = false;  ///< whether the hidden name exists, which cleanUp() knows then
   bool is_stream_ = false;
+  std::string* memory_ = nullptr;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;  ///< bytes written
 };

@@ -122,9 +122,11 @@ struct EncodedStrip {
 
 class PngFile : public RowFile {
  public:
-  PngFile(const std::string& path, std::span<const std::uint8_t> header, int width, int height, int channels,
-          int bits, bool small)
-      : file_(path),
+  /// place: a path, or a text.
+  template <class Place>
+  PngFile(Place& place, std::span<const std::uint8_t> header, int width, int height, int channels, int bits,
+          bool small)
+      : file_(place),
         height_(height),
         wide_codes_(bits == 16),
         small_(small),
@@ -263,14 +265,17 @@ class PngFile : public RowFile {
 }  // namespace
 
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
-                                     const Metadata& metadata, int bits, const std::string& compression) {
-  checkWritable(path, {.format = "png"});
+                                     const Metadata& metadata, int bits, const std::string& compression,
+                                     std::string* memory) {
+  if (!memory) checkWritable(path, {.format = "png"});
   if (width < 1 || height < 1)
     throw MachineError(
         fmt::format("{}: can't encode: {}x{} pixels, a PNG has 1x1 at least", path, width, height));
-  checkSizeLimit(std::uint64_t(width) * height * channels * bits / 8, path);
   const std::vector<std::uint8_t> header = pngHeader(width, height, channels, metadata, bits);
-  return std::make_unique<PngFile>(path, header, width, height, channels, bits, compression == "small");
+  const bool small = compression == "small";
+  if (memory) return std::make_unique<PngFile>(*memory, header, width, height, channels, bits, small);
+  checkSizeLimit(std::uint64_t(width) * height * channels * bits / 8, path);
+  return std::make_unique<PngFile>(path, header, width, height, channels, bits, small);
 }
 
 }  // namespace luciole

@@ -25,10 +25,14 @@ class RowFile {
 
 /// A PNG of R G B (3 channels) or R G B A (4), in sRGB codes of 8 or 16 bits. Its rows are filtered and
 /// compressed by all threads, which OpenImageIO and libpng don't do; its bytes don't depend on how many there
-/// are. `compression`: as in WriteOptions. Throws as writeImage does.
+/// are. `compression` and `memory`: as in WriteOptions. Throws as writeImage does.
 std::unique_ptr<RowFile> openPngFile(const std::string& path, int width, int height, int channels,
                                      const Metadata& metadata, int bits = 8,
-                                     const std::string& compression = "");
+                                     const std::string& compression = "", std::string* memory = nullptr);
+
+/// A JPEG of R G B in memory, for pictures that are looked at for a moment: of quality 85. Throws
+/// MachineError.
+std::unique_ptr<RowFile> openJpegInMemory(int width, int height, std::string& memory);
 
 /// An EXR of 32-bit float values, some of which it stores as halves where the options say so. The OpenEXR
 /// library writes it. Throws as writeImage does.

@@ -185,8 +185,12 @@ ImageWriter::ImageWriter(const std::string& path, int width, int height,
   if (options.film)
     state_->file = options.film->addFrame();
   else if (format.extension == "png")
-    state_->file =
-        openPngFile(path, width, height, int(names.size()), metadata, format.bits, options.compression);
+    state_->file = openPngFile(path, width, height, int(names.size()), metadata, format.bits,
+                               options.compression, options.memory);
+  else if (options.memory && format.extension == "jpg")
+    state_->file = openJpegInMemory(width, height, *options.memory);
+  else if (options.memory)
+    throw InputError(path + ": in memory there are png and jpg alone");
   else if (format.extension == "exr")
     state_->file = openExrFile(path, width, height, names, metadata, options);
   else if (format.extension == "pfm" || format.extension == "npy")

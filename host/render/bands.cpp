@@ -100,7 +100,7 @@ int bandEnd(int first, const BandLimits& limits) {
 
 void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
                const PicturePlan& plan, const NextBand& next, const BandSink& take, Stats& stats,
-               KeptShadows* kept) {
+               KeptPicture* kept) {
   const TrafficMeter meter{device, stats};
   const glm::ivec2 size = plan.view.crop_size;
   const TraceSpan span("picture", {{"width", size.x},
@@ -114,7 +114,8 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
   picture.objects = settings.alpha ? allObjects(scene)
                                    : objectsInSight(scene, withMargin(plan.view, plan), settings.exposure,
                                                     settings.shade.model);
-  prepareLights(picture, settings.camera, kept);
+  if (kept) picture.recycled = std::move(kept->recycled);
+  prepareLights(picture, settings.camera, kept ? &kept->shadows : nullptr);
   picture.lighting.maps.host.expects_more = settings.samples > 1;
   awaitKernels(compiling, device, settings, stats);
   if (settings.shading == Shading::kGouraud) lightVertices(picture);
@@ -125,19 +126,30 @@ void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& s
   const glm::ivec2 drawn = withMargin(band, plan).crop_size;
   requireMemory(double(plan.pixel_bytes) * drawn.x * drawn.y,
                 fmt::format("a band of {}x{} pixels", size.x, tallest));
+  // Also where the taker of rows has enough of them.
+  const auto keep = [&] {
+    if (!kept) return;
+    keepMaps(scene, takeMaps(picture.lighting.maps), kept->shadows);
+    kept->recycled = std::move(picture.recycled);
+  };
   BandMaker maker{picture, matteIds(scene, settings)};
   BandLimits limits = bandLimits(plan);
   while (const std::optional<Band> asked = next(limits)) {
     for (Band left = *asked; left.height > 0;) {
       const Band rows = maker.makeAsMuch(left, limits);
-      take(rows, picture.recycled.picture);
+      try {
+        take(rows, picture.recycled.picture);
+      } catch (...) {
+        keep();
+        throw;
+      }
       left = {rows.first + rows.height, left.height - rows.height};
     }
   }
   countLighting(picture);
   addRasterCounts(maker.triangles, stats);
   addCount(stats, "objects_hidden_by_fog", scene.objects.size() - picture.objects.size());
-  if (kept) keepMaps(scene, takeMaps(picture.lighting.maps), *kept);
+  keep();
 }
 
 }  // namespace luciole

@@ -34,6 +34,6 @@ using BandSink = std::function<void(const Band& band, const Image& rows)>;
 /// Otherwise as renderBands().
 void makeBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
                const PicturePlan& plan, const NextBand& next, const BandSink& take, Stats& stats,
-               KeptShadows* kept);
+               KeptPicture* kept);
 
 }  // namespace luciole

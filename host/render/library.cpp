@@ -1,14 +1,10 @@
 #include <mutex>
-#include <utility>
 
-#include "lighting/kept_shadows.hpp"
 #include "luciole/render.hpp"
 #include "render/render.hpp"
 
 // What luciole/render.hpp offers: the renderer's functions, each with the device to itself.
 namespace luciole {
-
-std::shared_ptr<KeptShadows> keepShadows() { return std::make_shared<KeptShadows>(); }
 
 Picture render(Device& device, const Scene& scene, const RenderSettings& settings) {
   OpenedDevice& on = opened(device);
@@ -18,12 +14,11 @@ Picture render(Device& device, const Scene& scene, const RenderSettings& setting
   return picture;
 }
 
-Stats render(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
-             const std::shared_ptr<KeptShadows>& kept) {
+Stats render(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take) {
   OpenedDevice& on = opened(device);
   const std::lock_guard lock(on.use);
   Stats stats;
-  renderBands(on, scene, settings, take, stats, kept.get());
+  renderBands(on, scene, settings, take, stats);
   return stats;
 }
 

@@ -10,7 +10,7 @@
 namespace luciole {
 
 double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
-                       KeptShadows* kept) {
+                       KeptPicture* kept) {
   RenderSettings small;
   small.size = measuringSize(settings.size);
   small.camera = settings.camera;

@@ -14,7 +14,7 @@ namespace luciole {
 /// background don't count. Adds to the statistics what it cost. kept, and what it throws: as of
 /// renderBands.
 double measureExposure(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
-                       KeptShadows* kept = nullptr);
+                       KeptPicture* kept = nullptr);
 
 /// The exposure that suits a lit G-buffer. `picture`: by shadeGBuffer with an exposure of 0.
 double measureExposure(const Image& picture, const GBuffer& gbuffer);

@@ -5,26 +5,10 @@
 #include <vector>
 
 #include "lighting/lighting.hpp"
+#include "render/kept_picture.hpp"
 #include "render/plan.hpp"
 
 namespace luciole {
-
-/// The planes of a part of a picture as screens take them (ScreenFrame); those that they don't name may be
-/// empty.
-struct ScreenMemory {
-  RawArray<float> before, after;  ///< a screen's colours r g b
-  RawArray<float> from_eye, depth, normal;
-  RawArray<int> object, material;
-};
-
-/// Memory of the last band, to be reused by the next one: the system takes as long to clear fresh memory as
-/// its pixels take to be shaded.
-struct RecycledMemory {
-  GBuffer gbuffer;
-  Plane color;
-  Image picture;
-  ScreenMemory screens = {};
-};
 
 /// A planned picture, its lights, and the state that its bands share.
 struct ReadyPicture {

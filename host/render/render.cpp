@@ -31,7 +31,7 @@ void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats)
 }
 
 void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
-                 const RowSink& take, Stats& stats, KeptShadows* kept) {
+                 const RowSink& take, Stats& stats, KeptPicture* kept) {
   validate(scene, settings, kept);
   const PicturePlan plan = planPicture(scene, settings);
   std::optional<int> begun;
@@ -45,18 +45,18 @@ void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings&
       device, scene, settings, plan, next, [&](const Band&, const Image& rows) { take(rows); }, stats, kept);
 }
 
+void appendRows(const Image& rows, Image& picture) {
+  picture.width = rows.width;
+  picture.height += rows.height;
+  picture.channels = rows.channels;
+  picture.pixels.insert(picture.pixels.end(), rows.pixels.begin(), rows.pixels.end());
+}
+
 Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
-                  KeptShadows* kept) {
+                  KeptPicture* kept) {
   Image picture;
   renderBands(
-      device, scene, settings,
-      [&](const Image& rows) {
-        picture.width = rows.width;
-        picture.height += rows.height;
-        picture.channels = rows.channels;
-        picture.pixels.insert(picture.pixels.end(), rows.pixels.begin(), rows.pixels.end());
-      },
-      stats, kept);
+      device, scene, settings, [&](const Image& rows) { appendRows(rows, picture); }, stats, kept);
   return picture;
 }
 

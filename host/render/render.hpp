@@ -1,12 +1,12 @@
 #pragma once
 
 #include "cl/device.hpp"
-#include "lighting/kept_shadows.hpp"
 #include "lighting/stats.hpp"
 #include "luciole/gbuffer.hpp"
 #include "luciole/image.hpp"
 #include "luciole/render.hpp"
 #include "raster/rasterize.hpp"
+#include "render/kept_picture.hpp"
 #include "shade/features.hpp"
 
 namespace luciole {
@@ -15,15 +15,17 @@ namespace luciole {
 void describeScene(const Scene& scene, const FeatureSet& features, Stats& stats);
 
 /// Renders a scene (channels R G B, linear, A if asked for, then the layers) and hands the picture to `take`
-/// band by band. Adds to the statistics. kept: for pictures of one scene at several poses, one after another;
-/// it saves time and changes no bit. Throws as validate() does, InputError for a crop outside the picture,
-/// MachineError, and what `take` throws.
+/// band by band. Adds to the statistics. kept: of the scene's picture before this one, for the next. Throws
+/// as validate() does, InputError for a crop outside the picture, MachineError, and what `take` throws.
 void renderBands(OpenedDevice& device, const Scene& scene, const RenderSettings& settings,
-                 const RowSink& take, Stats& stats, KeptShadows* kept = nullptr);
+                 const RowSink& take, Stats& stats, KeptPicture* kept = nullptr);
+
+/// Appends rows to a picture with the same channels, or to an empty one.
+void appendRows(const Image& rows, Image& picture);
 
 /// The same, but returns the whole picture.
 Image renderScene(OpenedDevice& device, const Scene& scene, const RenderSettings& settings, Stats& stats,
-                  KeptShadows* kept = nullptr);
+                  KeptPicture* kept = nullptr);
 
 /// The first half of renderScene(): the G-buffer with every group. `device` is needed for Shading::kGouraud,
 /// which lights vertices; otherwise it may be null. Throws as validate() does, InputError for a crop outside

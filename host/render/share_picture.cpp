@@ -109,15 +109,14 @@ struct Worker {
     rows.changed.notify_all();
   }
 
-  void run(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan, bool keeps) {
+  void run(const Scene& scene, const RenderSettings& settings, const PicturePlan& plan) {
     const TraceThread thread(mine.device->description.name.c_str());
     std::exception_ptr failure;
     std::string error;
     try {
       makeBands(
           *mine.device, scene, settings, plan, [&](const BandLimits& limits) { return nextBand(limits); },
-          [&](const Band& made, const Image& image) { takeRows(made, image); }, stats,
-          keeps ? &mine.kept : nullptr);
+          [&](const Band& made, const Image& image) { takeRows(made, image); }, stats, &mine.kept);
     } catch (const MachineError& problem) {
       failure = std::current_exception();
       error = problem.what();
@@ -179,13 +178,13 @@ struct Joiner {
 }  // namespace
 
 void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSettings& settings,
-                  const RowSink& take, Stats& stats, bool keeps) {
+                  const RowSink& take, Stats& stats) {
   if (sharers.size() == 1) {
     Sharer& only = sharers.front();
-    renderBands(*only.device, scene, settings, take, stats, keeps ? &only.kept : nullptr);
+    renderBands(*only.device, scene, settings, take, stats, &only.kept);
     return;
   }
-  validate(scene, settings, keeps ? &sharers.front().kept : nullptr);
+  validate(scene, settings, &sharers.front().kept);
   const PicturePlan plan = planPicture(scene, settings);
   const int top = plan.view.crop_origin.y, bottom = top + plan.view.crop_size.y;
   SharedRows rows{bottom, top, top, 0};
@@ -199,7 +198,7 @@ void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSe
   rows.working = int(workers.size());
   Joiner joiner{rows};
   for (Worker& worker : workers)
-    joiner.threads.emplace_back([&] { worker.run(scene, without_report, plan, keeps); });
+    joiner.threads.emplace_back([&] { worker.run(scene, without_report, plan); });
   passFinishedRows(rows, top, settings, take);
   joiner.join();
   for (const Worker& worker : workers) {

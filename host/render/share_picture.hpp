@@ -4,9 +4,9 @@
 #include <string>
 
 #include "cl/device.hpp"
-#include "lighting/kept_shadows.hpp"
 #include "lighting/stats.hpp"
 #include "luciole/scene.hpp"
+#include "render/kept_picture.hpp"
 #include "render/render.hpp"
 
 namespace luciole {
@@ -14,7 +14,7 @@ namespace luciole {
 /// One of the devices that render pictures together.
 struct Sharer {
   OpenedDevice* device;
-  KeptShadows kept = {};    ///< from picture to picture
+  KeptPicture kept = {};    ///< from picture to picture
   double rows = 0;          ///< that it has rendered so far
   double milliseconds = 0;  ///< of work on these rows
   std::string error = {};   ///< why it dropped out; empty: it didn't
@@ -24,9 +24,9 @@ struct Sharer {
 /// one, of a height by its speed so far, so that all end together. The colours have the same bits as one
 /// device's, if all compute alike (DeviceDescription::arithmetic). A device that fails drops out: another one
 /// renders its band, and Sharer::error and Stats::shares have the reason. Each device prepares the scene's
-/// lights and shadows for itself. keeps: more pictures of the scene follow, at other poses. Throws as
+/// lights and shadows for itself. Throws as
 /// renderBands does, and MachineError if all devices have failed.
 void renderShared(std::list<Sharer>& sharers, const Scene& scene, const RenderSettings& settings,
-                  const RowSink& take, Stats& stats, bool keeps);
+                  const RowSink& take, Stats& stats);
 
 }  // namespace luciole

@@ -62,9 +62,9 @@ void validateShading(const ShadeSettings& shade, const Scene& scene) {
 
 }  // namespace
 
-void validate(const Scene& scene, const RenderSettings& settings, const KeptShadows* kept) {
-  // An earlier picture of this scene has checked it, and it stays valid at every pose.
-  if (!kept || kept->maps_objects.empty()) validateScene(scene);
+void validate(const Scene& scene, const RenderSettings& settings, KeptPicture* kept) {
+  if (!kept || !kept->scene_is_valid) validateScene(scene);
+  if (kept) kept->scene_is_valid = true;
   checkSize("settings.size", settings.size);
   if (const std::string fault = cameraFault(settings.camera); !fault.empty())
     throw InputError("settings.camera." + fault);

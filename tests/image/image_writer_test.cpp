@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
+#include "luciole/error.hpp"
 #include "luciole/image.hpp"
 #include "shared_files.hpp"
 
@@ -63,6 +65,38 @@ TEST(ImageWriter, WhatIsNotFinishedLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(readText(path), "old") << extension;
   }
   EXPECT_EQ(filesIn(folder).size(), kExtensions.size());
+}
+
+TEST(ImageWriter, BytesInMemoryAreThoseOfTheFile) {
+  const TemporaryFolder folder;
+  const Image image = somePicture(70, 50);
+  writeImage(image, folder / "a.png", {}, {.dither = true});
+  std::string bytes;
+  writeImage(image, "b.png", {}, {.dither = true, .memory = &bytes});
+  EXPECT_EQ(bytes, readText(folder / "a.png"));
+}
+
+TEST(ImageWriter, AJpegInMemoryShowsThePicture) {
+  const TemporaryFolder folder;
+  Image image{160, 90, {"R", "G", "B"}, {}};
+  for (int y = 0; y < 90; ++y)
+    for (int x = 0; x < 160; ++x)
+      for (const float value : {float(x) / 160, float(y) / 90, 0.5f}) image.pixels.push_back(value);
+  std::string bytes;
+  writeImage(image, "a.jpg", {}, {.memory = &bytes});
+  std::ofstream(folder / "a.jpg", std::ios::binary) << bytes;
+  const Image read = readImage(folder / "a.jpg");
+  ASSERT_EQ(read.width, 160);
+  ASSERT_EQ(read.height, 90);
+  double sum = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) sum += std::abs(read.pixels[i] - image.pixels[i]);
+  // At quality 85 codes of such ramps are wrong by 2 of 255 or so, and a code is 2.4/255 of light at most.
+  EXPECT_LT(sum / double(image.pixels.size()), 3 * 2.4 / 255);
+}
+
+TEST(ImageWriter, OtherFormatsInMemoryAreRefused) {
+  std::string bytes;
+  EXPECT_THROW(writeImage(somePicture(1, 1), "a.exr", {}, {.memory = &bytes}), InputError);
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ TEST(Screens, TwoDevicesGiveTheBitsOfOne) {
       [&](const Image& rows) {
         shared.pixels.insert(shared.pixels.end(), rows.pixels.begin(), rows.pixels.end());
       },
-      stats, false);
+      stats);
   EXPECT_EQ(shared.pixels, picture(scene, settings).pixels);
 }
 

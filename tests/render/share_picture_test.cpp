@@ -43,6 +43,8 @@ class SharedPictures : public testing::Test {
 
   Image shared(const Scene& scene, const RenderSettings& settings, Stats& stats, bool keeps = false) {
     Image picture;
+    if (!keeps)
+      for (Sharer& sharer : sharers) sharer.kept = {};
     renderShared(
         sharers, scene, settings,
         [&](const Image& rows) {
@@ -50,7 +52,7 @@ class SharedPictures : public testing::Test {
           picture.height += rows.height;
           picture.pixels.insert(picture.pixels.end(), rows.pixels.begin(), rows.pixels.end());
         },
-        stats, keeps);
+        stats);
     return picture;
   }
 
@@ -158,7 +160,7 @@ TEST_F(SharedPictures, EndWithWhatTheirTakerThrows) {
   Stats stats;
   EXPECT_THROW(
       renderShared(
-          sharers, scene, settings, [](const Image&) { throw MachineError("disk full"); }, stats, false),
+          sharers, scene, settings, [](const Image&) { throw MachineError("disk full"); }, stats),
       MachineError);
 }
 

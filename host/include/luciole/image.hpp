@@ -60,6 +60,7 @@ struct WriteOptions {
   glm::ivec2 crop_origin{0};   ///< where in the whole picture pixel (0,0) lies
   Display display = {};        ///< exr
   ExrAttributes exr = {};
+  std::string* memory = nullptr;  ///< png and jpg: where the file's bytes go; the path only says the format
   Film* film = nullptr;  ///< the picture is the next frame of this film instead of a file: 8-bit R, G, B
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 
 #include "luciole/device.hpp"
 #include "luciole/gbuffer.hpp"
@@ -27,16 +26,9 @@ Picture render(Device& device, const Scene& scene, const RenderSettings& setting
 /// Takes the next rows of a picture, from the top down. `rows` lasts until it returns.
 using RowSink = std::function<void(const Image& rows)>;
 
-/// Shadow maps and acceleration structures of a picture, for the next picture of the same scene at another
-/// pose.
-struct KeptShadows;
-std::shared_ptr<KeptShadows> keepShadows();
-
-/// The same, handed to `take` band by band, so that the whole never lies in memory. kept: of keepShadows(),
-/// for pictures of one scene at several poses (poseScene()), one after another. It saves time and changes no
-/// bit. Throws likewise, and what `take` throws.
-Stats render(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take,
-             const std::shared_ptr<KeptShadows>& kept = nullptr);
+/// The same, handed to `take` band by band, so that the whole never lies in memory. Throws likewise, and what
+/// `take` throws. A Renderer makes several pictures of one scene in less time.
+Stats render(Device& device, const Scene& scene, const RenderSettings& settings, const RowSink& take);
 
 /// The first half of render(): the G-buffer with every group. The device is needed for Shading::kGouraud
 /// alone, which lights vertices. Throws as render() does.

@@ -246,7 +246,7 @@ std::vector<double> timeShadows(OpenedDevice& device, const ShadowRow& row) {
     return {ready, tell};
   }
   Stats stats;
-  KeptShadows kept;
+  KeptPicture kept;
   RenderSettings picture = pictureOf(*row.judged, row.settings, row.samples);
   for (int frame = 0; frame < row.frames; ++frame) {
     renderBands(

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <future>
+#include <list>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -74,29 +75,29 @@ std::list<Candidate> openCandidates(const std::string& suffix, CommandContext& c
   return candidates;
 }
 
-std::list<Sharer> openAllDevices(const PictureOptions& options, CommandContext& context) {
+std::vector<OpenedDevice*> openAllDevices(const PictureOptions& options, CommandContext& context) {
   const std::list<Candidate> candidates =
       openCandidates(options.device.substr(std::string_view(kAllDevices).size()), context);
   if (candidates.empty()) selectDevice({}, "");  // which says what is missing
   const bool any_exact = std::any_of(candidates.begin(), candidates.end(), [](const Candidate& one) {
     return one.failure.empty() && one.difference.empty();
   });
-  std::list<Sharer> sharers;
+  std::vector<OpenedDevice*> devices;
   std::vector<std::string> told;
   for (const Candidate& candidate : candidates) {
     const std::string& what = candidate.failure.empty() ? candidate.difference : candidate.failure;
-    if (!candidate.failure.empty() || (!what.empty() && (any_exact || !sharers.empty()))) {
+    if (!candidate.failure.empty() || (!what.empty() && (any_exact || !devices.empty()))) {
       told.push_back("left out: " + what);
       continue;
     }
     if (!what.empty() && options.require_exact) throw MachineError("--require-exact: " + what);
     if (!what.empty()) told.push_back(what + kCheckHint);
-    sharers.push_back({candidate.device});
+    devices.push_back(candidate.device);
   }
-  if (sharers.empty()) throw MachineError(candidates.front().failure);
+  if (devices.empty()) throw MachineError(candidates.front().failure);
   if (!options.quiet)
     for (const std::string& warning : told) reportWarning(warning);
-  return sharers;
+  return devices;
 }
 
 }  // namespace
@@ -119,14 +120,12 @@ void startCheckedDevice(const PictureOptions& options, CommandContext& context, 
   startDevice(options.device, device);
 }
 
-std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context,
-                               bool makes_one_picture) {
+std::vector<OpenedDevice*> startDevices(const PictureOptions& options, CommandContext& context,
+                                        bool makes_one_picture) {
   if (options.device.substr(0, options.device.find(',')) == kAllDevices)
     return openAllDevices(options, context);
   startCheckedDevice(options, context, makes_one_picture);
-  std::list<Sharer> one;
-  one.push_back({&context.device});
-  return one;
+  return {&context.device};
 }
 
 void logDevice(const DeviceDescription& device) {

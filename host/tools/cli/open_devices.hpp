@@ -1,9 +1,8 @@
 #pragma once
 
-#include <list>
+#include <vector>
 
 #include "cl/device.hpp"
-#include "render/share_picture.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/picture_options.hpp"
 
@@ -17,8 +16,8 @@ void startCheckedDevice(const PictureOptions& options, CommandContext& context, 
 /// The same for all devices that render the picture: one, or with --device all every device that can be
 /// opened and whose arithmetic is right; these are open on return. Warns of others. Throws MachineError, for
 /// all devices if none is left.
-std::list<Sharer> startSharers(const PictureOptions& options, CommandContext& context,
-                               bool makes_one_picture);
+std::vector<OpenedDevice*> startDevices(const PictureOptions& options, CommandContext& context,
+                                        bool makes_one_picture);
 
 /// Writes the used device to the event log.
 void logDevice(const DeviceDescription& device);

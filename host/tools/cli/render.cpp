@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <list>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -20,7 +19,7 @@
 #include "raster/surface_ids.hpp"
 #include "render/measure_exposure.hpp"
 #include "render/render.hpp"
-#include "render/share_picture.hpp"
+#include "render/renderer.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/frame_claims.hpp"
@@ -63,18 +62,19 @@ Crop windowOf(const RenderSettings& settings) {
 }
 
 /// The exposure of each picture, by one a camera: measured at this frame, or none where the options say it.
-std::vector<std::optional<double>> chooseExposures(Sharer& sharer, Scene& scene, int frame,
+std::vector<std::optional<double>> chooseExposures(Renderer& renderer, int frame,
                                                    const RenderOptions& options,
                                                    const std::vector<PictureOptions>& pictures,
                                                    Stats& stats) {
   std::vector<std::optional<double>> exposures(pictures.size());
   if (!measuresExposure(options, options.scene)) return exposures;
+  Scene& scene = renderer.scene();
   poseScene(scene, frame);
   ProgressLine progress(options.quiet);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     RenderSettings settings = settingsAt(frame, pictures[i], scene, options.orbit);
     settings.on_long_compile = compileReporter(progress);
-    exposures[i] = measureExposure(*sharer.device, scene, settings, stats, &sharer.kept);
+    exposures[i] = renderer.measureExposure(settings, stats);
   }
   progress.clear();
   return exposures;
@@ -86,9 +86,9 @@ RenderSettings withExposure(RenderSettings settings, const Stats& stats) {
   return settings;
 }
 
-/// Renders the scene at its frame, and calls write(rows) from the top down. keeps: see renderShared.
-void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
-                const RenderSettings& settings, bool keeps, const RowSink& write, Stats& stats) {
+/// Renders the scene at its frame, and calls write(rows) from the top down.
+void renderRows(Renderer& renderer, const PictureOptions& options, const RenderSettings& settings,
+                const RowSink& write, Stats& stats) {
   const Crop window = windowOf(settings);
   std::optional<PictureHash> hash;
   const auto take = [&](const Image& rows) {
@@ -98,7 +98,7 @@ void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOpt
       write(rows);
     });
   };
-  renderShared(sharers, scene, settings, take, stats, keeps);
+  renderer.render(settings, take, stats);
   if (!options.quiet)
     for (const DeviceShare& share : stats.shares)
       if (!share.error.empty())
@@ -109,30 +109,29 @@ void renderRows(std::list<Sharer>& sharers, const Scene& scene, const PictureOpt
 }
 
 /// Renders the scene and returns the layer that --aov names alone.
-Image renderLayer(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
-                  const RenderSettings& settings, bool keeps, ShownLayer& layer, Stats& stats) {
+Image renderLayer(Renderer& renderer, const PictureOptions& options, const RenderSettings& settings,
+                  ShownLayer& layer, Stats& stats) {
   Image picture;
   const auto take = [&](const Image& rows) {
     if (picture.height == 0) layer = aovLayer(rows.channels);
     appendRows(rows, layer.channels, picture);
   };
-  renderRows(sharers, scene, options, settings, keeps, take, stats);
+  renderRows(renderer, options, settings, take, stats);
   return picture;
 }
 
 /// Renders the scene as it is posed, by these settings of the options, with the exposure that was measured or
 /// that the options say. Writes the picture, to the film unless that is null, or where the file has no place
 /// for layers the one that --aov names.
-void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
+void renderPicture(Renderer& renderer, const OpenedDevice* device, const PictureOptions& options,
                    RenderSettings settings, Film* film, ProgressLine& progress,
-                   const std::function<void(int, int)>& on_pass, bool keeps, Stats& stats) {
+                   const std::function<void(int, int)>& on_pass, Stats& stats) {
   settings = withExposure(settings, stats);
   settings.on_pass = on_pass;
   settings.on_long_compile = compileReporter(progress);
-  OpenedDevice* const device = sharers.front().device;
   if (showsAov(options)) {
     ShownLayer shown;
-    const Image layer = renderLayer(sharers, scene, options, settings, keeps, shown, stats);
+    const Image layer = renderLayer(renderer, options, settings, shown, stats);
     PictureOptions exposed = options;
     exposed.exposure.clear();  // its light is exposed
     timed(stats, Stage::kWrite, [&] { writeLayerPicture(exposed, shown, layer, stats, device); });
@@ -141,7 +140,7 @@ void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const Picture
   const Crop window = windowOf(settings);
   WriteOptions how = writeOptions(options, settings.camera, settings.size, {window.x, window.y});
   how.film = film;
-  const Metadata mattes = surfaceIdTexts(scene, settings);
+  const Metadata mattes = surfaceIdTexts(renderer.scene(), settings);
   how.exr.texts.insert(how.exr.texts.end(), mattes.begin(), mattes.end());
   std::optional<ImageWriter> writer;
   const auto write = [&](const Image& rows) {
@@ -150,7 +149,7 @@ void renderPicture(std::list<Sharer>& sharers, const Scene& scene, const Picture
                      pictureMetadata(stats, device), how);
     writer->write(rows);
   };
-  renderRows(sharers, scene, options, settings, keeps, write, stats);
+  renderRows(renderer, options, settings, write, stats);
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] { return writer->close(); });
   reportHalves(options, limited, stats);
 }
@@ -199,7 +198,7 @@ void reportShared(const RenderOptions& options, std::size_t others, std::size_t 
 /// file each. claims: by which other runs may share the frames; of a film null. When all others are made,
 /// those are awaited that other runs are at. started: the cost of loading and measuring, which goes into the
 /// first frame's statistics. Returns the exit status of the first failure.
-int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& options,
+int renderFrames(Renderer& renderer, const OpenedDevice* device, const RenderOptions& options,
                  const std::vector<int>& frames, const std::vector<std::optional<double>>& exposures,
                  Film* film, FrameClaims* claims, Stats started) {
   ProgressLine progress(options.quiet);
@@ -221,6 +220,7 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
     one.stats = frameFile(options.stats, frame);
     one.quiet = options.quiet || film;  // a film is told when it is whole
     try {
+      Scene& scene = renderer.scene();
       poseScene(scene, frame);
       const std::vector<PictureOptions> pictures = optionsOfCameras(one, scene);
       for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
@@ -230,8 +230,8 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
         Stats stats = std::exchange(started, Stats{});
         if (stats.command.empty()) stats = laterStats(command);
         stats.measured_exposure = exposures[camera];
-        renderPicture(sharers, scene, picture, settingsAt(frame, picture, scene, options.orbit), film,
-                      progress, showPass, true, stats);
+        renderPicture(renderer, device, picture, settingsAt(frame, picture, scene, options.orbit), film,
+                      progress, showPass, stats);
         progress.clear();
         reportStats(picture, stats, frame);
       }
@@ -269,16 +269,16 @@ int renderFrames(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& 
 }
 
 /// Renders all frames into one film. Returns the exit status.
-int renderFilm(std::list<Sharer>& sharers, Scene& scene, const RenderOptions& options,
+int renderFilm(Renderer& renderer, const OpenedDevice* device, const RenderOptions& options,
                const std::vector<int>& frames, const std::vector<std::optional<double>>& exposures,
                Stats started) {
-  const PictureOptions picture = optionsOfCameras(options, scene).front();
-  const Crop window = windowOf(renderSettings(picture, scene));
+  const PictureOptions picture = optionsOfCameras(options, renderer.scene()).front();
+  const Crop window = windowOf(renderSettings(picture, renderer.scene()));
   const double rate = options.frames_per_second.value_or(kFramesPerSecond);
   const std::string path = frameFile(picture.output, frames.front());
   Film film(path, options.format, window.width, window.height, rate);
   const int status =
-      renderFrames(sharers, scene, options, frames, exposures, &film, nullptr, std::move(started));
+      renderFrames(renderer, device, options, frames, exposures, &film, nullptr, std::move(started));
   if (status != kDone) return status;
   film.close();
   if (logsEvents())
@@ -381,16 +381,16 @@ void checkSheet(const RenderOptions& options) {
 }
 
 /// Renders what a sheet shows of a picture: its colours, or the layer of --aov.
-Image renderPanel(std::list<Sharer>& sharers, const Scene& scene, const PictureOptions& options,
-                  const RenderSettings& settings, Stats& stats) {
+Image renderPanel(Renderer& renderer, const PictureOptions& options, const RenderSettings& settings,
+                  Stats& stats) {
   if (showsAov(options)) {
     ShownLayer shown;
-    const Image layer = renderLayer(sharers, scene, options, settings, false, shown, stats);
+    const Image layer = renderLayer(renderer, options, settings, shown, stats);
     return layerPicture(shown.name, shown.kind, layer).image;
   }
   Image picture;
   renderRows(
-      sharers, scene, options, settings, false,
+      renderer, options, settings,
       [&](const Image& rows) {
         appendRows(rows, {0, 1, 2}, picture);
       },
@@ -400,7 +400,8 @@ Image renderPanel(std::list<Sharer>& sharers, const Scene& scene, const PictureO
 
 /// Renders the pictures of --sweep: into a file each where the name has a place for a number, or into one
 /// sheet. All have the exposure of the first. stats: the cost of opening the device.
-void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int frame, Stats stats) {
+void renderSweep(const std::vector<OpenedDevice*>& devices, const RenderOptions& options, int frame,
+                 Stats stats) {
   const std::vector<Sweep> sweeps = readSweeps(options.sweeps);
   const std::vector<SweepPicture> all = sweepPictures(sweeps);
   const bool makes_files = hasFramePlace(options.output);
@@ -416,7 +417,9 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
     one.load.changes.insert(one.load.changes.end(), all[i].begin(), all[i].end());
     one.quiet = options.quiet || i > 0;  // the scene's warnings are told once
     progress.show(std::filesystem::path(options.output).filename(), i, all.size());
-    Scene scene = timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, frame, one); });
+    Renderer renderer = makeRenderer(
+        devices, timed(stats, Stage::kLoadScene, [&] { return openLitScene(options.scene, frame, one); }));
+    Scene& scene = renderer.scene();
     setMiddle(scene, frame, one.orbit);
     const std::vector<PictureOptions> cameras = optionsOfCameras(one, scene);
     if (cameras.size() > 1) throw InputError("--camera all: --sweep makes pictures of one camera");
@@ -425,19 +428,19 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
     RenderSettings settings = settingsAt(frame, picture, scene, one.orbit);
     settings.on_long_compile = compileReporter(progress);
     if (i == 0 && measuresExposure(options, options.scene))
-      exposure = measureExposure(*sharers.front().device, scene, settings, stats);
+      exposure = renderer.measureExposure(settings, stats);
     stats.measured_exposure = exposure;
     if (makes_files) {
       picture.output = frameFile(picture.output, int(i) + 1);
       picture.stats = frameFile(picture.stats, int(i) + 1);
       checkOutput(picture);
-      renderPicture(sharers, scene, picture, settings, nullptr, progress, {}, false, stats);
+      renderPicture(renderer, devices.front(), picture, settings, nullptr, progress, {}, stats);
       progress.clear();
       reportStats(picture, stats, frame);
       stats = laterStats(command);
       continue;
     }
-    panels.push_back(renderPanel(sharers, scene, picture, withExposure(settings, stats), stats));
+    panels.push_back(renderPanel(renderer, picture, withExposure(settings, stats), stats));
     labels.push_back(fmt::format("{}", fmt::join(all[i], ", ")));
     brief.push_back(briefLabel(all[i]));
     if (panels.back().width != panels[0].width || panels.back().height != panels[0].height)
@@ -446,7 +449,7 @@ void renderSweep(std::list<Sharer>& sharers, const RenderOptions& options, int f
   progress.clear();
   if (makes_files) return;
   const Image sheet = labelledSheet(panels, labels, brief, sweepColumns(sweeps));
-  writeImage(sheet, options.output, pictureMetadata(stats, sharers.front().device), fileOptions(options));
+  writeImage(sheet, options.output, pictureMetadata(stats, devices.front()), fileOptions(options));
   if (logsEvents())
     logEvent("sheet_done", {{"file", options.output},
                             {"pictures", panels.size()},
@@ -516,8 +519,8 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
       readSweeps(options->sweeps);  // before a device is opened
       Stats stats;
       stats.command = context.command_line;
-      std::list<Sharer> sharers = startSharers(*options, context, false);
-      return renderSweep(sharers, *options, choice.frames.front(), std::move(stats));
+      return renderSweep(startDevices(*options, context, false), *options, choice.frames.front(),
+                         std::move(stats));
     }
     const bool is_film = makesFilm(*options, choice);
     std::vector<int> frames;
@@ -536,11 +539,13 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     }
     Stats stats;
     stats.command = context.command_line;
-    std::list<Sharer> sharers = startSharers(*options, context, !choice.is_list);
-    OpenedDevice& device = *sharers.front().device;
-    Scene scene = timed(stats, Stage::kLoadScene, [&] {
-      return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
-    });
+    const std::vector<OpenedDevice*> devices = startDevices(*options, context, !choice.is_list);
+    OpenedDevice& device = *devices.front();
+    Renderer renderer = makeRenderer(
+        devices, timed(stats, Stage::kLoadScene, [&] {
+          return openLitScene(options->scene, choice.is_list ? 1 : choice.frames.front(), *options);
+        }));
+    Scene& scene = renderer.scene();
     warnOfDither(scene, *options);
     setMiddle(scene, choice.frames.front(), options->orbit);
     if (choice.is_list) {
@@ -551,12 +556,11 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
         throw InputError(
             fmt::format("--camera all: a film is of one camera, and {} has {}", scene.name, pictures.size()));
       awaitDevice(device);
-      for (const Sharer& sharer : sharers) logDevice(sharer.device->description);
+      for (const OpenedDevice* one : devices) logDevice(one->description);
       // By the first frame of all, also of those that aren't made here: every shard measures the same.
-      const auto exposures =
-          chooseExposures(sharers.front(), scene, choice.frames.front(), *options, pictures, stats);
-      context.status = is_film ? renderFilm(sharers, scene, *options, frames, exposures, std::move(stats))
-                               : renderFrames(sharers, scene, *options, frames, exposures, nullptr,
+      const auto exposures = chooseExposures(renderer, choice.frames.front(), *options, pictures, stats);
+      context.status = is_film ? renderFilm(renderer, &device, *options, frames, exposures, std::move(stats))
+                               : renderFrames(renderer, &device, *options, frames, exposures, nullptr,
                                               claims ? &*claims : nullptr, std::move(stats));
       return;
     }
@@ -574,20 +578,20 @@ void addRenderCommand(CLI::App& app, CommandContext& context) {
     for (const PictureOptions& picture : pictures) checkOutput(picture);
     logEvent("frame_begun", {{"frame", frame}});
     bool device_is_told = false;
-    const auto exposures = chooseExposures(sharers.front(), scene, frame, *options, pictures, stats);
+    const auto exposures = chooseExposures(renderer, frame, *options, pictures, stats);
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       ProgressLine progress(options->quiet);
       progress.frame = frame;
       const auto showPass = [&](int done, int passes) {
         // The first pass needed it.
         if (!std::exchange(device_is_told, true))
-          for (const Sharer& sharer : sharers) logDevice(sharer.device->description);
+          for (const OpenedDevice* one : devices) logDevice(one->description);
         progress.show(std::filesystem::path(pictures[i].output).filename(), std::size_t(done),
                       std::size_t(passes));
       };
       stats.measured_exposure = exposures[i];
-      renderPicture(sharers, scene, pictures[i], settingsAt(frame, pictures[i], scene, options->orbit),
-                    nullptr, progress, showPass, true, stats);
+      renderPicture(renderer, &device, pictures[i], settingsAt(frame, pictures[i], scene, options->orbit),
+                    nullptr, progress, showPass, stats);
       progress.clear();
       reportStats(pictures[i], stats, frame);
       stats = laterStats(context.command_line);
