@@ -93,6 +93,16 @@ const fillList = (list, entries) =>
 const readOut = parts => byId("readout").replaceChildren(
   ...parts.flatMap(([number, unit], i) => [i ? " · " : "", element("b", {textContent: number}), " " + unit]));
 
+/** Shows what a picture has below its first rows: its legend. */
+function showLegend(bitmap, rows) {
+  const legend = byId("legend");
+  legend.hidden = bitmap.height === rows;
+  if (legend.hidden) return;
+  Object.assign(legend, {width: bitmap.width, height: bitmap.height - rows});
+  legend.style.width = bitmap.width / devicePixelRatio + "px";
+  legend.getContext("2d").drawImage(bitmap, 0, -rows);
+}
+
 /**
  * Tells what pointers do on the frame: moved(dx, dy, event, press) in CSS pixels, pinched(ratio, dx, dy, event) of two
  * fingers, and clicked(x, y) in shares of the frame.
@@ -151,6 +161,7 @@ function followKeys(pressed) {
 const layers = [["color", "Picture"], ["normal", "Normals"], ["depth", "Depth"], ["position", "Positions"], ["diffuse", "Diffuse"],
   ["light_count", "Lights a pixel"], ["shadow", "Shadows"], ["light_error", "Bound"], ["error", "Error"], ["shadow_map", "Shadow map"]];
 const kQuiet = 120;  // milliseconds without input, after which the full picture is asked for
+const kTold = 200;   // milliseconds between two tellings of a motion's figures, which nobody reads faster
 const storageKey = "luciole " + location.pathname;
 
 let view = null;  // all that a picture depends on, see the server's `view`
@@ -163,9 +174,12 @@ let level = 3, serial = 0, lastInput = 0, timer = 0;
 let flying = null;           // the request on its way, {isMoving, controller}
 let lastFrame = null;        // of a motion, {milliseconds, size}
 let frameTimes = [];         // of the last second of a motion
+let toldAt = 0;
 const gestures = new Map();  // what no request has carried yet, summed by kind
 const held = new Map();      // keys, and the gesture of a second
 let heldSince = 0;
+
+let isOfScene = true;        // whether the last picture's pixels are those of the view, and not of a map
 
 const samplesWanted = () => layer === "color" ? Number(view.options.samples || 1) : 1;
 
@@ -243,23 +257,29 @@ async function draw(isMoving, samples) {
 }
 
 function showPicture(about, isMoving) {
-  const {bitmap, size, samples, milliseconds} = about, now = performance.now();
-  if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) Object.assign(canvas, {width: bitmap.width, height: bitmap.height});
+  const {bitmap, size, shows, samples, milliseconds} = about, now = performance.now();
+  const height = bitmap.width === shows[0] ? Math.min(bitmap.height, shows[1]) : bitmap.height;
+  isOfScene = layer !== "shadow_map" && bitmap.width === shows[0];
+  if (canvas.width !== bitmap.width || canvas.height !== height) Object.assign(canvas, {width: bitmap.width, height});
   context.drawImage(bitmap, 0, 0);
+  if (!isMoving || height === bitmap.height) showLegend(bitmap, height);
   bitmap.close();
-  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size: about.shows};
+  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size: shows};
   frameTimes = isMoving ? [...frameTimes.filter(time => now - time < 1000), now] : [];
-  const speed = frameTimes.length > 2 ? [[((frameTimes.length - 1) * 1000 / (now - frameTimes[0])).toFixed(0), "fps"]] : [];
-  readOut([...speed, [size.join(" × "), "pixels"], ...(samples > 1 ? [[samples, "samples"]] : []), [milliseconds.toFixed(milliseconds < 10 ? 1 : 0), "ms"]]);
   say("error", "");
-  say("warnings", about.warnings.join("; "));
-  byId("notes").textContent = about.notes.join(" · ");
   showMarkers(about.markers);
-  showStages(about.stages);
-  if (!isMoving && samples === 1 && layer === "color") showBound(about);
   showCamera();
   for (const kind of shaderKinds) if (goodShaders[kind] === textInUse(kind)) editors[kind].fault = null;
   showShaderFaults();
+  if (isMoving && now - toldAt < kTold) return;
+  toldAt = now;
+  const speed = frameTimes.length > 2 ? [[((frameTimes.length - 1) * 1000 / (now - frameTimes[0])).toFixed(0), "fps"]] : [];
+  readOut([...speed, [(isOfScene ? [canvas.width, canvas.height] : size).join(" × "), "pixels"], ...(samples > 1 ? [[samples, "samples"]] : []),
+    [milliseconds.toFixed(milliseconds < 10 ? 1 : 0), "ms"]]);
+  say("warnings", about.warnings.join("; "));
+  byId("notes").textContent = about.notes.join(" · ");
+  showStages(about.stages);
+  if (!isMoving && samples === 1 && layer === "color") showBound(about);
 }
 
 /** Tells what failed. A shader that doesn't compile stays in its editor, and the pictures go on with the last ones that did. */
@@ -314,7 +334,7 @@ function addMarker(given) {
 /** Puts a marker on each light that is to have one: [index, x, y] in shares of the picture. */
 function showMarkers(places) {
   markerPlaces = places;
-  const shownPlaces = layer === "shadow_map" ? [] : places.filter(([index]) => index === light || byId("all_markers").checked);
+  const shownPlaces = !isOfScene ? [] : places.filter(([index]) => index === light || byId("all_markers").checked);
   for (const [index, marker] of markers)
     if (!shownPlaces.some(([of]) => of === index)) {
       marker.remove();
@@ -329,8 +349,8 @@ function showMarkers(places) {
 }
 
 function showStages(stages) {
-  const longest = Math.max(...stages.map(([, milliseconds]) => milliseconds), 1e-9);
-  byId("stages").replaceChildren(...stages.map(([name, milliseconds]) => {
+  const seen = stages.filter(([, milliseconds]) => milliseconds >= 0.05), longest = Math.max(...seen.map(([, milliseconds]) => milliseconds));
+  byId("stages").replaceChildren(...seen.map(([name, milliseconds]) => {
     const row = element("tr", {}, element("td", {textContent: name}), element("td", {textContent: milliseconds.toFixed(1) + " ms"}));
     row.style.setProperty("--share", 100 * milliseconds / longest + "%");
     return row;
@@ -482,7 +502,7 @@ function showMaterial(index) {
   byId("shininess").value = changeOf(`materials[${material}].shininess`) ?? short(given.shininess);
 }
 
-const pick = (x, y) => attempt(async () => {
+const pick = (x, y) => isOfScene && attempt(async () => {
   const found = await askJson("pick", {view, size: wanted, at: [x, y]}), {pixel, color, object, position, normal, distance} = found;
   Object.assign(byId("spot").style, {left: 100 * x + "%", top: 100 * y + "%"});
   byId("spot").hidden = false;
@@ -588,9 +608,9 @@ function showScene(isFirst) {
     listen();
   }
   document.title = "Luciole: " + state.name;
-  byId("name").textContent = state.name;
+  byId("name").textContent = state.name.split("/").pop();
   byId("saved").textContent = "Into " + state.output;
-  fillSelect(byId("camera"), [["", "as it was"], ...state.cameras.map((name, i) => [i, name]), [movedCamera, "moved"]], "");
+  fillSelect(byId("camera"), [["", "as it was"], ...state.cameras.map((name, i) => [i, name]).filter(([, name]) => name), [movedCamera, "moved"]], "");
   fillSelect(byId("material"), state.materials.map(({index, name}) => [index, name]), material);
   for (const show of [showOptions, showCamera, showLights, showAir, showEditor, layOut]) show();
   showMaterial(material);
