@@ -5,18 +5,19 @@ let requests = 0;
 let state = null;  // what the server told last, see its `state`
 
 /** What there is to tell, by its kind; the line below the picture holds all that isn't empty. */
-const messages = {gone: "", fault: "", error: "", shader: "", news: "", warnings: ""};
+const errorKinds = ["gone", "fault", "error", "shader"], messages = Object.fromEntries(errorKinds.map(kind => [kind, ""]));
 function say(kind, text) {
-  if (messages[kind] === text) return;
+  if ((messages[kind] || "") === text) return;
   messages[kind] = text;
   byId("messages").replaceChildren(...Object.entries(messages).filter(([, told]) => told).map(([of, told]) =>
-    element("span", {className: of === "news" || of === "warnings" ? of : "error", textContent: told, title: told})));
+    element("span", {className: errorKinds.includes(of) ? "error" : of, textContent: told, title: told})));
 }
 
 const textOf = bytes => new TextDecoder().decode(bytes);
 
 /** A request's answer. Throws {error, status, shader}, {gone: true} or, where it was given up, {superseded: true}. */
 async function ask(path, body, signal) {
+  const telling = setTimeout(say, 1500, path, `Waiting for the server's ${path} …`);
   let response, bytes, told = {};
   try {
     response = await fetch(path, body && {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body), signal});
@@ -25,6 +26,9 @@ async function ask(path, body, signal) {
     if (fault.name === "AbortError") throw {superseded: true};
     say("gone", "The server is gone; the page goes on asking for it.");
     throw {gone: true};
+  } finally {
+    clearTimeout(telling);
+    say(path, "");
   }
   say("gone", "");
   if (response.ok) return bytes;
