@@ -372,7 +372,7 @@ function showBound({bound, milliseconds}) {
   const of = JSON.stringify([view, wanted], (key, value) => key === "light-error" ? undefined : value);
   if (tried.of !== of) tried = {of, points: []};
   tried.points = [...tried.points.filter(point => point.share !== share), {share, largest, milliseconds}].sort((a, b) => a.share - b.share);
-  fillList(byId("bound"), [["Bound", largest ? `${short(largest)} at most, ${short(bound.mean)} in the mean` : "0: every light by itself"],
+  fillList(byId("bound"), [["Bound", largest ? `${short(largest)} at most, ${short(bound.mean)} in the mean` : share ? "0: no light can be stood for by others" : "0: every light by itself"],
     ["Time", milliseconds.toFixed(1) + " ms"]]);
   plotTried(share);
 }
@@ -385,9 +385,12 @@ function plotTried(now) {
   const place = ({largest, milliseconds}) =>
     [44 + 260 * milliseconds / slowest, largest > 0 ? 16 + 92 * (highest - Math.log2(largest)) / (highest - lowest) : 122].map(at => at.toFixed(1));
   const text = (x, y, anchor, what) => `<text x="${x}" y="${y}" text-anchor="${anchor}">${what}</text>`;
-  const marks = points.map(point => {
-    const [x, y] = place(point), isNow = point.share === now;
-    return `<circle class="${isNow ? "now" : ""}" cx="${x}" cy="${y}" r="${isNow ? 5 : 3.5}"/>` + text(x, y - 8, "middle", point.share ? fraction(point.share) : "exact");
+  const taken = [];
+  const marks = [...points].sort((a, b) => (b.share === now) - (a.share === now)).map(point => {
+    const [x, y] = place(point), isNow = point.share === now, isFree = !taken.some(other => Math.abs(other[0] - x) < 38 && Math.abs(other[1] - y) < 12);
+    if (isFree) taken.push([x, y]);
+    return `<circle class="${isNow ? "now" : ""}" cx="${x}" cy="${y}" r="${isNow ? 5 : 3.5}"/>` +
+      (isFree ? text(x, y - 8, "middle", point.share ? fraction(point.share) : "exact") : "");
   });
   byId("plot").innerHTML = `<svg viewBox="0 0 320 152" role="img"><path d="M44 4V130H316"/><polyline points="${points.map(point => place(point).join())}"/>` +
     marks.join("") + text(40, 20, "end", fraction(2 ** highest)) + text(40, 112, "end", fraction(2 ** lowest)) + text(40, 126, "end", 0) +
