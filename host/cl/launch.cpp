@@ -163,6 +163,7 @@ void dropPassingPrograms(OpenedDevice& device) {
   const std::lock_guard lock(device.programs_mutex);
   std::erase_if(device.programs,
                 [](const auto& one) { return one.second.is_quick || one.second.is_of_a_user; });
+  device.ready.clear();
 }
 
 void listCompiled(OpenedDevice& device) {

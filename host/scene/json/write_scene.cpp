@@ -237,10 +237,13 @@ SavedScene savedScene(const std::string& scene_path, const std::string& folder, 
   Json materials = Json::object();
   if (json.contains("materials")) materials["materials"] = Json::parse(json["materials"].dump());
   for (SceneChange& change : of_materials) {
-    // A name, by which the file has it.
-    if (change.place[1].index != JsonNode::kNoIndex && change.place[1].index < scene.materials.size() &&
-        !scene.materials[change.place[1].index].name.empty())
-      change.place[1] = {scene.materials[change.place[1].index].name};
+    // By its name, since the saved file may number materials otherwise.
+    ChangeStep& which = change.place[1];
+    if (which.index == JsonNode::kNoIndex || which.index >= scene.materials.size()) continue;
+    const std::string& name = scene.materials[which.index].name;
+    if (name.empty()) continue;
+    which = {name};
+    change.text = fmt::format("materials[{}].{}={}", quoted(name), change.place[2].key, change.value.dump());
   }
   changeScene(materials, scene_path, of_materials);
   if (!materials.empty()) json["materials"] = OrderedJson::parse(materials["materials"].dump());

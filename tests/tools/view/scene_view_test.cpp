@@ -336,6 +336,49 @@ TEST_F(SceneViews, WhatIsSavedGivesTheSavedBits) {
       << "nothing is overwritten";
 }
 
+/// The changes that a saved view's command makes by --set, quoted where they need it.
+std::vector<std::string> changesOf(const std::string& command) {
+  std::vector<std::string> changes;
+  const std::string option = "--set ";
+  for (std::size_t at = command.find(option); at != std::string::npos; at = command.find(option, at + 1)) {
+    const std::size_t begin = at + option.size();
+    const bool is_quoted = command[begin] == '\'';
+    const std::size_t end = command.find(is_quoted ? '\'' : ' ', begin + 1);
+    changes.push_back(command.substr(begin + is_quoted, end - begin - is_quoted));
+  }
+  return changes;
+}
+
+TEST_F(SceneViews, WhatIsSavedOfAMeshFileGivesTheSavedBits) {
+  std::ofstream(folder / "box.mtl") << "newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 20\n";
+  std::ofstream(folder / "box.obj")
+      << "mtllib box.mtl\nusemtl red\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 1\n"
+         "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+  SceneView of_mesh(testDevice(), {.path = folder / "box.obj",
+                                   .folder = folder.path().string(),
+                                   .load = [this] { return loadScene(folder / "box.obj"); },
+                                   .settings =
+                                       [](const ViewOptions&, Scene& scene) {
+                                         return settingsFor(scene, {90, 70});
+                                       }});
+  Json asked = request();
+  asked["view"]["changes"] = {"materials[0].diffuse=#3060ff", "lights[0].intensity=2"};
+  asked["gesture"] = {{"orbit", {0.3, 0.1}}};
+  const Shown shown = shownBy(of_mesh.picture(asked.dump()));
+  ASSERT_EQ(shown.status, 200) << shown.about;
+  asked["view"]["camera"] = shown.about["camera"];
+  asked["what"] = {"scene", "exr"};
+  asked.erase("gesture");
+  const Answer answer = of_mesh.save(asked.dump());
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  LoadSettings load;
+  load.changes = changesOf(Json::parse(answer.body)["command"]);
+  ASSERT_EQ(load.changes.size(), 1u) << answer.body;
+  const Scene scene = loadScene(folder / "box-view-1.json", 1, load);
+  EXPECT_TRUE(readImage(folder / "box-view-1.exr").pixels ==
+              test::picture(scene, settingsFor(scene, {90, 70})).pixels);
+}
+
 TEST_F(SceneViews, NoRequestNamesAFile) {
   for (const char* change :
        {"materials.m.diffuse_map=/etc/passwd", "objects[0].mesh=/etc/passwd", "lights[0].profile=/etc/passwd",
