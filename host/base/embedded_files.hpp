@@ -26,6 +26,9 @@ const std::vector<EmbeddedFile>& mixPageFiles();
 /// The files of host/tools/view/page/, of which `luciole view` makes its page, and mixPage a part of its own.
 const std::vector<EmbeddedFile>& viewPageFiles();
 
+/// The files of kernels/examples/.
+const std::vector<EmbeddedFile>& exampleShaderFiles();
+
 /// The text of the file of that name. Throws std::logic_error if there is none.
 std::string_view embeddedText(const std::vector<EmbeddedFile>& files, std::string_view name);
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,8 @@ struct OpenedDevice {
   /// Programs built so far, by options and file or source; guarded by `programs_mutex`.
   std::map<std::string, Program> programs;
   std::mutex programs_mutex;
+  /// What compileKernels() has compiled; of the thread that compiles a picture's kernels.
+  std::set<std::string> ready;
   /// The folder with their binaries (see program_cache.hpp). Empty where the platform keeps them itself.
   std::string program_cache;
 

@@ -63,6 +63,7 @@ Kernel makeKernelOf(OpenedDevice& device, const std::string& key, const char* na
       std::optional<QuietStderr> quiet;
       if (!user_text.empty() && device.owns_stderr) quiet.emplace();
       place = device.programs.emplace(options + key, build(device, source(), options)).first;
+      place->second.is_of_a_user = !user_text.empty();
     }
     const Program& program = place->second;
     const cl::Kernel kernel = callDriver([&] { return cl::Kernel(program.program, name); });
@@ -156,6 +157,12 @@ bool hasQuickPrograms(OpenedDevice& device) {
   const std::lock_guard lock(device.programs_mutex);
   return std::any_of(device.programs.begin(), device.programs.end(),
                      [](const auto& one) { return one.second.is_quick; });
+}
+
+void dropPassingPrograms(OpenedDevice& device) {
+  const std::lock_guard lock(device.programs_mutex);
+  std::erase_if(device.programs,
+                [](const auto& one) { return one.second.is_quick || one.second.is_of_a_user; });
 }
 
 void listCompiled(OpenedDevice& device) {

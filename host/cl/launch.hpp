@@ -159,6 +159,10 @@ bool isCompiled(const OpenedDevice& device, const std::string& file, const std::
 /// Whether any program of the device was compiled quickly.
 bool hasQuickPrograms(OpenedDevice& device);
 
+/// Forgets programs that were compiled quickly, and those with texts of users: they are compiled again, or
+/// come from PoCL's cache, optimized if they are there so. No kernel may run.
+void dropPassingPrograms(OpenedDevice& device);
+
 /// Call it when all kernels of the device's programs have run: notes that PoCL has their machine code now.
 void listCompiled(OpenedDevice& device);
 

@@ -25,7 +25,8 @@ struct Program {
   KernelArguments arguments;
   /// Its description (describeProgram) until it is on the list of what PoCL has kept (pocl_cache.hpp).
   std::string unlisted = {};
-  bool is_quick = false;  ///< compiled without optimization
+  bool is_quick = false;      ///< compiled without optimization
+  bool is_of_a_user = false;  ///< has a text of a user's
 };
 
 }  // namespace luciole

@@ -110,6 +110,13 @@ bool HelperProcess::await() {
   return status == 0;
 }
 
+void compileLeftOver(const OpenedDevice& device, const std::vector<std::string>& task) {
+  pid_t child = 0;
+  if (!startHelper(device, task, 0, child)) return;
+  const Cleanup killing([child] { kill(child, SIGKILL); });
+  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) continue;
+}
+
 void startLeftOver(const OpenedDevice& device) {
   pid_t child = 0;
   if (!device.left_over.empty()) startHelper(device, device.left_over, POSIX_SPAWN_SETSID, child);

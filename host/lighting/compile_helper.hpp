@@ -54,6 +54,9 @@ class HelperProcess {
   std::optional<Cleanup> killing_;
 };
 
+/// Has the device's helper do a task of OpenedDevice::left_over, and waits for its end.
+void compileLeftOver(const OpenedDevice& device, const std::vector<std::string>& task);
+
 /// Starts the device's helper on OpenedDevice::left_over, if there is any. Nobody waits for it: it outlives
 /// this process by some seconds, at the lowest priority.
 void startLeftOver(const OpenedDevice& device);

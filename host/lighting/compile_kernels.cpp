@@ -1,5 +1,7 @@
 #include "lighting/compile_kernels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -52,12 +54,21 @@ bool isKept(const OpenedDevice& device, const FeatureSet& features, const ShadeS
           isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))));
 }
 
+/// Names what compileKernels() makes of its arguments.
+std::string readyName(const OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings,
+                      KernelChoice choice) {
+  return fmt::format("{} {} {} {} {} {} {}\n{}", featureDefines(features), mathDefines(settings),
+                     choice.beams, choice.others, choice.counts, device.compiles_quickly, settings.tile_size,
+                     settings.user_text);
+}
+
 /// Starts the helper on those beams of the picture's programs that have to be compiled.
 void startBeams(OpenedDevice& device, const CompileTask& picture, HelperProcess& helper) {
   if (device.helper.empty()) return;
   CompileTask beams{{}, picture.settings, {.others = false}, device.compiles_quickly};
   for (const FeatureSet& features : picture.programs)
     if (features.has(Feature::kExact) &&
+        !device.ready.contains(readyName(device, features, picture.settings, {.others = false})) &&
         !isCompiled(device, "exact/beam_shadows.cl", featureDefines(featuresFor(kForBeams, features))))
       beams.programs.push_back(features);
   if (!beams.programs.empty()) helper.start(device, beams);
@@ -103,6 +114,8 @@ void checkItself(OpenedDevice& device) {
 
 void compileKernels(OpenedDevice& device, const FeatureSet& features, const ShadeSettings& settings,
                     KernelChoice choice) {
+  std::string all_of_it = readyName(device, features, settings, choice);
+  if (device.ready.contains(all_of_it)) return;
   const GBuffer empty = emptyTile();
   const Scene nothing;
   Lighting lighting;
@@ -127,6 +140,7 @@ void compileKernels(OpenedDevice& device, const FeatureSet& features, const Shad
     timed(ignored, Stage::kBeamShadows, [&] { compileShadows(device, pass, settings, choice); });
   if (choice.others) lightGBuffer(device, nothing, lighting, std::move(pass), ignored);
   listCompiled(device);
+  device.ready.insert(std::move(all_of_it));
 }
 
 std::future<double> startCompiling(OpenedDevice& device, const std::vector<FeatureSet>& programs,

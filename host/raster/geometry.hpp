@@ -10,6 +10,7 @@
 #include "luciole/array_memory.hpp"
 #include "luciole/scene.hpp"
 #include "raster/clip.hpp"
+#include "raster/triangle_runs.hpp"
 #include "raster/view.hpp"
 
 namespace luciole {
@@ -22,7 +23,8 @@ struct PlacedObject {
   int material = -1;         ///< as in Object
   std::size_t first_vertex = 0;
   std::uint32_t first_triangle = 0;
-  bool mirrored = false;  ///< its transform turns counter-clockwise triangles clockwise
+  std::size_t first_run = 0;  ///< of the runs of all objects, in order
+  bool mirrored = false;      ///< its transform turns counter-clockwise triangles clockwise
   glm::dmat4 object_to_view{1.0};
   glm::dmat3 normal_to_view{1.0};  ///< gives the direction, not the length
 };
@@ -57,10 +59,11 @@ enum VertexPlace : std::uint16_t {
   kUnusable = 128,      ///< not finite, in double or as float
 };
 
-/// All vertices of the objects to draw, seen by a view.
+/// The vertices of the objects to draw, seen by a view. Those that no run seen uses are undefined.
 struct Geometry {
   std::vector<PlacedObject> objects;
   std::uint32_t triangle_count = 0;
+  std::vector<std::uint8_t> seen;  ///< for each run of each object, in order, 0: all of it is outside
   RawArray<glm::dvec3> positions;  ///< view space
   RawArray<ScreenVertex> screen;   ///< meaningless behind the near plane
   RawArray<std::uint16_t> places;  ///< VertexPlace bits
@@ -90,10 +93,11 @@ inline std::uint32_t vertexPlace(const glm::dvec3& position, const glm::dvec4& c
          (outside_guard ? kOutsideGuard : 0) | (usable ? 0 : kUnusable);
 }
 
-/// Transforms all vertices of the given objects, in parallel. `lit_vertices` and errors: as in placeObjects.
-/// 50 bytes a vertex.
+/// Transforms the vertices of the given objects, in parallel. `lit_vertices` and errors: as in placeObjects.
+/// `runs`: of the scene at its pose, of this form of its meshes; null: all runs count as seen. `recycled`:
+/// its memory is reused. 50 bytes a vertex.
 Geometry transformObjects(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
-                          bool lit_vertices = false);
+                          bool lit_vertices = false, const SceneRuns* runs = nullptr, Geometry recycled = {});
 
 /// The object that a triangle belongs to, by the triangle's number among all. O(log objects).
 const PlacedObject& objectOfTriangle(const std::vector<PlacedObject>& objects, std::uint32_t triangle);

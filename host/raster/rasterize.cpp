@@ -18,11 +18,16 @@ namespace luciole {
 
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors,
-                  RasterCounts* counts, GBuffer recycled) {
+                  RasterCounts* counts, GBuffer recycled, KeptGeometry* kept) {
   checkView(view);
   const bool lit_vertices = shading == Shading::kGouraud && !vertex_colors.empty();
-  const Geometry geometry = transformObjects(scene, objects, view, lit_vertices);
-  const RasterSetup setup = setupTriangles(scene, geometry, view, FaceCulling::kBackFaces);
+  KeptGeometry own_kept;
+  if (!kept) kept = &own_kept;
+  updateRuns(scene, lit_vertices, kept->runs);
+  const Geometry& geometry = kept->geometry =
+      transformObjects(scene, objects, view, lit_vertices, &kept->runs, std::move(kept->geometry));
+  const RasterSetup& setup = kept->setup =
+      setupTriangles(scene, geometry, view, FaceCulling::kBackFaces, std::move(kept->setup));
   const Bins bins = binTriangles(setup.triangles, view);
 
   planes.emission |= lit_vertices;

@@ -8,7 +8,10 @@
 #include "kernels/shared.h"
 #include "luciole/gbuffer.hpp"
 #include "luciole/settings.hpp"
+#include "raster/geometry.hpp"
 #include "raster/meshlets.hpp"
+#include "raster/setup.hpp"
+#include "raster/triangle_runs.hpp"
 #include "raster/view.hpp"
 
 namespace luciole {
@@ -23,6 +26,14 @@ struct RasterCounts {
   std::vector<std::uint8_t> covering;  ///< one a triangle, 1: it covers a sample
 };
 
+/// What drawing one view leaves for the next of the same scene, at this pose or another. It saves time and
+/// changes no bit. Other scenes must not use it.
+struct KeptGeometry {
+  SceneRuns runs;
+  Geometry geometry;  ///< memory alone, as the next
+  RasterSetup setup;
+};
+
 /// Draws the given objects (indices into scene.objects) into a G-buffer of the view's crop: visibility first,
 /// then attributes once for each visible pixel. Back faces are culled unless double-sided. The nearer surface
 /// wins; at equal depth the first in object and triangle order. The result does not depend on the number of
@@ -33,10 +44,10 @@ struct RasterCounts {
 /// in order (see gatherVertices). Then meshes are drawn in their divided form, the interpolated colour × the
 /// diffuse map goes into `emission`, and diffuse, specular and ambient are zero.
 ///
-/// `recycled`: a G-buffer whose memory is reused.
+/// `recycled`: a G-buffer whose memory is reused. `kept`: of the last view, or null.
 GBuffer rasterize(const Scene& scene, std::span<const std::uint32_t> objects, const View& view,
                   Shading shading, PlaneSet planes, std::span<const glm::vec3> vertex_colors = {},
-                  RasterCounts* counts = nullptr, GBuffer recycled = {});
+                  RasterCounts* counts = nullptr, GBuffer recycled = {}, KeptGeometry* kept = nullptr);
 
 /// Draws a depth map of the given meshlets (ascending indices into meshlets.items): the view's crop, row by
 /// row, into `texels` (8 bytes each). Alpha-masked holes stay open, and no face is culled. A texel's content

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -22,7 +23,7 @@ enum class Winding : std::uint8_t { kAny, kClockwise, kCounterClockwise };
 
 /// The output of a task of the setup.
 struct Output {
-  RasterTriangles triangles;
+  RasterTriangles& triangles;
   std::uint64_t back_facing = 0;
 };
 
@@ -150,18 +151,6 @@ void setupTriangle(const Scene& scene, const PlacedObject& object, std::uint32_t
     emitTriangle({toScreen(polygon.corners[0], frame.view), toScreen(polygon.corners[i - 1], frame.view),
                   toScreen(polygon.corners[i], frame.view)},
                  frame, winding, number, masked, output);
-}
-
-/// The outputs one after another.
-RasterSetup join(std::vector<Output> outputs) {
-  RasterSetup setup;
-  std::vector<RasterTriangles> triangles;
-  for (Output& output : outputs) {
-    setup.back_facing += output.back_facing;
-    triangles.push_back(std::move(output.triangles));
-  }
-  setup.triangles = concatenate(std::move(triangles));
-  return setup;
 }
 
 constexpr std::size_t kMeshletVertices = 3 * kMeshletTriangles;  ///< at most
@@ -309,42 +298,60 @@ void setupMeshlet(const Scene& scene, const Meshlets& meshlets, std::uint32_t in
 }  // namespace
 
 RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
-                           FaceCulling culling) {
+                           FaceCulling culling, RasterSetup recycled) {
   const Frame frame = makeFrame(view);
-  constexpr std::uint32_t kRun = 2048;  // triangles a task; the runs' outputs are joined in order
-  const std::size_t runs = (std::size_t(geometry.triangle_count) + kRun - 1) / kRun;
-  std::vector<Output> outputs(runs);
-  tbb::parallel_for(std::size_t(0), runs, [&](std::size_t run) {
-    outputs[run].triangles.reserve(kRun);
-    std::uint32_t number = std::uint32_t(run * kRun);
-    const std::uint32_t end = std::uint32_t(std::min<std::size_t>(geometry.triangle_count, (run + 1) * kRun));
+  constexpr std::uint32_t kTask = 2048;  // triangles; the tasks' outputs are joined in order
+  static_assert(kTask % kRunTriangles == 0);
+  RasterSetup setup = std::move(recycled);
+  setup.parts.resize((std::size_t(geometry.triangle_count) + kTask - 1) / kTask);
+  std::atomic<std::uint64_t> back_facing = 0;
+  tbb::parallel_for(std::size_t(0), setup.parts.size(), [&](std::size_t task) {
+    Output output{setup.parts[task]};
+    output.triangles.clear();
+    std::uint32_t number = std::uint32_t(task * kTask);
+    const std::uint32_t end =
+        std::uint32_t(std::min<std::size_t>(geometry.triangle_count, (task + 1) * kTask));
     const PlacedObject* object = &objectOfTriangle(geometry.objects, number);
     for (; number < end; ++object) {
-      const std::size_t object_end = std::size_t(object->first_triangle) + object->mesh->triangles.size();
       const Vertices vertices{geometry.positions.data() + object->first_vertex,
                               geometry.screen.data() + object->first_vertex,
                               geometry.places.data() + object->first_vertex};
-      for (; number < end && number < object_end; ++number) {
-        const std::uint32_t in_mesh = number - object->first_triangle;
-        setupTriangle(scene, *object, in_mesh, vertices, object->mesh->triangles[in_mesh], frame, culling,
-                      outputs[run]);
+      const std::uint32_t first = object->first_triangle;
+      const std::uint32_t object_end =
+          std::uint32_t(std::min<std::size_t>(end, first + object->mesh->triangles.size()));
+      while (number < object_end) {
+        const std::uint32_t run = (number - first) / kRunTriangles;
+        const std::uint32_t run_end = std::min(object_end, first + (run + 1) * kRunTriangles);
+        if (!geometry.seen[object->first_run + run]) number = run_end;
+        for (; number < run_end; ++number)
+          setupTriangle(scene, *object, number - first, vertices, object->mesh->triangles[number - first],
+                        frame, culling, output);
       }
     }
+    back_facing += output.back_facing;
   });
-  return join(std::move(outputs));
+  setup.back_facing = back_facing;
+  setup.triangles = concatenate(setup.parts, std::move(setup.triangles));
+  return setup;
 }
 
 RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view) {
   const Frame frame = makeFrame(view);
   constexpr std::size_t kTask = 512;  // meshlets; the faces of most lights' maps have fewer
   const std::span<const std::uint32_t> chosen = placed.chosen;
-  std::vector<Output> outputs((chosen.size() + kTask - 1) / kTask);
-  tbb::parallel_for(std::size_t(0), outputs.size(), [&](std::size_t task) {
+  RasterSetup setup;
+  setup.parts.resize((chosen.size() + kTask - 1) / kTask);
+  tbb::parallel_for(std::size_t(0), setup.parts.size(), [&](std::size_t task) {
     const std::size_t end = std::min(chosen.size(), (task + 1) * kTask);
+    Output output{setup.parts[task]};
     for (std::size_t i = task * kTask; i < end; ++i)
-      setupMeshlet(scene, placed.meshlets, chosen[i], placed.object(i), frame, outputs[task]);
+      setupMeshlet(scene, placed.meshlets, chosen[i], placed.object(i), frame, output);
   });
-  return join(std::move(outputs));
+  if (setup.parts.size() == 1)
+    setup.triangles = std::move(setup.parts[0]);
+  else
+    setup.triangles = concatenate(setup.parts);
+  return setup;
 }
 
 void setCounts(std::uint32_t triangle_count, const RasterSetup& setup, RasterCounts& counts) {

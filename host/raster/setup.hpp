@@ -35,12 +35,13 @@ using RasterTriangles = RawArray<RasterTriangle>;
 struct RasterSetup {
   RasterTriangles triangles;  ///< in object and triangle order
   std::uint64_t back_facing = 0;
+  std::vector<RasterTriangles> parts;  ///< memory of the tasks' outputs
 };
 
-/// Culls, clips, projects and snaps all triangles, in parallel. Keeps those whose bounding boxes contain a
-/// sample of the view's crop. O(triangles).
+/// Culls, clips, projects and snaps the triangles of the runs seen, in parallel. Keeps those whose bounding
+/// boxes contain a sample of the view's crop. `recycled`: its memory is reused. O(triangles).
 RasterSetup setupTriangles(const Scene& scene, const Geometry& geometry, const View& view,
-                           FaceCulling culling);
+                           FaceCulling culling, RasterSetup recycled = {});
 
 /// The same for the meshlets chosen, which it transforms itself. No face is culled.
 RasterSetup setupMeshlets(const Scene& scene, const PlacedMeshlets& placed, const View& view);

@@ -4,6 +4,7 @@
 #include "luciole/array_memory.hpp"
 #include "luciole/gbuffer.hpp"
 #include "luciole/image.hpp"
+#include "raster/rasterize.hpp"
 
 namespace luciole {
 
@@ -22,6 +23,7 @@ struct RecycledMemory {
   Plane color;
   Image picture;
   ScreenMemory screens = {};
+  KeptGeometry geometry = {};
 };
 
 /// What a picture leaves for the next one of the same scene, whose meshes, textures and holes are the same.

@@ -63,7 +63,8 @@ struct SampleLister final : PointLister {
     takeSample(view, {sample, samples()});
     drawn = timed(picture.stats, Stage::kRasterize, [&] {
       return rasterize(picture.scene, picture.objects, view, picture.settings.shading, picture.plan.planes,
-                       picture.vertex_colors, &triangles, std::move(picture.recycled.gbuffer));
+                       picture.vertex_colors, &triangles, std::move(picture.recycled.gbuffer),
+                       &picture.recycled.geometry);
     });
     drawn.camera = picture.settings.camera;
     if (picture.settings.shading != Shading::kGouraud) changeSurfaces(picture, drawn);

@@ -21,6 +21,13 @@ LightKind readKind(const JsonNode& node) {
   refuse(node, fmt::format("expected \"point\", \"directional\" or \"spot\", got {}", node.json->dump()));
 }
 
+RangeWindow readWindow(const JsonNode& node) {
+  const std::string name = readText(node);
+  if (name == "smooth") return RangeWindow::kSmooth;
+  if (name == "khr") return RangeWindow::kKhr;
+  refuse(node, fmt::format("expected \"smooth\" or \"khr\", got {}", node.json->dump()));
+}
+
 /// The light's colours, without its intensity.
 void readOwnColors(const JsonNode& node, Light& light) {
   glm::vec3 color{1.0f};
@@ -225,11 +232,12 @@ void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
   allowKeys(node, {"type",     "position",   "direction",     "target",      "color",  "intensity",
                    "ambient",  "diffuse",    "specular",      "attenuation", "range",  "cutoff",
                    "exponent", "inner_cone", "outer_cone",    "shadow",      "radius", "angle",
-                   "enabled",  "keys",       "interpolation", "group",       "name"});
+                   "enabled",  "keys",       "interpolation", "group",       "name",   "window"});
   Light light;
   light.kind = readKind(need(node, "type"));
   if (light.kind == LightKind::kDirectional) {
     refuseKeys(node, {"position", "target", "attenuation", "range", "radius"}, "for a directional light");
+    refuseKeys(node, {"window"}, "for a light without a range");
     light.direction = readDirection(need(node, "direction"));
     if (const auto n = find(node, "angle")) light.half_angle = glm::radians(readNumber(*n, 0, 90)) / 2;
   } else {
@@ -238,6 +246,7 @@ void readLight(const JsonNode& node, LightGroupNumbers& groups, Scene& scene) {
     if (const auto n = find(node, "radius")) light.radius = readNumber(*n, 0, kLargestNumber);
     if (const auto n = find(node, "attenuation")) light.attenuation = readAttenuation(*n);
     if (const auto n = find(node, "range")) light.range = static_cast<float>(readPositive(*n));
+    if (const auto n = find(node, "window")) light.window = readWindow(*n);
   }
   if (light.kind == LightKind::kPoint) refuseKeys(node, {"direction", "target"}, "for a point light");
   if (light.kind == LightKind::kSpot) {

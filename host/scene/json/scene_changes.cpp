@@ -179,7 +179,7 @@ void readAlone(const SceneChange& change, Json object, const Scene& scene, const
   read(JsonNode{&object, &list, change.place[1].key, change.place[1].index});
 }
 
-/// A light as a scene file has it. Its group and range window have no words there.
+/// A light as a scene file has it. Its group has no word here.
 Json lightJson(const Light& light) {
   const auto list = [](const auto& v) { return Json{v.x, v.y, v.z}; };
   Json json = Json::object();
@@ -202,6 +202,7 @@ Json lightJson(const Light& light) {
   json["attenuation"] = list(light.attenuation);
   json["radius"] = light.radius;
   if (std::isfinite(light.range)) json["range"] = light.range;
+  if (light.window == RangeWindow::kKhr) json["window"] = "khr";
   if (light.kind == LightKind::kPoint) return json;
   json["direction"] = list(light.direction);
   if (light.falloff == SpotFalloff::kCone) {
@@ -228,7 +229,6 @@ void changeLight(const SceneChange& change, std::size_t number, Scene& scene) {
       return;
     }
     Light changed = read.lights.front();
-    changed.window = light.window;
     if (!find(node, "name")) changed.name = light.name;
     if (!find(node, "group")) changed.group = light.group;
     light = changed;

@@ -11,6 +11,9 @@
 
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
+#include "luciole/shader.hpp"
+#include "scene/json/mesh_file.hpp"
+#include "scene/json/scene_changes.hpp"
 
 namespace luciole {
 namespace {
@@ -61,8 +64,19 @@ void appendSpot(const Light& light, std::string& text) {
     fmt::format_to(out, ", \"cutoff\": {}, \"exponent\": {}", degreesOf(light.cutoff), light.exponent);
 }
 
-/// Appends the lights and the end of a scene's file.
-void appendLights(const std::vector<Light>& lights, std::string& text) {
+/// A vector that is read as this unit vector, to the last bit where one is found near: reading divides by the
+/// length, which rounds.
+glm::dvec3 directionToRead(const glm::dvec3& direction) {
+  for (int i = 0; i < 64; ++i) {
+    const glm::dvec3 scaled = (1 + i / 64.0) * direction;
+    if (scaled / glm::length(scaled) == direction) return scaled;
+  }
+  return direction;
+}
+
+/// Appends the lights and the end of a scene's file. groups: the names of the scene's.
+void appendLights(const std::vector<Light>& lights, const std::vector<std::string>& groups,
+                  std::string& text) {
   text += "  \"lights\": [";
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -77,7 +91,7 @@ void appendLights(const std::vector<Light>& lights, std::string& text) {
       fmt::format_to(out, ", \"position\": [{}, {}, {}]", p.x, p.y, p.z);
     }
     if (light.kind != LightKind::kPoint) {
-      const glm::dvec3& d = light.direction;
+      const glm::dvec3 d = directionToRead(light.direction);
       fmt::format_to(out, ", \"direction\": [{}, {}, {}]", d.x, d.y, d.z);
     }
     fmt::format_to(out, ", \"color\": [{}, {}, {}]", c.x, c.y, c.z);
@@ -87,16 +101,44 @@ void appendLights(const std::vector<Light>& lights, std::string& text) {
       fmt::format_to(out, ", \"attenuation\": [{}, {}, {}]", a.x, a.y, a.z);
     }
     if (std::isfinite(light.range)) fmt::format_to(out, ", \"range\": {}", light.range);
+    if (std::isfinite(light.range) && light.window == RangeWindow::kKhr) text += ", \"window\": \"khr\"";
+    const auto appendColor = [&](const char* name, const glm::vec3& color) {
+      fmt::format_to(out, ", \"{}\": [{}, {}, {}]", name, color.x, color.y, color.z);
+    };
+    if (light.specular != c) appendColor("specular", light.specular);
+    if (light.ambient != glm::vec3(0)) appendColor("ambient", light.ambient);
+    if (light.radius > 0) fmt::format_to(out, ", \"radius\": {}", light.radius);
+    if (light.half_angle > 0) fmt::format_to(out, ", \"angle\": {}", degreesOf(2 * light.half_angle));
+    if (light.group > 0 && light.group < groups.size())
+      fmt::format_to(out, ", \"group\": {}", quoted(groups[light.group]));
+    if (!light.name.empty()) fmt::format_to(out, ", \"name\": {}", quoted(light.name));
     text += light.shadow ? ", \"shadow\": true}" : "}";
   }
   text += "\n  ]\n}\n";
+}
+
+nlohmann::ordered_json colorJson(const glm::vec3& color) { return {color.x, color.y, color.z}; }
+
+nlohmann::ordered_json fogJson(const Fog& fog) {
+  nlohmann::ordered_json json{{"mode", fog.mode == FogMode::kLinear ? "linear"
+                                       : fog.mode == FogMode::kExp  ? "exp"
+                                                                    : "exp2"}};
+  if (fog.mode == FogMode::kLinear) {
+    json["start"] = fog.start;
+    json["end"] = fog.end;
+  } else {
+    json["density"] = colorJson(fog.density);
+  }
+  json["color"] = colorJson(fog.color);
+  if (fog.radial) json["distance"] = "radial";
+  return json;
 }
 
 }  // namespace
 
 std::string lightsScene(const std::vector<Light>& lights) {
   std::string text = "{\n";
-  appendLights(lights, text);
+  appendLights(lights, {}, text);
   return text;
 }
 
@@ -104,17 +146,16 @@ std::string meshWithLights(const std::string& mesh_path, const Camera& camera,
                            const std::vector<Light>& lights) {
   std::string text = "{\n" + cameraLine(camera);
   text += fmt::format("  \"objects\": [{{\"mesh\": {}}}],\n", quoted(mesh_path));
-  appendLights(lights, text);
+  appendLights(lights, {}, text);
   return text;
 }
 
-std::string sceneWithLights(const std::string& scene_path, const std::string& folder, const Camera& camera,
-                            const std::vector<Light>& lights) {
-  // Ordered, because the first of several cameras is the default.
-  using OrderedJson = nlohmann::ordered_json;
+// Ordered, because the first of several cameras is the default.
+using OrderedJson = nlohmann::ordered_json;
+
+/// A scene's file without its lights, with paths as they are from another folder.
+static OrderedJson sceneFrom(const std::string& folder, const std::string& scene_path) {
   OrderedJson scene = OrderedJson::parse(readFile(scene_path), nullptr, true, true);
-  scene.erase("lights");
-  scene.erase("light_fields");
   const std::string old_folder = std::filesystem::path(scene_path).parent_path().string();
   const auto movePath = [&](OrderedJson& holder, const char* key) {
     if (!holder.contains(key)) return;
@@ -122,35 +163,108 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
     if (path.is_relative()) holder[key] = pathFrom(folder, (old_folder / path).string());
   };
   if (scene.contains("materials")) {
-    for (auto& [name, material] : scene["materials"].items())
+    for (auto& [name, material] : scene["materials"].items()) {
       for (const char* map : {"diffuse_map", "emission_map", "normal_map", "bump_map", "alpha_map"})
         movePath(material, map);
+      if (material.contains("model") && material["model"].get<std::string>().ends_with(kShaderExtension))
+        movePath(material, "model");
+    }
   }
   if (scene.contains("objects"))
-    for (OrderedJson& object : scene["objects"]) {
-      movePath(object, "mesh");
-      object.erase("lights");
-    }
+    for (OrderedJson& object : scene["objects"]) movePath(object, "mesh");
+  if (scene.contains("light_fields"))
+    for (OrderedJson& field : scene["light_fields"]) movePath(field, "csv");
   // A schema may be a path or a URL.
   if (scene.contains("$schema") && scene["$schema"].get<std::string>().find(':') == std::string::npos)
     movePath(scene, "$schema");
+  return scene;
+}
 
-  std::string text = "{\n";
-  if (!scene.contains("camera") && !scene.contains("cameras")) text += cameraLine(camera);
+/// Removes all lights of a scene's file.
+static void eraseLights(OrderedJson& scene) {
+  scene.erase("lights");
+  scene.erase("light_fields");
+  if (scene.contains("objects"))
+    for (OrderedJson& object : scene["objects"]) object.erase("lights");
+}
+
+/// The members of a scene's file, an element of a list a line, each with a comma behind it.
+static std::string membersText(const OrderedJson& scene) {
+  std::string text;
   for (const auto& [key, value] : scene.items()) {
     text += fmt::format("  {}: ", quoted(key));
-    if (key == "objects") {
+    if (value.is_array() && !value.empty() && value.front().is_object()) {
       const char* separator = "[";
-      for (const OrderedJson& object : value)
-        text += fmt::format("{}\n    {}", std::exchange(separator, ","), object.dump());
-      text += value.empty() ? "[]" : "\n  ]";
+      for (const OrderedJson& element : value)
+        text += fmt::format("{}\n    {}", std::exchange(separator, ","), element.dump());
+      text += "\n  ]";
     } else {
       text += value.dump();
     }
     text += ",\n";
   }
-  appendLights(lights, text);
   return text;
+}
+
+std::string sceneWithLights(const std::string& scene_path, const std::string& folder, const Camera& camera,
+                            const std::vector<Light>& lights) {
+  OrderedJson scene = sceneFrom(folder, scene_path);
+  eraseLights(scene);
+  std::string text = "{\n";
+  if (!scene.contains("camera") && !scene.contains("cameras")) text += cameraLine(camera);
+  text += membersText(scene);
+  appendLights(lights, {}, text);
+  return text;
+}
+
+SavedScene savedScene(const std::string& scene_path, const std::string& folder, const Scene& scene,
+                      const Json& camera, const glm::ivec2& size, const std::vector<std::string>& changes) {
+  SavedScene saved;
+  const bool is_mesh_file = isMeshFile(scene_path);
+  OrderedJson json;
+  if (is_mesh_file)
+    json["objects"] = {{{"mesh", pathFrom(folder, scene_path)}}};
+  else
+    json = sceneFrom(folder, scene_path);
+  bool keeps_lights = !is_mesh_file;
+  // Materials that the file defines are changed in it.
+  std::vector<SceneChange> of_materials;
+  for (const std::string& text : changes) {
+    SceneChange change = readChanges({text}).front();
+    keeps_lights &= change.place[0].key != "lights";
+    if (change.place[0].key == "materials") of_materials.push_back(std::move(change));
+  }
+  Json materials = Json::object();
+  if (json.contains("materials")) materials["materials"] = Json::parse(json["materials"].dump());
+  for (SceneChange& change : of_materials) {
+    // A name, by which the file has it.
+    if (change.place[1].index != JsonNode::kNoIndex && change.place[1].index < scene.materials.size() &&
+        !scene.materials[change.place[1].index].name.empty())
+      change.place[1] = {scene.materials[change.place[1].index].name};
+  }
+  changeScene(materials, scene_path, of_materials);
+  if (!materials.empty()) json["materials"] = OrderedJson::parse(materials["materials"].dump());
+  for (const SceneChange& change : of_materials)
+    if (!change.is_made) saved.left.push_back(change.text);
+
+  json.erase("cameras");
+  json["camera"] = OrderedJson::parse(camera.dump());
+  json["size"] = {size.x, size.y};
+  json["ambient"] = colorJson(scene.ambient);
+  json["background"] = colorJson(scene.background);
+  if (!scene.lighting) json["lighting"] = false;
+  json.erase("fog");
+  if (scene.fog.mode != FogMode::kNone) json["fog"] = fogJson(scene.fog);
+  saved.text = "{\n";
+  if (keeps_lights) {
+    saved.text += membersText(json);
+    saved.text.replace(saved.text.size() - 2, 2, "\n}\n");  // the last comma
+  } else {
+    eraseLights(json);
+    saved.text += membersText(json);
+    appendLights(scene.lights, scene.light_groups, saved.text);
+  }
+  return saved;
 }
 
 std::string pathFrom(const std::string& folder, const std::string& path) {

@@ -71,18 +71,6 @@ TriangleBoxes boxesOf(const PlacedTriangles& placed) {
   return boxes;
 }
 
-/// Unit normal of the exact corners, with the orientation of the rounded ones, and offset. All 0 if either
-/// are collinear, or their normals are perpendicular.
-glm::vec4 planeOf(const std::array<glm::dvec3, 3>& exact, const std::array<glm::vec3, 3>& rounded) {
-  const glm::dvec3 normal = glm::cross(exact[1] - exact[0], exact[2] - exact[0]);
-  const glm::dvec3 a = rounded[0];
-  const double side = glm::dot(normal, glm::cross(glm::dvec3(rounded[1]) - a, glm::dvec3(rounded[2]) - a));
-  const double length = glm::length(normal);
-  if (side == 0 || !(length > 0)) return glm::vec4(0);
-  const glm::dvec3 unit = normal / (side > 0 ? length : -length);
-  return glm::dvec4(unit, glm::dot(unit, exact[0]));
-}
-
 /// The objects of a block's triangles. Asks for all that cornersOf() and hasHoles() read: triangles of a
 /// block lie anywhere in their meshes, and so they are waited for together.
 std::array<std::uint32_t, kTreeWidth> fetchTriangles(const PlacedTriangles& placed,
@@ -103,35 +91,79 @@ std::array<std::uint32_t, kTreeWidth> fetchTriangles(const PlacedTriangles& plac
   return objects;
 }
 
+template <class T>
+using Slots = std::array<T, kTreeWidth>;
+
+/// Writes the rows of planes: unit normal of the exact corners, with the orientation of the rounded ones, and
+/// offset. All 0 if either are collinear, or their normals are perpendicular. `exact`: coordinate a of corner
+/// c in row 3·c + a; `rows`: with the rounded corners.
+void setPlanes(const std::array<Slots<double>, 9>& exact, float* rows) {
+  const float* rounded = rows + kCornerRows * kTreeWidth;
+  float* out = rows + kPlaneRows * kTreeWidth;
+  for (int i = 0; i < kTreeWidth; ++i) {
+    const auto corner = [&](int c) {
+      return glm::dvec3(exact[3 * c][i], exact[3 * c + 1][i], exact[3 * c + 2][i]);
+    };
+    const auto cut = [&](int c) {
+      const float* first = rounded + 3 * c * kTreeWidth + i;
+      return glm::dvec3(first[0], first[kTreeWidth], first[2 * kTreeWidth]);
+    };
+    const glm::dvec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    const double side = glm::dot(normal, glm::cross(cut(1) - cut(0), cut(2) - cut(0)));
+    const double length = std::sqrt(glm::dot(normal, normal));
+    const bool flat = (side == 0) | !(length > 0);
+    const double divisor = side > 0 ? length : -length;
+    const glm::dvec3 unit = normal / divisor;
+    const double offset = glm::dot(unit, corner(0));
+    out[i] = flat ? 0.0f : float(unit.x);
+    out[kTreeWidth + i] = flat ? 0.0f : float(unit.y);
+    out[2 * kTreeWidth + i] = flat ? 0.0f : float(unit.z);
+    out[3 * kTreeWidth + i] = flat ? 0.0f : float(offset);
+  }
+}
+
 /// Writes a block's rows and bits of holes, and returns its box.
 FloatBox fillBlock(const PlacedTriangles& placed, std::size_t block, TriangleTree& tree) {
   float* const rows = &tree.blocks[block * kBlockRows * kTreeWidth];
   const std::uint32_t used = tree.block_bits[block] & 0xffff;
-  const std::array<std::uint32_t, kTreeWidth> objects =
-      fetchTriangles(placed, {&tree.triangles[block * kTreeWidth], std::size_t(std::popcount(used))});
+  const int count = std::popcount(used);
+  const std::uint32_t* const triangles = &tree.triangles[block * kTreeWidth];
+  const Slots<std::uint32_t> objects = fetchTriangles(placed, {triangles, std::size_t(count)});
+  std::array<Slots<double>, 9> exact;
   std::uint32_t holes = 0;
-  FloatBox box;
   for (int slot = 0; slot < kTreeWidth; ++slot) {
-    const auto set = [&](int row, float value) { rows[row * kTreeWidth + slot] = value; };
-    if ((used >> slot & 1) == 0) {
-      for (int row = 0; row < kBlockRows; ++row) set(row, rows[row * kTreeWidth + slot - 1]);
-      continue;
-    }
-    const std::uint32_t triangle = tree.triangles[block * kTreeWidth + slot], object = objects[slot];
-    const std::array<glm::dvec3, 3> exact = cornersOf(placed, object, triangle);
-    const std::array<glm::vec3, 3> rounded{exact[0], exact[1], exact[2]};
-    const glm::vec4 plane = planeOf(exact, rounded);
-    float farthest = 0;
-    for (int corner = 0; corner < 3; ++corner) {
-      box.add(rounded[corner]);
-      const glm::vec3 size = glm::abs(rounded[corner]);
-      farthest = std::max(farthest, size.x + size.y + size.z);
-      for (int axis = 0; axis < 3; ++axis) set(kCornerRows + 3 * corner + axis, rounded[corner][axis]);
-    }
-    for (int i = 0; i < 4; ++i) set(kPlaneRows + i, plane[i]);
-    set(kRoundingRow, CORNER_ROUNDING * farthest);
-    holes |= std::uint32_t(hasHoles(placed, object, triangle)) << slot;
+    const int from = std::min(slot, count - 1);
+    const std::array<glm::dvec3, 3> corners = cornersOf(placed, objects[from], triangles[from]);
+    for (int row = 0; row < 9; ++row) exact[row][slot] = corners[row / 3][row % 3];
+    if (slot < count) holes |= std::uint32_t(hasHoles(placed, objects[slot], triangles[slot])) << slot;
   }
+  Slots<float> farthest{};
+  FloatBox box;
+  for (int corner = 0; corner < 3; ++corner) {
+    float* const rounded = rows + (kCornerRows + 3 * corner) * kTreeWidth;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < kTreeWidth; ++i)
+        rounded[axis * kTreeWidth + i] = float(exact[3 * corner + axis][i]);
+    for (int i = 0; i < kTreeWidth; ++i) {
+      const float size =
+          std::abs(rounded[i]) + std::abs(rounded[kTreeWidth + i]) + std::abs(rounded[2 * kTreeWidth + i]);
+      farthest[i] = farthest[i] < size ? size : farthest[i];
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* const first = rows + (kCornerRows + axis) * kTreeWidth;
+    Slots<float> low, high;
+    for (int i = 0; i < kTreeWidth; ++i) {
+      const float a = first[i], b = first[3 * kTreeWidth + i], c = first[6 * kTreeWidth + i];
+      const float ab_low = b < a ? b : a, ab_high = a < b ? b : a;
+      low[i] = c < ab_low ? c : ab_low;
+      high[i] = ab_high < c ? c : ab_high;
+    }
+    box.low[axis] = *std::ranges::min_element(low);
+    box.high[axis] = *std::ranges::max_element(high);
+  }
+  setPlanes(exact, rows);
+  for (int i = 0; i < kTreeWidth; ++i) rows[kRoundingRow * kTreeWidth + i] = CORNER_ROUNDING * farthest[i];
   tree.block_bits[block] = used | holes << 16;
   return box;
 }

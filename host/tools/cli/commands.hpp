@@ -57,6 +57,7 @@ void addGltfLightsCommand(CLI::App& generate, CommandContext& context);
 void addInfoCommand(CLI::App& app, CommandContext& context);
 void addCompileCommand(CLI::App& app, CommandContext& context);
 void addCheckModelCommand(CLI::App& app, CommandContext& context);
+void addViewCommand(CLI::App& app, CommandContext& context);
 void addDevicesCommand(CLI::App& app, CommandContext& context);
 
 // These print what `app`, the program, and all commands in it are when they run. It must outlive its parsing.

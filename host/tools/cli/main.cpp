@@ -260,6 +260,7 @@ int runCommand(int argument_count, char** arguments, CommandContext& context) {
   addGenerateCommand(app, context);
   addInfoCommand(app, context);
   addCheckModelCommand(app, context);
+  addViewCommand(app, context);
   addDevicesCommand(app, context);
   addCompileCommand(app, context);
   addManCommand(app);

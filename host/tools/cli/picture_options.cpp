@@ -60,18 +60,6 @@ std::vector<std::string> compressionNames() {
   return names;
 }
 
-void castShadows(const PictureOptions& options, Scene& scene) {
-  const auto casts = [](const Light& light) { return light.shadow; };
-  const bool asked_for = options.shadows_given && options.shadows != "off";
-  const bool any_marked = std::any_of(scene.lights.begin(), scene.lights.end(), casts);
-  const bool all = options.cast_shadows.empty() ? asked_for && !any_marked : options.cast_shadows == "all";
-  if (all || options.cast_shadows == "none")
-    for (Light& light : scene.lights) light.shadow = all;
-  if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
-    scene.warnings.push_back(
-        {fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows), "no shadows"});
-}
-
 /// The stops that --exposure names. Nothing for another text.
 std::optional<double> exposureStops(const std::string& text) {
   const char* start = text.c_str() + (text.starts_with("+") ? 1 : 0);
@@ -469,6 +457,18 @@ static void warnOfLooseArithmetic(const PictureOptions& options, Scene& scene) {
     add(readShader(screen, ShaderKind::kScreen), ShaderKind::kScreen);
   if (options.require_exact && !loose.empty()) throw InputError("--require-exact: " + loose.front());
   for (const std::string& place : loose) scene.warnings.push_back({place, kLooseArithmetic});
+}
+
+void castShadows(const PictureOptions& options, Scene& scene) {
+  const auto casts = [](const Light& light) { return light.shadow; };
+  const bool asked_for = options.shadows_given && options.shadows != "off";
+  const bool any_marked = std::any_of(scene.lights.begin(), scene.lights.end(), casts);
+  const bool all = options.cast_shadows.empty() ? asked_for && !any_marked : options.cast_shadows == "all";
+  if (all || options.cast_shadows == "none")
+    for (Light& light : scene.lights) light.shadow = all;
+  if (asked_for && std::none_of(scene.lights.begin(), scene.lights.end(), casts))
+    scene.warnings.push_back(
+        {fmt::format("{}: --shadows {}: no light casts shadows", scene.name, options.shadows), "no shadows"});
 }
 
 Scene openScene(const std::string& path, double frame, const PictureOptions& options) {

@@ -99,9 +99,12 @@ std::vector<std::string> typedLoadOptions(const LoadSettings& settings);
 /// Adds the option --threads, which limits the process's threads before the command runs.
 void addThreadsOption(CLI::App& command);
 
-/// Loads the scene at a frame (see loadScene). Shadows are cast by the lights that --cast-shadows says;
-/// without it by those that the scene marks, or if it marks none, by all if --shadows asks for shadows.
-/// Writes the scene's warnings to standard error unless --quiet. Throws InputError.
+/// Decides which lights cast shadows: those that --cast-shadows says; without it those that the scene marks,
+/// or if it marks none, all if --shadows asks for shadows. Warns in Scene::warnings where none is left.
+void castShadows(const PictureOptions& options, Scene& scene);
+
+/// Loads the scene at a frame (see loadScene) and calls castShadows(). Writes the scene's warnings to
+/// standard error unless --quiet. Throws InputError.
 Scene openScene(const std::string& path, double frame, const PictureOptions& options);
 
 /// The same for a command that lights the scene by its own lights. Also warns of Gouraud shading on triangles

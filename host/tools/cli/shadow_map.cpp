@@ -12,7 +12,6 @@
 #include "base/clock.hpp"
 #include "base/text_file.hpp"
 #include "image/file_format.hpp"
-#include "image/heat_map.hpp"
 #include "luciole/error.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
@@ -26,9 +25,6 @@ namespace {
 
 /// Of a scene's lights, in the message about one that isn't there.
 constexpr std::size_t kNamesTold = 12;
-
-/// Pixels a side of a face in a picture of several: of larger maps only some texels are shown.
-constexpr int kLargestShown = 512;
 
 struct ShadowMapOptions : PictureOptions {
   std::string scene;
@@ -73,24 +69,6 @@ Image faceLayers(const LightMap& map) {
   return image;
 }
 
-/// All faces in false colours.
-Image pictureOf(const LightMap& map, const std::string& title) {
-  const int step = (map.size + kLargestShown - 1) / kLargestShown, side = (map.size + step - 1) / step;
-  std::vector<ValuePanel> panels;
-  for (const LightFace& face : map.faces) {
-    std::string label = face.name;
-    std::replace(label.begin(), label.end(), '_', ' ');
-    if (!face.up.empty()) label += ", up is " + face.up;
-    panels.push_back({label, {}});
-    for (int y = 0; y < map.size; y += step)
-      for (int x = 0; x < map.size; x += step)
-        panels.back().values.push_back(face.metres[std::size_t(y) * map.size + x]);
-  }
-  const int columns = panels.size() == 6 ? 3 : 2;
-  return valueSheet(side, side, panels, columns,
-                    title + (step > 1 ? fmt::format(", 1 texel of {} x {}", step, step) : ""));
-}
-
 void shadowMap(const CommandContext& context, ShadowMapOptions& options) {
   const int frame = useFrame(options, "shadow-map");
   checkOutput(options);
@@ -115,8 +93,8 @@ void shadowMap(const CommandContext& context, ShadowMapOptions& options) {
     const std::string name = light.name.empty() ? fmt::format("light {}", number) : light.name;
     WriteOptions how = fileOptions(options);
     how.dither = false;
-    writeImage(has_layers ? faceLayers(map) : pictureOf(map, fmt::format("{}, metres", name)), options.output,
-               pictureMetadata(stats, nullptr), how);
+    writeImage(has_layers ? faceLayers(map) : lightMapPicture(map, fmt::format("{}, metres", name)),
+               options.output, pictureMetadata(stats, nullptr), how);
   });
   stats.width = stats.height = map.size;
   if (!options.stats.empty() || logsEvents()) return reportStats(options, stats, frame);

@@ -18,7 +18,7 @@
 namespace luciole {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// Layers that are kept, unless they are two.
 constexpr std::size_t kKeptBytes = std::size_t(512) << 20;
@@ -47,8 +47,8 @@ bool isLight(const ShownLayer& layer) {
 }
 
 /// JSON has no number that isn't finite.
-json valueOf(float value) {
-  return std::isfinite(value) ? json(value) : json(std::isnan(value) ? "NaN" : value > 0 ? "inf" : "-inf");
+Json valueOf(float value) {
+  return std::isfinite(value) ? Json(value) : Json(std::isnan(value) ? "NaN" : value > 0 ? "inf" : "-inf");
 }
 
 /// B − A in false colours, whatever their channels are called, and a line of numbers.
@@ -104,9 +104,9 @@ void FileView::reload() {
 Answer FileView::state() {
   const std::lock_guard lock(mutex_);
   reload();
-  json state{{"kind", "files"}, {"generation", generation_}, {"fault", nullptr}, {"files", json::array()}};
+  Json state{{"kind", "files"}, {"generation", generation_}, {"fault", nullptr}, {"files", Json::array()}};
   for (const File& file : files_) {
-    json layers = json::array();
+    Json layers = Json::array();
     for (const ShownLayer& layer : shownLayers(file.parts))
       layers.push_back({{"name", layer.name}, {"kind", kindName(layer.kind)}});
     const glm::ivec2 size = file.parts[std::size_t(shownLayers(file.parts)[0].part)].size;
@@ -135,12 +135,12 @@ std::shared_ptr<const FileView::Layer> FileView::keptLayer(std::size_t file, con
   return kept_.front().layer;
 }
 
-std::size_t FileView::fileOf(const json& request) const {
+std::size_t FileView::fileOf(const Json& request) const {
   return std::size_t(numberIn(memberIn(request, "file"), 0, double(files_.size()) - 1, "file"));
 }
 
 /// The layer that an object names: {"file", "layer"}.
-std::shared_ptr<const FileView::Layer> FileView::layerOf(const json& request) {
+std::shared_ptr<const FileView::Layer> FileView::layerOf(const Json& request) {
   const std::size_t file = fileOf(request);
   const std::string name = textIn(memberIn(request, "layer"), "layer"), &path = files_[file].path;
   return keptLayer(file, "layer " + name, [&] {
@@ -151,11 +151,11 @@ std::shared_ptr<const FileView::Layer> FileView::layerOf(const json& request) {
 }
 
 /// The sum of a file's groups of lights by factors {"GROUP": [factor, "#rrggbb"]}, where 1 needn't stand.
-Image FileView::mixOf(std::size_t file, const json& mix) {
+Image FileView::mixOf(std::size_t file, const Json& mix) {
   std::vector<GroupFactor> factors;
   for (const std::string& group : files_[file].groups) {
     factors.push_back({group});
-    const json& term = memberIn(mix, group.c_str());
+    const Json& term = memberIn(mix, group.c_str());
     if (term.is_null()) continue;
     if (!term.is_array() || term.size() != 2) refuseMember("mix");
     const auto color = linearColor(textIn(term[1], "mix"));
@@ -169,8 +169,8 @@ Image FileView::mixOf(std::size_t file, const json& mix) {
 }
 
 Answer FileView::picture(const std::string& body) {
-  const json request = requestIn(body);
-  const json &mix = memberIn(request, "mix"), &exposure = memberIn(request, "exposure");
+  const Json request = requestIn(body);
+  const Json &mix = memberIn(request, "mix"), &exposure = memberIn(request, "exposure");
   const std::lock_guard lock(mutex_);
   const std::shared_ptr<const Layer> layer = layerOf(request);
   const std::size_t file = fileOf(request);
@@ -196,13 +196,13 @@ Answer FileView::picture(const std::string& body) {
                         // Small pictures with a scale below are enlarged.
                         {"scale", std::max(picture.image.width / layer->image.width, 1)},
                         {"notes", picture.notes},
-                        {"warnings", json::array()},
+                        {"warnings", Json::array()},
                         {"generation", generation_}},
                        png);
 }
 
 Answer FileView::pick(const std::string& body) {
-  const json request = requestIn(body), at = memberIn(request, "at");
+  const Json request = requestIn(body), at = memberIn(request, "at");
   const std::lock_guard lock(mutex_);
   const std::shared_ptr<const Layer> layer = layerOf(request);
   const Image& image = layer->image;
@@ -212,7 +212,7 @@ Answer FileView::pick(const std::string& body) {
   };
   const int x = placeIn(0, image.width), y = placeIn(1, image.height);
   const std::size_t channels = image.channels.size();
-  json values = json::array();
+  Json values = Json::array();
   for (std::size_t c = 0; c < channels; ++c) {
     const std::string& name = image.channels[c];
     const float value =

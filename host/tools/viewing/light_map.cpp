@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "image/heat_map.hpp"
 #include "kernels/shared.h"
 #include "shadow/maps/draw_shadow_maps.hpp"
 #include "shadow/maps/shadow_maps.hpp"
@@ -56,6 +57,25 @@ LightMap drawLightMap(const Scene& scene, const View& camera_view, std::uint32_t
     result.faces.push_back(std::move(drawn));
   }
   return result;
+}
+
+Image lightMapPicture(const LightMap& map, const std::string& title) {
+  /// Pixels a side of a face in a picture of several: of larger maps only some texels are shown.
+  constexpr int kLargestShown = 512;
+  const int step = (map.size + kLargestShown - 1) / kLargestShown, side = (map.size + step - 1) / step;
+  std::vector<ValuePanel> panels;
+  for (const LightFace& face : map.faces) {
+    std::string label = face.name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    if (!face.up.empty()) label += ", up is " + face.up;
+    panels.push_back({label, {}});
+    for (int y = 0; y < map.size; y += step)
+      for (int x = 0; x < map.size; x += step)
+        panels.back().values.push_back(face.metres[std::size_t(y) * map.size + x]);
+  }
+  const int columns = panels.size() == 6 ? 3 : 2;
+  return valueSheet(side, side, panels, columns,
+                    title + (step > 1 ? fmt::format(", 1 texel of {} x {}", step, step) : ""));
 }
 
 }  // namespace luciole

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "luciole/image.hpp"
 #include "luciole/scene.hpp"
 #include "raster/view.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
@@ -29,5 +30,8 @@ struct LightMap {
 /// Throws as planShadowMaps does.
 LightMap drawLightMap(const Scene& scene, const View& camera_view, std::uint32_t light,
                       const ShadowLimits& limits);
+
+/// All faces, of which there must be one, in false colours. Of large maps some texels are shown.
+Image lightMapPicture(const LightMap& map, const std::string& title);
 
 }  // namespace luciole

@@ -23,6 +23,7 @@ constexpr const char* kReadmes[] = {"README.md",
                                     "host/tools/bench/README.md",
                                     "host/tools/cli/README.md",
                                     "host/tools/scale/README.md",
+                                    "host/tools/view/README.md",
                                     "kernels/README.md",
                                     "kernels/examples/README.md",
                                     "scenes/FORMATS.md",
@@ -38,6 +39,7 @@ struct NotRun {
 };
 constexpr NotRun kNotRun[] = {
     {"./luciole test", "would run this test"},
+    {"./luciole view ", "serves until it is ended: view_test.cpp types it"},
     {"./luciole bench --only \"shadow errors\"", "takes minutes, whatever the size"},
     {"./luciole bench --only \"many lights\"", "lights a million, whatever the size"},
     {"./luciole bench --only \"light error\"", "lights a million, whatever the size"},

@@ -97,11 +97,14 @@ class Browser {
   void open(const std::string& html) {
     const std::string path = folder_ / "page.html";
     std::ofstream(path, std::ios::binary) << html;
-    const nlohmann::json loader = call("Page.navigate", {{"url", "file://" + path}})["loaderId"];
-    waitForEvent("Page.lifecycleEvent", [&](const nlohmann::json& event) {
-      return event["loaderId"] == loader && event["name"] == "load";
-    });
-    settle();
+    navigate("file://" + path);
+  }
+
+  /// Opens the page of a server on this machine, which from then on is on the network: of this machine.
+  void openAddress(const std::string& address) {
+    call("Network.emulateNetworkConditions",
+         {{"offline", false}, {"latency", 0}, {"downloadThroughput", -1}, {"uploadThroughput", -1}});
+    navigate(address);
   }
 
   /// The text of the file `name` that the page lets be downloaded where `click` is evaluated on it.
@@ -179,6 +182,15 @@ class Browser {
   /// For each answer and event: on a loaded machine a browser takes half a minute to start.
   static constexpr std::chrono::seconds kLongestWait{120};
 
+  /// Waits until the page has drawn itself.
+  void navigate(const std::string& address) {
+    const nlohmann::json loader = call("Page.navigate", {{"url", address}})["loaderId"];
+    waitForEvent("Page.lifecycleEvent", [&](const nlohmann::json& event) {
+      return event["loaderId"] == loader && event["name"] == "load";
+    });
+    settle();
+  }
+
   /// The profile is no use to anybody, so nothing is lost by ending without goodbye.
   void stop() {
     if (process_ == 0) return;
@@ -217,7 +229,7 @@ class Browser {
                                    "--disable-component-update",
                                    "--disable-extensions",
                                    "--disable-sync",
-                                   "--host-resolver-rules=MAP * ~NOTFOUND",
+                                   "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
                                    "--user-data-dir=" + (folder_ / "profile")};
     std::vector<std::string> variables{"HOME=" + folder_.path().string(),
                                        "TMPDIR=" + folder_.path().string()};

@@ -12,12 +12,11 @@ const paneWidth = () => canvas.width / (shown.mode === "side" ? 2 : 1);
 const fittingScale = () => Math.min(paneWidth() / sizeOf(shown.a)[0], canvas.height / sizeOf(shown.a)[1]);
 const scaleNow = () => shown.scale || fittingScale();
 const density = () => canvas.width / frame.clientWidth;
-const within = (value, lowest, highest) => Math.min(Math.max(value, lowest), highest);
 
 /** Draws one picture from `left` to `right`, with its point (x, y) at `middle`. */
 function paintOne(bitmap, middle, left, right) {
   if (!bitmap) return;
-  const scale = scaleNow();
+  const scale = scaleNow(), [w, h] = sizeOf(shown.a);
   context.save();
   context.beginPath();
   context.rect(left, 0, right - left, canvas.height);
@@ -25,7 +24,7 @@ function paintOne(bitmap, middle, left, right) {
   context.imageSmoothingEnabled = scale < 1;
   context.translate(Math.round(middle - shown.x * scale), Math.round(canvas.height / 2 - shown.y * scale));
   context.scale(scale, scale);
-  context.drawImage(bitmap, 0, 0);
+  context.drawImage(bitmap, 0, 0, bitmap.width, bitmap.width * h / w, 0, 0, w, h);
   context.strokeStyle = "#ffc83d";
   context.lineWidth = 2 / scale;
   if (shown.pixel && scale > 4) context.strokeRect(...shown.pixel, 1, 1);
@@ -55,6 +54,7 @@ async function askFiles() {
       const mix = changed.length ? Object.fromEntries(changed.map(group => [group.name, [group.on ? group.factor : 0, group.color]])) : null;
       const body = {other: isDifference ? shown.b : null, mode: isDifference ? "difference" : "one", exposure: shown.exposure, size: null};
       const answers = [await askPicture({...shown.a, ...body, mix}), ...(isBoth() ? [await askPicture({...shown.b, ...body, mix: null})] : [])];
+      showLegend(answers[0].bitmap, Math.min(Math.round(answers[0].bitmap.width * sizeOf(shown.a)[1] / sizeOf(shown.a)[0]), answers[0].bitmap.height));
       [bitmaps.a, bitmaps.b] = answers.map(({bitmap}) => bitmap);
       byId("notes").textContent = [...new Set(answers.flatMap(({notes}) => notes))].join(" · ");
       say("warnings", answers.flatMap(({warnings}) => warnings).join("; "));
@@ -155,6 +155,7 @@ function showFiles(isFirst) {
   showGroups();
   changeFiles();
   if (!isFirst) return;
+  frame.ariaLabel = "The picture: drag to move it, wheel to zoom; a question mark tells the keys";
   layOutFiles();
   fit(0);
   listenFiles();

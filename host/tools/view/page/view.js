@@ -5,18 +5,19 @@ let requests = 0;
 let state = null;  // what the server told last, see its `state`
 
 /** What there is to tell, by its kind; the line below the picture holds all that isn't empty. */
-const messages = {gone: "", fault: "", error: "", shader: "", news: "", warnings: ""};
+const errorKinds = ["gone", "fault", "error", "shader"], messages = Object.fromEntries(errorKinds.map(kind => [kind, ""]));
 function say(kind, text) {
-  if (messages[kind] === text) return;
+  if ((messages[kind] || "") === text) return;
   messages[kind] = text;
   byId("messages").replaceChildren(...Object.entries(messages).filter(([, told]) => told).map(([of, told]) =>
-    element("span", {className: of === "news" || of === "warnings" ? of : "error", textContent: told, title: told})));
+    element("span", {className: errorKinds.includes(of) ? "error" : of, textContent: told, title: told})));
 }
 
 const textOf = bytes => new TextDecoder().decode(bytes);
 
 /** A request's answer. Throws {error, status, shader}, {gone: true} or, where it was given up, {superseded: true}. */
 async function ask(path, body, signal) {
+  const telling = setTimeout(say, 1500, path, `Waiting for the server's ${path} …`);
   let response, bytes, told = {};
   try {
     response = await fetch(path, body && {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body), signal});
@@ -25,6 +26,9 @@ async function ask(path, body, signal) {
     if (fault.name === "AbortError") throw {superseded: true};
     say("gone", "The server is gone; the page goes on asking for it.");
     throw {gone: true};
+  } finally {
+    clearTimeout(telling);
+    say(path, "");
   }
   say("gone", "");
   if (response.ok) return bytes;
@@ -77,6 +81,7 @@ const stage = byId("stage"), frame = byId("frame"), canvas = byId("picture"), co
 const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 const walks = {KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0], KeyE: [0, 1, 0]};
 
+const within = (value, lowest, highest) => Math.min(Math.max(value, lowest), highest);
 const short = number => Number(number.toPrecision(3)).toString();
 const vectorText = values => values.map(short).join("  ");
 const on = (id, type, action) => byId(id).addEventListener(type, event => action(event.target, event));
@@ -91,6 +96,16 @@ const fillList = (list, entries) =>
 
 const readOut = parts => byId("readout").replaceChildren(
   ...parts.flatMap(([number, unit], i) => [i ? " · " : "", element("b", {textContent: number}), " " + unit]));
+
+/** Shows what a picture has below its first rows: its legend. */
+function showLegend(bitmap, rows) {
+  const legend = byId("legend");
+  legend.hidden = bitmap.height === rows;
+  if (legend.hidden) return;
+  Object.assign(legend, {width: bitmap.width, height: bitmap.height - rows});
+  legend.style.width = bitmap.width / devicePixelRatio + "px";
+  legend.getContext("2d").drawImage(bitmap, 0, -rows);
+}
 
 /**
  * Tells what pointers do on the frame: moved(dx, dy, event, press) in CSS pixels, pinched(ratio, dx, dy, event) of two
@@ -110,7 +125,7 @@ function followPointers({moved, pinched, clicked}) {
   });
   frame.addEventListener("pointermove", event => {
     const last = pointers.get(event.pointerId);
-    if (!last || (isClick && distance(event, press) < 4)) return;
+    if (!last || (isClick && distance(event, press) < 6)) return;
     isClick = false;
     pointers.set(event.pointerId, event);
     const other = [...pointers.values()].find(one => one !== event);
@@ -122,7 +137,7 @@ function followPointers({moved, pinched, clicked}) {
     frame.addEventListener(end, event => {
       if (!pointers.delete(event.pointerId) || !isClick || end !== "pointerup") return;
       const box = frame.getBoundingClientRect();
-      clicked((event.clientX - box.x) / box.width, (event.clientY - box.y) / box.height);
+      clicked(within((event.clientX - box.x) / box.width, 0, 1), within((event.clientY - box.y) / box.height, 0, 1));
     });
 }
 
@@ -150,6 +165,7 @@ function followKeys(pressed) {
 const layers = [["color", "Picture"], ["normal", "Normals"], ["depth", "Depth"], ["position", "Positions"], ["diffuse", "Diffuse"],
   ["light_count", "Lights a pixel"], ["shadow", "Shadows"], ["light_error", "Bound"], ["error", "Error"], ["shadow_map", "Shadow map"]];
 const kQuiet = 120;  // milliseconds without input, after which the full picture is asked for
+const kTold = 200;   // milliseconds between two tellings of a motion's figures, which nobody reads faster
 const storageKey = "luciole " + location.pathname;
 
 let view = null;  // all that a picture depends on, see the server's `view`
@@ -162,9 +178,12 @@ let level = 3, serial = 0, lastInput = 0, timer = 0;
 let flying = null;           // the request on its way, {isMoving, controller}
 let lastFrame = null;        // of a motion, {milliseconds, size}
 let frameTimes = [];         // of the last second of a motion
+let toldAt = 0;
 const gestures = new Map();  // what no request has carried yet, summed by kind
 const held = new Map();      // keys, and the gesture of a second
 let heldSince = 0;
+
+let isOfScene = true;        // whether the last picture's pixels are those of the view, and not of a map
 
 const samplesWanted = () => layer === "color" ? Number(view.options.samples || 1) : 1;
 
@@ -204,6 +223,8 @@ function takeGesture() {
 function pump() {
   clearTimeout(timer);
   if (flying || messages.gone || !view) return;
+  // What is shown, for whoever drives the page from outside.
+  Object.assign(frame.dataset, {level: gestures.size ? 0 : level, camera: JSON.stringify(view.camera), size: wanted});
   if (held.size) {
     const now = performance.now(), seconds = Math.min((now - heldSince) / 1000, 0.25);
     for (const [kind, amounts] of held.values()) addGesture(kind, amounts.map(amount => amount * seconds));
@@ -217,7 +238,7 @@ function pump() {
 
 async function draw(isMoving, samples) {
   const me = flying = {isMoving, controller: new AbortController()}, asked = {serial, ...view};
-  const moved = isMoving ? takeGesture() : null, moving = isMoving ? lastFrame : null;
+  const moved = isMoving ? takeGesture() : null, moving = isMoving ? lastFrame ?? true : null;
   let pause = 0;
   try {
     const about = await askPicture({view, gesture: moved, size: wanted, moving, samples, layer, light: light ?? 0}, me.controller.signal);
@@ -242,23 +263,29 @@ async function draw(isMoving, samples) {
 }
 
 function showPicture(about, isMoving) {
-  const {bitmap, size, samples, milliseconds} = about, now = performance.now();
-  if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) Object.assign(canvas, {width: bitmap.width, height: bitmap.height});
+  const {bitmap, size, shows, samples, milliseconds} = about, now = performance.now();
+  const height = bitmap.width === shows[0] ? Math.min(bitmap.height, shows[1]) : bitmap.height;
+  isOfScene = layer !== "shadow_map" && bitmap.width === shows[0];
+  if (canvas.width !== bitmap.width || canvas.height !== height) Object.assign(canvas, {width: bitmap.width, height});
   context.drawImage(bitmap, 0, 0);
+  if (!isMoving || height === bitmap.height) showLegend(bitmap, height);
   bitmap.close();
-  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size};
+  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size: shows};
   frameTimes = isMoving ? [...frameTimes.filter(time => now - time < 1000), now] : [];
-  const speed = frameTimes.length > 2 ? [[((frameTimes.length - 1) * 1000 / (now - frameTimes[0])).toFixed(0), "fps"]] : [];
-  readOut([...speed, [size.join(" × "), "pixels"], ...(samples > 1 ? [[samples, "samples"]] : []), [milliseconds.toFixed(milliseconds < 10 ? 1 : 0), "ms"]]);
   say("error", "");
-  say("warnings", about.warnings.join("; "));
-  byId("notes").textContent = about.notes.join(" · ");
   showMarkers(about.markers);
-  showStages(about.stages);
-  if (!isMoving && samples === 1 && layer === "color") showBound(about);
   showCamera();
   for (const kind of shaderKinds) if (goodShaders[kind] === textInUse(kind)) editors[kind].fault = null;
   showShaderFaults();
+  if (isMoving && now - toldAt < kTold) return;
+  toldAt = now;
+  const speed = frameTimes.length > 2 ? [[((frameTimes.length - 1) * 1000 / (now - frameTimes[0])).toFixed(0), "fps"]] : [];
+  readOut([...speed, [(isOfScene ? [canvas.width, canvas.height] : size).join(" × "), "pixels"], ...(samples > 1 ? [[samples, "samples"]] : []),
+    [milliseconds.toFixed(milliseconds < 10 ? 1 : 0), "ms"]]);
+  say("warnings", about.warnings.join("; "));
+  byId("notes").textContent = about.notes.join(" · ");
+  showStages(about.stages);
+  if (!isMoving && samples === 1 && layer === "color") showBound(about);
 }
 
 /** Tells what failed. A shader that doesn't compile stays in its editor, and the pictures go on with the last ones that did. */
@@ -313,7 +340,7 @@ function addMarker(given) {
 /** Puts a marker on each light that is to have one: [index, x, y] in shares of the picture. */
 function showMarkers(places) {
   markerPlaces = places;
-  const shownPlaces = layer === "shadow_map" ? [] : places.filter(([index]) => index === light || byId("all_markers").checked);
+  const shownPlaces = !isOfScene ? [] : places.filter(([index]) => index === light || byId("all_markers").checked);
   for (const [index, marker] of markers)
     if (!shownPlaces.some(([of]) => of === index)) {
       marker.remove();
@@ -328,8 +355,8 @@ function showMarkers(places) {
 }
 
 function showStages(stages) {
-  const longest = Math.max(...stages.map(([, milliseconds]) => milliseconds), 1e-9);
-  byId("stages").replaceChildren(...stages.map(([name, milliseconds]) => {
+  const seen = stages.filter(([, milliseconds]) => milliseconds >= 0.05), longest = Math.max(...seen.map(([, milliseconds]) => milliseconds));
+  byId("stages").replaceChildren(...seen.map(([name, milliseconds]) => {
     const row = element("tr", {}, element("td", {textContent: name}), element("td", {textContent: milliseconds.toFixed(1) + " ms"}));
     row.style.setProperty("--share", 100 * milliseconds / longest + "%");
     return row;
@@ -347,7 +374,7 @@ function showBound({bound, milliseconds}) {
   const of = JSON.stringify([view, wanted], (key, value) => key === "light-error" ? undefined : value);
   if (tried.of !== of) tried = {of, points: []};
   tried.points = [...tried.points.filter(point => point.share !== share), {share, largest, milliseconds}].sort((a, b) => a.share - b.share);
-  fillList(byId("bound"), [["Bound", largest ? `${short(largest)} at most, ${short(bound.mean)} in the mean` : "0: every light by itself"],
+  fillList(byId("bound"), [["Bound", largest ? `${short(largest)} at most, ${short(bound.mean)} in the mean` : share ? "0: no light can be stood for by others" : "0: every light by itself"],
     ["Time", milliseconds.toFixed(1) + " ms"]]);
   plotTried(share);
 }
@@ -360,9 +387,12 @@ function plotTried(now) {
   const place = ({largest, milliseconds}) =>
     [44 + 260 * milliseconds / slowest, largest > 0 ? 16 + 92 * (highest - Math.log2(largest)) / (highest - lowest) : 122].map(at => at.toFixed(1));
   const text = (x, y, anchor, what) => `<text x="${x}" y="${y}" text-anchor="${anchor}">${what}</text>`;
-  const marks = points.map(point => {
-    const [x, y] = place(point), isNow = point.share === now;
-    return `<circle class="${isNow ? "now" : ""}" cx="${x}" cy="${y}" r="${isNow ? 5 : 3.5}"/>` + text(x, y - 8, "middle", point.share ? fraction(point.share) : "exact");
+  const taken = [];
+  const marks = [...points].sort((a, b) => (b.share === now) - (a.share === now)).map(point => {
+    const [x, y] = place(point), isNow = point.share === now, isFree = !taken.some(other => Math.abs(other[0] - x) < 38 && Math.abs(other[1] - y) < 12);
+    if (isFree) taken.push([x, y]);
+    return `<circle class="${isNow ? "now" : ""}" cx="${x}" cy="${y}" r="${isNow ? 5 : 3.5}"/>` +
+      (isFree ? text(x, y - 8, "middle", point.share ? fraction(point.share) : "exact") : "");
   });
   byId("plot").innerHTML = `<svg viewBox="0 0 320 152" role="img"><path d="M44 4V130H316"/><polyline points="${points.map(point => place(point).join())}"/>` +
     marks.join("") + text(40, 20, "end", fraction(2 ** highest)) + text(40, 112, "end", fraction(2 ** lowest)) + text(40, 126, "end", 0) +
@@ -427,8 +457,8 @@ function setLayer(name) {
 /** A row with a colour and its strength, which go to a place of the scene's file together. `hex` is of color / strength. */
 function addColor(body, label, path, color, hex, changed = setChange) {
   const [given, strength] = (changeOf(path) || hex + "*" + short(Math.max(1, ...color))).split("*");
-  const picker = element("input", {type: "color", value: given, ariaLabel: label + ", colour"});
-  const number = element("input", {type: "number", min: 0, step: 0.1, value: strength, ariaLabel: label + ", strength"});
+  const picker = element("input", {type: "color", value: given, title: label + ", colour"});
+  const number = element("input", {type: "number", min: 0, step: 0.1, value: strength, title: label + ", strength"});
   picker.oninput = number.oninput = () => { if (number.valueAsNumber >= 0) changed(path, picker.value + "*" + number.valueAsNumber); };
   body.append(element("tr", {}, element("th", {scope: "row", textContent: label}), element("td", {}, picker), element("td", {}, number)));
 }
@@ -481,7 +511,7 @@ function showMaterial(index) {
   byId("shininess").value = changeOf(`materials[${material}].shininess`) ?? short(given.shininess);
 }
 
-const pick = (x, y) => attempt(async () => {
+const pick = (x, y) => isOfScene && attempt(async () => {
   const found = await askJson("pick", {view, size: wanted, at: [x, y]}), {pixel, color, object, position, normal, distance} = found;
   Object.assign(byId("spot").style, {left: 100 * x + "%", top: 100 * y + "%"});
   byId("spot").hidden = false;
@@ -587,9 +617,9 @@ function showScene(isFirst) {
     listen();
   }
   document.title = "Luciole: " + state.name;
-  byId("name").textContent = state.name;
+  byId("name").textContent = state.name.split("/").pop();
   byId("saved").textContent = "Into " + state.output;
-  fillSelect(byId("camera"), [["", "as it was"], ...state.cameras.map((name, i) => [i, name]), [movedCamera, "moved"]], "");
+  fillSelect(byId("camera"), [["", "as it was"], ...state.cameras.map((name, i) => [i, name]).filter(([, name]) => name), [movedCamera, "moved"]], "");
   fillSelect(byId("material"), state.materials.map(({index, name}) => [index, name]), material);
   for (const show of [showOptions, showCamera, showLights, showAir, showEditor, layOut]) show();
   showMaterial(material);
