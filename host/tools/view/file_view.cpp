@@ -96,7 +96,7 @@ void FileView::reload() {
     } catch (const InputError& error) {
       file.fault = error.what();
     }
-    kept_.remove_if([&](const auto& layer) { return layer->file == i; });
+    kept_.remove_if([&](const KeptLayer& kept) { return kept.file == i; });
     ++generation_;
   }
 }
@@ -117,36 +117,43 @@ Answer FileView::state() {
   return jsonAnswer(std::move(state));
 }
 
-/// The layer that an object names: {"file", "layer"}.
-std::shared_ptr<const FileView::Layer> FileView::layerOf(const Json& request) {
-  const auto file = std::size_t(numberIn(memberIn(request, "file"), 0, double(files_.size()) - 1, "file"));
-  const std::string name = textIn(memberIn(request, "layer"), "layer");
-  const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const auto& layer) {
-    return layer->file == file && layer->shown.name == name;
+/// What is kept of a file by this key, or else is read now.
+std::shared_ptr<const FileView::Layer> FileView::keptLayer(std::size_t file, const std::string& key,
+                                                           const std::function<Layer()>& read) {
+  const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const KeptLayer& kept) {
+    return kept.file == file && kept.key == key;
   });
-  if (known != kept_.end()) {
+  if (known != kept_.end())
     kept_.splice(kept_.begin(), kept_, known);
-    return kept_.front();
-  }
-  ExrInput input(files_[file].path);
-  ShownLayer shown = findShownLayer(input.parts(), name, files_[file].path);
-  Image image = readShownLayer(input, shown);
-  kept_.push_front(std::make_shared<const Layer>(Layer{file, std::move(shown), std::move(image)}));
+  else
+    kept_.push_front({file, key, std::make_shared<const Layer>(read())});
   std::size_t bytes = 0, count = 0;
-  kept_.remove_if([&](const auto& layer) {
-    bytes += layer->image.pixels.size() * sizeof(float);
+  kept_.remove_if([&](const KeptLayer& kept) {
+    bytes += kept.layer->image.pixels.size() * sizeof(float);
     return ++count > 2 && bytes > kKeptBytes;
   });
-  return kept_.front();
+  return kept_.front().layer;
 }
 
-/// The layer, or where it is the picture of groups of lights, their sum by factors {"GROUP": [factor,
-/// "#rrggbb"]}.
-Image FileView::mixOf(const Layer& layer, const Json& mix) const {
-  const File& file = files_[layer.file];
-  if (!mix.is_object() || file.groups.empty() || layer.shown.name != "color") return layer.image;
+std::size_t FileView::fileOf(const Json& request) const {
+  return std::size_t(numberIn(memberIn(request, "file"), 0, double(files_.size()) - 1, "file"));
+}
+
+/// The layer that an object names: {"file", "layer"}.
+std::shared_ptr<const FileView::Layer> FileView::layerOf(const Json& request) {
+  const std::size_t file = fileOf(request);
+  const std::string name = textIn(memberIn(request, "layer"), "layer"), &path = files_[file].path;
+  return keptLayer(file, "layer " + name, [&] {
+    ExrInput input(path);
+    const ShownLayer shown = findShownLayer(input.parts(), name, path);
+    return Layer{shown, readShownLayer(input, shown)};
+  });
+}
+
+/// The sum of a file's groups of lights by factors {"GROUP": [factor, "#rrggbb"]}, where 1 needn't stand.
+Image FileView::mixOf(std::size_t file, const Json& mix) {
   std::vector<GroupFactor> factors;
-  for (const std::string& group : file.groups) {
+  for (const std::string& group : files_[file].groups) {
     factors.push_back({group});
     const Json& term = memberIn(mix, group.c_str());
     if (term.is_null()) continue;
@@ -155,12 +162,10 @@ Image FileView::mixOf(const Layer& layer, const Json& mix) const {
     if (!color) refuseMember("mix");
     factors.back().factor = float(numberIn(term[0], 0, kLargestMix, "mix")) * *color;
   }
-  WriteOptions unused;
-  Image image = mixLights(file.path, factors, unused);
-  if (image.channels.size() == 3) return image;
-  Image colors{image.width, image.height, {}, {}};
-  appendRows(image, {0, 1, 2}, colors);
-  return colors;
+  const auto groups = keptLayer(file, "groups", [&] {
+    return Layer{{}, readLightGroups(files_[file].path)};
+  });
+  return mixLights(groups->image, factors);
 }
 
 Answer FileView::picture(const std::string& body) {
@@ -168,7 +173,9 @@ Answer FileView::picture(const std::string& body) {
   const Json &mix = memberIn(request, "mix"), &exposure = memberIn(request, "exposure");
   const std::lock_guard lock(mutex_);
   const std::shared_ptr<const Layer> layer = layerOf(request);
-  Image image = mixOf(*layer, mix);
+  const std::size_t file = fileOf(request);
+  const bool is_mixed = mix.is_object() && !files_[file].groups.empty() && layer->shown.name == "color";
+  Image image = is_mixed ? mixOf(file, mix) : layer->image;
   LayerPicture picture;
   WriteOptions how;
   if (textIn(memberIn(request, "mode"), "mode") == "difference") {

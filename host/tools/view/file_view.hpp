@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -38,22 +39,29 @@ class FileView {
     std::vector<std::string> groups;  ///< of lights
     std::string fault;                ///< why the file as it is now can't be read
   };
-  /// A layer of a file that has been read.
+  /// What has been read of a file: a layer, or all of its groups of lights.
   struct Layer {
-    std::size_t file;
     ShownLayer shown;
     Image image;
+  };
+  struct KeptLayer {
+    std::size_t file;
+    std::string key;
+    std::shared_ptr<const Layer> layer;
   };
 
   static File open(const std::string& path);
   void reload();
+  std::shared_ptr<const Layer> keptLayer(std::size_t file, const std::string& key,
+                                         const std::function<Layer()>& read);
+  std::size_t fileOf(const nlohmann::json& request) const;
   std::shared_ptr<const Layer> layerOf(const nlohmann::json& request);
-  Image mixOf(const Layer& layer, const nlohmann::json& mix) const;
+  Image mixOf(std::size_t file, const nlohmann::json& mix);
 
   bool watches_;
   std::mutex mutex_;  ///< for what follows
   std::vector<File> files_;
-  std::list<std::shared_ptr<const Layer>> kept_;  ///< the last that were asked for, the newest first
+  std::list<KeptLayer> kept_;  ///< the last that were asked for, the newest first
   std::uint64_t generation_ = 1;
 };
 

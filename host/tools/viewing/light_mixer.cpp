@@ -164,6 +164,30 @@ Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups,
   return image;
 }
 
+Image mixLights(const Image& layers, const std::vector<GroupFactor>& groups) {
+  std::vector<std::size_t> places;  // of each group's r, g and b
+  for (const GroupFactor& group : groups)
+    for (const char* component : {".R", ".G", ".B"}) {
+      const std::string name = std::string(kLightGroups) + group.group + component;
+      const auto found = std::find(layers.channels.begin(), layers.channels.end(), name);
+      if (found == layers.channels.end()) throw InputError(forMessage(name) + ": missing");
+      places.push_back(std::size_t(found - layers.channels.begin()));
+    }
+  Image image{layers.width, layers.height, {"R", "G", "B"}, {}};
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+  image.pixels.resize(3 * pixels);
+  tbb::parallel_for(std::size_t(0), pixels, [&](std::size_t i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (std::size_t group = 0; group < groups.size(); ++group)
+        sum += double(groups[group].factor[int(c)]) *
+               double(layers.pixels[i * layers.channels.size() + places[3 * group + c]]);
+      image.pixels[3 * i + c] = finiteColor(sum);
+    }
+  });
+  return image;
+}
+
 SmallGroups smallGroups(const std::string& path, const std::vector<GroupFactor>& groups,
                         std::size_t most_bytes) {
   ExrInput input(path);

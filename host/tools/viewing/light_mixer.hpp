@@ -33,6 +33,10 @@ Image readLightGroups(const std::string& path);
 /// and place in the whole picture. Throws InputError and MachineError.
 Image mixLights(const std::string& path, const std::vector<GroupFactor>& groups, WriteOptions& options);
 
+/// The same, without A, of layers that readLightGroups() gave. Throws InputError where it gave none of a
+/// group.
+Image mixLights(const Image& layers, const std::vector<GroupFactor>& groups);
+
 /// An EXR's groups, reduced to a picture of so many bytes at most.
 struct SmallGroups {
   int width = 0, height = 0;

@@ -105,6 +105,12 @@ TEST_F(FilesOfViews, GroupsOfLightsAreMixedAsMixDoes) {
   const Shown mixed = shown(
       view, {{"file", 0}, {"layer", "color"}, {"exposure", -0.5}, {"mix", {{"key", {2.5, "#ff8000"}}}}});
   EXPECT_EQ(mixed.picture.pixels, written("mix a.exr --light-mixer key=2.5:#ff8000 --exposure -0.5").pixels);
+  for (const char* layer : {"", "groups", "light_groups."})
+    EXPECT_THAT(complaint([&] {
+                  view.picture(json{{"file", 0}, {"layer", layer}, {"exposure", "x"}}.dump());
+                }),
+                HasSubstr(*layer ? "no layer" : "exposure"))
+        << "no request names all groups at once: " << layer;
   const Shown other = shown(view, {{"file", 0}, {"layer", "normal"}, {"mix", {{"key", {2.5, "#ff8000"}}}}});
   EXPECT_EQ(other.picture.pixels, written("show a.exr --layer normal").pixels);
 }
