@@ -125,6 +125,14 @@ double nearestDepth(const Bounds& box, const View& view) {
   return nearest;
 }
 
+/// Whether the first vertex of an object is nearer than a depth, and so its box as well.
+bool hasNearVertex(const Scene& scene, const Object& object, const View& view, double depth) {
+  const std::vector<glm::vec3>& positions = scene.meshes[object.mesh].positions;
+  if (positions.empty()) return false;
+  const glm::dvec4 p = view.world_to_view * (object.object_to_world * glm::dvec4(positions[0], 1));
+  return -p.z <= (1 - kSlack) * depth;
+}
+
 /// Appends to `seen` the candidates that may be bright enough to be visible through the fog. lights: all that
 /// may reach them. Tests the box around all candidates; if it may be visible, divides them into halves, each
 /// with the lights that reach the box. Changes the candidates' order.
@@ -198,6 +206,10 @@ std::vector<std::uint32_t> objectsInSight(const Scene& scene, const View& view, 
   std::vector<std::uint32_t> seen;
   std::vector<Candidate> candidates;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (hasNearVertex(scene, scene.objects[i], view, limit)) {
+      seen.push_back(i);
+      continue;
+    }
     const Bounds box = objectBounds(scene, scene.objects[i]);
     const double depth = nearestDepth(box, view);
     if (depth <= limit)

@@ -37,8 +37,9 @@ std::vector<std::vector<double>> posesOf(const Scene& scene) {
 }  // namespace
 
 void updateRuns(const Scene& scene, bool divided, SceneRuns& runs) {
-  const bool known = runs.of_mesh.size() == scene.meshes.size() && runs.divided == divided;
   std::vector<std::vector<double>> poses = posesOf(scene);
+  const bool known = runs.of_mesh.size() == scene.meshes.size() && runs.poses.size() == poses.size() &&
+                     runs.divided == divided;
   std::vector<std::uint8_t> wanted(scene.meshes.size(), !known);
   for (std::size_t i = 0; known && i < poses.size(); ++i)
     if (runs.poses[i] != poses[i]) wanted[scene.animation.deformations[i].mesh] = 1;

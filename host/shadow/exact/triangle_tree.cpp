@@ -76,8 +76,12 @@ TriangleBoxes boxesOf(const PlacedTriangles& placed) {
 std::array<std::uint32_t, kTreeWidth> fetchTriangles(const PlacedTriangles& placed,
                                                      std::span<const std::uint32_t> triangles) {
   std::array<std::uint32_t, kTreeWidth> objects;
+  std::uint32_t object = objectOf(placed, triangles[0]);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    objects[i] = objectOf(placed, triangles[i]);
+    // Mostly they are of one object.
+    if (triangles[i] < placed.first[object] || triangles[i] >= placed.first[object + 1])
+      object = objectOf(placed, triangles[i]);
+    objects[i] = object;
     const Mesh& mesh = placed.scene.meshes[placed.scene.objects[objects[i]].mesh];
     const std::uint32_t in_mesh = triangles[i] - placed.first[objects[i]];
     __builtin_prefetch(&mesh.triangles[in_mesh]);
