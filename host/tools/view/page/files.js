@@ -3,20 +3,20 @@
 // What is shown: a and b are {file, layer}; the middle of a pane shows the point (x, y) of the files, in pixels, and each of
 // their pixels takes `scale` pixels of the screen; 0: as fits.
 const shown = {mode: "one", a: {file: 0, layer: ""}, b: {file: 0, layer: ""}, exposure: 0, split: 0.5, scale: 0, x: 0, y: 0, pixel: null};
-const bitmaps = {a: null, b: null};
+const pictures = {a: null, b: null};  // the last answers
 let groups = [], isAsking = false, isStale = false, isPicking = false, nextPick = null;
 
 const isBoth = () => shown.mode === "side" || shown.mode === "slider";
-const sizeOf = of => state.files[of.file].size;
+const sizeOfA = () => pictures.a?.size ?? state.files[shown.a.file].size;
 const paneWidth = () => canvas.width / (shown.mode === "side" ? 2 : 1);
-const fittingScale = () => Math.min(paneWidth() / sizeOf(shown.a)[0], canvas.height / sizeOf(shown.a)[1]);
+const fittingScale = () => Math.min(paneWidth() / sizeOfA()[0], canvas.height / sizeOfA()[1]);
 const scaleNow = () => shown.scale || fittingScale();
 const density = () => canvas.width / frame.clientWidth;
 
 /** Draws one picture from `left` to `right`, with its point (x, y) at `middle`. */
-function paintOne(bitmap, middle, left, right) {
-  if (!bitmap) return;
-  const scale = scaleNow(), [w, h] = sizeOf(shown.a);
+function paintOne(picture, middle, left, right) {
+  if (!picture) return;
+  const scale = scaleNow(), {bitmap, size: [w, h], scale: enlarged} = picture;
   context.save();
   context.beginPath();
   context.rect(left, 0, right - left, canvas.height);
@@ -24,7 +24,7 @@ function paintOne(bitmap, middle, left, right) {
   context.imageSmoothingEnabled = scale < 1;
   context.translate(Math.round(middle - shown.x * scale), Math.round(canvas.height / 2 - shown.y * scale));
   context.scale(scale, scale);
-  context.drawImage(bitmap, 0, 0, bitmap.width, bitmap.width * h / w, 0, 0, w, h);
+  context.drawImage(bitmap, 0, 0, enlarged * w, enlarged * h, 0, 0, w, h);
   context.strokeStyle = "#ffc83d";
   context.lineWidth = 2 / scale;
   if (shown.pixel && scale > 4) context.strokeRect(...shown.pixel, 1, 1);
@@ -34,10 +34,10 @@ function paintOne(bitmap, middle, left, right) {
 function paint() {
   const all = canvas.width, half = all / 2, cut = shown.mode === "side" ? half : shown.mode === "slider" ? Math.round(shown.split * all) : all;
   context.clearRect(0, 0, all, canvas.height);
-  paintOne(bitmaps.a, shown.mode === "side" ? half / 2 : half, 0, cut);
-  readOut([[sizeOf(shown.a).join(" × "), "pixels"], [(100 * scaleNow()).toFixed(0), "%"]]);
+  paintOne(pictures.a, shown.mode === "side" ? half / 2 : half, 0, cut);
+  readOut([[sizeOfA().join(" × "), "pixels"], [(100 * scaleNow()).toFixed(0), "%"]]);
   if (!isBoth()) return;
-  paintOne(bitmaps.b, shown.mode === "side" ? 1.5 * half : half, cut, all);
+  paintOne(pictures.b, shown.mode === "side" ? 1.5 * half : half, cut, all);
   context.fillStyle = "#ffc83d";
   context.fillRect(cut - 1, 0, 2, canvas.height);
 }
@@ -54,8 +54,8 @@ async function askFiles() {
       const mix = changed.length ? Object.fromEntries(changed.map(group => [group.name, [group.on ? group.factor : 0, group.color]])) : null;
       const body = {other: isDifference ? shown.b : null, mode: isDifference ? "difference" : "one", exposure: shown.exposure, size: null};
       const answers = [await askPicture({...shown.a, ...body, mix}), ...(isBoth() ? [await askPicture({...shown.b, ...body, mix: null})] : [])];
-      showLegend(answers[0].bitmap, Math.min(Math.round(answers[0].bitmap.width * sizeOf(shown.a)[1] / sizeOf(shown.a)[0]), answers[0].bitmap.height));
-      [bitmaps.a, bitmaps.b] = answers.map(({bitmap}) => bitmap);
+      [pictures.a, pictures.b] = answers;
+      showLegend(pictures.a.bitmap, Math.min(pictures.a.scale * pictures.a.size[1], pictures.a.bitmap.height));
       byId("notes").textContent = [...new Set(answers.flatMap(({notes}) => notes))].join(" · ");
       say("warnings", answers.flatMap(({warnings}) => warnings).join("; "));
       paint();
@@ -66,13 +66,13 @@ async function askFiles() {
 
 /** Shows the numbers of a pixel of A, and of B where both are shown. */
 async function showValues(pixel) {
-  shown.pixel = pixel.map((at, i) => within(at, 0, sizeOf(shown.a)[i] - 1));
+  shown.pixel = pixel.map((at, i) => within(at, 0, sizeOfA()[i] - 1));
   nextPick = shown.pixel;
   paint();
   if (isPicking) return;
   isPicking = true;
   while (nextPick) {
-    const at = nextPick.map((place, i) => (place + 0.5) / sizeOf(shown.a)[i]), sides = shown.mode === "one" ? ["a"] : ["a", "b"];
+    const at = nextPick.map((place, i) => (place + 0.5) / sizeOfA()[i]), sides = shown.mode === "one" ? ["a"] : ["a", "b"];
     nextPick = null;
     await attempt(async () => {
       const answers = await Promise.all(sides.map(side => askJson("pick", {...shown[side], at})));
@@ -113,7 +113,7 @@ function zoom(factor, dx = 0, dy = 0) {
 }
 
 function fit(scale) {
-  [shown.x, shown.y] = sizeOf(shown.a).map(side => side / 2);
+  [shown.x, shown.y] = sizeOfA().map(side => side / 2);
   shown.scale = scale;
   paint();
 }
@@ -144,7 +144,10 @@ function changeFiles() {
 
 function showGroups() {
   groups = state.files[shown.a.file].groups.map(name => ({name, on: true, factor: 1, color: "#ffffff", largest: 4}));
-  lightTable(byId("groups"), groups, changeFiles);
+  lightTable(byId("groups"), groups, () => {
+    shown.a = {...shown.a, layer: "color"};
+    changeFiles();
+  });
 }
 
 function showFiles(isFirst) {
