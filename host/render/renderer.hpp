@@ -3,7 +3,7 @@
 #include <span>
 
 #include "cl/device.hpp"
-#include "luciole/renderer.hpp"
+#include "luciole/render.hpp"
 
 namespace luciole {
 

@@ -1,5 +1,5 @@
 // A renderer keeps what its next picture needs, and no picture shows it.
-#include "luciole/renderer.hpp"
+#include "luciole/render.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,8 +38,14 @@ TEST(Renderer, PicturesHaveTheBitsOfASingleOneWhateverChangedBetweenThem) {
   const std::vector<std::pair<const char*, std::function<void(Scene&)>>> changes{
       {"nothing", [](Scene&) {}},
       {"the camera", [&](Scene&) { settings.camera.camera_to_world[3] += glm::dvec4(0.5, 0.25, -1, 0); }},
-      {"the size", [&](Scene&) { settings.size = {64, 100}; }},
-      {"a layer", [&](Scene&) { settings.aovs = {Aov::kNormal, Aov::kShadow}; }},
+      {"the size",
+       [&](Scene&) {
+         settings.size = {64, 100};
+       }},
+      {"a layer",
+       [&](Scene&) {
+         settings.aovs = {Aov::kNormal, Aov::kShadow};
+       }},
       {"no layer", [&](Scene&) { settings.aovs = {}; }},
       {"the samples", [&](Scene&) { settings.samples = 4; }},
       {"alpha", [&](Scene&) { settings.alpha = true; }},

@@ -29,12 +29,12 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
 /// A scene as somebody has changed it while looking at it.
 struct SavedScene {
   std::string text;               ///< of a scene file
-  std::vector<std::string> left;  ///< changes that the file can't hold: of materials of meshes, for --set
+  std::vector<std::string> left;  ///< changes that the file can't hold: of materials of meshes
 };
 
 /// The scene of a file, with these values of `scene`: its lights, if one of the changes is of a light or the
 /// file is a mesh file, ambient light, background and fog. camera: as scene files have it. changes:
-/// "PATH=VALUE", as those of --set, which made `scene` from the file's; of materials those are made that the
+/// as LoadSettings::changes, which made `scene` from the file's; of materials those are made that the
 /// file has. Relative paths are rewritten for `folder`. Reading the text gives the values to the bit. Throws
 /// InputError.
 SavedScene savedScene(const std::string& scene_path, const std::string& folder, const Scene& scene,

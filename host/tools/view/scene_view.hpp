@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
-#include "luciole/renderer.hpp"
+#include "luciole/render.hpp"
 #include "tools/view/server.hpp"
 #include "tools/view/view_changes.hpp"
 #include "tools/view/view_request.hpp"
