@@ -58,7 +58,7 @@ async function askFiles() {
       showLegend(pictures.a.bitmap, Math.min(pictures.a.scale * pictures.a.size[1], pictures.a.bitmap.height));
       byId("notes").textContent = [...new Set(answers.flatMap(({notes}) => notes))].join(" · ");
       say("warnings", answers.flatMap(({warnings}) => warnings).join("; "));
-      paint();
+      if (shown.pixel) showValues(shown.pixel); else paint();
     });
   }
   isAsking = false;

@@ -560,7 +560,7 @@ let kindShown = "model", typing = 0, doesTabLeave = false;
 
 function showEditor() {
   const {text, isUsed} = editors[kindShown], examples = Object.keys(state.examples[kindShown] || {});
-  byId("text").value = text;
+  Object.assign(byId("text"), {value: text, scrollTop: 0});
   byId("in_use").checked = isUsed;
   fillSelect(byId("examples"), [["", "Examples …"], ...examples.map(name => [name, name])], "");
   byId("check").hidden = kindShown !== "model";
@@ -705,7 +705,8 @@ function listen() {
     if (event.key !== "Shift") doesTabLeave = event.key === "Escape";
   });
   on("examples", "change", ({value}) => {
-    byId("text").value = state.examples[kindShown][value] ?? byId("text").value;
+    if (!value) return;
+    Object.assign(byId("text"), {value: state.examples[kindShown][value], scrollTop: 0});
     changeText();
   });
   on("check", "click", button => attempt(async () => {
