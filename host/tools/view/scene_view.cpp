@@ -232,6 +232,7 @@ Json exampleShaders() {
 
 SceneView::SceneView(OpenedDevice& device, SceneSource source) : device_(device), source_(std::move(source)) {
   load();
+  state_ = dumpUtf8(sceneState());
 }
 
 SceneView::~SceneView() {
@@ -375,6 +376,7 @@ Answer SceneView::picture(const std::string& body) {
     const bool is_picture = request.layer == "color";
     writeImage(image, request.is_moving ? "a.jpg" : "a.png", {},
                {.dither = is_picture && !request.is_moving, .memory = &bytes});
+    if (!request.is_moving) full_milliseconds_ = millisecondsSinceStart() - begin;
     about["type"] = request.is_moving ? "image/jpeg" : "image/png";
     about["size"] = {image.width, image.height};
     about["milliseconds"] = millisecondsSinceStart() - begin;
@@ -432,7 +434,9 @@ Image SceneView::layerImage(const ViewRequest& request, RenderSettings settings,
   if (aov) settings.aovs = {*aov};
   // So that a newer request need not wait for all of it. A multiple of 64 changes no bit.
   constexpr int kBandHeight = 128;
-  if (!request.is_moving && settings.samples > 1) settings.band_height = kBandHeight;
+  constexpr double kLong = 200;  // milliseconds
+  if (!request.is_moving && (settings.samples > 1 || full_milliseconds_ > kLong))
+    settings.band_height = kBandHeight;
   Image image;
   const auto take = [&](const Image& rows) {
     if (!request.is_moving && isSuperseded(request)) throw Superseded();
@@ -652,9 +656,14 @@ Json SceneView::sceneState() {
 
 Answer SceneView::state() {
   return guarded([&] {
-    const std::lock_guard lock(mutex_);
-    reload();
-    return jsonAnswer(sceneState());
+    // Who asks each second need not wait for a picture that takes long.
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    const std::lock_guard state_lock(state_mutex_);
+    if (lock) {
+      reload();
+      state_ = dumpUtf8(sceneState());
+    }
+    return Answer{.body = state_};
   });
 }
 

@@ -85,6 +85,11 @@ class SceneView {
   std::string fault_;  ///< why the files as they are can't be shown
   bool has_tangents_ = false;
 
+  double full_milliseconds_ = 0;  ///< that the last full picture took
+
+  std::mutex state_mutex_;
+  std::string state_;  ///< as it was told last
+
   std::mutex newest_mutex_;
   std::list<std::pair<std::string, std::uint64_t>> newest_;  ///< requests of the last pages
   std::mutex check_mutex_;
