@@ -151,6 +151,14 @@ std::future<double> startCompiling(OpenedDevice& device, const std::vector<Featu
     awaitDevice(device);
     const TraceThread thread("kernel compiler");
     const std::int64_t begin = nanosecondsSinceStart();
+    const auto is_ready = [&](const FeatureSet& features) {
+      return device.ready.contains(readyName(device, features, settings, {.beams = false})) &&
+             device.ready.contains(readyName(device, features, settings, {.others = false}));
+    };
+    // To ask what PoCL has kept takes as long as a small frame.
+    const bool is_like_the_last = !device.lights_generally && surfaces.user_text.empty() && screens.empty();
+    if (is_like_the_last && std::all_of(programs.begin(), programs.end(), is_ready))
+      return endStage(Stage::kCompileKernels, begin);
     const double work = pairsOf16Lanes(pairs, device);
     const bool is_followed = !device.helper.empty() && device.makes_one_picture;
     const bool has_general = is_followed && isKept(device, generalFeatures(), settings);

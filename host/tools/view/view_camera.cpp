@@ -60,7 +60,9 @@ Camera readViewCamera(const Json& camera) {
 }
 
 Json viewCameraJson(const Camera& camera, const glm::dvec3& target) {
-  const glm::dvec3 eye(camera.camera_to_world[3]), at = camera.target.value_or(target);
+  const glm::dvec3 eye(camera.camera_to_world[3]), own = camera.target.value_or(eye);
+  // In a room a camera's target may be its own place.
+  const glm::dvec3 at = glm::distance(own, eye) > camera.near ? own : target;
   glm::dvec3 up = glm::normalize(camera.up);
   // One that looks straight down has its own.
   if (glm::length(glm::cross(up, glm::normalize(at - eye))) < 1e-3)

@@ -13,7 +13,7 @@ namespace luciole {
 Camera readViewCamera(const nlohmann::json& camera);
 
 /// A camera as scene files have it. Reading it gives the camera to within rounding, and from then on the same
-/// text and bits. target: what the camera turns around where it knows none itself.
+/// text and bits. target: what the camera turns around where it knows nothing ahead of it.
 nlohmann::json viewCameraJson(const Camera& camera, const glm::dvec3& target);
 
 /// The point ahead of a camera that is nearest to a place, no nearer than what it sees.
