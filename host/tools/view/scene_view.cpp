@@ -107,27 +107,6 @@ Json fogState(const Fog& fog) {
   return json;
 }
 
-/// The size of a motion's next frame: as large as keeps kFrameTime from request to picture, by what the last
-/// one took. Steps of a size are coarse, so that it doesn't change with every frame.
-glm::ivec2 movingSize(glm::ivec2 wanted, const std::optional<SeenFrame>& seen) {
-  constexpr double kFrameTime = 38, kEasy = 26;  // milliseconds: 40 are 25 a second
-  constexpr std::array kShares{1.0, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125};
-  const auto scaled = [&](double share) {
-    return glm::max(glm::ivec2(16), glm::ivec2(glm::round(share * glm::dvec2(wanted))));
-  };
-  std::size_t step = 2;
-  if (seen) {
-    step = 0;
-    while (step + 1 < kShares.size() && scaled(kShares[step]).x > seen->size.x) ++step;
-    // Pixels are about half of what a frame costs.
-    if (seen->milliseconds > kFrameTime && step + 1 < kShares.size())
-      step += seen->milliseconds > 2 * kFrameTime && step + 2 < kShares.size() ? 2 : 1;
-    else if (seen->milliseconds < kEasy && step > 0)
-      --step;
-  }
-  return scaled(kShares[step]);
-}
-
 /// What a layer's name asks the renderer for; nothing for the picture's colours.
 std::optional<Aov> aovNamed(const std::string& name) {
   for (const AovRow& row : aovTable())
@@ -252,6 +231,7 @@ void SceneView::load() {
   loaded_ = valuesOf(scene);
   applied_.reset();
   exposure_.reset();
+  costs_ = {};
   has_tangents_ = false;
   fault_.clear();
   renderer_ = makeRenderer(std::array{&device_}, std::move(scene));
@@ -360,7 +340,7 @@ Answer SceneView::picture(const std::string& body) {
       camera = cameraOf(request);
     }
     settings.camera = camera;
-    settings.size = request.is_moving ? movingSize(request.size, request.seen) : request.size;
+    settings.size = request.is_moving ? movingSize(request) : request.size;
     settings.samples = request.samples;
     Stats stats;
     stats.began = begin;
@@ -376,7 +356,10 @@ Answer SceneView::picture(const std::string& body) {
     const bool is_picture = request.layer == "color";
     writeImage(image, request.is_moving ? "a.jpg" : "a.png", {},
                {.dither = is_picture && !request.is_moving, .memory = &bytes});
-    if (!request.is_moving) full_milliseconds_ = millisecondsSinceStart() - begin;
+    if (!request.is_moving) {
+      full_milliseconds_ = millisecondsSinceStart() - begin;
+      if (request.samples == 1 && is_picture) addFrame(settings.size, full_milliseconds_, costs_);
+    }
     about["type"] = request.is_moving ? "image/jpeg" : "image/png";
     about["size"] = {image.width, image.height};
     about["milliseconds"] = millisecondsSinceStart() - begin;
@@ -390,6 +373,12 @@ Answer SceneView::picture(const std::string& body) {
     about["warnings"] = faultLines(stats);
     return pictureAnswer(about, bytes);
   });
+}
+
+/// The size of a motion's next frame.
+glm::ivec2 SceneView::movingSize(const ViewRequest& request) {
+  if (request.seen) addFrame(request.seen->size, request.seen->milliseconds, costs_);
+  return frameSize(costs_, request.size);
 }
 
 /// The camera of the request after its gesture, which goes into request.camera.

@@ -12,6 +12,7 @@
 
 #include "cl/device.hpp"
 #include "luciole/render.hpp"
+#include "tools/view/frame_size.hpp"
 #include "tools/view/server.hpp"
 #include "tools/view/view_changes.hpp"
 #include "tools/view/view_request.hpp"
@@ -60,6 +61,7 @@ class SceneView {
   RenderSettings apply(const SceneChanges& view);
   bool isSuperseded(const ViewRequest& request);
   void optimizeKernels();
+  glm::ivec2 movingSize(const ViewRequest& request);
   Camera cameraOf(ViewRequest& request) const;
   void expose(const SceneChanges& view, bool is_moving, RenderSettings& settings, Stats& stats);
   Image layerImage(const ViewRequest& request, RenderSettings settings, Stats& stats,
@@ -85,6 +87,7 @@ class SceneView {
   std::string fault_;  ///< why the files as they are can't be shown
   bool has_tangents_ = false;
 
+  FrameCosts costs_;
   double full_milliseconds_ = 0;  ///< that the last full picture took
 
   std::mutex state_mutex_;

@@ -54,6 +54,7 @@ async function askFiles() {
       const mix = changed.length ? Object.fromEntries(changed.map(group => [group.name, [group.on ? group.factor : 0, group.color]])) : null;
       const body = {other: isDifference ? shown.b : null, mode: isDifference ? "difference" : "one", exposure: shown.exposure, size: null};
       const answers = [await askPicture({...shown.a, ...body, mix}), ...(isBoth() ? [await askPicture({...shown.b, ...body, mix: null})] : [])];
+      for (const answer of answers) answer.bitmap = await answer.decoded;
       [pictures.a, pictures.b] = answers;
       showLegend(pictures.a.bitmap, Math.min(pictures.a.scale * pictures.a.size[1], pictures.a.bitmap.height));
       byId("notes").textContent = [...new Set(answers.flatMap(({notes}) => notes))].join(" · ");

@@ -38,13 +38,12 @@ async function ask(path, body, signal) {
 
 const askJson = async (path, body) => JSON.parse(textOf(await ask(path, body)));
 
-/** A picture and what the server says about it: {…, bitmap, seen: milliseconds from the request to the decoded picture}. */
+/** What the server says about a picture, and more: {…, number: of the request, decoded: a promise of its bitmap, seen: milliseconds it took to come}. */
 async function askPicture(body, signal) {
-  const start = performance.now(), bytes = await ask("picture", {page: pageName, number: ++requests, ...body}, signal);
+  const start = performance.now(), number = ++requests, bytes = await ask("picture", {page: pageName, number, ...body}, signal);
   const length = new DataView(bytes).getUint32(0, true), about = JSON.parse(textOf(new Uint8Array(bytes, 4, length)));
   const blob = new Blob([new Uint8Array(bytes, 4 + length)], {type: about.type});
-  const bitmap = await createImageBitmap(blob, {colorSpaceConversion: "none"});
-  return {...about, bitmap, seen: performance.now() - start};
+  return {...about, number, decoded: createImageBitmap(blob, {colorSpaceConversion: "none"}), seen: performance.now() - start};
 }
 
 /** Does what the user asks for while `button`, if any, waits, and tells what goes wrong. */
@@ -177,6 +176,7 @@ let goodShaders = {};  // those of the last picture
 let level = 3, serial = 0, lastInput = 0, timer = 0;
 let flying = null;           // the request on its way, {isMoving, controller}
 let lastFrame = null;        // of a motion, {milliseconds, size}
+let shownNumber = 0;         // of the request whose picture is shown
 let frameTimes = [];         // of the last second of a motion
 let toldAt = 0;
 const gestures = new Map();  // what no request has carried yet, summed by kind
@@ -247,7 +247,15 @@ async function draw(isMoving, samples) {
     if (moved && !moved.drag_light && view.camera === asked.camera) view.camera = about.camera;
     goodShaders = asked.shaders;
     if (asked.serial === serial) level = isMoving ? 1 : samples < samplesWanted() ? 2 : 3;
-    showPicture(about, isMoving);
+    if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size: about.shows};
+    if (isMoving) {
+      flying = null;  // The next frame is made while this one is decoded.
+      pump();
+    }
+    const bitmap = await about.decoded;
+    if (about.number < shownNumber) return bitmap.close();
+    shownNumber = about.number;
+    showPicture({...about, bitmap}, isMoving);
   } catch (fault) {
     if (flying !== me || fault.gone) return;
     if (asked.serial === serial) level = 3;
@@ -270,7 +278,6 @@ function showPicture(about, isMoving) {
   context.drawImage(bitmap, 0, 0);
   if (!isMoving || height === bitmap.height) showLegend(bitmap, height);
   bitmap.close();
-  if (isMoving || !lastFrame) lastFrame = {milliseconds: about.seen, size: shows};
   frameTimes = isMoving ? [...frameTimes.filter(time => now - time < 1000), now] : [];
   say("error", "");
   showMarkers(about.markers);
