@@ -1,4 +1,4 @@
-#include "lighting/kept_shadows.hpp"
+#include "render/kept_picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ void expectSamePictures(OpenedDevice& device, const RenderSettings& given, int f
   Scene scene = sceneFromJson(kKeptScene);
   RenderSettings settings = given;
   settings.camera = scene.cameras.front();
-  KeptShadows kept;
+  KeptPicture kept;
   for (int frame = 0; frame < frames; ++frame) {
     Stats stats;
     std::vector<float> pixels;
