@@ -54,7 +54,7 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
       {"mesh": "t.obj", "material": "red", "translate": [1, 0, 0], "keys": [{"frame": 1, "translate": [2, 0, 0]}]}]})"},
     {"PointLights", R"({"lights": [
       {"type": "point", "position": [1, 2, 3], "color": [1, 0.8, 0.5], "intensity": 2, "attenuation": [1, 0, 0.5],
-       "range": 8, "shadow": true, "radius": 0.1, "enabled": false, "group": "key", "name": "lamp"},
+       "range": 8, "window": "khr", "shadow": true, "radius": 0.1, "enabled": false, "group": "key", "name": "lamp"},
       {"type": "point", "position": [1, 2, 3], "ambient": 0.1, "diffuse": [1, 0, 0], "specular": 0.5,
        "keys": [{"frame": 1, "position": [0, 0, 0], "intensity": 1}]},
       {"type": "point", "position": [1, 2, 3], "interpolation": "smooth",

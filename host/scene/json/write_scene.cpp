@@ -67,8 +67,8 @@ void appendSpot(const Light& light, std::string& text) {
 /// A vector that is read as this unit vector, to the last bit where one is found near: reading divides by the
 /// length, which rounds.
 glm::dvec3 directionToRead(const glm::dvec3& direction) {
-  for (int i = 0; i < 64; ++i) {
-    const glm::dvec3 scaled = (1 + i / 64.0) * direction;
+  for (int i = 0; i < 4096; ++i) {  // mostly one or two
+    const glm::dvec3 scaled = (1 + i / 4096.0) * direction;
     if (scaled / glm::length(scaled) == direction) return scaled;
   }
   return direction;

@@ -13,11 +13,9 @@
 
 #include "base/clock.hpp"
 #include "base/dump_utf8.hpp"
-#include "base/embedded_files.hpp"
 #include "base/write_file.hpp"
 #include "cl/launch.hpp"
 #include "image/heat_map.hpp"
-#include "image/srgb.hpp"
 #include "lighting/compile_helper.hpp"
 #include "lighting/count_picture.hpp"
 #include "luciole/compare.hpp"
@@ -28,10 +26,10 @@
 #include "render/renderer.hpp"
 #include "scene/bounds.hpp"
 #include "scene/json/write_scene.hpp"
-#include "scene/models.hpp"
 #include "scene/tangents.hpp"
 #include "shaders/shader_text.hpp"
 #include "tools/models/check_model.hpp"
+#include "tools/view/scene_state.hpp"
 #include "tools/view/view_camera.hpp"
 #include "tools/view/view_json.hpp"
 #include "tools/viewing/light_map.hpp"
@@ -42,7 +40,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostListed = 256;  ///< lights in the state
 constexpr std::size_t kPagesKnown = 16;
 /// Programs in memory, of which an editor makes one at a time, after which those of its texts are dropped.
 constexpr std::size_t kMostPrograms = 64;
@@ -52,60 +49,6 @@ constexpr std::array kSavedEndings{".json", ".png", ".exr", "-model.clh", "-surf
 
 /// Thrown between a picture's bands where a newer request has taken its place.
 struct Superseded {};
-
-std::string hexOf(const glm::vec3& color) {
-  const float largest = std::max({1.0f, color.x, color.y, color.z});
-  std::string hex = "#";
-  for (int c = 0; c < 3; ++c)
-    hex += fmt::format("{:02x}", int(std::lround(255 * encodeSrgb(color[c] / largest))));
-  return hex;
-}
-
-template <class Vector>
-Json listOf(const Vector& v) {
-  return {v.x, v.y, v.z};
-}
-
-std::string nameOr(const std::string& name, const char* kind, std::size_t index) {
-  return name.empty() ? fmt::format("{} {}", kind, index) : name;
-}
-
-Json lightState(const Light& light, std::size_t index) {
-  const float intensity = std::max({light.diffuse.x, light.diffuse.y, light.diffuse.z});
-  const glm::vec3 color = light.diffuse / (intensity > 0 ? intensity : 1.0f);
-  Json json{{"index", index},         {"name", nameOr(light.name, "light", index)},
-            {"color", listOf(color)}, {"hex", hexOf(color)},
-            {"intensity", intensity}, {"shadow", light.shadow},
-            {"radius", light.radius}};
-  json["kind"] = light.kind == LightKind::kPoint  ? "point"
-                 : light.kind == LightKind::kSpot ? "spot"
-                                                  : "directional";
-  if (light.kind != LightKind::kDirectional) json["position"] = listOf(light.position);
-  return json;
-}
-
-Json materialState(const Material& material, std::size_t index) {
-  return {{"index", index},
-          {"name", nameOr(material.name, "material", index)},
-          {"diffuse", listOf(material.diffuse)},
-          {"diffuse_hex", hexOf(material.diffuse)},
-          {"specular", listOf(material.specular)},
-          {"specular_hex", hexOf(material.specular)},
-          {"emission", listOf(material.emission)},
-          {"emission_hex", hexOf(material.emission)},
-          {"shininess", material.shininess}};
-}
-
-Json fogState(const Fog& fog) {
-  if (fog.mode == FogMode::kNone) return nullptr;
-  Json json{{"color", listOf(fog.color)}, {"hex", hexOf(fog.color)}};
-  json["mode"] = fog.mode == FogMode::kLinear ? "linear" : fog.mode == FogMode::kExp ? "exp" : "exp2";
-  if (fog.mode == FogMode::kLinear)
-    json.update({{"start", fog.start}, {"end", fog.end}});
-  else
-    json["density"] = listOf(fog.density);
-  return json;
-}
 
 /// What a layer's name asks the renderer for; nothing for the picture's colours.
 std::optional<Aov> aovNamed(const std::string& name) {
@@ -198,20 +141,9 @@ Json boundState(const Stats& stats) {
 
 }  // namespace
 
-Json exampleShaders() {
-  Json examples;
-  for (const EmbeddedFile& file : exampleShaderFiles()) {
-    const char* const kind = file.text.find("void surface(") != file.text.npos ? "surface"
-                             : file.text.find("screen(") != file.text.npos     ? "screen"
-                                                                               : "model";
-    examples[kind][std::string(file.name)] = std::string(file.text);
-  }
-  return examples;
-}
-
 SceneView::SceneView(OpenedDevice& device, SceneSource source) : device_(device), source_(std::move(source)) {
   load();
-  state_ = dumpUtf8(sceneState());
+  state_ = dumpUtf8(allState());
 }
 
 SceneView::~SceneView() {
@@ -607,40 +539,19 @@ Answer SceneView::save(const std::string& body) {
   });
 }
 
-Json SceneView::sceneState() {
-  const Scene& scene = renderer_->scene();
-  Json cameras = Json::array(), lights = Json::array(), materials = Json::array();
-  for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
-  for (std::size_t i = 0; i < std::min(loaded_.lights.size(), kMostListed); ++i)
-    lights.push_back(lightState(loaded_.lights[i], i));
-  for (std::size_t i = 0; i < loaded_.materials.size(); ++i)
-    materials.push_back(materialState(loaded_.materials[i], i));
-  const glm::ivec2 size = scene.size.value_or(RenderSettings{}.size);
-  return {{"kind", "scene"},
-          {"generation", generation_},
-          {"name", scene.name},
-          {"fault", fault_.empty() ? Json(nullptr) : Json(fault_)},
-          {"size", {size.x, size.y}},
-          {"cameras", cameras},
-          {"lights", lights},
-          {"light_count", loaded_.lights.size()},
-          {"materials", materials},
-          {"fog", fogState(loaded_.fog)},
-          {"ambient", listOf(loaded_.ambient)},
-          {"ambient_hex", hexOf(loaded_.ambient)},
-          {"background", listOf(loaded_.background)},
-          {"background_hex", hexOf(loaded_.background)},
-          {"options", source_.options},
-          {"choices",
-           {{"model", kModelNames},
-            {"shading", {"flat", "gouraud", "phong"}},
-            {"shadows", {"auto", "off", "hard", "pcf", "soft", "exact", "soft-exact"}}}},
-          {"shaders",
-           {{"model", source_.shaders.model},
-            {"surface", source_.shaders.surface},
-            {"screen", source_.shaders.screen}}},
-          {"examples", exampleShaders()},
-          {"output", source_.folder}};
+Json SceneView::allState() {
+  Json json = sceneState(renderer_->scene(), loaded_);
+  json.update({{"kind", "scene"},
+               {"generation", generation_},
+               {"fault", fault_.empty() ? Json(nullptr) : Json(fault_)},
+               {"options", source_.options},
+               {"shaders",
+                {{"model", source_.shaders.model},
+                 {"surface", source_.shaders.surface},
+                 {"screen", source_.shaders.screen}}},
+               {"examples", exampleShaders()},
+               {"output", source_.folder}});
+  return json;
 }
 
 Answer SceneView::state() {
@@ -650,7 +561,7 @@ Answer SceneView::state() {
     const std::lock_guard state_lock(state_mutex_);
     if (lock) {
       reload();
-      state_ = dumpUtf8(sceneState());
+      state_ = dumpUtf8(allState());
     }
     return Answer{.body = state_};
   });

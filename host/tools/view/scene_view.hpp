@@ -21,9 +21,6 @@
 // A scene that a page looks at: its requests become pictures.
 namespace luciole {
 
-/// Example shaders by kind and name: {"model": {"rim.clh": text}}.
-nlohmann::json exampleShaders();
-
 /// The scene, and what only the command line knows of it.
 struct SceneSource {
   std::string path;
@@ -69,7 +66,7 @@ class SceneView {
   Image shadowMapImage(const ViewRequest& request, const RenderSettings& settings);
   Image errorImage(const ViewRequest& request, RenderSettings settings, Stats& stats,
                    std::vector<std::string>& notes);
-  nlohmann::json sceneState();
+  nlohmann::json allState();
 
   OpenedDevice& device_;
   SceneSource source_;

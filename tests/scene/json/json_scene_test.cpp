@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
 #include "load/frame.hpp"
 #include "luciole/error.hpp"
 #include "luciole/load_scene.hpp"
@@ -390,6 +392,67 @@ TEST_F(JsonScene, MistakesInListsOfLightsNameTheirFileAndLine) {
               HasSubstr("lamps.csv: line 2: expected"));
   EXPECT_THAT(refusal(R"({"light_fields": [{"csv": "lamps.csv", "count": 1}, {"csv": "no.csv"}]})"),
               HasSubstr("light_fields[1].csv: there is no file"));
+}
+
+TEST_F(JsonScene, ALightsRangeFadesOutAsItsWindowSays) {
+  const Scene scene = load(R"({"lights": [
+    {"type": "point", "position": [0,0,0], "range": 2},
+    {"type": "point", "position": [0,0,0], "range": 2, "window": "smooth"},
+    {"type": "point", "position": [0,0,0], "range": 2, "window": "khr"}]})");
+  EXPECT_EQ(scene.lights[0].window, RangeWindow::kSmooth);
+  EXPECT_EQ(scene.lights[1].window, RangeWindow::kSmooth);
+  EXPECT_EQ(scene.lights[2].window, RangeWindow::kKhr);
+}
+
+TEST_F(JsonScene, WrittenLightsAreReadToTheBit) {
+  std::uint64_t random = 5;
+  const auto number = [&] { return nextUniform(random); };
+  const auto color = [&] { return glm::vec3(number(), number(), number()); };
+  std::vector<Light> lights;
+  for (int i = 0; i < 300; ++i) {
+    Light light;
+    light.kind = LightKind(i % 3);
+    light.name = "light \"" + std::to_string(i) + "\"";
+    light.diffuse = color();
+    light.specular = i % 2 ? light.diffuse : color();
+    light.ambient = i % 5 ? glm::vec3(0) : color();
+    light.shadow = i % 7 == 0;
+    if (light.kind != LightKind::kPoint) {
+      const glm::dvec3 towards(number() - 0.5, number() - 0.5, number() - 0.5);
+      light.direction = towards / glm::length(towards);
+    }
+    if (light.kind == LightKind::kDirectional) {
+      light.half_angle = glm::radians(7.0 * number()) / 2;
+    } else {
+      light.position = {number() / 3, 1e5 * number(), -number()};
+      light.radius = i % 4 ? 0 : number();
+      light.attenuation = {number(), number(), number()};
+      if (i % 4) light.range = float(1 + number());
+      light.window = i % 8 == 1 ? RangeWindow::kKhr : RangeWindow::kSmooth;
+    }
+    if (light.kind == LightKind::kSpot) {
+      light.falloff = i % 2 ? SpotFalloff::kCone : SpotFalloff::kExponent;
+      light.cutoff = glm::radians(20 + 60 * number());
+      if (i % 2)
+        light.inner_cone = glm::radians(19 * number());
+      else
+        light.exponent = float(100 * number());
+    }
+    lights.push_back(light);
+  }
+  const std::vector<Light> read = load(lightsScene(lights)).lights;
+  ASSERT_EQ(read.size(), lights.size());
+  // An angle in degrees may be none's that is read as these radians, but of the two nearest one is.
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    EXPECT_NEAR(read[i].half_angle, lights[i].half_angle, 0x1p-54);
+    EXPECT_NEAR(read[i].cutoff, lights[i].cutoff, 0x1p-52);
+    EXPECT_NEAR(read[i].inner_cone, lights[i].inner_cone, 0x1p-54);
+    Light one = read[i];
+    one.half_angle = lights[i].half_angle;
+    one.cutoff = lights[i].cutoff;
+    one.inner_cone = lights[i].inner_cone;
+    EXPECT_EQ(one, lights[i]) << i << " " << glm::distance(one.direction, lights[i].direction);
+  }
 }
 
 TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {

@@ -30,7 +30,8 @@ using Json = nlohmann::json;
 /// luciole view, at work until this goes.
 class ServedView {
  public:
-  explicit ServedView(std::vector<std::string> words) {
+  /// variables: "NAME=value" of its environment, beside this process's.
+  explicit ServedView(std::vector<std::string> words, std::vector<std::string> variables = {}) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
     posix_spawn_file_actions_t actions;
@@ -40,7 +41,12 @@ class ServedView {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    const int failure = posix_spawn(&process_, LUCIOLE_BINARY, &actions, nullptr, arguments.data(), environ);
+    std::vector<char*> environment;
+    for (std::string& variable : variables) environment.push_back(variable.data());
+    for (char** variable = environ; *variable; ++variable) environment.push_back(*variable);
+    environment.push_back(nullptr);
+    const int failure =
+        posix_spawn(&process_, LUCIOLE_BINARY, &actions, nullptr, arguments.data(), environment.data());
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
     if (failure != 0) throw std::runtime_error("luciole doesn't start");
@@ -228,6 +234,27 @@ TEST_F(ViewPage, ReadsTheSceneAgainWhenItChangesAndTellsWhatIsWrongWithIt) {
   EXPECT_EQ(codesShown(browser), rendered(browser));
   served.stop();
   await(browser, "document.getElementById('messages').textContent.includes('gone')");
+}
+
+TEST_F(ViewPage, TellsOfADeviceThatFailsAndKeepsTheLastPicture) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  writeScene(kViewScene);
+  succeed("cc -shared -fPIC -o failing.so '" LUCIOLE_SOURCE_DIR "/tests/tools/cli/failing_device.c' -ldl");
+  // The first full picture takes a dozen launches and compiling as many.
+  const ServedView served({folder / "scene.json", "-o", folder.path().string()},
+                          {"LD_PRELOAD=" + (folder / "failing.so"), "FAIL_AT=150"});
+  Browser& browser = browserWithEmptyPage();
+  browser.openAddress(served.address());
+  await(browser, kAtRest);
+  const std::string told = "document.getElementById('messages').textContent";
+  for (int i = 0; i < 200 && browser.evaluate(told) == ""; ++i) {
+    browser.evaluate("gesture('orbit', 0.05, 0)");
+    await(browser, kAtRest + " || " + told);
+  }
+  EXPECT_THAT(browser.evaluate(told).get<std::string>(), HasSubstr("CL_DEVICE_NOT_AVAILABLE"));
+  EXPECT_EQ(browser.evaluate("document.getElementById('picture').width > 16"), true);
+  // The server goes on answering.
+  EXPECT_EQ(browser.evaluate("askJson('state').then(state => state.light_count)"), 2);
 }
 
 TEST_F(ViewPage, SavesASceneThatTheCommandRendersToThePictureOfThePage) {
