@@ -102,8 +102,8 @@ using Slots = std::array<T, kTreeWidth>;
 /// offset. All 0 if either are collinear, or their normals are perpendicular. `exact`: coordinate a of corner
 /// c in row 3·c + a; `rows`: with the rounded corners.
 void setPlanes(const std::array<Slots<double>, 9>& exact, float* rows) {
-  const float* rounded = rows + kCornerRows * kTreeWidth;
-  float* out = rows + kPlaneRows * kTreeWidth;
+  const float* rounded = rows + int(kCornerRows) * kTreeWidth;
+  float* out = rows + int(kPlaneRows) * kTreeWidth;
   for (int i = 0; i < kTreeWidth; ++i) {
     const auto corner = [&](int c) {
       return glm::dvec3(exact[3 * c][i], exact[3 * c + 1][i], exact[3 * c + 2][i]);
@@ -167,7 +167,8 @@ FloatBox fillBlock(const PlacedTriangles& placed, std::size_t block, TriangleTre
     box.high[axis] = *std::ranges::max_element(high);
   }
   setPlanes(exact, rows);
-  for (int i = 0; i < kTreeWidth; ++i) rows[kRoundingRow * kTreeWidth + i] = CORNER_ROUNDING * farthest[i];
+  for (int i = 0; i < kTreeWidth; ++i)
+    rows[int(kRoundingRow) * kTreeWidth + i] = CORNER_ROUNDING * farthest[i];
   tree.block_bits[block] = used | holes << 16;
   return box;
 }

@@ -319,7 +319,7 @@ Camera SceneView::cameraOf(ViewRequest& request) const {
   Camera camera = settings_.camera;
   if (request.camera.is_string()) {
     const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
-                                    [&](const Camera& one) { return one.name == request.camera; });
+                                    [&](const Camera& one) { return Json(one.name) == request.camera; });
     if (found == scene.cameras.end())
       throw InputError(fmt::format("camera: {} has none of that name", scene.name));
     camera = *found;
