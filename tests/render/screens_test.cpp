@@ -103,11 +103,11 @@ TEST(Screens, ABlurOfTheLargestRadiusIsTheHosts) {
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x)
       for (int c = 0; c < 3; ++c) {
-        float sum = sharp.pixels[std::size_t(3 * (y * size.x + x) + c)] * 0.0f;
+        float sum = sharp.pixels[3 * std::size_t(y * size.x + x) + std::size_t(c)] * 0.0f;
         for (int dy = -8; dy <= 8; ++dy)
           for (int dx = -8; dx <= 8; ++dx) {
             const glm::ivec2 at = glm::clamp(glm::ivec2(x + dx, y + dy), glm::ivec2(0), size - 1);
-            sum += sharp.pixels[std::size_t(3 * (at.y * size.x + at.x) + c)];
+            sum += sharp.pixels[3 * std::size_t(at.y * size.x + at.x) + std::size_t(c)];
           }
         // The same sums in the same order.
         ASSERT_EQ(blurred.pixels[std::size_t(3 * (y * size.x + x) + c)], sum * (1.0f / 289)) << x << " " << y;

@@ -140,9 +140,10 @@ class Firefox {
     const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address = loopback(0);
     socklen_t size = sizeof address;
-    bind(one, reinterpret_cast<const sockaddr*>(&address), size);
-    getsockname(one, reinterpret_cast<sockaddr*>(&address), &size);
+    const bool is_bound = bind(one, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+                          getsockname(one, reinterpret_cast<sockaddr*>(&address), &size) == 0;
     close(one);
+    if (!is_bound) throw std::runtime_error("no free port");
     return ntohs(address.sin_port);
   }
 

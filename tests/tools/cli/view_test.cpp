@@ -247,7 +247,7 @@ TEST_F(ViewPage, TellsOfADeviceThatFailsAndKeepsTheLastPicture) {
   browser.openAddress(served.address());
   await(browser, kAtRest);
   const std::string told = "document.getElementById('messages').textContent";
-  for (int i = 0; i < 200 && browser.evaluate(told) == ""; ++i) {
+  for (int i = 0; i < 200 && browser.evaluate("!" + told) == true; ++i) {
     browser.evaluate("gesture('orbit', 0.05, 0)");
     await(browser, kAtRest + " || " + told);
   }

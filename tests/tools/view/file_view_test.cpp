@@ -43,7 +43,7 @@ class FilesOfViews : public testing::Test {
     channels.push_back({"depth.Z", kFloat, [](int x, int y) {
                           return y == 0 ? std::numeric_limits<float>::infinity() : float(1 + x);
                         }});
-    channels.push_back({"object_id", kFloat, [](int x, int) { return float(x / 10) - 1; }});
+    channels.push_back({"object_id", kFloat, [](int x, int) { return float(x / 10 - 1); }});
     test::writeForeignParts(folder / name, width, height, {{channels, {}}});
     return folder / name;
   }

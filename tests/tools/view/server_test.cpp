@@ -430,7 +430,7 @@ TEST_F(ViewServer, SecondClientIsAnsweredWhileTheFirstWaitsAndOneTooManyIsTold) 
 TEST_F(ViewServer, TakenPortIsToldAndIsFreeAgainWhenItsServerHasEnded) {
   expectAnswers();
   try {
-    Server({"127.0.0.1", port}, {});
+    const Server second({"127.0.0.1", port}, {});
     ADD_FAILURE() << "two servers at one port";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(),
