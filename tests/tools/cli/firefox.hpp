@@ -37,8 +37,9 @@ class Firefox {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    std::vector<std::string> variables{"HOME=" + folder_.path().string(),
-                                       "TMPDIR=" + folder_.path().string()};
+    // Its sandbox needs rights that a container may not give.
+    std::vector<std::string> variables{"HOME=" + folder_.path().string(), "TMPDIR=" + folder_.path().string(),
+                                       "MOZ_DISABLE_CONTENT_SANDBOX=1", "MOZ_CRASHREPORTER_DISABLE=1"};
     for (char** variable = environ; *variable; ++variable)
       if (const std::string text = *variable; !text.starts_with("HOME=") && !text.starts_with("TMPDIR="))
         variables.push_back(text);
