@@ -143,6 +143,7 @@ Json boundState(const Stats& stats) {
 
 SceneView::SceneView(OpenedDevice& device, SceneSource source) : device_(device), source_(std::move(source)) {
   load();
+  awaitDevice(device_);
   state_ = dumpUtf8(allState());
 }
 
@@ -261,7 +262,6 @@ Answer SceneView::picture(const std::string& body) {
     isSuperseded(request);
     const std::lock_guard lock(mutex_);
     if (isSuperseded(request)) throw Superseded();
-    if (device_.opening.valid()) awaitDevice(device_);
     optimizeKernels();
     const double begin = millisecondsSinceStart();
     RenderSettings settings = apply(request.changes);

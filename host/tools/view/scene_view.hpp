@@ -39,7 +39,8 @@ struct SceneSource {
 /// request says all of it. Any thread may call it; pictures take turns.
 class SceneView {
  public:
-  /// Reads the scene. `device` must outlive it, and may still be opening. Throws as SceneSource::load does.
+  /// Reads the scene. `device` must outlive it; where it is still being opened that is awaited. Throws as
+  /// SceneSource::load and awaitDevice do.
   SceneView(OpenedDevice& device, SceneSource source);
   ~SceneView();
 

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "base/text_file.hpp"
-#include "image/srgb.hpp"
 #include "luciole/error.hpp"
 #include "scene/json/scene_changes.hpp"
+#include "tools/viewing/light_mixer.hpp"
 
 namespace luciole {
 namespace {
@@ -38,25 +39,20 @@ bool isChangeable(const std::vector<ChangeStep>& place) {
                                (first == "materials" && has(kOfMaterials, place[2].key)));
 }
 
-/// The linear colour of "#rrggbb" or "#rrggbb*STRENGTH" as a list of JSON; the text itself where it is none.
+/// The linear colour of "#rrggbb" or "#rrggbb*STRENGTH" as a list of JSON; another text as it is.
 std::string numberedColor(const std::string& text) {
   if (!text.starts_with('#')) return text;
-  const auto refuse = [&] { throw InputError(fmt::format("changes: {}: no colour", forMessage(text))); };
-  unsigned hex = 0;
-  const char* const digits = text.data() + 1;
-  const char* const end = text.data() + text.size();
-  if (text.size() < 7 || std::from_chars(digits, digits + 6, hex, 16).ptr != digits + 6) refuse();
+  const std::size_t star = std::min(text.find('*'), text.size());
+  const std::optional<glm::vec3> color = linearColor(text.substr(0, star));
   double strength = 1;
-  if (text.size() > 7) {
-    const auto [last, error] = std::from_chars(digits + 7, end, strength);
-    if (text[7] != '*' || error != std::errc() || last != end ||
-        !(strength >= 0 && strength <= kMostStrength))
-      refuse();
-  }
-  nlohmann::json list;
-  for (const int shift : {16, 8, 0})
-    list.push_back(float(strength * decodeSrgb((hex >> shift & 255) / 255.0)));
-  return list.dump();
+  const char* const end = text.data() + text.size();
+  const bool has_strength = star < text.size();
+  const auto [last, error] =
+      has_strength ? std::from_chars(text.data() + star + 1, end, strength) : std::from_chars_result{end, {}};
+  if (!color || error != std::errc() || last != end || !(strength >= 0 && strength <= kMostStrength))
+    throw InputError(fmt::format("changes: {}: no colour", forMessage(text)));
+  const glm::vec3 scaled = float(strength) * *color;
+  return nlohmann::json{scaled.x, scaled.y, scaled.z}.dump();
 }
 
 }  // namespace

@@ -311,6 +311,7 @@ TEST_F(ViewPage, WhatCannotBeShownIsRefusedInOneLine) {
   refuse("luciole view scene.json -o nowhere", 2, "no such folder");
   refuse("luciole view scene.json other.exr", 2, "other.exr");
   refuse("luciole view scene.json --host 203.0.113.1 --quiet", 2, "--host");
+  refuse("OCL_ICD_VENDORS=/nonexistent luciole view scene.json", 3, "no OpenCL device");
   refuse("luciole view scene.json --surface a.clh --surface b.clh", 2, "--surface");
 }
 
