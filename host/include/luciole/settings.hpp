@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "luciole/scene.hpp"
@@ -165,5 +167,51 @@ struct RenderSettings {
   /// Whether `aovs` has this layer.
   bool wants(Aov aov) const { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); }
 };
+
+struct WriteOptions;
+
+/// A setting of a picture or of its file, as people say it: a name, and a value as text. Command lines and
+/// other languages make their options from these rows, so that all have the same names, values and defaults.
+struct NamedSetting {
+  const char* name;          ///< lower case, words apart by "_"
+  std::string help;          ///< what it does, in one line
+  std::string initial = {};  ///< the value of a picture that doesn't say it; "": as `help` says
+  /// The values that there are. Empty: a text of another kind.
+  std::vector<std::string> choices = {};
+  bool is_flag = false;  ///< its choices are "on" and "off"
+  bool is_list = false;  ///< several choices, with commas between them
+  /// Numbers: the least and the greatest. Both 0: not a number.
+  double least = 0, greatest = 0;
+  bool is_whole = false;  ///< a whole number
+  /// Takes the value. Null: of a file, or what depends on the scene: its camera, models and shadow casters.
+  void (*set)(const std::string& value, RenderSettings& settings) = nullptr;
+  void (*set_file)(const std::string& value, WriteOptions& options) = nullptr;  ///< the same of a file
+};
+
+/// All of them.
+const std::vector<NamedSetting>& namedSettings();
+
+/// The row of this name. Throws InputError for another name, with a suggestion.
+const NamedSetting& namedSetting(std::string_view name);
+
+/// What is wrong with a value, as "expected 1 to 1024, got 0"; "" if it is right.
+std::string settingFault(const NamedSetting& setting, const std::string& value);
+
+/// Values by their names.
+using SettingValues = std::map<std::string, std::string, std::less<>>;
+
+/// All names with their initial values.
+SettingValues initialSettings();
+
+/// Sets what the values say; "" says nothing. A size of a width alone keeps the shape of settings.size.
+/// Throws InputError that names the setting: "samples: expected 1 to 1024, got 0".
+void applySettings(const SettingValues& values, RenderSettings& settings);
+
+/// The same for those of files.
+void applySettings(const SettingValues& values, WriteOptions& options);
+
+/// Decides which lights cast shadows by the value of "cast_shadows". "": those that are marked, or all where
+/// none is and shadows are asked for.
+void castShadows(const std::string& who, bool asked_for, Scene& scene);
 
 }  // namespace luciole

@@ -133,7 +133,7 @@ void checkOptions(const BakeOptions& options) {
     if (options.gltf == "-") throw InputError("--to-gltf -: expected a file's name, standard output is -o's");
     checkPlace(options.gltf);
   }
-  const std::string& shadows = options.shadows;
+  const std::string& shadows = options.value("shadows");
   if (!options.eye.empty() && (shadows == "hard" || shadows == "pcf" || shadows == "soft"))
     throw InputError(fmt::format(
         "--shadows {}: maps of a sun follow a camera, which --eye isn't; expected exact, soft-exact or off",
@@ -142,7 +142,7 @@ void checkOptions(const BakeOptions& options) {
 
 void bake(CommandContext& context, BakeOptions& options) {
   const int frame = useFrame(options, "bake");
-  if (!options.eye.empty() && options.shadows == "auto") options.shadows = "exact";
+  if (!options.eye.empty() && options.value("shadows") == "auto") options.settings["shadows"] = "exact";
   checkOptions(options);
   Stats stats;
   stats.command = context.command_line;
@@ -180,7 +180,7 @@ void bake(CommandContext& context, BakeOptions& options) {
   progress.clear();
   logDevice(context.device.description);
   timed(stats, Stage::kResolve, [&] {
-    if (!options.alpha) dilate(map, shownTexels(space.gbuffer), kSeamTexels);
+    if (!options.isOn("alpha")) dilate(map, shownTexels(space.gbuffer), kSeamTexels);
   });
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
     if (!options.gltf.empty()) {
@@ -209,12 +209,13 @@ void bake(CommandContext& context, BakeOptions& options) {
 void addBakeCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand("bake", "write the light on an object as a map in texture space");
   auto options = std::make_shared<BakeOptions>();
-  options->size = "1024x1024";
+  options->settings["size"] = "1024x1024";
   command->add_option("SCENE", options->scene, "a scene file, or - for standard input")->required();
   command->add_option("--object", options->object, "whose light: its name, as in Cryptomattes")
       ->required()
       ->type_name("NAME");
-  command->add_option("--size", options->size, "texels of the map (default: 1024x1024)")->type_name("WxH");
+  command->add_option("--size", options->settings["size"], "texels of the map (default: 1024x1024)")
+      ->type_name("WxH");
   command
       ->add_option("--eye", options->eye,
                    "with the highlights that are seen from this place of the world (default: none)")

@@ -68,10 +68,10 @@ int bench(const BenchOptions& options) {
                      .program = std::filesystem::read_symlink("/proc/self/exe")};
   choice.scene_path = options.scene;
   choice.picture_options = typedLoadOptions(options.picture.load);
-  if (!options.picture.cast_shadows.empty())
-    for (const std::string& word : {std::string("--cast-shadows"), options.picture.cast_shadows})
+  if (!options.picture.value("cast_shadows").empty())
+    for (const std::string& word : {std::string("--cast-shadows"), options.picture.value("cast_shadows")})
       choice.picture_options.push_back(word);
-  if (!options.picture.size.empty()) choice.size = settings.picture.size;
+  if (!options.picture.value("size").empty()) choice.size = settings.picture.size;
   choice.shadow_size = options.shadow_size;
   if (!options.gbuffer.empty()) {
     Scene lights = openScene(options.lights, 1, options.picture);
@@ -116,7 +116,7 @@ void addBenchCommand(CLI::App& app, CommandContext& context) {
   command->add_option("--json", options->json,
                       "write all figures as JSON (- : standard output, without the table)");
   command->add_option("--plot", options->plot, "write speed against error as an SVG picture");
-  command->add_option("--size", options->picture.size,
+  command->add_option("--size", options->picture.settings["size"],
                       "WxH pixels of every picture, or W (default: each one's own)");
   command
       ->add_option("--shadow-size", options->shadow_size,
@@ -127,7 +127,7 @@ void addBenchCommand(CLI::App& app, CommandContext& context) {
       ->capture_default_str();
   command->add_option("--device", options->picture.device,
                       "an index or part of a name from luciole devices, [,lanes=1|4|8|16]");
-  addCastShadowsOption(*command, options->picture);
+  addSetting(*command, options->picture, "cast_shadows");
   addLoadOptions(*command, options->picture.load);
   addThreadsOption(*command);
   command->add_flag("--quiet", options->picture.quiet, "no progress line");

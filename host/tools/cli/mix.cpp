@@ -73,8 +73,8 @@ void readMixer(const std::string& text, const std::string& file, std::vector<Mix
 
 bool isPage(const MixOptions& options) {
   const std::string& path = options.output;
-  return options.format == "html" ||
-         (options.format.empty() && (path.ends_with(".html") || path.ends_with(".htm")));
+  return options.value("format") == "html" ||
+         (options.value("format").empty() && (path.ends_with(".html") || path.ends_with(".htm")));
 }
 
 void writePicture(const CommandContext& context, MixOptions& options, const std::vector<MixerTerm>& terms) {

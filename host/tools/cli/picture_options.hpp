@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cl/device.hpp"
@@ -15,48 +16,28 @@ namespace luciole {
 
 /// The options that the picture commands share, as typed.
 struct PictureOptions {
+  /// Those that have a NamedSetting and none of the members below.
+  SettingValues settings = initialSettings();
   std::string output;
-  std::string format;
-  std::string size;
   std::string camera;
   LoadSettings load;
   bool hash = false;
   int camera_index = -1;  ///< replaces `camera`, see optionsOfCameras(); -1: doesn't
-  int samples = 1;
-  std::string samples_shading = "shared";
-  std::string crop;
-  std::string shading = "phong";
   std::string model = "phong";
   std::vector<std::string> surfaces;  ///< files
-  std::string culling = "auto";
-  int tile = ShadeSettings{}.tile_size;
-  std::string shadows = "auto";
-  float light_error = ShadeSettings{}.light_error;
-  float light_error_relative = 0;  ///< instead of light_error, if above 0
-  double confidence = ShadeSettings{}.confidence;
-  std::uint32_t seed = ShadeSettings{}.seed;
-  bool shadows_given = false;  ///< --shadows was typed
-  std::string cast_shadows;    ///< empty: see openScene()
-  int soft_samples = ShadeSettings{}.soft_samples;
-  int pcf_width = ShadeSettings{}.pcf_width;
-  int shadow_memory = int(ShadowLimits{}.bytes >> 20);  ///< MiB
-  int shadow_size = ShadowLimits{}.size;
-  std::vector<std::string> screens;  ///< files
-  std::string aovs;
-  bool light_groups = false;
-  std::string exposure;  ///< stops or "auto"; empty: see measuresExposure()
-  std::string dither = "on";
-  std::string tone = "clip";
-  int bits = 0;  ///< 0: what the format usually holds
-  bool half = false;
-  std::string compression;  ///< empty: kExrCompression
-  bool alpha = false;
+  std::string typed_shadows;          ///< what --shadows says; empty: it wasn't typed
+  std::vector<std::string> screens;   ///< files
+  std::string exposure;               ///< stops or "auto"; empty: see measuresExposure()
   bool require_exact = false;
   std::string device;
   std::string stats;
   std::string trace;
   std::string frames;
   bool quiet = false;
+
+  /// Of `settings`.
+  const std::string& value(std::string_view name) const;
+  bool isOn(std::string_view name) const;
 };
 
 /// Groups of options that a command takes, in addition to -o, --format, --compression, --stats, --trace and
@@ -86,12 +67,10 @@ void addPictureOptions(CLI::App& command, PictureOptions& options, unsigned grou
 CLI::Option* addModelOption(CLI::App& command, PictureOptions& options);
 /// Adds the option --surface.
 void addSurfaceOption(CLI::App& command, PictureOptions& options);
-/// Adds the option --shadows, whose values depend on the command.
-CLI::Option* addShadowsOption(CLI::App& command, PictureOptions& options, const std::string& help,
-                              const std::vector<std::string>& values);
+/// Adds the option of a NamedSetting: --light-error for light_error.
+CLI::Option* addSetting(CLI::App& command, PictureOptions& options, const char* name);
 /// Adds the option --screen.
 void addScreenOption(CLI::App& command, PictureOptions& options);
-void addCastShadowsOption(CLI::App& command, PictureOptions& options);
 /// Adds the options of how a scene's files are read: --missing-textures, --strict, --search, --set.
 void addLoadOptions(CLI::App& command, LoadSettings& settings);
 /// These options as they would be typed.

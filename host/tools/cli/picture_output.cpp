@@ -45,32 +45,28 @@ void logPicture(const PictureOptions& options, const Stats& stats, double ended,
 
 /// Throws InputError for a compression that changes `what`.
 void checkLossless(const PictureOptions& options, const std::string& what) {
-  if (options.compression.empty()) return;
+  if (options.value("compression").empty()) return;
   std::vector<std::string> lossless;
   for (const ExrCompression& one : kExrCompressions)
     if (one.is_lossless) lossless.push_back(one.name);
-  if (std::find(lossless.begin(), lossless.end(), options.compression) == lossless.end())
+  if (std::find(lossless.begin(), lossless.end(), options.value("compression")) == lossless.end())
     throw InputError(
         fmt::format("--compression {}: changes values, and {} must keep them, expected one of {}",
-                    options.compression, what, fmt::join(lossless, ", ")));
+                    options.value("compression"), what, fmt::join(lossless, ", ")));
 }
 
 }  // namespace
 
 WriteOptions fileOptions(const PictureOptions& options) {
-  return {.format = options.format,
-          .dither = options.dither == "on",
-          .tone = options.tone == "filmic" ? ToneCurve::kFilmic : ToneCurve::kClip,
-          .bits = options.bits,
-          .half = options.half,
-          .compression = options.compression,
-          .alpha = options.alpha};
+  WriteOptions file{.alpha = options.isOn("alpha")};
+  applySettings(options.settings, file);
+  return file;
 }
 
 bool measuresExposure(const PictureOptions& options, const std::string& scene_path) {
   if (!options.exposure.empty()) return options.exposure == "auto";
   if (!isMeshFile(scene_path)) return false;
-  return isFilm(options.output, options.format) ||
+  return isFilm(options.output, options.value("format")) ||
          !pictureFormat(options.output, fileOptions(options)).is_float;
 }
 
@@ -89,31 +85,32 @@ void checkOtherOutputs(const PictureOptions& options) {
 
 void checkOutput(const PictureOptions& options) {
   checkWritable(options.output, fileOptions(options));
-  if (options.tone != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
+  if (options.value("tone") != "clip" && pictureFormat(options.output, fileOptions(options)).is_float)
     throw InputError(fmt::format(
         "--tone {}: {} holds light as it is, in floats; expected a format of integers, such as .png",
-        options.tone, options.output));
+        options.value("tone"), options.output));
   const std::vector<Aov> aovs = aovsOf(options);
   if (showsAov(options)) {
     if (aovs.size() > 1 || aovs.front() == Aov::kMaterial)
       throw InputError(
           fmt::format("--aov {}: several layers, and {} shows one, such as --aov normal; an .exr holds all",
-                      options.aovs, options.output));
-    if (options.alpha) throw InputError("--alpha: a layer as a picture has no A; leave it out");
+                      options.value("aov"), options.output));
+    if (options.isOn("alpha")) throw InputError("--alpha: a layer as a picture has no A; leave it out");
   }
-  if (options.light_groups && outputFormat(options.output, options.format).extension != "exr")
+  if (options.isOn("light_groups") &&
+      outputFormat(options.output, options.value("format")).extension != "exr")
     throw InputError(fmt::format("--light-groups: {} cannot hold layers, an .exr can", options.output));
   if (std::any_of(aovs.begin(), aovs.end(),
                   [](Aov aov) { return aov == Aov::kCryptoObject || aov == Aov::kCryptoMaterial; }))
     checkLossless(options, "Cryptomattes");
   RenderSettings layers;
   layers.aovs = aovs;
-  layers.light_groups = options.light_groups;
-  if (wantsLightLayers(layers) && options.shading == "gouraud")
+  layers.light_groups = options.isOn("light_groups");
+  if (wantsLightLayers(layers) && options.value("shading") == "gouraud")
     throw InputError(
         fmt::format("--shading gouraud: lights corners, and layers of light are lit pixel by pixel; "
                     "leave it out, or {}",
-                    options.light_groups ? "--light-groups" : "these of --aov"));
+                    options.isOn("light_groups") ? "--light-groups" : "these of --aov"));
   if (!options.stats.empty() && options.stats == options.output)
     throw InputError(fmt::format("--stats {}: is the picture's own file", options.stats));
   checkOtherOutputs(options);
@@ -144,7 +141,7 @@ WriteOptions writeOptions(const PictureOptions& options, const GBuffer& gbuffer)
 }
 
 void reportHalves(const PictureOptions& options, std::uint64_t limited, Stats& stats) {
-  if (options.half) {
+  if (options.isOn("half")) {
     stats.errors.emplace_back("half_relative", kHalfRelative);
     stats.errors.emplace_back("half_absolute", kHalfAbsolute);
   }
@@ -175,15 +172,16 @@ void reportFaults(const PictureOptions& options, Stats& stats) {
 }
 
 void reportLightError(const PictureOptions& options, Stats& stats) {
-  const bool relative = options.light_error_relative > 0;
-  const std::string option = relative ? fmt::format("--light-error-relative {}", options.light_error_relative)
-                                      : fmt::format("--light-error {}", options.light_error);
+  RenderSettings asked;
+  applySettings(options.settings, asked);
+  const float allowed = asked.shade.light_error;
+  const bool relative = asked.shade.light_error_floor != ShadeSettings{}.light_error_floor;
+  const std::string option = fmt::format("--light-error{} {}", relative ? "-relative" : "", allowed);
   const auto warn = [&](const std::string& text) {
     stats.warnings.push_back(option + ": " + text);
     if (!options.quiet) reportWarning(stats.warnings.back());
   };
   // A few roundings more than allowed are no reason to worry anybody.
-  const float allowed = relative ? options.light_error_relative : options.light_error;
   if (stats.light_error.least > 1.000001 * allowed)
     warn(fmt::format("floats can't promise it for this picture; the least that they can is {:.3g}",
                      1.05 * stats.light_error.least));
@@ -191,11 +189,12 @@ void reportLightError(const PictureOptions& options, Stats& stats) {
     warn(fmt::format(
         "{} stayed beyond it at a confidence of {}: a larger error, or a smaller confidence, takes "
         "fewer rays than there are",
-        missed == 1 ? "1 pixel" : fmt::format("{} pixels", missed), options.confidence));
+        missed == 1 ? "1 pixel" : fmt::format("{} pixels", missed), asked.shade.confidence));
 }
 
 bool showsAov(const PictureOptions& options) {
-  return !options.aovs.empty() && outputFormat(options.output, options.format).extension != "exr";
+  return !options.value("aov").empty() &&
+         outputFormat(options.output, options.value("format")).extension != "exr";
 }
 
 void writeLayerPicture(const PictureOptions& options, const ShownLayer& shown, Image layer,
@@ -273,7 +272,7 @@ void reportStats(const PictureOptions& options, const Stats& stats, int frame) {
   writeError(fmt::format("{}: {}x{}, {} triangles, {} lights, {}{} ms{}{}{}\n", options.output, stats.width,
                          stats.height, stats.triangles, stats.lights, exposure, whole(ended - stats.began),
                          stages, stages.empty() ? "" : ")",
-                         options.half ? ", colours rounded by up to 2^-11 of themselves" : ""));
+                         options.isOn("half") ? ", colours rounded by up to 2^-11 of themselves" : ""));
 }
 
 }  // namespace luciole

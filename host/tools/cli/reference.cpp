@@ -27,9 +27,10 @@ namespace luciole {
 namespace {
 
 struct ReferenceOptions : PictureOptions {
-  std::string scene;    ///< what is shown
-  std::string gbuffer;  ///< or a file of surfaces, and
-  std::string lights;   ///< the scene that lights them
+  std::string scene;             ///< what is shown
+  std::string gbuffer;           ///< or a file of surfaces, and
+  std::string lights;            ///< the scene that lights them
+  std::string shadows = "rays";  ///< or "off"
   int shadow_samples = 64;
   int frame = 1;
   std::size_t pixels = 0;  ///< 0: all
@@ -127,9 +128,9 @@ std::string requestText(const ReferenceOptions& options, const Scene& scene, con
              "{} {:016x} frame {} {}x{} camera '{}' samples {} shading {} model {} shadows {} {} exposure "
              "{}{}{}",
              options.scene, sceneDigest(scene), options.frame, settings.size.x, settings.size.y,
-             settings.camera.name, settings.samples, options.shading, options.model, options.shadows,
-             options.shadow_samples, settings.exposure, options.alpha ? " alpha" : "",
-             options.half ? " half" : "") +
+             settings.camera.name, settings.samples, options.value("shading"), options.model, options.shadows,
+             options.shadow_samples, settings.exposure, options.isOn("alpha") ? " alpha" : "",
+             options.isOn("half") ? " half" : "") +
          surfaceProgram(settings.surfaces).user_text;
 }
 
@@ -165,12 +166,13 @@ std::optional<Piece> findEarlierPiece(const ReferenceOptions& options, const std
   std::error_code none;
   if (options.pixels > 0 || !fs::is_regular_file(options.output, none)) return std::nullopt;
   // Colours that were divided by A and rounded don't come back.
-  if (options.alpha && !pictureFormat(options.output, fileOptions(options)).is_float) return std::nullopt;
+  if (options.isOn("alpha") && !pictureFormat(options.output, fileOptions(options)).is_float)
+    return std::nullopt;
   if (readAttribute(options.output, kRequest) != request) return std::nullopt;
   const std::vector<int> window =
       parseInts(readAttribute(options.output, kWindow), ',', 4, options.output, "a window X,Y,W,H");
   Piece piece{readImage(options.output), {window[0], window[1], window[2], window[3]}};
-  if (piece.image.channels.size() != (options.alpha ? 4 : 3)) return std::nullopt;
+  if (piece.image.channels.size() != (options.isOn("alpha") ? 4 : 3)) return std::nullopt;
   if (!unite(piece.window, crop))
     throw InputError(fmt::format(
         "--crop {},{},{},{}: makes no rectangle with the part {},{},{},{} that {} holds "
@@ -190,7 +192,7 @@ Piece joinPieces(const Piece& earlier, const Piece& later) {
 
 /// What shows no surface is black under --alpha: A tells it apart.
 void removeBackground(const ReferenceOptions& options, Scene& scene) {
-  if (options.alpha) scene.background = glm::vec3(0.0f);
+  if (options.isOn("alpha")) scene.background = glm::vec3(0.0f);
 }
 
 void reportCheck(const ReferenceOptions& options, const GBufferCheck& check, Stats& stats) {
@@ -242,7 +244,7 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Opene
   std::optional<Piece> earlier;
   if (settings.crop) earlier = findEarlierPiece(options, request, window);
 
-  const double pixel_bytes = kBytesPerPixel + (options.alpha ? kAlphaBytesPerPixel : 0);
+  const double pixel_bytes = kBytesPerPixel + (options.isOn("alpha") ? kAlphaBytesPerPixel : 0);
   requireMemory(pixel_bytes * view.crop_size.x * view.crop_size.y,
                 fmt::format("a reference of {}x{} pixels", view.crop_size.x, view.crop_size.y));
   const std::vector<glm::ivec2> pixels = choosePixels(view.crop_size, options.pixels, options.seed);
@@ -258,8 +260,9 @@ void referenceOfScene(const ReferenceOptions& options, const Scene& scene, Opene
     progress.clear();
     return shaded;
   });
-  const std::vector<double> coverage =
-      options.alpha ? referenceCoverage(scene, view, settings.samples, pixels) : std::vector<double>{};
+  const std::vector<double> coverage = options.isOn("alpha")
+                                           ? referenceCoverage(scene, view, settings.samples, pixels)
+                                           : std::vector<double>{};
   Piece piece{makePicture(view.crop_size, pixels, colors, coverage, settings.exposure), window};
   if (earlier) piece = joinPieces(*earlier, piece);
 
@@ -307,7 +310,7 @@ void referenceOfGBuffer(const ReferenceOptions& options, OpenedDevice& device, S
     exposure = float(*stats.measured_exposure);
   }
   const std::vector<double> coverage =
-      options.alpha ? referenceCoverage(gbuffer, pixels) : std::vector<double>{};
+      options.isOn("alpha") ? referenceCoverage(gbuffer, pixels) : std::vector<double>{};
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
     return writeImage(makePicture(size, pixels, colors, coverage, exposure), options.output,
                       pictureMetadata(stats, nullptr), writeOptions(options, gbuffer));
@@ -326,11 +329,12 @@ void checkOptions(const ReferenceOptions& options) {
     throw InputError("reference: expected a scene, or --gbuffer with --scene");
   if (options.gbuffer.empty() != options.lights.empty())
     throw InputError("reference: --gbuffer and --scene go together");
-  const bool of_view = !options.size.empty() || !options.camera.empty() || !options.crop.empty() ||
-                       options.samples != 1 || options.shading != "phong";
+  const bool of_view = !options.value("size").empty() || !options.camera.empty() ||
+                       !options.value("crop").empty() || options.value("samples") != "1" ||
+                       options.value("shading") != "phong";
   if (!options.gbuffer.empty() && of_view)
     throw InputError("reference: a G-buffer has its size, camera, crop, shading and samples already");
-  if (options.pixels > 0 && outputFormat(options.output, options.format).extension != "exr")
+  if (options.pixels > 0 && outputFormat(options.output, options.value("format")).extension != "exr")
     throw InputError(
         fmt::format("--pixels: {} cannot say which pixels it holds, an .exr can", options.output));
 }
@@ -341,14 +345,16 @@ void addReferenceCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "reference", "the same picture in double precision: every light on every pixel, shadows by ray");
   auto options = std::make_shared<ReferenceOptions>();
-  options->shadows = "rays";
   command->add_option("SCENE", options->scene,
                       "a .json, .obj, .gltf or .glb file (- : JSON on standard input)");
   command->add_option("--gbuffer", options->gbuffer, "an EXR whose surfaces to light instead");
   command->add_option("--scene", options->lights, "with --gbuffer: the scene that lights it");
   addPictureOptions(*command, *options,
                     kViewOptions | kSampleOption | kModelOptions | kCastOption | kFrameOption);
-  addShadowsOption(*command, *options, "by a ray to each light, or none", {"off", "rays"});
+  command->add_option("--shadows", options->shadows, "by a ray to each light, or none")
+      ->check(oneOf({"off", "rays"}))
+      ->each([options](const std::string& method) { options->typed_shadows = method; })
+      ->capture_default_str();
   command
       ->add_option("--shadow-samples", options->shadow_samples,
                    "rays from a pixel to a light that has a size (others need one)")

@@ -229,7 +229,7 @@ void relight(CommandContext& context, RelightOptions& options) {
   const int frame = useFrame(options, "relight");
   checkOutput(options);
   refuseSurfaceIds(options);
-  if (options.add && (options.alpha || !options.aovs.empty()))
+  if (options.add && (options.isOn("alpha") || !options.value("aov").empty()))
     throw InputError(
         "--add: keeps the picture's own A and makes no layers but those of --light-groups, without --alpha "
         "or "
@@ -246,7 +246,7 @@ void relight(CommandContext& context, RelightOptions& options) {
                              [&] { return readGBuffer(options.input, requestOf(options, scene)); });
   reportNotes(input.notes, options.quiet);
   if (options.add) leaveLightAlone(scene, input.gbuffer);
-  if (options.add && options.light_groups) input.color = withGroups(input.color, options.input);
+  if (options.add && options.isOn("light_groups")) input.color = withGroups(input.color, options.input);
   lightAndWrite(context, options, scene, options.scene, input.gbuffer, std::move(input.color), frame, stats);
 }
 

@@ -276,7 +276,7 @@ int renderFilm(Renderer& renderer, const OpenedDevice* device, const RenderOptio
   const Crop window = windowOf(renderSettings(picture, renderer.scene()));
   const double rate = options.frames_per_second.value_or(kFramesPerSecond);
   const std::string path = frameFile(picture.output, frames.front());
-  Film film(path, options.format, window.width, window.height, rate);
+  Film film(path, options.value("format"), window.width, window.height, rate);
   const int status =
       renderFrames(renderer, device, options, frames, exposures, &film, nullptr, std::move(started));
   if (status != kDone) return status;
@@ -295,21 +295,22 @@ int renderFilm(Renderer& renderer, const OpenedDevice* device, const RenderOptio
 
 /// Whether the frames become one film: its name, a film's, has no place for a frame's number.
 bool makesFilm(const RenderOptions& options, const FrameChoice& choice) {
-  return choice.is_list && isFilm(options.output, options.format) && !hasFramePlace(options.output);
+  return choice.is_list && isFilm(options.output, options.value("format")) && !hasFramePlace(options.output);
 }
 
 void checkFilmOptions(const RenderOptions& options) {
-  checkFilm(frameFile(options.output, 1), options.format);
+  checkFilm(frameFile(options.output, 1), options.value("format"));
   if (options.resume)
     throw InputError("--resume: a film is made from its first frame on; make pictures, as -o frame.####.png");
   checkOtherOutputs(options);
-  if (options.bits == 16 || options.half || options.alpha || !options.compression.empty())
+  if (options.value("bits") == "16" || options.isOn("half") || options.isOn("alpha") ||
+      !options.value("compression").empty())
     throw InputError(fmt::format(
         "{}: a film holds red, green and blue in 8 bits, without --bits 16, --half, --alpha or --compression",
         options.output));
-  if (!options.aovs.empty() || options.light_groups)
+  if (!options.value("aov").empty() || options.isOn("light_groups"))
     throw InputError(fmt::format("{}: {} cannot hold layers, an .exr can",
-                                 options.light_groups ? "--light-groups" : "--aov", options.output));
+                                 options.isOn("light_groups") ? "--light-groups" : "--aov", options.output));
   if (!options.stats.empty() && options.stats != "-") checkPattern(options.stats, "--stats");
 }
 
@@ -336,7 +337,8 @@ void checkOptions(const RenderOptions& options, const FrameChoice& choice) {
   if (options.frames_per_second && !is_film)
     throw InputError("--fps: goes with a film, as --frames A-B -o film.mp4");
   if (is_film) return checkFilmOptions(options);
-  if (isFilm(options.output, options.format) && formatName(options.output, options.format) != "webp")
+  if (isFilm(options.output, options.value("format")) &&
+      formatName(options.output, options.value("format")) != "webp")
     throw InputError(fmt::format(
         "-o {}: a film goes with --frames A-B, and has no frame's number in its name", options.output));
   if (choice.is_list && !hasFramePlace(options.output))
@@ -368,11 +370,11 @@ void showGBuffer(const GBuffer& gbuffer, const std::string& name, const PictureO
 
 /// Throws InputError for what a sheet of pictures has no place for.
 void checkSheet(const RenderOptions& options) {
-  const bool has_layers = !options.aovs.empty() && !showsAov(options);
+  const bool has_layers = !options.value("aov").empty() && !showsAov(options);
   for (const auto& [is_given, what] :
        {std::pair{!options.stats.empty(), "--stats"}, std::pair{options.hash, "--hash"},
-        std::pair{options.light_groups, "--light-groups"}, std::pair{has_layers, "--aov"},
-        std::pair{options.alpha, "--alpha"}})
+        std::pair{options.isOn("light_groups"), "--light-groups"}, std::pair{has_layers, "--aov"},
+        std::pair{options.isOn("alpha"), "--alpha"}})
     if (is_given)
       throw InputError(
           fmt::format("{}: is of one picture, and --sweep makes a sheet of several; for a file each put # "
@@ -616,7 +618,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
   command->callback([&context, options, scene_path, layer] {
     const int frame = useFrame(*options, "gbuffer");
     checkDataOutput(*options, "a G-buffer");
-    const bool shows_layer = outputFormat(options->output, options->format).extension != "exr";
+    const bool shows_layer = outputFormat(options->output, options->value("format")).extension != "exr";
     if (shows_layer && layer->empty())
       throw InputError(fmt::format(
           "{}: a G-buffer has many layers, expected .exr, or --aov to say which to show, such as normal",
@@ -632,7 +634,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
     const std::vector<PictureOptions> pictures = optionsOfCameras(*options, scene);
     // Rasterizing needs no device, but Gouraud shading lights vertices, and --surface changes what is drawn.
     OpenedDevice& device = context.device;
-    const bool needs_device = options->shading == "gouraud" || !options->surfaces.empty();
+    const bool needs_device = options->value("shading") == "gouraud" || !options->surfaces.empty();
     if (needs_device) {
       openDevice(options->device, device);
       addStage(stats, Stage::kOpenDevice, device.milliseconds_to_open);
@@ -647,7 +649,7 @@ void addGBufferCommand(CLI::App& app, CommandContext& context) {
       timed(stats, Stage::kWrite, [&] {
         if (shows_layer) return showGBuffer(gbuffer, *layer, picture, stats);
         writeGBuffer(gbuffer, picture.output, pictureMetadata(stats, needs_device ? &device : nullptr),
-                     picture.format, picture.compression);
+                     picture.value("format"), picture.value("compression"));
       });
       reportFaults(picture, stats);
       reportStats(picture, stats, frame);

@@ -126,7 +126,7 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   CLI::App* command = app.add_subcommand(
       "scale", "many-light experiments: time and error against the number of lights, as data and a page");
   auto options = std::make_shared<ScaleOptions>();
-  options->picture.shadows = "off";
+  options->picture.settings["shadows"] = "off";
   command->add_option("SCENE", options->scene,
                       "a .json, .obj, .gltf or .glb file; its own lights are left out unless --own-lights");
   command->add_option(

@@ -231,6 +231,12 @@ bool variesLightError(const std::vector<ScaleAxis>& axes) {
                      [](const ScaleAxis& axis) { return axis.name == kLightErrorAxis; });
 }
 
+bool asksLightError(const ScaleOptions& options) {
+  RenderSettings settings;
+  applySettings({{"light_error", options.picture.value("light_error")}}, settings);
+  return settings.shade.light_error > 0;
+}
+
 bool isList(const ScaleOptions& options) { return options.field.ends_with(".csv"); }
 
 /// The first `count` of the scene's own lights. Those that it marks cast shadows, or all where it marks none;
@@ -257,7 +263,7 @@ LightField ownField(const ScaleOptions& options, const Scene& scene, std::uint64
   field.count = count;
   field.as_listed = true;
   field.list = isList(options) ? readLightList(options.field, count) : ownLights(options, scene, count);
-  const bool casts = options.picture.shadows != "off";
+  const bool casts = options.picture.value("shadows") != "off";
   for (Light& light : field.list) light.shadow = casts && (light.shadow || isList(options));
   return field;
 }
@@ -284,7 +290,7 @@ LightField makeField(const ScaleOptions& options, const Scene& scene, const Boun
     field.cutoff = *options.cutoff;
     field.attenuation = glm::vec3(0, 0, 1);
   }
-  field.shadow = options.picture.shadows != "off";
+  field.shadow = options.picture.value("shadows") != "off";
   return field;
 }
 
@@ -303,7 +309,7 @@ bool removesRanges(const CLI::App& command, const ScaleOptions& options, const s
   const bool is_reach_said = std::any_of(std::begin(kReaches), std::end(kReaches),
                                          [&](const char* name) { return isGiven(command, name); }) ||
                              isList(options);
-  return (options.picture.light_error > 0 || variesLightError(axes)) && !is_reach_said;
+  return (asksLightError(options) || variesLightError(axes)) && !is_reach_said;
 }
 
 /// So that an experiment goes on only with the same file.
@@ -343,11 +349,11 @@ std::vector<std::pair<std::string, std::string>> sharedSettings(CLI::App& comman
         : name == "cutoff"                       ? options.cutoff.has_value()
         : name == "no-range"                     ? false  // told below
         : name == "density"       ? choosesRanges(command, options) && !removesRanges(command, options, axes)
-        : name == kLightErrorAxis ? options.picture.light_error > 0
+        : name == kLightErrorAxis ? asksLightError(options)
         : name == kConfidenceAxis
-            ? options.picture.shadows != "off" && (options.picture.light_error > 0 || variesLightError(axes))
-        : name == "pcf-width"                              ? options.picture.shadows == "pcf"
-        : name == "shadow-memory" || name == "shadow-size" ? options.picture.shadows != "off"
+            ? options.picture.value("shadows") != "off" && (asksLightError(options) || variesLightError(axes))
+        : name == "pcf-width"                              ? options.picture.value("shadows") == "pcf"
+        : name == "shadow-memory" || name == "shadow-size" ? options.picture.value("shadows") != "off"
                                                            : true;
     if (!is_varied && is_meant) shared.emplace_back(name, command.get_option("--" + name)->as<std::string>());
   }
@@ -390,7 +396,7 @@ void checkScaleOptions(const CLI::App& command, const ScaleOptions& options) {
     if (options.own_lights && (isReach(axis) || axis.name == "intensity" || axis.name == "field"))
       throw InputError(fmt::format("scale: --vary {}: --own-lights leaves lights as they are", axis.name));
     if (!options.gbuffer.empty() && (is_view_typed || isOfView(axis.name))) throw InputError(kViewOfGBuffer);
-    if (axis.name == kConfidenceAxis && options.picture.shadows == "off" && !varies("shadows"))
+    if (axis.name == kConfidenceAxis && options.picture.value("shadows") == "off" && !varies("shadows"))
       throw InputError(
           "scale: --vary confidence: is of lights that cast shadows; expected --shadows exact with it");
     reaches += isReach(axis) && command.get_option("--density")->count() > 0;
@@ -419,7 +425,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
 
   const auto settingsNow = [&] {
     RenderSettings settings = renderSettings(options.picture, scene);
-    if (options.picture.size.empty()) settings.size = kDefaultSize;
+    if (options.picture.value("size").empty()) settings.size = kDefaultSize;
     if (const auto& surfaces = experiment.gbuffer) {
       settings.size = {surfaces->width, surfaces->height};
       settings.camera = surfaces->camera;
@@ -448,7 +454,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
     const bool has_range = !choosesRanges(command, options);
     const auto [place, is_new] = field_of.try_emplace(
         fmt::format("{} {} {} {} {}", options.field, options.range.value_or(0), options.cutoff.value_or(0),
-                    options.intensity, options.picture.shadows == "off"),
+                    options.intensity, options.picture.value("shadows") == "off"),
         experiment.fields.size());
     if (is_new) {
       experiment.fields.push_back(makeField(options, scene, box, description.lights.back()));
@@ -466,7 +472,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
                           .field = place->second,
                           .density = has_range ? 0 : options.density,
                           .no_range = removesRanges(command, options, description.axes)});
-    most_samples = std::max(most_samples, options.picture.samples);
+    most_samples = std::max(most_samples, of_variant.back().settings.samples);
   }
   if (most_samples > 1) experiment.truth_samples = kTruthSamples * most_samples;
   for (const std::uint64_t lights : description.lights) {

@@ -89,7 +89,7 @@ void shadowMap(const CommandContext& context, ShadowMapOptions& options) {
   });
   if (map.faces.empty()) throw InputError(scene.name + ": has no surface, so shadow maps show nothing");
   timed(stats, Stage::kWrite, [&] {
-    const bool has_layers = outputFormat(options.output, options.format).extension == "exr";
+    const bool has_layers = outputFormat(options.output, options.value("format")).extension == "exr";
     const std::string name = light.name.empty() ? fmt::format("light {}", number) : light.name;
     WriteOptions how = fileOptions(options);
     how.dither = false;
@@ -118,16 +118,10 @@ void addShadowMapCommand(CLI::App& app, CommandContext& context) {
       ->required()
       ->type_name("NAME");
   command->add_option(
-      "--size", options->size,
+      "--size", options->settings["size"],
       "of the picture that the map is for: it says how fine the map is (default: the scene's, or 1280x720)");
   command->add_option("--camera", options->camera, "of that picture: by name or index");
-  command
-      ->add_option(
-          "--shadow-size", options->shadow_size,
-          "texels a side that the map of a spot and each of a directional light may have; half as many "
-          "for each face of a point light's")
-      ->check(CLI::Range(kSmallestFace, kLargestFace))
-      ->capture_default_str();
+  addSetting(*command, *options, "shadow_size");
   addPictureOptions(*command, *options, kCastOption | kFrameOption);
   command->callback([&context, options] { shadowMap(context, *options); });
 }

@@ -62,10 +62,9 @@ ViewOptions typedOptions(const CLI::App& command) {
 /// The command's options with these of the page. Throws InputError for others.
 PictureOptions optionsOfPage(const ViewCommandOptions& typed, const ViewOptions& of_page) {
   PictureOptions options;
-  options.size = typed.size;
+  for (const char* name : {"size", "shadow_memory", "shadow_size"})
+    options.settings[name] = typed.value(name);
   options.camera = typed.camera;
-  options.shadow_memory = typed.shadow_memory;
-  options.shadow_size = typed.shadow_size;
   CLI::App parser;
   addPictureOptions(parser, options, kOptionsOfViews);
   parser.get_option("--output")->required(false);
