@@ -1,12 +1,12 @@
-#include <luciole/device.hpp>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
+#include <luciole/device.hpp>
 
 namespace nb = nanobind;
 
 namespace {
 
-nb::list devices() {
+nb::typed<nb::list, nb::typed<nb::dict, nb::str, nb::object>> devices() {
   nb::list all;
   for (const luciole::DeviceDescription& device : luciole::listDevices()) {
     nb::dict one;
@@ -17,7 +17,7 @@ nb::list devices() {
     one["compute_units"] = device.compute_units;
     all.append(one);
   }
-  return all;
+  return nb::typed<nb::list, nb::typed<nb::dict, nb::str, nb::object>>(all);
 }
 
 }  // namespace
