@@ -6,7 +6,7 @@
 #   pytest FILE    that file of tests
 #   asan FILE      the same, the compiled part under the address sanitizer
 #   types          mypy has nothing to say of the package
-#   wheel          a wheel by `python -m build` of all there is, checked by auditwheel and installed beside the other
+#   wheel          a wheel by `python -m build`, with the library of BUILD; of LUCIOLE_LONG, built of all there is
 #
 # Exit status 77, with the reason, where PyPI isn't reached or python3 lacks venv or its headers.
 set -euo pipefail
@@ -55,6 +55,21 @@ runPytest() {
   "$@" "$python" -m pytest -p no:cacheprovider --rootdir="$checkout/tests/python" --basetemp="$folder/pytest" -q "$checkout/$file"
 }
 
+# Built it would be the same objects again, which takes minutes. Ninja knows what each was made of.
+sourcesHoldWhatIsCompiled() {
+  local file commands
+  while read -r file; do
+    [[ -e $place/sources/$file ]] || { echo "the sources lack $file" && exit 1; }
+  done < <(ninja -C "$build" -t deps | awk '/^[^ ]/ { ours = !/^tests\// } ours && /^ / { print $1 }' | sort -u |
+    (cd "$build" && xargs realpath -s) | sed -n "\\|^$build/|d; s|^$checkout/||p")
+  quietly cmake -S "$place/sources" -B "$place/sources/build" -G Ninja -DLUCIOLE_PYTHON=ON -DBUILD_TESTING=OFF -DPython_EXECUTABLE="$python"
+  commands=$(ninja -C "$place/sources/build" -t commands luciole_python)
+  for file in luciole lib/libluciole.so lib/luciole/libluciole_image.so host/python/_luciole; do
+    [[ $commands == *"-o $file"* ]] || { echo "$file isn't built" && exit 1; }
+  done
+  [[ $commands != *gtest* ]] || { echo "tests are built" && exit 1; }
+}
+
 case $2 in
   install)
     installTools
@@ -91,9 +106,23 @@ case $2 in
       ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
     ;;
   wheel)
-    rm -rf "$place/dist"
-    quietly "$python" -m build --no-isolation --outdir "$place/dist" "$checkout"
+    # With LUCIOLE_LONG the library is built too; else the wheel holds the build folder's, and what is compiled of it must be in the sources.
+    rm -rf "$place/dist" "$place/sources"
+    quietly "$python" -m build --sdist --no-isolation --outdir "$place/dist" "$checkout"
+    mkdir "$place/sources"
+    tar -xzf "$place"/dist/luciole-*.tar.gz -C "$place/sources" --strip-components=1
+    if [[ -v LUCIOLE_LONG ]]; then
+      quietly "$python" -m build --wheel --no-isolation --outdir "$place/dist" "$place/sources"
+    else
+      sourcesHoldWhatIsCompiled
+      quietly "$python" -m build --wheel --no-isolation --outdir "$place/dist" "$place/sources" \
+        --config-setting=cmake.source-dir=host/python --config-setting=cmake.define.CMAKE_PREFIX_PATH="$prefix"
+    fi
     wheel=("$place"/dist/luciole-*.whl)
-    "$python" -m auditwheel show "${wheel[0]}"
+    contents=$("$python" -m zipfile -l "${wheel[0]}")
+    for file in '_luciole[.].*so' _luciole.pyi py.typed bin/luciole 'lib/libluciole[.]so[.]' lib/luciole/libluciole_image.so; do
+      grep -q "^luciole/$file" <<<"$contents" || { echo "the wheel has no luciole/$file" && exit 1; }
+    done
+    "$python" -m auditwheel show "${wheel[0]}" | grep -o "manylinux_[0-9_]*_$(uname -m)" | tail -n 1
     ;;
 esac
