@@ -13,7 +13,6 @@
 #include "base/peak_memory.hpp"
 #include "image/heat_map.hpp"
 #include "lighting/stats.hpp"
-#include "luciole/compare.hpp"
 #include "luciole/error.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference_picture.hpp"
@@ -179,6 +178,13 @@ bool boundsTheTruth(const ScaleExperiment& experiment, const Stats& stats) {
   return stats.light_error.values > 0 && countOf(stats, "lights_exact") == 0 && experiment.truth_samples == 1;
 }
 
+/// A difference without all but kImageMetrics.
+ImageDifference metricsOf(const ImageDifference& difference) {
+  ImageDifference metrics;
+  for (const auto& [name, figure] : kImageMetrics) metrics.*figure = difference.*figure;
+  return metrics;
+}
+
 /// Makes a point's picture with all counts, and compares it with the truth.
 PointCheck checkPoint(Bench& bench, std::size_t index) {
   setLights(bench, index);
@@ -191,7 +197,6 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   const Image colors = colorsOf(picture);
   const Truth& truth = findTruth(bench, settings);
   ImageDifference difference = compareImages(truth.image, colors);
-  fillCells(bench.checked, difference);
 
   const std::uint64_t pixels_lit = countOf(stats, "pixels_lit");
   const std::uint64_t pairs_of_clusters =
@@ -205,9 +210,7 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
                    .pixels_lit = pixels_lit,
                    .list_entries = countOf(stats, "list_entries"),
                    .pixels = difference.pixels,
-                   .mean_abs = difference.mean_abs,
-                   .max_abs = difference.max_abs,
-                   .rmse = difference.rmse,
+                   .error = metricsOf(difference),
                    .picture = {},
                    .error_map = {},
                    .list_map = {}};
@@ -219,6 +222,7 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
     return file;
   };
   check.picture = write(colors, ".png", {.dither = true});
+  fillCells(bench.checked, difference);
   check.error_map = write(errorMap(difference), "-error.png");
   check.list_map =
       write(listMap(picture.width, picture.height, layerOf(picture, "list_length")), "-lists.png");
@@ -313,9 +317,10 @@ std::string pointName(const ScaleDescription& description, const ScalePoint& poi
 std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck& check) {
   std::vector<std::pair<std::string, std::string>> reasons;
   if (std::isinf(check.reach)) reasons.emplace_back("reach", "a light without a range reaches everywhere");
-  for (const auto& [name, error] :
-       {std::pair("mean_abs", check.mean_abs), {"max_abs", check.max_abs}, {"rmse", check.rmse}})
-    if (!std::isfinite(error)) reasons.emplace_back(name, "a pixel is not finite");
+  for (const auto& [name, figure] : kImageMetrics)
+    if (!std::isfinite(check.error.*figure))
+      reasons.emplace_back(name,
+                           check.error.max_abs == 0 ? "no checked pixel is wrong" : "a pixel is not finite");
   return reasons;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cl/device.hpp"
+#include "luciole/compare.hpp"
 #include "luciole/gbuffer.hpp"
 #include "render/render.hpp"
 #include "scene/lights/light_field.hpp"
@@ -87,9 +88,9 @@ struct PointCheck {
   std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
   double reach =
       0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
-  std::uint64_t pixels = 0;                    ///< compared with the reference
-  double mean_abs = 0, max_abs = 0, rmse = 0;  ///< errors of these pixels, in linear units
-  std::string picture, error_map, list_map;    ///< files in the experiment's folder
+  std::uint64_t pixels = 0;  ///< compared with the reference
+  ImageDifference error{};   ///< of these pixels from the reference: kImageMetrics alone are kept
+  std::string picture, error_map, list_map;  ///< files in the experiment's folder
   /// Where no light of a picture of one sample a pixel is summed by itself, and a map of the bounds
   std::optional<KeptBounds> bounds{};
   std::string bound_map{};

@@ -119,14 +119,11 @@ Json pointJson(const ScaleDescription& description, const PointSummary& point) {
             {"list_entries", point.check.list_entries},
             {"device_bytes", point.device_bytes},
             {"peak_bytes", point.peak_bytes},
-            {"error",
-             {{"mean_abs", finiteOrNull(point.check.mean_abs)},
-              {"max_abs", finiteOrNull(point.check.max_abs)},
-              {"rmse", finiteOrNull(point.check.rmse)},
-              {"pixels", point.check.pixels}}},
+            {"error", toJson(point.check.error)},
             {"bounds", point.check.bounds ? toJson(*point.check.bounds) : Json(nullptr)},
             {"truth", point.truth},
             {"front", point.front}};
+  json["error"]["pixels"] = point.check.pixels;
   for (const auto& [name, why] : reasonsForNull(point.check)) json["reasons"][name] = why;
   for (const StageSummary& stage : point.stages) {
     Json row{{"name", stage.name}};
@@ -159,9 +156,10 @@ std::string scaleCsv(const ScaleSummary& summary) {
   for (const std::string& stage : stages)
     for (const char* ending : {"_ms", "_ms_low", "_ms_high"}) head.push_back(snakeCase(stage) + ending);
   for (const char* name : {"reach", "pairs_evaluated", "pairs_in_range", "pixels_lit", "list_entries",
-                           "device_bytes", "peak_bytes", "checked_pixels", "mean_abs", "max_abs", "rmse",
-                           "front", "picture", "error_map", "list_map", "truth"})
+                           "device_bytes", "peak_bytes", "checked_pixels"})
     head.push_back(name);
+  for (const auto& [name, figure] : kImageMetrics) head.push_back(name);
+  for (const char* name : {"front", "picture", "error_map", "list_map", "truth"}) head.push_back(name);
   for (const auto& [name, figure] : kBoundFigures) head.push_back(name);
   for (const auto& [name, count] : kBoundCounts) head.push_back(name);
   head.push_back("bound_map");
@@ -187,8 +185,7 @@ std::string scaleCsv(const ScaleSummary& summary) {
     for (const std::uint64_t count : {check.pairs_evaluated, check.pairs_in_range, check.pixels_lit,
                                       check.list_entries, point.device_bytes, point.peak_bytes, check.pixels})
       cells.push_back(fmt::format("{}", count));
-    for (const double error : {check.mean_abs, check.max_abs, check.rmse})
-      cells.push_back(fmt::format("{}", error));
+    for (const auto& [name, figure] : kImageMetrics) cells.push_back(fmt::format("{}", check.error.*figure));
     cells.push_back(point.front ? "1" : "0");
     for (const std::string& file : {check.picture, check.error_map, check.list_map}) cells.push_back(file);
     cells.push_back(point.truth);

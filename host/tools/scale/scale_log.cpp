@@ -127,6 +127,12 @@ KeptBounds boundsOf(const Json& json) {
   return bounds;
 }
 
+ImageDifference errorOf(const Json& json) {
+  ImageDifference error;
+  for (const auto& [name, figure] : kImageMetrics) error.*figure = numberOrInfinity(json.at(name));
+  return error;
+}
+
 Json toJson(const std::string& point, const PointCheck& check) {
   Json json{{"point", point},
             {"check",
@@ -136,12 +142,10 @@ Json toJson(const std::string& point, const PointCheck& check) {
               {"list_entries", check.list_entries},
               {"reach", finiteOrNull(check.reach)},
               {"pixels", check.pixels},
-              {"mean_abs", finiteOrNull(check.mean_abs)},
-              {"max_abs", finiteOrNull(check.max_abs)},
-              {"rmse", finiteOrNull(check.rmse)},
               {"picture", check.picture},
               {"error_map", check.error_map},
               {"list_map", check.list_map}}}};
+  json["check"].update(toJson(check.error));
   if (check.bounds) {
     json["check"]["bounds"] = toJson(*check.bounds);
     json["check"]["bound_map"] = check.bound_map;
@@ -171,9 +175,7 @@ PointCheck checkOf(const Json& line) {
           .list_entries = wholeMember<std::uint64_t>(json, "list_entries"),
           .reach = numberOrInfinity(json.at("reach")),
           .pixels = wholeMember<std::uint64_t>(json, "pixels"),
-          .mean_abs = numberOrInfinity(json.at("mean_abs")),
-          .max_abs = numberOrInfinity(json.at("max_abs")),
-          .rmse = numberOrInfinity(json.at("rmse")),
+          .error = errorOf(json),
           .picture = fileNamed(json, "picture"),
           .error_map = fileNamed(json, "error_map"),
           .list_map = fileNamed(json, "list_map"),
@@ -287,6 +289,12 @@ Json toJson(const KeptBounds& bounds) {
   Json json;
   for (const auto& [name, figure] : kBoundFigures) json[name] = finiteOrNull(bounds.*figure);
   for (const auto& [name, count] : kBoundCounts) json[name] = bounds.*count;
+  return json;
+}
+
+Json toJson(const ImageDifference& error) {
+  Json json;
+  for (const auto& [name, figure] : kImageMetrics) json[name] = finiteOrNull(error.*figure);
   return json;
 }
 

@@ -57,7 +57,7 @@ void markFronts(std::vector<PointSummary>& points) {
     std::vector<SpeedAndError> figures;
     for (const PointSummary* rival : rivals) {
       const Quartiles& time = rival->milliseconds;
-      figures.push_back({{time.median, (time.high - time.low) / 2}, rival->check.mean_abs});
+      figures.push_back({{time.median, (time.high - time.low) / 2}, rival->check.error.mean_abs});
     }
     const std::vector<bool> front = paretoFront(figures);
     for (std::size_t i = 0; i < rivals.size(); ++i) rivals[i]->front = front[i];

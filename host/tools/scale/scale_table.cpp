@@ -34,7 +34,8 @@ bool isSampled(const PointSummary& point) { return point.check.bounds && point.c
 std::string pointTable(const ScaleSummary& summary, const std::vector<PointSummary>& points) {
   Cells head{"lights"};
   for (const std::string& name : axisNames(summary.description)) head.push_back(name);
-  for (const char* name : {"ms", "spread", "mean error", "largest", "memory, MiB", "front"})
+  for (const char* name :
+       {"ms", "spread", "mean error", "largest", "relMSE", "SMAPE", "memory, MiB", "front"})
     head.push_back(name);
   const bool are_bounded = std::any_of(
       points.begin(), points.end(), [](const PointSummary& point) { return point.check.bounds.has_value(); });
@@ -56,8 +57,9 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
     cells.push_back(fmt::format("{:.1f}", time.median));
     cells.push_back(
         fmt::format("± {:.0f} %", time.median > 0 ? 50 * (time.high - time.low) / time.median : 0.0));
-    cells.push_back(errorText(point.check.mean_abs));
-    cells.push_back(errorText(point.check.max_abs));
+    const ImageDifference& error = point.check.error;
+    for (const double figure : {error.mean_abs, error.max_abs, error.relmse, error.smape})
+      cells.push_back(errorText(figure));
     cells.push_back(fmt::format("{:.0f}", double(point.peak_bytes) / (1 << 20)));
     cells.push_back(point.front ? "*" : "");
     if (are_bounded) {

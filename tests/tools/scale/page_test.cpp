@@ -295,6 +295,12 @@ TEST(PageInBrowser, ChoicesChangeWhatIsShown) {
   EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"], Json({{2.02, 1e-6}, {4, 1e-6}, {202, 1e-6}}));
   choose(browser, "error_kind", "largest absolute error");
   EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 50 * 1e-6}));
+  choose(browser, "error_kind", "relative mean square error (relMSE)");
+  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 3 * 1e-6}));
+  choose(browser, "error_kind", "bias: |mean signed error|");
+  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 1e-6 / 2}));
+  choose(browser, "quantity", "smape");
+  EXPECT_EQ(linesOf(browser, "compared_plot")["culling tiles"][0], Json({1, 4 * 1e-6}));
   // A name in the legend is a switch.
   browser.evaluate("document.querySelector('#compared_plot .legend button').click()");
   EXPECT_EQ(browser.evaluate(chartOf("compared_plot") + ".isDatasetVisible(0)"), false);

@@ -4,7 +4,7 @@
 //   axes: [{name, values}], what was varied beside the lights; incomplete: how many points lack some or all of their runs;
 //   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
 //     pairs_evaluated, pairs_in_range, pixels_lit, list_entries, device_bytes, peak_bytes,
-//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, bound_map, reasons: {name: why it is null},
+//     error: {max_abs, mean_abs, max_relative, mean_relative, mean_signed, mse, rmse, psnr, relmse, mape, smape, p99_abs, p999_abs, pixels}, truth, front, picture, error_map, tile_map, bound_map, reasons: {name: why it is null},
 //     bounds: {max_bound, mean_bound, max_error, mean_error, max_used, mean_used, held, stated, bounded_values,
 //     violations}}]:
 //     low and high are quartiles, truth says what the errors are from, front that no point of as many lights and the same
@@ -515,6 +515,8 @@ const quantities = [
   {name: 'Peak memory', unit: 'bytes', format: formatBytes, of: point => plainOf(point.peak_bytes)},
   {name: 'Mean error', format: formatError, of: point => plainOf(point.error && point.error.mean_abs)},
   {name: 'Largest error', format: formatError, of: point => plainOf(point.error && point.error.max_abs)},
+  {name: 'relMSE', format: formatError, of: point => plainOf(point.error && point.error.relmse)},
+  {name: 'SMAPE', format: formatError, of: point => plainOf(point.error && point.error.smape)},
   {name: 'Mean bound', format: formatError, of: point => plainOf(boundOf(point, 'mean_bound'))},
   {name: 'Largest bound', format: formatError, of: point => plainOf(boundOf(point, 'max_bound'))},
 ].filter(quantity => points.some(quantity.of));
@@ -646,8 +648,11 @@ function addGrowth() {
 
 // ---------------------------------------------------------------------------------------------- error against time
 
-const errorNames = {mean_abs: 'mean absolute error', max_abs: 'largest absolute error', rmse: 'root mean square error'};
-const errorOf = (point, kind) => point.error ? point.error[kind] : null;
+// As `luciole compare --help` defines them. The axis is logarithmic, so it shows how large a bias is.
+const errorNames = {mean_abs: 'mean absolute error', max_abs: 'largest absolute error', p99_abs: 'error that 99 % of the pixels keep',
+  mean_signed: 'bias: |mean signed error|', mse: 'mean square error (MSE)', rmse: 'root mean square error (RMSE)', relmse: 'relative mean square error (relMSE)',
+  mape: 'mean absolute share (MAPE)', smape: 'symmetric mean absolute share (SMAPE)'};
+const errorOf = (point, kind) => !point.error || !isNumber(point.error[kind]) ? null : Math.abs(point.error[kind]);
 const hasError = point => Object.keys(errorNames).some(kind => isNumber(errorOf(point, kind)));
 
 function errorLabel(point, isOneCount) {
@@ -885,6 +890,10 @@ const pointColumns = [
   {name: 'Mean error', format: formatError, of: point => errorOf(point, 'mean_abs')},
   {name: 'Largest error', format: formatError, of: point => errorOf(point, 'max_abs')},
   {name: 'RMS error', format: formatError, of: point => errorOf(point, 'rmse')},
+  {name: 'relMSE', format: formatError, of: point => errorOf(point, 'relmse')},
+  {name: 'MAPE', format: formatError, of: point => errorOf(point, 'mape')},
+  {name: 'SMAPE', format: formatError, of: point => errorOf(point, 'smape')},
+  {name: 'PSNR', unit: 'dB', format: formatFixed, of: point => point.error ? point.error.psnr : null},
   ...boundColumns,
   {name: 'Held against', text: true, of: point => isOneTruth ? null : truthOf(point)},
   {name: 'Front', text: true, of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null},
