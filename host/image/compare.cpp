@@ -18,6 +18,9 @@ namespace {
 // means, and knows no bias, percentiles or sampled pixels. Tests compare the figures that both define alike.
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Added to magnitudes, and to squares, before a difference is divided by them, so that dark values don't
+/// rule the means.
+constexpr double kDark = 1e-2;
 constexpr const char* kSampled = "sampled";
 
 /// A channel of both pictures: its name and where it lies in a pixel of each.
@@ -112,7 +115,8 @@ ImageDifference compareImages(const Image& a, const Image& b) {
   result.of_pixel.assign(overlap.sampled.size(), kNotCompared);
   std::vector<double> compared;
   compared.reserve(overlap.sampled.size());
-  double sum = 0, sum_abs = 0, sum_squared = 0, sum_relative = 0, largest_value = 0;
+  double sum = 0, sum_abs = 0, sum_squared = 0, sum_relative = 0, sum_share = 0, sum_symmetric = 0;
+  double largest_value = 0;
   std::uint64_t finite = 0;
   for (std::size_t p = 0; p < overlap.sampled.size(); ++p) {
     if (!overlap.sampled[p]) continue;
@@ -120,7 +124,8 @@ ImageDifference compareImages(const Image& a, const Image& b) {
     for (const SharedChannel& channel : overlap.channels) {
       const double value = a.pixels[p * a.channels.size() + channel.in_a];
       if (std::isfinite(value)) largest_value = std::max(largest_value, std::abs(value));
-      const double d = signedDifference(value, b.pixels[p * b.channels.size() + channel.in_b]);
+      const double other = b.pixels[p * b.channels.size() + channel.in_b];
+      const double d = signedDifference(value, other);
       largest = std::max(largest, std::abs(d));
       if (std::isinf(d)) {
         ++result.nonfinite;
@@ -130,7 +135,10 @@ ImageDifference compareImages(const Image& a, const Image& b) {
       sum += d;
       sum_abs += std::abs(d);
       sum_squared += d * d;
-      if (d != 0) sum_relative += d * d / (value * value + 1e-2);
+      if (d == 0) continue;  // also of two infinities or NaNs
+      sum_relative += d * d / (value * value + kDark);
+      sum_share += std::abs(d) / (std::abs(value) + kDark);
+      sum_symmetric += 2 * std::abs(d) / (std::abs(value) + std::abs(other) + kDark);
     }
     result.of_pixel[p] = largest;
     compared.push_back(largest);
@@ -140,7 +148,7 @@ ImageDifference compareImages(const Image& a, const Image& b) {
       result.worst_pixel = {int(p % a.width), int(p / a.width)};
     }
   }
-  if (finite == 0) sum = sum_abs = sum_squared = sum_relative = kInfinity;
+  if (finite == 0) sum = sum_abs = sum_squared = sum_relative = sum_share = sum_symmetric = kInfinity;
   const double count = double(std::max<std::uint64_t>(finite, 1));
   const auto relative = [&](double difference) { return difference > 0 ? difference / largest_value : 0.0; };
   result.pixels = compared.size();
@@ -148,9 +156,12 @@ ImageDifference compareImages(const Image& a, const Image& b) {
   result.max_relative = relative(result.max_abs);
   result.mean_relative = relative(result.mean_abs);
   result.mean_signed = sum / count;
-  result.rmse = std::sqrt(sum_squared / count);
-  result.psnr = sum_squared > 0 ? -10.0 * std::log10(sum_squared / count) : kInfinity;
+  result.mse = sum_squared / count;
+  result.rmse = std::sqrt(result.mse);
+  result.psnr = sum_squared > 0 ? -10.0 * std::log10(result.mse) : kInfinity;
   result.relmse = sum_relative / count;
+  result.mape = sum_share / count;
+  result.smape = sum_symmetric / count;
   result.p99_abs = percentile(compared, 0.99);
   result.p999_abs = percentile(compared, 0.999);
   return result;

@@ -26,7 +26,8 @@ TEST(Compare, EqualPicturesDifferByNothing) {
   image.pixels[9] = kInf;
   const ImageDifference d = compareImages(image, image);
   EXPECT_EQ(d.max_abs, 0);
-  EXPECT_EQ(d.rmse, 0);
+  for (const auto& [name, figure] : kImageMetrics)
+    EXPECT_EQ(d.*figure, name == std::string("psnr") ? kInf : 0) << name;
   EXPECT_EQ(d.psnr, kInf);
   EXPECT_EQ(d.nonfinite, 0u);
   EXPECT_EQ(d.over, (std::array<std::uint64_t, 3>{}));
@@ -47,7 +48,10 @@ TEST(Compare, FiguresOfAKnownDifference) {
   const double mse = (0.0625 + 0.015625) / 300;
   EXPECT_NEAR(d.rmse, std::sqrt(mse), kTolerance);
   EXPECT_NEAR(d.psnr, -10 * std::log10(mse), 100 * kTolerance);
+  EXPECT_NEAR(d.mse, mse, kTolerance);
   EXPECT_NEAR(d.relmse, mse / 0.26, kTolerance);
+  EXPECT_NEAR(d.mape, (0.25 + 0.125) / 0.51 / 300, kTolerance);
+  EXPECT_NEAR(d.smape, (2 * 0.25 / (0.5 + 0.75 + 0.01) + 2 * 0.125 / (0.5 + 0.375 + 0.01)) / 300, kTolerance);
   EXPECT_EQ(d.over, (std::array<std::uint64_t, 3>{2, 2, 2}));
   // Of 100 pixels 98 are equal: 99 of them differ by at most the smaller difference, and all by at most the
   // larger.
@@ -91,6 +95,32 @@ TEST(Compare, RelativeFiguresAreSharesOfAsLargestFiniteMagnitude) {
   const Image black = grey(2, 1, 0.0f);
   EXPECT_EQ(compareImages(black, black).max_relative, 0);
   EXPECT_EQ(compareImages(black, a).mean_relative, kInf);
+}
+
+TEST(Compare, SharesAreOfMagnitudesAndTheSymmetricOneIsTheSameBothWays) {
+  // Negative values, as some filters leave them; against black each value counts for itself.
+  const Image a{1, 1, {"R", "G", "B"}, {-1, 0, 2}}, b{1, 1, {"R", "G", "B"}, {1, 4, 2}};
+  const double first = 2 / 1.01, second = 4 / 0.01;
+  EXPECT_NEAR(compareImages(a, b).mape, (first + second) / 3, 1e-12);
+  EXPECT_NEAR(compareImages(a, b).relmse, (4 / 1.01 + 16 / 0.01) / 3, 1e-11);
+  const double symmetric = (2 * 2 / 2.01 + 2 * 4 / 4.01) / 3;
+  EXPECT_NEAR(compareImages(a, b).smape, symmetric, 1e-15);
+  EXPECT_EQ(compareImages(b, a).smape, compareImages(a, b).smape);
+  EXPECT_LT(compareImages(grey(2, 2, 0), grey(2, 2, 1e30f)).smape, 2 + 1e-15);
+}
+
+TEST(Compare, WhatIsNotFiniteIsLeftOutOfEachMean) {
+  Image a = grey(2, 2, 0.5f), b = grey(2, 2, 0.75f);
+  const ImageDifference whole = compareImages(a, b);
+  b.pixels[3] = kNaN;
+  a.pixels[4] = b.pixels[4] = -kInf;  // the same value, which differs by 0
+  const ImageDifference rest = compareImages(a, b);
+  // Of twelve equal pairs ten are left as they were, and one differs by 0.
+  for (const auto& [name, figure] : {std::pair("mse", &ImageDifference::mse),
+                                     {"relmse", &ImageDifference::relmse},
+                                     {"mape", &ImageDifference::mape},
+                                     {"smape", &ImageDifference::smape}})
+    EXPECT_NEAR(rest.*figure, whole.*figure * 10 / 11, 1e-15) << name;
 }
 
 TEST(Compare, OnlySampledPixelsAreCompared) {
@@ -166,9 +196,8 @@ TEST(Compare, OneSidedNonFiniteValuesAreCountedApartAndNeverPass) {
 TEST(Compare, WhereNothingIsFiniteNoMeanIsSmall) {
   const ImageDifference d = compareImages(grey(2, 2, kNaN), grey(2, 2, 0));
   EXPECT_EQ(d.nonfinite, 12u);
-  for (const double figure : {d.max_abs, d.mean_abs, d.mean_signed, d.rmse, d.relmse, -d.psnr, d.max_relative,
-                              d.mean_relative, d.p99_abs})
-    EXPECT_EQ(figure, kInf);
+  for (const auto& [name, figure] : kImageMetrics)
+    EXPECT_EQ(d.*figure, name == std::string("psnr") ? -kInf : kInf) << name;
 }
 
 TEST(Compare, ChannelsAreMatchedByName) {

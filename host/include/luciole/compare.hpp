@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "luciole/image.hpp"
@@ -21,9 +22,14 @@ struct ImageDifference {
   double max_relative = 0;  ///< max_abs / the largest magnitude of A's finite compared values
   double mean_relative = 0;
   double mean_signed = 0;  ///< mean of B − A: the bias
-  double rmse = 0;
-  double psnr = 0;      ///< dB, peak 1; infinite for equal pictures
-  double relmse = 0;    ///< mean of (B − A)² / (A² + 10⁻²)
+  double mse = 0;          ///< mean of (B − A)²
+  double rmse = 0;         ///< √mse
+  double psnr = 0;         ///< dB, peak 1; infinite for equal pictures
+  double relmse = 0;       ///< mean of (B − A)² / (A² + 10⁻²)
+  double mape = 0;         ///< mean of |B − A| / (|A| + 10⁻²)
+  /// Mean of 2 |B − A| / (|A| + |B| + 10⁻²), in [0, 2): twice the figure of T. Vogels et al., "Denoising with
+  /// Kernel Prediction and Asymmetric Loss Functions", 2018.
+  double smape = 0;
   double p99_abs = 0;   ///< over pixels, of the largest difference of a pixel's channels: the smallest d such
                         ///< that 99 % of the pixels differ by at most d
   double p999_abs = 0;  ///< the same for 99.9 %
@@ -39,6 +45,23 @@ struct ImageDifference {
 /// Half, one and four 8-bit steps of a linear [0,1] range.
 inline constexpr std::array<double, 3> kOverLimits{0.5 / 255, 1.0 / 255, 4.0 / 255};
 inline constexpr double kNotCompared = -1.0;
+
+/// The figures that pictures are judged by, and the names that files give them. The smaller the better, but
+/// for psnr; mean_signed is the better the nearer to 0.
+inline constexpr std::pair<const char*, double ImageDifference::*> kImageMetrics[] = {
+    {"max_abs", &ImageDifference::max_abs},
+    {"mean_abs", &ImageDifference::mean_abs},
+    {"max_relative", &ImageDifference::max_relative},
+    {"mean_relative", &ImageDifference::mean_relative},
+    {"mean_signed", &ImageDifference::mean_signed},
+    {"mse", &ImageDifference::mse},
+    {"rmse", &ImageDifference::rmse},
+    {"psnr", &ImageDifference::psnr},
+    {"relmse", &ImageDifference::relmse},
+    {"mape", &ImageDifference::mape},
+    {"smape", &ImageDifference::smape},
+    {"p99_abs", &ImageDifference::p99_abs},
+    {"p999_abs", &ImageDifference::p999_abs}};
 
 /// Compares the channels that both pictures have under the same names, except A, the coverage. Sizes must be
 /// equal, and R, G, B and Y be in both pictures or in neither. Parts of pictures of one size must start at

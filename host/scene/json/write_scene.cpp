@@ -32,7 +32,7 @@ std::string vectorText(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]",
 /// (place_limits.hpp).
 constexpr double kBeyondAll = 1e20;
 
-std::string cameraLine(const Camera& camera) {
+std::string cameraText(const Camera& camera) {
   const glm::dmat4& place = camera.camera_to_world;
   const glm::dvec3 eye = place[3];
   // The target is as far from the eye as the eye is from the origin, so that at any place rounding turns the
@@ -41,10 +41,13 @@ std::string cameraLine(const Camera& camera) {
   const glm::dvec3 target = eye - away * glm::dvec3(place[2]);
   const std::string lens = camera.orthographic ? fmt::format("\"orthographic\": {}", camera.half_height)
                                                : fmt::format("\"fov_y\": {}", glm::degrees(camera.fov_y));
-  return fmt::format(
-      "  \"camera\": {{\"eye\": {}, \"target\": {}, \"up\": {}, {}, \"near\": {}, \"far\": {}}},\n",
-      vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near,
-      std::min(camera.far, kBeyondAll));
+  return fmt::format("{{\"eye\": {}, \"target\": {}, \"up\": {}, {}, \"near\": {}, \"far\": {}}}",
+                     vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near,
+                     std::min(camera.far, kBeyondAll));
+}
+
+std::string cameraLine(const Camera& camera) {
+  return fmt::format("  \"camera\": {},\n", cameraText(camera));
 }
 
 /// The degrees that are read as these radians, to the bit where they were typed as degrees.
@@ -217,16 +220,42 @@ std::string sceneWithLights(const std::string& scene_path, const std::string& fo
   return text;
 }
 
+/// What a file, of a scene or of a mesh, is as the members of a scene's file in another folder.
+static OrderedJson membersOf(const std::string& scene_path, const std::string& folder) {
+  if (!isMeshFile(scene_path)) return sceneFrom(folder, scene_path);
+  OrderedJson json;
+  json["objects"] = {{{"mesh", pathFrom(folder, scene_path)}}};
+  return json;
+}
+
+/// Replaces what surrounds the objects, and the camera.
+static void setSurroundings(const Scene& scene, OrderedJson camera, const glm::ivec2& size,
+                            OrderedJson& json) {
+  json.erase("cameras");
+  json["camera"] = std::move(camera);
+  json["size"] = {size.x, size.y};
+  json["ambient"] = colorJson(scene.ambient);
+  json["background"] = colorJson(scene.background);
+  if (!scene.lighting) json["lighting"] = false;
+  json.erase("fog");
+  if (scene.fog.mode != FogMode::kNone) json["fog"] = fogJson(scene.fog);
+}
+
+std::string pictureScene(const std::string& scene_path, const std::string& folder, const Scene& scene,
+                         const Camera& camera, const glm::ivec2& size) {
+  OrderedJson json = scene_path.empty() ? OrderedJson::object() : membersOf(scene_path, folder);
+  eraseLights(json);
+  setSurroundings(scene, OrderedJson::parse(cameraText(camera)), size, json);
+  std::string text = "{\n" + membersText(json);
+  appendLights(scene.lights, {}, text);
+  return text;
+}
+
 SavedScene savedScene(const std::string& scene_path, const std::string& folder, const Scene& scene,
                       const Json& camera, const glm::ivec2& size, const std::vector<std::string>& changes) {
   SavedScene saved;
-  const bool is_mesh_file = isMeshFile(scene_path);
-  OrderedJson json;
-  if (is_mesh_file)
-    json["objects"] = {{{"mesh", pathFrom(folder, scene_path)}}};
-  else
-    json = sceneFrom(folder, scene_path);
-  bool keeps_lights = !is_mesh_file;
+  OrderedJson json = membersOf(scene_path, folder);
+  bool keeps_lights = !isMeshFile(scene_path);
   // Materials that the file defines are changed in it.
   std::vector<SceneChange> of_materials;
   for (const std::string& text : changes) {
@@ -250,14 +279,7 @@ SavedScene savedScene(const std::string& scene_path, const std::string& folder, 
   for (const SceneChange& change : of_materials)
     if (!change.is_made) saved.left.push_back(change.text);
 
-  json.erase("cameras");
-  json["camera"] = OrderedJson::parse(camera.dump());
-  json["size"] = {size.x, size.y};
-  json["ambient"] = colorJson(scene.ambient);
-  json["background"] = colorJson(scene.background);
-  if (!scene.lighting) json["lighting"] = false;
-  json.erase("fog");
-  if (scene.fog.mode != FogMode::kNone) json["fog"] = fogJson(scene.fog);
+  setSurroundings(scene, OrderedJson::parse(camera.dump()), size, json);
   saved.text = "{\n";
   if (keeps_lights) {
     saved.text += membersText(json);

@@ -26,6 +26,13 @@ std::string meshWithLights(const std::string& mesh_path, const Camera& camera,
 std::string sceneWithLights(const std::string& scene_path, const std::string& folder, const Camera& camera,
                             const std::vector<Light>& lights);
 
+/// The scene of a picture, for another program: the file's objects and materials, and of `scene` the lights
+/// (as lightsScene writes them), ambient light, background and fog, with one camera and a size. Empty
+/// scene_path: without objects. Relative paths are rewritten for `folder`. The file must be one that
+/// loadScene reads.
+std::string pictureScene(const std::string& scene_path, const std::string& folder, const Scene& scene,
+                         const Camera& camera, const glm::ivec2& size);
+
 /// A scene as somebody has changed it while looking at it.
 struct SavedScene {
   std::string text;               ///< of a scene file

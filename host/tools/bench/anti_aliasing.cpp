@@ -55,7 +55,9 @@ SpeedTable measureAntiAliasing(const SpeedInput& input) {
                   {"shadings_per_pixel", "shadings per pixel", 2},
                   {"rmse_steps", "RMSE, steps", 3},
                   {"max_steps", "max, steps", 1},
-                  {"rmse_times_all", "RMSE times all", 2}}};
+                  {"rmse_times_all", "RMSE times all", 2},
+                  {"relmse", "relMSE", 6},
+                  {"smape", "SMAPE", 5}}};
   if (input.on_progress) input.on_progress(table.name + ": the truth", 0, rows.size());
   Stats ignored;
   const Image truth = makeAntiAliased(input.device, scene, size, kTruthSamples, SampleShading::kAll, ignored);
@@ -73,7 +75,9 @@ SpeedTable measureAntiAliasing(const SpeedInput& input) {
                            double(countOf(stats, "pixels_lit")) / (double(size.x) * size.y),
                            error.rmse * k8BitSteps,
                            error.max_abs * k8BitSteps,
-                           quotient(error.rmse, errors[row.whole], "all samples have no error")}});
+                           quotient(error.rmse, errors[row.whole], "all samples have no error"),
+                           error.relmse,
+                           error.smape}});
   }
   const auto rounds =
       runInRounds(rows.size(), input.repeats, table.name, input.on_progress, [&](std::size_t row) {

@@ -89,7 +89,7 @@ Ended runToEnd(const std::string& program, std::vector<std::string> arguments,
 }  // namespace
 
 ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "luciole-bench-XXXXXX").string();
+  std::string pattern = (std::filesystem::temp_directory_path() / "luciole-XXXXXX").string();
   if (!mkdtemp(pattern.data()))
     throw MachineError(fmt::format("{}: no temporary folder can be made: {}", pattern, std::strerror(errno)));
   path_ = pattern;

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kColumns[]{"ms",         "spread",      "max, steps", "mean, steps", "signed, steps",
-                                 "max, share", "mean, share", "front"};
+                                 "max, share", "mean, share", "relMSE",     "SMAPE",       "front"};
 using Cells = std::vector<std::string>;
 
 /// A table's cell without a figure.
@@ -55,6 +55,8 @@ Cells rowCells(const BenchRow& row, Reasons& reasons) {
           fmt::format("{:+.1e}", error.mean_signed * k8BitSteps),
           share(error.max_abs),
           share(error.mean_abs),
+          fmt::format("{:.1e}", error.relmse),
+          fmt::format("{:.1e}", error.smape),
           row.front ? "*" : ""};
 }
 
@@ -118,15 +120,20 @@ Json errorJson(const ImageDifference& error, double unit) {
 }
 
 Json rowJson(const BenchRow& row) {
-  return {
-      {"name", row.variant.name},
-      {"default", row.variant.is_default},
-      {"front", row.front},
-      {"settings", settingsJson(row.variant)},
-      {"milliseconds", {{"median", row.time.median}, {"spread", row.time.spread}}},
-      {"brightest", row.brightest},
-      {"error",
-       {{"steps", errorJson(row.error, 1 / k8BitSteps)}, {"relative", errorJson(row.error, row.brightest)}}}};
+  const auto finiteOrNull = [](double figure) {
+    return std::isfinite(figure) ? Json(figure) : Json(nullptr);
+  };
+  return {{"name", row.variant.name},
+          {"default", row.variant.is_default},
+          {"front", row.front},
+          {"settings", settingsJson(row.variant)},
+          {"milliseconds", {{"median", row.time.median}, {"spread", row.time.spread}}},
+          {"brightest", row.brightest},
+          {"error",
+           {{"steps", errorJson(row.error, 1 / k8BitSteps)},
+            {"relative", errorJson(row.error, row.brightest)},
+            {"relmse", finiteOrNull(row.error.relmse)},
+            {"smape", finiteOrNull(row.error.smape)}}}};
 }
 
 Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
@@ -146,7 +153,8 @@ Json speedRowJson(const SpeedTable& table, const SpeedRow& row) {
 }
 
 constexpr const char* kErrorsExplained =
-    "\nErrors are in 8-bit steps (1/255) of linear light; shares are of the truth's brightest value.\n"
+    "\nErrors are in 8-bit steps (1/255) of linear light; shares are of the truth's brightest value;\n"
+    "relMSE and SMAPE are as luciole compare --help defines them.\n"
     "front *: no other row has a lower mean error, as printed, without being slower by more than both "
     "spreads,\n"
     "nor the same one while being faster by more than both.\n"

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "tools/cli/frames.hpp"
 #include "tools/cli/picture_options.hpp"
 #include "tools/cli/progress.hpp"
+#include "tools/cli/suggest.hpp"
 #include "tools/figures/text_table.hpp"
 
 namespace luciole {
@@ -32,6 +34,8 @@ namespace {
 struct CompareOptions {
   std::string a, b, difference, error_map, side_by_side, json;
   std::optional<double> max_abs;
+  std::vector<std::string> metrics;  ///< to print; empty: all
+  std::vector<double> limits;        ///< none, or one for each of `metrics`
 };
 
 constexpr float kDifferenceGain = 10.0f;
@@ -39,6 +43,11 @@ constexpr float kDifferenceGain = 10.0f;
 void checkOptions(const CompareOptions& options) {
   if (options.max_abs && !(*options.max_abs >= 0))
     throw InputError("--max-abs: expected a number that is at least 0");
+  if (!options.limits.empty() && options.limits.size() != options.metrics.size())
+    throw InputError(fmt::format("--max: {} limits for {} metrics, expected one for each",
+                                 options.limits.size(), options.metrics.size()));
+  if (!std::all_of(options.limits.begin(), options.limits.end(), [](double limit) { return limit >= 0; }))
+    throw InputError("--max: expected numbers that are at least 0");
   if (!options.json.empty()) checkPlace(options.json);
   const auto pictures = {&options.difference, &options.error_map, &options.side_by_side};
   for (const std::string* path : pictures) {
@@ -106,19 +115,69 @@ ImageDifference comparePictures(const CompareOptions& options, const std::string
   return d;
 }
 
-bool isOver(const CompareOptions& options, const ImageDifference& d) {
-  return options.max_abs && (d.nonfinite > 0 || !(d.max_abs <= *options.max_abs));
+std::vector<std::string> metricNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, figure] : kImageMetrics) names.emplace_back(name);
+  return names;
 }
 
-void printFigures(const ImageDifference& d) {
-  fmt::print("{} of {} pixels, channels {}\n", d.pixels, d.of_pixel.size(), fmt::join(d.channels, " "));
-  fmt::print("max_abs {:.6g} at ({}, {})\nmean_abs {:.6g}\n", d.max_abs, d.worst_pixel[0], d.worst_pixel[1],
-             d.mean_abs);
-  fmt::print("max_relative {:.6g}\nmean_relative {:.6g}\n", d.max_relative, d.mean_relative);
-  fmt::print("mean_signed {:.6g}\nrmse {:.6g}\npsnr {:.2f} dB\nrelmse {:.6g}\n", d.mean_signed, d.rmse,
-             d.psnr, d.relmse);
-  fmt::print("p99_abs {:.6g}\np999_abs {:.6g}\nnonfinite {}\n", d.p99_abs, d.p999_abs, d.nonfinite);
-  fmt::print("pixels over 1/2, 1, 4 steps of 8 bits: {}, {}, {}\n", d.over[0], d.over[1], d.over[2]);
+double metricOf(const ImageDifference& d, const std::string& metric) {
+  return d.*std::find_if(std::begin(kImageMetrics), std::end(kImageMetrics), [&](const auto& one) {
+              return one.first == metric;
+            })->second;
+}
+
+/// A metric's figure as a number that is larger the more the pictures differ.
+double badness(const ImageDifference& d, const std::string& metric) {
+  const double figure = metricOf(d, metric);
+  return metric == "psnr" ? -figure : std::abs(figure);
+}
+
+std::string metricText(const ImageDifference& d, const std::string& metric) {
+  if (metric == "psnr") return fmt::format("psnr {:.2f} dB", d.psnr);
+  std::string text = fmt::format("{} {:.6g}", metric, metricOf(d, metric));
+  if (metric == "max_abs") text += fmt::format(" at ({}, {})", d.worst_pixel[0], d.worst_pixel[1]);
+  return text;
+}
+
+/// What a picture must keep to pass: the largest of a metric, the least of psnr.
+struct Limit {
+  std::string metric;
+  double value;
+  std::string option;  ///< that sets it
+};
+
+std::vector<Limit> limitsOf(const CompareOptions& options) {
+  std::vector<Limit> limits;
+  if (options.max_abs) limits.push_back({"max_abs", *options.max_abs, "--max-abs"});
+  for (std::size_t i = 0; i < options.limits.size(); ++i)
+    limits.push_back({options.metrics[i], options.limits[i], "--max"});
+  return limits;
+}
+
+bool isOver(const Limit& limit, const ImageDifference& d) {
+  const bool is_least = limit.metric == "psnr";
+  return d.nonfinite > 0 || !(badness(d, limit.metric) <= (is_least ? -limit.value : limit.value));
+}
+
+const char* overOrUnder(const Limit& limit) { return limit.metric == "psnr" ? "under" : "over"; }
+
+void printFigures(const CompareOptions& options, const ImageDifference& d) {
+  if (options.metrics.empty())
+    fmt::print("{} of {} pixels, channels {}\n", d.pixels, d.of_pixel.size(), fmt::join(d.channels, " "));
+  for (const std::string& metric : options.metrics.empty() ? metricNames() : options.metrics)
+    fmt::print("{}\n", metricText(d, metric));
+  // Means leave out what isn't finite, so that is told beside any of them.
+  if (options.metrics.empty() || d.nonfinite > 0) fmt::print("nonfinite {}\n", d.nonfinite);
+  if (options.metrics.empty())
+    fmt::print("pixels over 1/2, 1, 4 steps of 8 bits: {}, {}, {}\n", d.over[0], d.over[1], d.over[2]);
+}
+
+/// Says in one line which limits are broken, and sets the exit status; nothing where none is.
+void reportLimits(const std::vector<std::string>& broken, CommandContext& context) {
+  if (broken.empty()) return;
+  reportError(fmt::format("{}", fmt::join(broken, "; ")), kDifferent);
+  context.status = kDifferent;
 }
 
 void compareTwo(const CompareOptions& options, CommandContext& context) {
@@ -127,13 +186,15 @@ void compareTwo(const CompareOptions& options, CommandContext& context) {
   if (!options.json.empty()) writeTextFile(options.json, dumpUtf8(differenceJson(d), 2) + "\n");
   const auto outputs = {&options.difference, &options.error_map, &options.side_by_side, &options.json};
   if (std::none_of(outputs.begin(), outputs.end(), [](const std::string* path) { return *path == "-"; }))
-    printFigures(d);
-  if (!isOver(options, d)) return;
-  reportError(d.nonfinite > 0 ? fmt::format("{} values of one picture or both are not finite", d.nonfinite)
-                              : fmt::format("max_abs {:.6g} at ({}, {}) is over --max-abs {}", d.max_abs,
-                                            d.worst_pixel[0], d.worst_pixel[1], *options.max_abs),
-              kDifferent);
-  context.status = kDifferent;
+    printFigures(options, d);
+  std::vector<std::string> broken;
+  for (const Limit& limit : limitsOf(options))
+    if (isOver(limit, d))
+      broken.push_back(fmt::format("{} is {} {} {}", metricText(d, limit.metric), overOrUnder(limit),
+                                   limit.option, limit.value));
+  if (!broken.empty() && d.nonfinite > 0)
+    broken = {fmt::format("{} values of one picture or both are not finite", d.nonfinite)};
+  reportLimits(broken, context);
 }
 
 /// A frame of two sequences, and how they differ there.
@@ -171,14 +232,18 @@ std::vector<int> framesOfBoth(const CompareOptions& options) {
   return of_a;
 }
 
-/// The frame of the largest difference; of several the one of the largest mean square, then the first.
-const ComparedFrame& worstOf(const std::vector<ComparedFrame>& frames) {
-  const auto badness = [](const ComparedFrame& one) {
-    return std::tuple(one.difference.max_abs, one.difference.rmse);
+/// The frame that a metric finds worst; of several the one of the largest mean square, then the first.
+const ComparedFrame& worstOf(const std::vector<ComparedFrame>& frames, const std::string& metric) {
+  const auto rank = [&](const ComparedFrame& one) {
+    return std::tuple(one.difference.nonfinite > 0, badness(one.difference, metric), one.difference.rmse);
   };
-  return *std::max_element(frames.begin(), frames.end(), [&](const ComparedFrame& a, const ComparedFrame& b) {
-    return badness(a) < badness(b);
-  });
+  return *std::max_element(frames.begin(), frames.end(),
+                           [&](const ComparedFrame& a, const ComparedFrame& b) { return rank(a) < rank(b); });
+}
+
+/// The metric that decides which frame is worst.
+std::string firstMetric(const CompareOptions& options) {
+  return options.metrics.empty() ? "max_abs" : options.metrics.front();
 }
 
 nlohmann::ordered_json frameJson(const ComparedFrame& one) {
@@ -188,26 +253,34 @@ nlohmann::ordered_json frameJson(const ComparedFrame& one) {
   return json;
 }
 
-nlohmann::ordered_json sequenceJson(const std::vector<ComparedFrame>& frames) {
+nlohmann::ordered_json sequenceJson(const std::vector<ComparedFrame>& frames, const std::string& metric) {
   auto all = nlohmann::ordered_json::array();
   for (const ComparedFrame& one : frames) all.push_back(frameJson(one));
-  return {{"frames", std::move(all)}, {"worst", frameJson(worstOf(frames))}};
+  return {{"frames", std::move(all)}, {"worst", frameJson(worstOf(frames, metric))}};
 }
 
-std::string worstLine(const ComparedFrame& worst) {
-  const ImageDifference& d = worst.difference;
-  return fmt::format("worst frame {}: max_abs {:.6g} at ({}, {}), psnr {:.2f} dB", worst.frame, d.max_abs,
-                     d.worst_pixel[0], d.worst_pixel[1], d.psnr);
+std::string worstLine(const ComparedFrame& worst, const std::vector<std::string>& metrics) {
+  std::vector<std::string> figures;
+  for (const std::string& metric : metrics) figures.push_back(metricText(worst.difference, metric));
+  return fmt::format("worst frame {}: {}", worst.frame, fmt::join(figures, ", "));
 }
 
-std::string sequenceTable(const std::vector<ComparedFrame>& frames) {
-  std::vector<std::vector<std::string>> lines{
-      {"frame", "max_abs", "mean_abs", "mean_signed", "rmse", "psnr", "p99_abs", "nonfinite"}};
-  const auto figure = [](double value) { return fmt::format("{:.6g}", value); };
-  for (const auto& [frame, d] : frames)
-    lines.push_back({fmt::format("{}", frame), figure(d.max_abs), figure(d.mean_abs), figure(d.mean_signed),
-                     figure(d.rmse), fmt::format("{:.2f}", d.psnr), figure(d.p99_abs),
-                     fmt::format("{}", d.nonfinite)});
+/// is_usual: without --metric.
+std::string sequenceTable(const std::vector<ComparedFrame>& frames, const std::vector<std::string>& metrics,
+                          bool is_usual) {
+  std::vector<std::vector<std::string>> lines{{"frame"}};
+  lines[0].insert(lines[0].end(), metrics.begin(), metrics.end());
+  const bool tells_nonfinite =
+      is_usual || std::any_of(frames.begin(), frames.end(),
+                              [](const ComparedFrame& one) { return one.difference.nonfinite > 0; });
+  if (tells_nonfinite) lines[0].push_back("nonfinite");
+  for (const auto& [frame, d] : frames) {
+    lines.push_back({fmt::format("{}", frame)});
+    for (const std::string& metric : metrics)
+      lines.back().push_back(metric == "psnr" ? fmt::format("{:.2f}", d.psnr)
+                                              : fmt::format("{:.6g}", metricOf(d, metric)));
+    if (tells_nonfinite) lines.back().push_back(fmt::format("{}", d.nonfinite));
+  }
   return textTable(lines);
 }
 
@@ -229,16 +302,26 @@ void compareSequences(const CompareOptions& options, CommandContext& context) {
     compared.back().difference.of_pixel = std::vector<double>();
   }
   progress.clear();
-  if (!options.json.empty()) writeTextFile(options.json, dumpUtf8(sequenceJson(compared), 2) + "\n");
-  const ComparedFrame& worst = worstOf(compared);
-  if (options.json != "-") fmt::print("{}{}\n", sequenceTable(compared), worstLine(worst));
-  const auto over = std::count_if(compared.begin(), compared.end(),
-                                  [&](const ComparedFrame& one) { return isOver(options, one.difference); });
-  if (over == 0) return;
-  reportError(fmt::format("{} of {} frames over --max-abs {}; {}", over, compared.size(), *options.max_abs,
-                          worstLine(worst)),
-              kDifferent);
-  context.status = kDifferent;
+  if (!options.json.empty())
+    writeTextFile(options.json, dumpUtf8(sequenceJson(compared, firstMetric(options)), 2) + "\n");
+  const std::vector<std::string> usual{"max_abs", "mean_abs", "mean_signed", "rmse", "psnr", "p99_abs"},
+      told{"max_abs", "psnr"};
+  const bool is_usual = options.metrics.empty();
+  if (options.json != "-")
+    fmt::print("{}{}\n", sequenceTable(compared, is_usual ? usual : options.metrics, is_usual),
+               worstLine(worstOf(compared, firstMetric(options)), is_usual ? told : options.metrics));
+  std::vector<std::string> broken;
+  for (const Limit& limit : limitsOf(options)) {
+    const auto over = std::count_if(compared.begin(), compared.end(),
+                                    [&](const ComparedFrame& one) { return isOver(limit, one.difference); });
+    if (over == 0) continue;
+    const bool is_max_abs = limit.option == "--max-abs";
+    broken.push_back(fmt::format(
+        "{} of {} frames {} {} {}{}; {}", over, compared.size(), overOrUnder(limit), limit.option,
+        limit.value, is_max_abs ? "" : " of " + limit.metric,
+        worstLine(worstOf(compared, limit.metric), is_max_abs ? told : std::vector{limit.metric})));
+  }
+  reportLimits(broken, context);
 }
 
 /// Whether a path names the frames of a sequence: no file has this very name, and a frame's number has a
@@ -267,9 +350,12 @@ void addCompareCommand(CLI::App& app, CommandContext& context) {
       "max_relative   max_abs / the largest |A|\n"
       "mean_relative  mean_abs / the largest |A|\n"
       "mean_signed    the mean of d: a bias\n"
-      "rmse           the root of the mean of d^2\n"
+      "mse            the mean of d^2\n"
+      "rmse           its root\n"
       "psnr           -20 log10(rmse), in dB: the peak is 1\n"
       "relmse         the mean of d^2 / (A^2 + 0.01)\n"
+      "mape           the mean of |d| / (|A| + 0.01)\n"
+      "smape          the mean of 2 |d| / (|A| + |B| + 0.01)\n"
       "p99_abs        99 % of the pixels differ by at most this in any channel\n"
       "p999_abs       99.9 % of them\n"
       "nonfinite      values of which one alone is NaN or infinite, or infinities of both\n"
@@ -287,6 +373,19 @@ void addCompareCommand(CLI::App& app, CommandContext& context) {
   command->add_option("B", options->b, "the picture to judge")->required();
   command->add_option("--max-abs", options->max_abs,
                       "the largest difference that still passes, in linear light, in every frame");
+  auto* metric = command
+                     ->add_option("--metric", options->metrics,
+                                  "print these figures alone: relmse,smape (--json has all)")
+                     ->delimiter(',')
+                     ->allow_extra_args(false)
+                     ->check(oneOf(metricNames()));
+  command
+      ->add_option("--max", options->limits,
+                   "the largest that still passes of each --metric, in their order: 0.01,0.02; of psnr the "
+                   "least, of mean_signed either way; in every frame")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs(metric);
   command->add_option("--diff", options->difference,
                       "write |B - A| x 10 as a picture (- : PNG on standard output)");
   command->add_option("--error-map", options->error_map,

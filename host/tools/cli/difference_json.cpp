@@ -1,7 +1,6 @@
 #include "tools/cli/difference_json.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace luciole {
 namespace {
@@ -19,16 +18,8 @@ nlohmann::ordered_json differenceJson(const ImageDifference& d) {
   nlohmann::ordered_json json, reasons;
   json["channels"] = d.channels;
   json["pixels"] = d.pixels;
-  for (const auto& [name, value] : {std::pair("max_abs", d.max_abs),
-                                    {"mean_abs", d.mean_abs},
-                                    {"max_relative", d.max_relative},
-                                    {"mean_relative", d.mean_relative},
-                                    {"mean_signed", d.mean_signed},
-                                    {"rmse", d.rmse},
-                                    {"psnr", d.psnr},
-                                    {"relmse", d.relmse},
-                                    {"p99_abs", d.p99_abs},
-                                    {"p999_abs", d.p999_abs}}) {
+  for (const auto& [name, figure] : kImageMetrics) {
+    const double value = d.*figure;
     if (std::isfinite(value)) {
       json[name] = value;
     } else {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "tools/cli/event_log.hpp"
 #include "tools/cli/picture_options.hpp"
 #include "tools/cli/progress.hpp"
+#include "tools/cli/scale_against.hpp"
 #include "tools/cli/scale_plan.hpp"
 #include "tools/cli/shard.hpp"
 #include "tools/devices/check_device.hpp"
@@ -52,15 +54,17 @@ std::string listPoints(const std::vector<std::string>& names) {
 }
 
 /// Writes all files that are made from a log. Returns the exit status. is_all: of all shards together, so
-/// that no point may be missing.
+/// that no point may be missing. prints_table: on standard output.
 int writeResults(const ScaleResults& results, const std::string& folder, const std::string& plot,
-                 const std::string& command_line, bool quiet, bool is_all) {
+                 const std::string& command_line, bool quiet, bool prints_table, bool is_all) {
   const ScaleSummary summary = summarizeScale(results);
   writeTextFile(folder + "/results.csv", scaleCsv(summary));
   writeTextFile(folder + "/growth.json", growthJson(summary));
   writeTextFile(folder + "/report.html", experimentPage(pageData(summary, folder, command_line)));
-  if (!plot.empty() && !summary.points.empty()) writeTextFile(plot, scalePlot(summary));
-  if (!quiet) fmt::print("{}", scaleTable(summary));
+  const bool has_own = std::any_of(summary.points.begin(), summary.points.end(),
+                                   [](const PointSummary& point) { return point.is_own; });
+  if (!plot.empty() && has_own) writeTextFile(plot, scalePlot(summary));
+  if (prints_table) fmt::print("{}", scaleTable(summary));
   const bool is_lacking = is_all && !summary.incomplete.empty();
   if (is_lacking)
     reportError(fmt::format("{}: {} of {} points are not complete: {}", folder, summary.incomplete.size(),
@@ -98,6 +102,15 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
     writeError(fmt::format(
         "points with a light error of 0 that are left out, as so many lights one by one take long: {}\n",
         experiment.too_exact));
+  if (!options.picture.quiet)
+    for (const std::string& line : experiment.missing) writeError("luciole: against " + line + "\n");
+  std::optional<PictureQuestions> questions;
+  if (asksForPictures(experiment)) {
+    if (!options.picture.load.changes.empty())
+      throw InputError("scale: --set: not with --against NAME=-, whose scenes are made from the file");
+    std::signal(SIGPIPE, SIG_IGN);  // who no longer listens is told of as an error
+    questions.emplace(options.scene, options.gbuffer, options.frame);
+  }
   OpenedDevice device;
   openDevice(options.picture.device, device);
   device.description.arithmetic = knownArithmetic(device).sha256;
@@ -107,17 +120,22 @@ int scale(CLI::App& command, ScaleOptions& options, const std::string& command_l
   for (std::size_t i = 0; i < experiment.tasks.size(); ++i)
     if (isMine(shard, i)) mine.push_back(i);
   ProgressLine progress(options.picture.quiet);
-  const std::vector<ScaleFailure> failures =
-      runScale(device, scene, experiment, mine, log,
-               [&](const std::string& what, std::size_t done, std::size_t total) {
-                 progress.show(what, done, total);
-               });
+  const std::vector<ScaleFailure> failures = runScale(
+      device, scene, experiment, mine, log,
+      [&](const PictureRequest& request) { return questions->ask(request); },
+      [&](const std::string& what, std::size_t done, std::size_t total) {
+        progress.show(what, done, total);
+      });
   progress.clear();
   for (const ScaleFailure& failure : failures)
     writeError(fmt::format("luciole: {}: {}\n", failure.point, failure.reason));
-  const int status =
-      writeResults(log.results(), options.output, options.plot, command_line, options.picture.quiet, false);
-  return failures.empty() ? status : kMachineFailed;
+  const bool quiet = options.picture.quiet;
+  const int status = writeResults(log.results(), options.output, options.plot, command_line, quiet,
+                                  !quiet && !questions, false);
+  return std::all_of(failures.begin(), failures.end(),
+                     [](const ScaleFailure& failure) { return failure.is_of_method; })
+             ? status
+             : kMachineFailed;
 }
 
 }  // namespace
@@ -139,6 +157,15 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
                    "options to try in every combination: culling,tile=4,8 (without values: some that make "
                    "sense); repeatable")
       ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--against", options->against,
+          "another method's pictures, linear and before exposure, held against the same truth: "
+          "NAME=FILE with {lights} for the number of lights, and after it ,ms=MILLISECONDS or "
+          "ms=FILE.csv with lines lights,milliseconds; or NAME=- to be asked for them, a line of JSON "
+          "on standard output and one on standard input for each; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("NAME=PICTURES");
   command->add_option("--repeat", options->repeats, "timed runs of each point")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -219,7 +246,7 @@ void addScaleCommand(CLI::App& app, CommandContext& context) {
   merge->callback([&context, merging] {
     checkDrawing(merging->plot);
     context.status = writeResults(mergeScaleLogs(merging->folders, merging->output, merging->mixes_devices),
-                                  merging->output, merging->plot, context.command_line, false, true);
+                                  merging->output, merging->plot, context.command_line, false, true, true);
   });
   command->callback([&context, command, merge, options] {
     if (!merge->parsed()) context.status = scale(*command, *options, context.command_line);

@@ -15,6 +15,7 @@
 #include "scene/json/light_list.hpp"
 #include "scene/models.hpp"
 #include "scene/scene_digest.hpp"
+#include "tools/cli/scale_against.hpp"
 #include "tools/cli/suggest.hpp"
 
 namespace luciole {
@@ -485,6 +486,7 @@ ScaleExperiment planExperiment(CLI::App& command, ScaleOptions& options, const S
       experiment.tasks.push_back(of_variant[i]);
     }
   }
+  addAgainst(options.against, experiment);
   return experiment;
 }
 

@@ -14,7 +14,7 @@ namespace luciole {
 struct ScaleOptions {
   PictureOptions picture;
   std::string scene, gbuffer, output, plot, lights, shard, field = "box";
-  std::vector<std::string> vary;
+  std::vector<std::string> vary, against;
   double density = 8;
   std::optional<double> range, cutoff;
   bool no_range = false, own_lights = false;

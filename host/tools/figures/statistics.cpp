@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
+
+#include "base/random.hpp"
 
 namespace luciole {
 namespace {
@@ -33,6 +36,23 @@ Repeated summarize(std::vector<double> runs) {
 Quartiles quartiles(std::vector<double> runs) {
   std::sort(runs.begin(), runs.end());
   return {quantile(runs, 0.25), quantile(runs, 0.5), quantile(runs, 0.75)};
+}
+
+std::optional<TimeRatio> timeRatio(const std::vector<double>& over, const std::vector<double>& under) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    if (!(over[i] > 0 && under[i] > 0)) return std::nullopt;
+    ratios.push_back(over[i] / under[i]);
+  }
+  if (ratios.size() < kFewestRatios) return std::nullopt;
+  std::uint64_t random = 0;
+  std::vector<double> drawn(ratios.size()), medians;
+  for (int i = 0; i < kResamples; ++i) {
+    for (double& ratio : drawn) ratio = ratios[std::size_t(nextUniform(random) * double(ratios.size()))];
+    medians.push_back(quartiles(drawn).median);
+  }
+  std::sort(medians.begin(), medians.end());
+  return TimeRatio{quartiles(ratios).median, quantile(medians, 0.025), quantile(medians, 0.975)};
 }
 
 double printedError(double error) { return std::stod(fmt::format("{:.1e}", error)); }

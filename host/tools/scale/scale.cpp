@@ -13,7 +13,6 @@
 #include "base/peak_memory.hpp"
 #include "image/heat_map.hpp"
 #include "lighting/stats.hpp"
-#include "luciole/compare.hpp"
 #include "luciole/error.hpp"
 #include "raster/visible_points.hpp"
 #include "reference/reference_picture.hpp"
@@ -21,6 +20,7 @@
 #include "tools/figures/checked_pixels.hpp"
 #include "tools/figures/kept_bounds.hpp"
 #include "tools/scale/scale_log.hpp"
+#include "tools/scale/scale_method.hpp"
 
 namespace luciole {
 namespace {
@@ -59,6 +59,7 @@ struct Bench {
   Scene& scene;
   const ScaleExperiment& experiment;
   ScaleLog& log;
+  const AskForPicture& ask;
   CheckedPixels checked;
   std::vector<glm::dvec3> seen;  ///< points that the camera sees, where densities are wanted
   std::map<std::size_t, float> range_of_task;
@@ -179,8 +180,69 @@ bool boundsTheTruth(const ScaleExperiment& experiment, const Stats& stats) {
   return stats.light_error.values > 0 && countOf(stats, "lights_exact") == 0 && experiment.truth_samples == 1;
 }
 
+/// A difference without all but kImageMetrics.
+ImageDifference metricsOf(const ImageDifference& difference) {
+  ImageDifference metrics;
+  for (const auto& [name, figure] : kImageMetrics) metrics.*figure = difference.*figure;
+  return metrics;
+}
+
+constexpr const char* kErrorMapEnding = "-error.png";
+
+std::string writePicture(const Bench& bench, const Image& image, const std::string& file,
+                         const WriteOptions& options = {}) {
+  writeImage(image, bench.log.folder() + "/" + file, {{"Software", "Luciole " LUCIOLE_VERSION}}, options);
+  return file;
+}
+
+/// A check of a picture's colours, which it writes, without counts.
+PointCheck checkColors(Bench& bench, std::size_t index, const Image& colors) {
+  ImageDifference difference =
+      compareImages(findTruth(bench, bench.experiment.tasks[index].settings).image, colors);
+  PointCheck check{.pixels = difference.pixels, .error = metricsOf(difference)};
+  for (const Light& light : bench.scene.lights) check.reach = std::max<double>(check.reach, light.range);
+  const std::string name = fileName(bench.experiment.description, index);
+  check.picture = writePicture(bench, colors, name + ".png", {.dither = true});
+  fillCells(bench.checked, difference);
+  check.error_map = writePicture(bench, errorMap(difference), name + kErrorMapEnding);
+  return check;
+}
+
+/// Has another method make a point's picture; round 0 is the one that is looked at.
+AskedPicture askFor(const Bench& bench, std::size_t index, int round) {
+  const ScaleDescription& description = bench.experiment.description;
+  const ScalePoint& point = description.points[index];
+  const RenderSettings& settings = bench.experiment.tasks[index].settings;
+  return bench.ask(
+      {methodOf(description, point)->name, point.lights, round, bench.scene, settings.camera, settings.size});
+}
+
+/// Compares another method's picture with the truth.
+PointCheck checkOther(Bench& bench, std::size_t index) {
+  setLights(bench, index);
+  const ScaleTask& task = bench.experiment.tasks[index];
+  const std::string file = task.other->file.empty() ? askFor(bench, index, 0).file : task.other->file;
+  Image colors;
+  try {
+    colors = readMethodPicture(file, task.settings.size);
+  } catch (const InputError& error) {
+    throw NoPicture(error.what());
+  }
+  for (float& value : colors.pixels) value *= std::exp2(task.settings.exposure);
+  return checkColors(bench, index, colors);
+}
+
+/// Another method's time; round 0 counts for nothing.
+PointRun timeOther(Bench& bench, std::size_t index, int round) {
+  const std::optional<OtherPicture>& other = bench.experiment.tasks[index].other;
+  if (!other->file.empty()) return {.stages = {{kOtherStage, other->milliseconds.value_or(0)}}};
+  setLights(bench, index);
+  return {.stages = {{kOtherStage, askFor(bench, index, round).milliseconds}}};
+}
+
 /// Makes a point's picture with all counts, and compares it with the truth.
 PointCheck checkPoint(Bench& bench, std::size_t index) {
+  if (bench.experiment.tasks[index].other) return checkOther(bench, index);
   setLights(bench, index);
   RenderSettings settings = bench.experiment.tasks[index].settings;
   settings.count_lights = true;
@@ -188,49 +250,34 @@ PointCheck checkPoint(Bench& bench, std::size_t index) {
   if (settings.shade.light_error > 0) settings.aovs.push_back(Aov::kLightError);
   Stats stats;
   const Image picture = makePicture(bench, settings, stats);
-  const Image colors = colorsOf(picture);
-  const Truth& truth = findTruth(bench, settings);
-  ImageDifference difference = compareImages(truth.image, colors);
-  fillCells(bench.checked, difference);
-
+  PointCheck check = checkColors(bench, index, colorsOf(picture));
   const std::uint64_t pixels_lit = countOf(stats, "pixels_lit");
   const std::uint64_t pairs_of_clusters =
       countOf(stats, "pixel_clusters_evaluated") + countOf(stats, "pixel_clustered_lights_evaluated");
   const std::uint64_t sampled = countOf(stats, "lights_sampled");
   // All lights that clusters stand for or that are sampled reach all pixels.
-  PointCheck check{.pairs_evaluated = countOf(stats, "pixel_lights_evaluated") + pairs_of_clusters +
-                                      countOf(stats, "sampled_rays"),
-                   .pairs_in_range = countOf(stats, "pixel_lights_in_range") +
-                                     (countOf(stats, "lights_stood_for") + sampled) * pixels_lit,
-                   .pixels_lit = pixels_lit,
-                   .list_entries = countOf(stats, "list_entries"),
-                   .pixels = difference.pixels,
-                   .mean_abs = difference.mean_abs,
-                   .max_abs = difference.max_abs,
-                   .rmse = difference.rmse,
-                   .picture = {},
-                   .error_map = {},
-                   .list_map = {}};
-  for (const Light& light : bench.scene.lights) check.reach = std::max<double>(check.reach, light.range);
+  check.pairs_evaluated =
+      countOf(stats, "pixel_lights_evaluated") + pairs_of_clusters + countOf(stats, "sampled_rays");
+  check.pairs_in_range =
+      countOf(stats, "pixel_lights_in_range") + (countOf(stats, "lights_stood_for") + sampled) * pixels_lit;
+  check.pixels_lit = pixels_lit;
+  check.list_entries = countOf(stats, "list_entries");
   const std::string name = fileName(bench.experiment.description, index);
-  const auto write = [&](const Image& image, const char* ending, const WriteOptions& options = {}) {
-    const std::string file = name + ending;
-    writeImage(image, bench.log.folder() + "/" + file, {{"Software", "Luciole " LUCIOLE_VERSION}}, options);
-    return file;
-  };
-  check.picture = write(colors, ".png", {.dither = true});
-  check.error_map = write(errorMap(difference), "-error.png");
-  check.list_map =
-      write(listMap(picture.width, picture.height, layerOf(picture, "list_length")), "-lists.png");
+  check.list_map = writePicture(
+      bench, listMap(picture.width, picture.height, layerOf(picture, "list_length")), name + "-lists.png");
   if (boundsTheTruth(bench.experiment, stats)) {
+    const Truth& truth = findTruth(bench, settings);
     check.bounds = measureBounds(picture, settings.exposure, bench.checked.pixels, truth.colors);
     if (sampled > 0) check.bounds->confidence = settings.shade.confidence;
-    check.bound_map = write(boundMap(picture.width, picture.height, largestBounds(picture)), "-bounds.png");
+    check.bound_map = writePicture(bench, boundMap(picture.width, picture.height, largestBounds(picture)),
+                                   name + "-bounds.png");
   }
   return check;
 }
 
-PointRun timePoint(Bench& bench, std::size_t index) {
+/// round: from 1 on; 0 counts for nothing.
+PointRun timePoint(Bench& bench, std::size_t index, int round) {
+  if (bench.experiment.tasks[index].other) return timeOther(bench, index, round);
   setLights(bench, index);
   malloc_trim(0);  // memory that earlier points freed shall not count for this one
   resetPeakBytes();
@@ -295,7 +342,8 @@ Work remainingWork(const ScaleDescription& description, const std::vector<std::s
     for (std::size_t k = 0; k < mine.size(); ++k) {
       // Each round begins with another point, so that other work on the machine affects all points alike.
       const std::size_t i = mine[(k + std::size_t(repeat)) % mine.size()];
-      if (!record(i).runs.contains(repeat)) work.runs.emplace_back(repeat, i);
+      if (repeat < runsOf(description, description.points[i]) && !record(i).runs.contains(repeat))
+        work.runs.emplace_back(repeat, i);
     }
   }
   return work;
@@ -313,23 +361,25 @@ std::string pointName(const ScaleDescription& description, const ScalePoint& poi
 std::vector<std::pair<std::string, std::string>> reasonsForNull(const PointCheck& check) {
   std::vector<std::pair<std::string, std::string>> reasons;
   if (std::isinf(check.reach)) reasons.emplace_back("reach", "a light without a range reaches everywhere");
-  for (const auto& [name, error] :
-       {std::pair("mean_abs", check.mean_abs), {"max_abs", check.max_abs}, {"rmse", check.rmse}})
-    if (!std::isfinite(error)) reasons.emplace_back(name, "a pixel is not finite");
+  for (const auto& [name, figure] : kImageMetrics)
+    if (!std::isfinite(check.error.*figure))
+      reasons.emplace_back(name,
+                           check.error.max_abs == 0 ? "no checked pixel is wrong" : "a pixel is not finite");
   return reasons;
 }
 
 std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const ScaleExperiment& experiment,
                                    const std::vector<std::size_t>& mine, ScaleLog& log,
-                                   const OnProgress& on_progress) {
+                                   const AskForPicture& ask, const OnProgress& on_progress) {
   const ScaleDescription& description = experiment.description;
   const Work work = remainingWork(description, mine, log);
   if (work.checks.empty() && work.runs.empty()) return {};
   std::filesystem::create_directories(log.folder() + "/" + kPictureFolder);
   const RenderSettings& any = experiment.tasks.front().settings;
-  Bench bench{
-      device, scene, experiment, log, chooseCheckedPixels(any.size, experiment.check_pixels, experiment.seed),
-      {},     {},    {},         {}};
+  Bench bench{device, scene, experiment,
+              log,    ask,   chooseCheckedPixels(any.size, experiment.check_pixels, experiment.seed),
+              {},     {},    {},
+              {}};
   if (std::any_of(experiment.tasks.begin(), experiment.tasks.end(),
                   [](const ScaleTask& task) { return task.density > 0 || task.no_range; })) {
     bench.seen = experiment.gbuffer
@@ -353,11 +403,13 @@ std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const Sca
   const auto nameOf = [&](std::size_t i) { return pointName(description, description.points[i]); };
   std::vector<ScaleFailure> failures;
   std::vector<bool> is_warm(description.points.size()), has_failed(description.points.size());
-  /// The result of make() for a point. Empty, and noted as a failure, if the machine fails.
+  /// The result of make() for a point. Empty, and noted as a failure, if the machine or a method fails.
   const auto tryPoint = [&](std::size_t i, auto&& make) {
-    std::optional<decltype(make(bench, i))> made;
+    std::optional<decltype(make())> made;
     try {
-      made = make(bench, i);
+      made = make();
+    } catch (const NoPicture& error) {
+      failures.push_back({nameOf(i), error.what(), true});
     } catch (const MachineError& error) {
       failures.push_back({nameOf(i), error.what()});
     } catch (const std::bad_alloc&) {
@@ -371,7 +423,7 @@ std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const Sca
     const std::size_t i = work.checks[k];
     report(fmt::format("check {} of {}: {}", k + 1, work.checks.size(), nameOf(i)), k, 0);
     const Clock::time_point began = Clock::now();
-    const auto check = tryPoint(i, checkPoint);
+    const auto check = tryPoint(i, [&, i] { return checkPoint(bench, i); });
     if (!check) continue;
     log.append(nameOf(i), *check);
     check_time.measured(i, millisecondsSince(began));
@@ -381,11 +433,11 @@ std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const Sca
   for (std::size_t k = 0; k < work.runs.size(); ++k) {
     const auto [repeat, i] = work.runs[k];
     report(fmt::format("run {} of {}: {}", k + 1, work.runs.size(), nameOf(i)), work.checks.size(), k);
-    if (!is_warm[i] && !has_failed[i]) tryPoint(i, timePoint);
+    if (!is_warm[i] && !has_failed[i]) tryPoint(i, [&, i = i] { return timePoint(bench, i, 0); });
     is_warm[i] = true;
     if (has_failed[i]) continue;
     const Clock::time_point began = Clock::now();
-    const auto run = tryPoint(i, timePoint);
+    const auto run = tryPoint(i, [&, i = i, round = repeat + 1] { return timePoint(bench, i, round); });
     if (run) log.append(nameOf(i), repeat, *run);
     run_time.measured(i, millisecondsSince(began));
   }

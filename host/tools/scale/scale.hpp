@@ -1,14 +1,19 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cl/device.hpp"
+#include "luciole/compare.hpp"
 #include "luciole/gbuffer.hpp"
+#include "luciole/scene.hpp"
 #include "render/render.hpp"
 #include "scene/lights/light_field.hpp"
 #include "tools/figures/kept_bounds.hpp"
@@ -36,6 +41,20 @@ inline constexpr const char* kLightErrorAxis = "light-error";
 /// The axis of ShadeSettings::confidence.
 inline constexpr const char* kConfidenceAxis = "confidence";
 
+/// The axis of who made the picture, in experiments with other methods: kOwnMethod, or one of their names.
+inline constexpr const char* kMethodAxis = "method";
+inline constexpr const char* kOwnMethod = "luciole";
+/// The only stage of a run of another method.
+inline constexpr const char* kOtherStage = "other method";
+
+/// Another method, whose pictures join an experiment.
+struct ScaleMethod {
+  std::string name;
+  int runs = 0;  ///< times of each of its points, as many as the experiment's repeats or 1; 0: it is held
+                 ///< against the truth, and not timed
+  bool operator==(const ScaleMethod&) const = default;
+};
+
 /// One way to make the picture, with one number of lights.
 struct ScalePoint {
   std::uint64_t lights = 0;
@@ -53,8 +72,15 @@ struct ScaleDescription {
   std::vector<std::uint64_t> lights;                          ///< ascending
   std::vector<ScaleAxis> axes;
   std::vector<ScalePoint> points;  ///< lights ascending, then by the axes' values
-  int repeats = 5;                 ///< timed runs of each point
+  int repeats = 5;                 ///< timed runs of each of Luciole's own points
+  std::vector<ScaleMethod> methods{};
   bool operator==(const ScaleDescription&) const = default;
+};
+
+/// How another method's picture comes.
+struct OtherPicture {
+  std::string file{};                    ///< empty: AskForPicture makes it
+  std::optional<double> milliseconds{};  ///< that the file's picture took
 };
 
 /// How a point's picture is made.
@@ -66,7 +92,28 @@ struct ScaleTask {
   double density = 0;
   /// After that ranges are removed, and the lights are as bright on average as before (removeRanges).
   bool no_range = false;
+  std::optional<OtherPicture> other{};  ///< of a method's point: as if by the settings above
 };
+
+/// What AskForPicture gets, and what it gives.
+struct PictureRequest {
+  std::string method;
+  std::uint64_t lights = 0;
+  int round = 0;       ///< from 1 on; 0: the picture that is looked at, and not timed
+  const Scene& scene;  ///< with these lights
+  const Camera& camera;
+  glm::ivec2 size;
+};
+struct AskedPicture {
+  double milliseconds = 0;
+  std::string file;  ///< of round 0: see readMethodPicture()
+};
+/// A method couldn't make a picture, which is left out.
+struct NoPicture : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// Has another method make a picture. Throws NoPicture, and anything else to end the experiment.
+using AskForPicture = std::function<AskedPicture(const PictureRequest& request)>;
 
 struct ScaleExperiment {
   ScaleDescription description;
@@ -78,18 +125,20 @@ struct ScaleExperiment {
   std::uint64_t seed = 0;           ///< chooses these pixels
   int truth_samples = 1;            ///< samples a pixel that make the truth
   std::size_t too_exact = 0;        ///< points that were left out because summing each light takes too long
+  std::vector<std::string> missing{};  ///< other methods' points that were left out, a line each, for people
 };
 
 /// The results of a point that are measured once: the error of its picture, and counts.
 struct PointCheck {
+  // Counts, and the maps of lists and bounds, are of Luciole's own pictures alone.
   /// Of a pixel and a light, or a cluster that stands for lights; and rays to sampled lights
   std::uint64_t pairs_evaluated = 0;
   std::uint64_t pairs_in_range = 0, pixels_lit = 0, list_entries = 0;
   double reach =
       0;  ///< metres: the range of the light that reaches farthest; infinite where one reaches everywhere
-  std::uint64_t pixels = 0;                    ///< compared with the reference
-  double mean_abs = 0, max_abs = 0, rmse = 0;  ///< errors of these pixels, in linear units
-  std::string picture, error_map, list_map;    ///< files in the experiment's folder
+  std::uint64_t pixels = 0;  ///< compared with the reference
+  ImageDifference error{};   ///< of these pixels from the reference: kImageMetrics alone are kept
+  std::string picture{}, error_map{}, list_map{};  ///< files in the experiment's folder
   /// Where no light of a picture of one sample a pixel is summed by itself, and a map of the bounds
   std::optional<KeptBounds> bounds{};
   std::string bound_map{};
@@ -119,15 +168,17 @@ class ScaleLog;
 /// A point that failed, and the reason.
 struct ScaleFailure {
   std::string point, reason;
+  bool is_of_method = false;  ///< another's, rather than the machine's
 };
 
 /// Measures what the log lacks of the points `mine` (indices): checks each once and writes its pictures into
 /// the log's folder, then times all of them in rounds, after an untimed run of each point that this call
-/// didn't check. Replaces the scene's lights. on_progress: gets milliseconds as done and total; the total is
-/// an estimate. Returns the points at which the machine failed, which are left out. Throws InputError if a
-/// density is asked for and the camera sees nothing, and MachineError if the log can't be written.
+/// didn't check. Replaces the scene's lights. ask: for tasks whose `other` has no file. on_progress: gets
+/// milliseconds as done and total; the total is an estimate. Returns the points at which the machine or
+/// another method failed, which are left out. Throws InputError if a density is asked for and the camera sees
+/// nothing, MachineError if the log can't be written, and what `ask` throws.
 std::vector<ScaleFailure> runScale(OpenedDevice& device, Scene& scene, const ScaleExperiment& experiment,
                                    const std::vector<std::size_t>& mine, ScaleLog& log,
-                                   const OnProgress& on_progress);
+                                   const AskForPicture& ask, const OnProgress& on_progress);
 
 }  // namespace luciole

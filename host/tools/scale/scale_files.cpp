@@ -73,7 +73,14 @@ Json valuesJson(const ScaleDescription& description, const std::vector<std::stri
 }
 
 Json quartilesJson(const Quartiles& time) {
-  return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
+  return {{"median", finiteOrNull(time.median)},
+          {"low", finiteOrNull(time.low)},
+          {"high", finiteOrNull(time.high)}};
+}
+
+/// A number of Luciole's own pictures; null of others.
+Json ownCount(const PointSummary& point, std::uint64_t count) {
+  return point.is_own ? Json(count) : Json(nullptr);
 }
 
 /// A row for each fit: its numbers, or null and the reason if there is none.
@@ -113,20 +120,21 @@ Json pointJson(const ScaleDescription& description, const PointSummary& point) {
             {"stages", Json::array()},
             {"runs", point.runs},
             {"reach", finiteOrNull(point.check.reach)},
-            {"pairs_evaluated", point.check.pairs_evaluated},
-            {"pairs_in_range", point.check.pairs_in_range},
-            {"pixels_lit", point.check.pixels_lit},
-            {"list_entries", point.check.list_entries},
-            {"device_bytes", point.device_bytes},
-            {"peak_bytes", point.peak_bytes},
-            {"error",
-             {{"mean_abs", finiteOrNull(point.check.mean_abs)},
-              {"max_abs", finiteOrNull(point.check.max_abs)},
-              {"rmse", finiteOrNull(point.check.rmse)},
-              {"pixels", point.check.pixels}}},
+            {"times_first", nullptr},
+            {"pairs_evaluated", ownCount(point, point.check.pairs_evaluated)},
+            {"pairs_in_range", ownCount(point, point.check.pairs_in_range)},
+            {"pixels_lit", ownCount(point, point.check.pixels_lit)},
+            {"list_entries", ownCount(point, point.check.list_entries)},
+            {"device_bytes", ownCount(point, point.device_bytes)},
+            {"peak_bytes", ownCount(point, point.peak_bytes)},
+            {"error", toJson(point.check.error)},
             {"bounds", point.check.bounds ? toJson(*point.check.bounds) : Json(nullptr)},
             {"truth", point.truth},
-            {"front", point.front}};
+            {"front", point.front},
+            {"fronts", point.fronts}};
+  if (const auto& ratio = point.times_first)
+    json["times_first"] = {{"median", ratio->median}, {"low", ratio->low}, {"high", ratio->high}};
+  json["error"]["pixels"] = point.check.pixels;
   for (const auto& [name, why] : reasonsForNull(point.check)) json["reasons"][name] = why;
   for (const StageSummary& stage : point.stages) {
     Json row{{"name", stage.name}};
@@ -159,9 +167,11 @@ std::string scaleCsv(const ScaleSummary& summary) {
   for (const std::string& stage : stages)
     for (const char* ending : {"_ms", "_ms_low", "_ms_high"}) head.push_back(snakeCase(stage) + ending);
   for (const char* name : {"reach", "pairs_evaluated", "pairs_in_range", "pixels_lit", "list_entries",
-                           "device_bytes", "peak_bytes", "checked_pixels", "mean_abs", "max_abs", "rmse",
-                           "front", "picture", "error_map", "list_map", "truth"})
+                           "device_bytes", "peak_bytes", "checked_pixels"})
     head.push_back(name);
+  for (const auto& [name, figure] : kImageMetrics) head.push_back(name);
+  for (const char* name : {"times_first", "times_first_low", "times_first_high"}) head.push_back(name);
+  for (const char* name : {"front", "picture", "error_map", "list_map", "truth"}) head.push_back(name);
   for (const auto& [name, figure] : kBoundFigures) head.push_back(name);
   for (const auto& [name, count] : kBoundCounts) head.push_back(name);
   head.push_back("bound_map");
@@ -171,7 +181,8 @@ std::string scaleCsv(const ScaleSummary& summary) {
     cells.insert(cells.end(), point.point.values.begin(), point.point.values.end());
     cells.push_back(fmt::format("{}", point.runs));
     const auto add = [&](const Quartiles& time) {
-      for (const double value : {time.median, time.low, time.high}) cells.push_back(fmt::format("{}", value));
+      for (const double value : {time.median, time.low, time.high})
+        cells.push_back(std::isnan(value) ? "" : fmt::format("{}", value));
     };
     add(point.milliseconds);
     for (const std::string& name : stages) {
@@ -185,10 +196,15 @@ std::string scaleCsv(const ScaleSummary& summary) {
     const PointCheck& check = point.check;
     cells.push_back(fmt::format("{}", check.reach));
     for (const std::uint64_t count : {check.pairs_evaluated, check.pairs_in_range, check.pixels_lit,
-                                      check.list_entries, point.device_bytes, point.peak_bytes, check.pixels})
-      cells.push_back(fmt::format("{}", count));
-    for (const double error : {check.mean_abs, check.max_abs, check.rmse})
-      cells.push_back(fmt::format("{}", error));
+                                      check.list_entries, point.device_bytes, point.peak_bytes})
+      cells.push_back(point.is_own ? fmt::format("{}", count) : "");
+    cells.push_back(fmt::format("{}", check.pixels));
+    for (const auto& [name, figure] : kImageMetrics) cells.push_back(fmt::format("{}", check.error.*figure));
+    if (const auto& ratio = point.times_first)
+      for (const double value : {ratio->median, ratio->low, ratio->high})
+        cells.push_back(fmt::format("{}", value));
+    else
+      cells.insert(cells.end(), 3, "");
     cells.push_back(point.front ? "1" : "0");
     for (const std::string& file : {check.picture, check.error_map, check.list_map}) cells.push_back(file);
     cells.push_back(point.truth);
@@ -223,7 +239,7 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
     const PointCheck& check = summary.points[i].check;
     points[i]["picture"] = pictures.add(check.picture);
     points[i]["error_map"] = pictures.add(check.error_map);
-    points[i]["tile_map"] = pictures.add(check.list_map);
+    points[i]["tile_map"] = check.list_map.empty() ? Json(nullptr) : pictures.add(check.list_map);
     points[i]["bound_map"] = check.bounds ? pictures.add(check.bound_map) : Json(nullptr);
   }
   Json axes = Json::array();
@@ -238,6 +254,8 @@ std::string pageData(const ScaleSummary& summary, const std::string& folder, con
   json["settings"] = settingsJson(description);
   json["axes"] = axes;
   json["lights"] = description.lights;
+  json["first"] =
+      description.points.empty() ? Json() : valuesJson(description, description.points.front().values);
   json["points"] = points;
   json["growth"] = growthRows(summary);
   json["pictures"] = pictures.urls();

@@ -35,15 +35,18 @@ Json toJson(const ScaleDescription& description) {
     axes.push_back({{"name", axis.name}, {"values", axis.values}});
   for (const ScalePoint& point : description.points)
     points.push_back({{"lights", point.lights}, {"values", point.values}});
-  return {{"experiment",
-           {{"version", description.version},
-            {"scene", description.scene},
-            {"digest", description.digest},
-            {"settings", settings},
-            {"lights", description.lights},
-            {"axes", axes},
-            {"points", points},
-            {"repeats", description.repeats}}}};
+  Json json{{"experiment",
+             {{"version", description.version},
+              {"scene", description.scene},
+              {"digest", description.digest},
+              {"settings", settings},
+              {"lights", description.lights},
+              {"axes", axes},
+              {"points", points},
+              {"repeats", description.repeats}}}};
+  for (const ScaleMethod& method : description.methods)
+    json["experiment"]["methods"].push_back({{"name", method.name}, {"runs", method.runs}});
+  return json;
 }
 
 /// A whole number. Throws InputError, in which `key` names it, unless T can hold it.
@@ -82,6 +85,9 @@ ScaleDescription descriptionOf(const Json& line) {
     description.points.push_back(
         {wholeMember<std::uint64_t>(point, "lights"), point.at("values").get<std::vector<std::string>>()});
   description.repeats = wholeMember<int>(json, "repeats");
+  if (json.contains("methods"))
+    for (const Json& method : json.at("methods"))
+      description.methods.push_back({method.at("name").get<std::string>(), wholeMember<int>(method, "runs")});
   const bool is_whole =
       std::all_of(description.points.begin(), description.points.end(),
                   [&](const ScalePoint& point) { return point.values.size() == description.axes.size(); });
@@ -127,6 +133,12 @@ KeptBounds boundsOf(const Json& json) {
   return bounds;
 }
 
+ImageDifference errorOf(const Json& json) {
+  ImageDifference error;
+  for (const auto& [name, figure] : kImageMetrics) error.*figure = numberOrInfinity(json.at(name));
+  return error;
+}
+
 Json toJson(const std::string& point, const PointCheck& check) {
   Json json{{"point", point},
             {"check",
@@ -136,12 +148,10 @@ Json toJson(const std::string& point, const PointCheck& check) {
               {"list_entries", check.list_entries},
               {"reach", finiteOrNull(check.reach)},
               {"pixels", check.pixels},
-              {"mean_abs", finiteOrNull(check.mean_abs)},
-              {"max_abs", finiteOrNull(check.max_abs)},
-              {"rmse", finiteOrNull(check.rmse)},
               {"picture", check.picture},
-              {"error_map", check.error_map},
-              {"list_map", check.list_map}}}};
+              {"error_map", check.error_map}}}};
+  json["check"].update(toJson(check.error));
+  if (!check.list_map.empty()) json["check"]["list_map"] = check.list_map;
   if (check.bounds) {
     json["check"]["bounds"] = toJson(*check.bounds);
     json["check"]["bound_map"] = check.bound_map;
@@ -171,12 +181,10 @@ PointCheck checkOf(const Json& line) {
           .list_entries = wholeMember<std::uint64_t>(json, "list_entries"),
           .reach = numberOrInfinity(json.at("reach")),
           .pixels = wholeMember<std::uint64_t>(json, "pixels"),
-          .mean_abs = numberOrInfinity(json.at("mean_abs")),
-          .max_abs = numberOrInfinity(json.at("max_abs")),
-          .rmse = numberOrInfinity(json.at("rmse")),
+          .error = errorOf(json),
           .picture = fileNamed(json, "picture"),
           .error_map = fileNamed(json, "error_map"),
-          .list_map = fileNamed(json, "list_map"),
+          .list_map = json.contains("list_map") ? fileNamed(json, "list_map") : "",
           .bounds = is_bounded ? std::optional(boundsOf(json.at("bounds"))) : std::nullopt,
           .bound_map = is_bounded ? fileNamed(json, "bound_map") : ""};
 }
@@ -214,7 +222,8 @@ void take(const Json& line, ScaleResults& results) {
 }
 
 std::vector<std::string> filesOf(const PointCheck& check) {
-  std::vector<std::string> files{check.picture, check.error_map, check.list_map};
+  std::vector<std::string> files{check.picture, check.error_map};
+  if (!check.list_map.empty()) files.push_back(check.list_map);
   if (check.bounds) files.push_back(check.bound_map);
   return files;
 }
@@ -287,6 +296,12 @@ Json toJson(const KeptBounds& bounds) {
   Json json;
   for (const auto& [name, figure] : kBoundFigures) json[name] = finiteOrNull(bounds.*figure);
   for (const auto& [name, count] : kBoundCounts) json[name] = bounds.*count;
+  return json;
+}
+
+Json toJson(const ImageDifference& error) {
+  Json json;
+  for (const auto& [name, figure] : kImageMetrics) json[name] = finiteOrNull(error.*figure);
   return json;
 }
 

@@ -71,5 +71,7 @@ ScaleResults mergeScaleLogs(const std::vector<std::string>& folders, const std::
 nlohmann::ordered_json finiteOrNull(double number);
 /// All figures by their names.
 nlohmann::ordered_json toJson(const KeptBounds& bounds);
+/// The figures of kImageMetrics by their names.
+nlohmann::ordered_json toJson(const ImageDifference& error);
 
 }  // namespace luciole

@@ -31,14 +31,15 @@ double highest(const PlotSeries& series) {
   return most;
 }
 
-/// The variant that is fastest with the most lights that were measured.
+/// Luciole's variant that is fastest with the most lights that were measured.
 const std::vector<std::string>& bestVariant(const ScaleSummary& summary) {
   const PointSummary* best = &summary.points.front();
   for (const PointSummary& point : summary.points) {
+    if (!point.is_own) continue;
     const bool has_more = point.point.lights > best->point.lights;
     const bool is_faster =
         point.point.lights == best->point.lights && point.milliseconds.median < best->milliseconds.median;
-    if (has_more || is_faster) best = &point;
+    if (!best->is_own || has_more || is_faster) best = &point;
   }
   return best->point.values;
 }
@@ -68,8 +69,9 @@ std::string grownName(const ScaleSummary& summary, const std::vector<std::string
 std::vector<PlotSeries> variantSeries(const ScaleSummary& summary) {
   std::vector<PlotSeries> all;
   for (const PointSummary& point : summary.points)
-    seriesNamed(all, grownName(summary, point.point.values))
-        .points.push_back(pointOf(point.point.lights, point.milliseconds));
+    if (point.runs > 0)
+      seriesNamed(all, grownName(summary, point.point.values))
+          .points.push_back(pointOf(point.point.lights, point.milliseconds));
   return all;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,17 +15,23 @@ struct StageSummary {
   Quartiles milliseconds;
 };
 
-/// A point that has its check and at least one timed run.
+/// A point that has its check and at least one timed run, or is of a method without times.
 struct PointSummary {
   ScalePoint point;
+  bool is_own = true;  ///< Luciole's, rather than another method's
   int runs = 0;
-  Quartiles milliseconds;            ///< of all stages together
-  std::vector<StageSummary> stages;  ///< in the order in which they ran
+  Quartiles milliseconds;  ///< of all stages together; NaN without runs
+  /// How many times as long as the experiment's first variant by as many lights, round by round. Of a method
+  /// with a single time all rounds have that.
+  std::optional<TimeRatio> times_first;
+  std::vector<StageSummary> stages;  ///< in the order in which they ran; none of another method
   PointCheck check;
   std::uint64_t device_bytes = 0, peak_bytes = 0;  ///< the most of any run
   std::string truth;  ///< see truthName(): errors of points can be compared if it is equal
   /// On the Pareto front (see paretoFront) of the points with this truth and the same number of lights.
   bool front = false;
+  /// The figures of kImageMetrics by which it is on such a front, in place of the mean error.
+  std::vector<std::string> fronts;
 };
 
 /// The name of all stages together.
@@ -48,7 +55,8 @@ struct ScaleSummary {
   std::vector<std::string> violations;
 };
 
-/// The axes' values in one line, for people: "culling tiles, tile 4"; empty if there are no axes.
+/// The axes' values in one line, for people: "culling tiles, tile 4"; empty if there are no axes. Beside
+/// other methods, which are called by their names alone, Luciole is named where nothing else is.
 std::string variantName(const ScaleDescription& description, const std::vector<std::string>& values);
 
 /// Summarizes a log's results: quartiles of times, Pareto fronts and growth.

@@ -15,6 +15,7 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
+constexpr const char* kNoFigure = "–";
 constexpr std::size_t kMostRows = 40;   ///< nobody reads more
 constexpr std::size_t kMostStages = 3;  ///< of a variant whose growth is told
 constexpr double kLeastShare = 0.01;  ///< of the time by the most lights, that a stage's growth must come to
@@ -29,13 +30,22 @@ std::string errorText(double error) {
   return std::isfinite(error) ? fmt::format("{:.1e}", error) : "not finite";
 }
 
+std::string ratioText(const PointSummary& point) {
+  const std::optional<TimeRatio>& ratio = point.times_first;
+  return ratio ? fmt::format("{:.3g} ({:.3g} to {:.3g})", ratio->median, ratio->low, ratio->high) : kNoFigure;
+}
+
 bool isSampled(const PointSummary& point) { return point.check.bounds && point.check.bounds->confidence < 1; }
 
 std::string pointTable(const ScaleSummary& summary, const std::vector<PointSummary>& points) {
   Cells head{"lights"};
   for (const std::string& name : axisNames(summary.description)) head.push_back(name);
-  for (const char* name : {"ms", "spread", "mean error", "largest", "memory, MiB", "front"})
+  for (const char* name :
+       {"ms", "spread", "mean error", "largest", "relMSE", "SMAPE", "memory, MiB", "front"})
     head.push_back(name);
+  const bool have_ratios = std::any_of(
+      points.begin(), points.end(), [](const PointSummary& point) { return point.times_first.has_value(); });
+  if (have_ratios) head.push_back("times the first (95 %)");
   const bool are_bounded = std::any_of(
       points.begin(), points.end(), [](const PointSummary& point) { return point.check.bounds.has_value(); });
   if (are_bounded)
@@ -53,20 +63,25 @@ std::string pointTable(const ScaleSummary& summary, const std::vector<PointSumma
     const std::optional<KeptBounds>& bounds = point.check.bounds;
     Cells cells{fmt::format("{}", point.point.lights)};
     cells.insert(cells.end(), point.point.values.begin(), point.point.values.end());
-    cells.push_back(fmt::format("{:.1f}", time.median));
+    cells.push_back(point.runs > 0 ? fmt::format("{:.1f}", time.median) : kNoFigure);
+    // One run has none.
     cells.push_back(
-        fmt::format("± {:.0f} %", time.median > 0 ? 50 * (time.high - time.low) / time.median : 0.0));
-    cells.push_back(errorText(point.check.mean_abs));
-    cells.push_back(errorText(point.check.max_abs));
-    cells.push_back(fmt::format("{:.0f}", double(point.peak_bytes) / (1 << 20)));
+        point.is_own || point.runs > 1
+            ? fmt::format("± {:.0f} %", time.median > 0 ? 50 * (time.high - time.low) / time.median : 0.0)
+            : kNoFigure);
+    const ImageDifference& error = point.check.error;
+    for (const double figure : {error.mean_abs, error.max_abs, error.relmse, error.smape})
+      cells.push_back(errorText(figure));
+    cells.push_back(point.is_own ? fmt::format("{:.0f}", double(point.peak_bytes) / (1 << 20)) : kNoFigure);
     cells.push_back(point.front ? "*" : "");
+    if (have_ratios) cells.push_back(ratioText(point));
     if (are_bounded) {
-      cells.push_back(bounds ? fmt::format("{:.1e}", bounds->max_bound) : "–");
-      cells.push_back(bounds ? fmt::format("{:.1e}", bounds->mean_bound) : "–");
-      cells.push_back(bounds ? fmt::format("{:.2f}", bounds->max_used) : "–");
-      cells.push_back(bounds ? fmt::format("{:.2f}", bounds->mean_used) : "–");
+      cells.push_back(bounds ? fmt::format("{:.1e}", bounds->max_bound) : kNoFigure);
+      cells.push_back(bounds ? fmt::format("{:.1e}", bounds->mean_bound) : kNoFigure);
+      cells.push_back(bounds ? fmt::format("{:.2f}", bounds->max_used) : kNoFigure);
+      cells.push_back(bounds ? fmt::format("{:.2f}", bounds->mean_used) : kNoFigure);
     }
-    if (are_sampled) cells.push_back(bounds ? fmt::format("{:.2f}", 100 * bounds->held) : "–");
+    if (are_sampled) cells.push_back(bounds ? fmt::format("{:.2f}", 100 * bounds->held) : kNoFigure);
     if (truths_differ) cells.push_back(point.truth);
     lines.push_back(cells);
   }

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include "tools/scale/scale_method.hpp"
+
 namespace luciole {
 namespace {
 
 /// Axes that change how the picture is made but not what it approximates: light lists, samples, shadow maps,
-/// clusters and samples of lights.
-constexpr const char* kWaysToMakeIt[] = {"culling",       "tile",        "samples",       "pcf-width",
-                                         "shadow-memory", "shadow-size", kLightErrorAxis, kConfidenceAxis};
+/// clusters and samples of lights, and who makes it.
+constexpr const char* kWaysToMakeIt[] = {"culling",       "tile",          "samples",
+                                         "pcf-width",     "shadow-memory", "shadow-size",
+                                         kLightErrorAxis, kConfidenceAxis, kMethodAxis};
 
 bool isWayToMakeIt(const std::string& axis) {
   return std::find(std::begin(kWaysToMakeIt), std::end(kWaysToMakeIt), axis) != std::end(kWaysToMakeIt);
@@ -22,7 +25,8 @@ std::string shadowTruth(const std::string& method) {
 
 }  // namespace
 
-std::string truthName(const ScaleDescription& description, const ScalePoint& point) {
+std::string truthName(const ScaleDescription& description, const ScalePoint& of_point) {
+  const ScalePoint& point = methodOf(description, of_point) ? description.points.front() : of_point;
   std::string name;
   for (std::size_t i = 0; i < point.values.size(); ++i) {
     const std::string &axis = description.axes[i].name, &value = point.values[i];

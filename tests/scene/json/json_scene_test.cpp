@@ -455,6 +455,35 @@ TEST_F(JsonScene, WrittenLightsAreReadToTheBit) {
   }
 }
 
+TEST_F(JsonScene, PictureForAnotherProgramHasTheLightsCameraAndSurroundingsOfTheScene) {
+  std::filesystem::create_directory(folder / "elsewhere");
+  write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("scene.json", R"({"camera": {"eye": [0,0,5], "target": [0,0,0]}, "ambient": 0.25,
+    "fog": {"mode": "exp2", "density": 0.125, "color": [0.5, 0.25, 0]}, "background": [0, 0.5, 1],
+    "lights": [{"type": "directional", "direction": [0,-1,0]}], "light_fields": [{"count": 3, "shape": "surface"}],
+    "objects": [{"mesh": "t.obj"}]})");
+  Scene scene = loadScene(folder / "scene.json");
+  scene.lights.assign(2, {});
+  scene.lights[1].position = {0.1, 1.0 / 3, 1e-7};
+  scene.lights[1].range = 0.7f;
+  Camera camera = scene.cameras[0];
+  camera.camera_to_world[3] = {1, 2, 3, 1};
+  const std::string mesh = folder / "t.obj";
+  for (const std::string& path : {folder / "scene.json", mesh, std::string()}) {
+    write("elsewhere/picture.json", pictureScene(path, folder / "elsewhere", scene, camera, {7, 5}));
+    const Scene read = loadScene(folder / "elsewhere/picture.json");
+    EXPECT_EQ(read.lights, scene.lights) << path;
+    ASSERT_EQ(read.cameras.size(), 1u);
+    EXPECT_EQ(read.cameras[0].camera_to_world, camera.camera_to_world) << path;
+    EXPECT_EQ(read.size, glm::ivec2(7, 5)) << path;
+    EXPECT_EQ(read.ambient, scene.ambient) << path;
+    EXPECT_EQ(read.background, scene.background) << path;
+    EXPECT_EQ(read.fog.color, scene.fog.color) << path;
+    EXPECT_EQ(read.fog.density, scene.fog.density) << path;
+    EXPECT_EQ(read.objects.size(), path.empty() ? 0u : 1u) << path;
+  }
+}
+
 TEST_F(JsonScene, CopyWithOtherLightsIsTheSameSceneFromAnotherFolder) {
   std::filesystem::create_directory(folder / "parts");
   std::filesystem::create_directory(folder / "copies");

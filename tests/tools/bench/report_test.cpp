@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -29,10 +30,11 @@ TEST(BenchTable, ARowSaysTimeSpreadErrorsAndFront) {
   const auto usual = linesWith(table, "usual (default)"), slow = linesWith(table, "| slow ");
   ASSERT_EQ(usual.size(), 1u);
   ASSERT_EQ(slow.size(), 1u);
-  // In steps: mean 0.001, largest 4 times that, signed −half; shares of 2: that / 255 / 2.
-  EXPECT_THAT(usual[0],
-              AllOf(HasSubstr("| 10.0 |"), HasSubstr("± 5 %"), HasSubstr("4.0e-03"), HasSubstr("1.0e-03"),
-                    HasSubstr("-5.0e-04"), HasSubstr("7.8e-06"), HasSubstr("2.0e-06"), HasSubstr("* |")));
+  // In steps: mean 0.001, largest 4 times that, signed −half; shares of 2: that / 255 / 2. relMSE twice the
+  // mean's square, SMAPE three times the mean, in linear units.
+  EXPECT_THAT(usual[0], AllOf(HasSubstr("| 10.0 |"), HasSubstr("± 5 %"), HasSubstr("4.0e-03"),
+                              HasSubstr("1.0e-03"), HasSubstr("-5.0e-04"), HasSubstr("7.8e-06"),
+                              HasSubstr("2.0e-06"), HasSubstr("| 3.1e-11 | 1.2e-05 |"), HasSubstr("* |")));
   EXPECT_THAT(slow[0], Not(HasSubstr("*")));
 }
 
@@ -105,6 +107,8 @@ TEST(BenchJson, HoldsEveryRowWithItsSettingsTimeAndErrors) {
   EXPECT_DOUBLE_EQ(row["error"]["steps"]["mean"], 1e-3);
   EXPECT_DOUBLE_EQ(row["error"]["steps"]["signed"], -5e-4);
   EXPECT_DOUBLE_EQ(row["error"]["relative"]["mean"], 1e-3 / 255 / 2);
+  EXPECT_DOUBLE_EQ(row["error"]["relmse"], 2 * std::pow(1e-3 / 255, 2));
+  EXPECT_DOUBLE_EQ(row["error"]["smape"], 3e-3 / 255);
 }
 
 TEST(BenchJson, AnInfiniteErrorIsNull) {

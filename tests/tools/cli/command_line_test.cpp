@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+#include "luciole/compare.hpp"
 #include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
@@ -284,17 +285,18 @@ TEST_F(CommandLine, CompareReportsFiguresAndFailsOverTheLimit) {
       runLine(folder, "luciole compare a.png b.png --max-abs 0.001 --diff d.png --error-map e.png --json -");
   EXPECT_EQ(outcome.status, 1);
   const auto json = nlohmann::json::parse(outcome.out);
-  for (const char* key :
-       {"channels", "pixels", "max_abs", "mean_abs", "max_relative", "mean_relative", "mean_signed", "rmse",
-        "psnr", "relmse", "p99_abs", "p999_abs", "nonfinite", "pixels_over", "worst_pixel"})
+  for (const char* key : {"channels", "pixels", "max_abs", "mean_abs", "max_relative", "mean_relative",
+                          "mean_signed", "mse", "rmse", "psnr", "relmse", "mape", "smape", "p99_abs",
+                          "p999_abs", "nonfinite", "pixels_over", "worst_pixel"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_GT(json["mean_signed"], 0);
   EXPECT_EQ(json["pixels"], 96 * 54);
   EXPECT_EQ(readImage(folder / "d.png").width, 96);
   EXPECT_GE(readImage(folder / "e.png").width, 96);
   const std::string text = succeed("luciole compare a.png b.png");
-  for (const char* figure : {"5184 of 5184 pixels", "max_abs", "mean_abs", "max_relative", "mean_relative",
-                             "mean_signed", "rmse", "psnr", "relmse", "p99_abs", "p999_abs", "nonfinite"})
+  for (const char* figure :
+       {"5184 of 5184 pixels", "max_abs", "mean_abs", "max_relative", "mean_relative", "mean_signed", "mse",
+        "rmse", "psnr", "relmse", "mape", "smape", "p99_abs", "p999_abs", "nonfinite"})
     EXPECT_NE(text.find(figure), std::string::npos) << figure;
 }
 
@@ -342,7 +344,7 @@ TEST_F(CommandLine, CompareSaysWhyAFigureIsNull) {
   EXPECT_EQ(reasons("black.npy white.npy"),
             (nlohmann::json{{"max_relative", "A is black, of which nothing is a share"},
                             {"mean_relative", "A is black, of which nothing is a share"}}));
-  EXPECT_EQ(reasons("nothing.npy white.npy").size(), 10u);
+  EXPECT_EQ(reasons("nothing.npy white.npy").size(), std::size(kImageMetrics));
   EXPECT_EQ(succeed("luciole compare nothing.npy white.npy").find("nan"), std::string::npos);
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "luciole/compare.hpp"
 #include "luciole/image.hpp"
 #include "tools/cli/program_test.hpp"
 
@@ -81,6 +82,63 @@ TEST_F(Compare, APictureOverItsLimitIsToldWithTheWorstPixel) {
   refuse(frame + "0.125", 1, "max_abs 0.5 at (3, 1) is over --max-abs 0.125");
   write("b.010.exr", 0.5f, NAN);
   refuse(frame + "inf", 1, "not finite");
+}
+
+TEST_F(Compare, ChosenMetricsArePrintedAloneInTheirOrder) {
+  writeSequences();
+  // All values differ by 1/4 from 1/2, and are 3/4.
+  EXPECT_EQ(succeed("luciole compare a.009.exr b.009.exr --metric relmse,smape,psnr --metric mape"),
+            "relmse 0.240385\nsmape 0.396825\npsnr 12.04 dB\nmape 0.490196\n");
+  EXPECT_EQ(succeed("luciole compare a.009.exr b.009.exr --metric max_abs"), "max_abs 0.25 at (0, 0)\n");
+  const auto json =
+      nlohmann::ordered_json::parse(succeed("luciole compare a.009.exr b.009.exr --metric relmse --json -"));
+  for (const auto& [name, figure] : kImageMetrics) EXPECT_TRUE(json.contains(name)) << name;
+  // Means leave out what isn't finite, so it is told.
+  write("b.009.exr", 0.5f, NAN);
+  EXPECT_EQ(succeed("luciole compare a.009.exr b.009.exr --metric mse"), "mse 0\nnonfinite 3\n");
+  refuse("luciole compare a.009.exr b.009.exr --metric rmsle", 2, "'rmsle' is none of max_abs, mean_abs, ");
+}
+
+TEST_F(Compare, EachMetricHasItsLimitAndTheLineNamesThoseThatAreBroken) {
+  writeSequences();
+  const std::string pair = "luciole compare a.009.exr b.009.exr ";
+  EXPECT_EQ(told(pair + "--metric relmse,smape,psnr --max 0.25,0.4,12"), "");
+  refuse(pair + "--metric relmse,smape --max 0.25,0.3", 1, "luciole: smape 0.396825 is over --max 0.3\n");
+  refuse(pair + "--metric relmse,psnr --max 0.24,12.5", 1,
+         "luciole: relmse 0.240385 is over --max 0.24; psnr 12.04 dB is under --max 12.5\n");
+  refuse(pair + "--metric smape --max 0.3 --max-abs 0.125", 1,
+         "luciole: max_abs 0.25 at (0, 0) is over --max-abs 0.125; smape 0.396825 is over --max 0.3\n");
+  // A bias either way.
+  EXPECT_EQ(told(pair + "--metric mean_signed --max 0.25"), "");
+  refuse("luciole compare b.009.exr a.009.exr --metric mean_signed --max 0.125", 1,
+         "mean_signed -0.25 is over --max 0.125\n");
+  EXPECT_EQ(told("luciole compare a.008.exr b.008.exr --metric psnr --max 1000"), "") << "infinite";
+  refuse(pair + "--metric relmse,smape --max 0.25", 2,
+         "--max: 1 limits for 2 metrics, expected one for each");
+  refuse(pair + "--metric relmse --max -1", 2, "--max: expected numbers that are at least 0");
+  refuse(pair + "--metric relmse --max nan", 2, "--max: expected numbers that are at least 0");
+  refuse(pair + "--max 1", 2, "--metric");
+  write("b.009.exr", 0.5f, NAN);
+  refuse(pair + "--metric relmse --max inf", 1, "3 values of one picture or both are not finite\n");
+}
+
+TEST_F(Compare, MetricsOfSequencesAreTheColumnsAndTheFirstOneSaysWhichFrameIsWorst) {
+  writeSequences();
+  const std::string sequences = "luciole compare a.###.exr b.###.exr --metric ";
+  const std::string table = succeed(sequences + "mean_abs,mse");
+  EXPECT_THAT(table, StartsWith("| frame | mean_abs |      mse |\n"));
+  EXPECT_THAT(table, EndsWith("\nworst frame 9: mean_abs 0.25, mse 0.0625\n"));
+  EXPECT_EQ(nlohmann::json::parse(succeed(sequences + "mean_abs --json -"))["worst"]["frame"], 9);
+  EXPECT_THAT(succeed(sequences + "psnr"), EndsWith("\nworst frame 9: psnr 12.04 dB\n"));
+  EXPECT_EQ(told(sequences + "mean_abs,max_abs --max 0.25,0.5"), "");
+  // Frame 10 is the worst by the largest difference, frame 9 by the mean.
+  refuse(
+      sequences + "mean_abs,max_abs --max 0.1,0.4", 1,
+      "luciole: 2 of 4 frames over --max 0.1 of mean_abs; worst frame 9: mean_abs 0.25; 1 of 4 frames over "
+      "--max 0.4 of max_abs; worst frame 10: max_abs 0.5 at (3, 1)\n");
+  write("b.008.exr", 0.5f, NAN);
+  EXPECT_THAT(succeed(sequences + "mse"), HasSubstr("| nonfinite |"));
+  EXPECT_THAT(succeed(sequences + "mse"), EndsWith("\nworst frame 8: mse 0\n"));
 }
 
 TEST_F(Compare, LimitsHoldForEveryFrameAndTheWorstIsTold) {

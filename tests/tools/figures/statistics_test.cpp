@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace luciole::test {
 namespace {
@@ -27,6 +29,84 @@ TEST(Summarize, OneRunThatWasDisturbedChangesNeither) {
   const Repeated calm = summarize({1, 2, 3, 4, 5}), disturbed = summarize({1, 2, 3, 4, 5000});
   EXPECT_EQ(calm.median, disturbed.median);
   EXPECT_EQ(calm.spread, disturbed.spread);
+}
+
+/// Times of rounds: `factor` times as long as `under`, within a share `noise`, while other work makes both
+/// longer.
+struct Rounds {
+  std::vector<double> over, under;
+};
+Rounds madeUpRounds(int rounds, double factor, double noise, std::uint32_t bits = 1) {
+  const auto random = [&] { return double((bits = bits * 1664525u + 1013904223u) >> 8) / (1 << 24); };
+  Rounds made;
+  for (int i = 0; i < rounds; ++i) {
+    const double other_work = 1 + 4 * random();
+    made.under.push_back(10 * other_work);
+    made.over.push_back(10 * other_work * factor * (1 + noise * (2 * random() - 1)));
+  }
+  return made;
+}
+
+TEST(TimeRatio, IsThatOfTheRoundsWhateverElseTheMachineDoes) {
+  const Rounds exact = madeUpRounds(9, 2.5, 0);
+  const TimeRatio ratio = timeRatio(exact.over, exact.under).value();
+  EXPECT_NEAR(ratio.median, 2.5, 1e-15);
+  EXPECT_NEAR(ratio.low, 2.5, 1e-15);
+  EXPECT_NEAR(ratio.high, 2.5, 1e-15);
+}
+
+TEST(TimeRatio, IntervalHoldsTheRatioOfTheRoundsAndLiesWithinThem) {
+  for (std::uint32_t seed = 1; seed <= 50; ++seed) {
+    const Rounds noisy = madeUpRounds(3 + int(seed % 9), 2, 0.3, seed);
+    const TimeRatio ratio = timeRatio(noisy.over, noisy.under).value();
+    EXPECT_LE(ratio.low, ratio.median) << seed;
+    EXPECT_GE(ratio.high, ratio.median) << seed;
+    EXPECT_LT(ratio.low, ratio.high) << seed;
+    EXPECT_GE(ratio.low, 2 * 0.7 - 1e-9) << seed;
+    EXPECT_LE(ratio.high, 2 * 1.3 + 1e-9) << seed;
+  }
+}
+
+TEST(TimeRatio, IntervalHoldsTheTruthAboutAsOftenAsItSays) {
+  int held = 0;
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
+    const Rounds noisy = madeUpRounds(25, 2, 0.2, seed * 7919);
+    const TimeRatio ratio = timeRatio(noisy.over, noisy.under).value();
+    held += ratio.low <= 2 && 2 <= ratio.high;
+  }
+  // 380 are expected, with a standard deviation of 4.4; the bootstrap of a median holds for somewhat fewer.
+  EXPECT_GE(held, 360);
+  EXPECT_LE(held, 394);
+}
+
+TEST(TimeRatio, IntervalNarrowsWithTheRounds) {
+  double width[3] = {};
+  const int rounds[] = {5, 25, 125};
+  for (std::uint32_t seed = 1; seed <= 20; ++seed)
+    for (int i = 0; i < 3; ++i) {
+      const Rounds noisy = madeUpRounds(rounds[i], 2, 0.2, seed * 7919);
+      const TimeRatio ratio = timeRatio(noisy.over, noisy.under).value();
+      width[i] += ratio.high - ratio.low;
+    }
+  // As the root of their number, or nearly.
+  EXPECT_LT(width[1], width[0] / 1.5);
+  EXPECT_LT(width[2], width[1] / 1.5);
+}
+
+TEST(TimeRatio, IsTheSameEachTime) {
+  const Rounds noisy = madeUpRounds(9, 2, 0.3);
+  const TimeRatio one = timeRatio(noisy.over, noisy.under).value(),
+                  other = timeRatio(noisy.over, noisy.under).value();
+  EXPECT_EQ(one.low, other.low);
+  EXPECT_EQ(one.high, other.high);
+}
+
+TEST(TimeRatio, FewRoundsOrNoTimeTellNone) {
+  EXPECT_FALSE(timeRatio({1, 2}, {1, 2}));
+  EXPECT_FALSE(timeRatio({}, {}));
+  EXPECT_FALSE(timeRatio({1, 2, 3}, {1, 0, 3}));
+  EXPECT_FALSE(timeRatio({0, 2, 3}, {1, 2, 3}));
+  EXPECT_TRUE(timeRatio({1, 2, 3}, {1, 2, 3}));
 }
 
 TEST(PrintedError, HasTwoDigits) {

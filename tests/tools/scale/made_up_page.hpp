@@ -34,7 +34,15 @@ inline nlohmann::json madeUpPoint(int lights, int variant, const nlohmann::json&
           {"list_entries", variant == 0 ? 0 : 3 * lights},
           {"device_bytes", 40000000 + 64 * lights},
           {"peak_bytes", 180000000 + 200 * lights},
-          {"error", {{"mean_abs", error}, {"max_abs", 50 * error}, {"rmse", 2 * error}, {"pixels", 1024}}},
+          {"error",
+           {{"mean_abs", error},
+            {"max_abs", 50 * error},
+            {"mean_signed", -error / 2},
+            {"rmse", 2 * error},
+            {"psnr", variant == 0 ? nlohmann::json() : nlohmann::json(114)},
+            {"relmse", 3 * error},
+            {"smape", 4 * error},
+            {"pixels", 1024}}},
           {"front", true},
           {"picture", 0},
           {"error_map", 1},
@@ -120,6 +128,37 @@ inline nlohmann::json madeUpPageOfLightErrors() {
                            {"mean_used", 0.05},
                            {"bounded_values", 3072},
                            {"violations", 0}};
+      data["points"].push_back(point);
+    }
+  return data;
+}
+
+/// Two ways of Luciole's and two other methods at 100 and 10000 lights. Of the first the time is known, of
+/// the second its error alone.
+inline nlohmann::json madeUpMethods() {
+  nlohmann::json data = madeUpPageOfNoPoints();
+  data["axes"] = {{{"name", "culling"}, {"values", {"none", "tiles", "-"}}},
+                  {{"name", "method"}, {"values", {"luciole", "theirs", "untimed"}}}};
+  data["first"] = {{"culling", "none"}, {"method", "luciole"}};
+  for (int lights : {100, 10000})
+    for (int i = 0; i < 4; ++i) {
+      const char* const culling[] = {"none", "tiles", "-", "-"};
+      const char* const method[] = {"luciole", "luciole", "theirs", "untimed"};
+      nlohmann::json point = madeUpPoint(lights, i + 1, {{"culling", culling[i]}, {"method", method[i]}});
+      point["front"] = i == 0;
+      if (i > 0) point["times_first"] = {{"median", i + 0.5}, {"low", i + 0.25}, {"high", i + 0.75}};
+      if (i > 1) {
+        point["stages"] = nlohmann::json::array();
+        for (const char* name : {"pairs_evaluated", "pairs_in_range", "pixels_lit", "list_entries",
+                                 "device_bytes", "peak_bytes"})
+          point[name] = nullptr;
+        point["tile_map"] = nullptr;
+      }
+      if (i == 3) {
+        for (const char* name : {"median", "low", "high"}) point["milliseconds"][name] = nullptr;
+        point["times_first"] = nullptr;
+        point["front"] = false;
+      }
       data["points"].push_back(point);
     }
   return data;

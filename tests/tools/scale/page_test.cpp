@@ -295,6 +295,13 @@ TEST(PageInBrowser, ChoicesChangeWhatIsShown) {
   EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"], Json({{2.02, 1e-6}, {4, 1e-6}, {202, 1e-6}}));
   choose(browser, "error_kind", "largest absolute error");
   EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 50 * 1e-6}));
+  choose(browser, "error_kind", "relative mean square error (relMSE)");
+  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 3 * 1e-6}));
+  EXPECT_EQ(linesOf(browser, "error_plot").size(), 3u) << "no front by this error is told";
+  choose(browser, "error_kind", "bias: |mean signed error|");
+  EXPECT_EQ(linesOf(browser, "error_plot")["culling tiles"][0], Json({2.02, 1e-6 / 2}));
+  choose(browser, "quantity", "smape");
+  EXPECT_EQ(linesOf(browser, "compared_plot")["culling tiles"][0], Json({1, 4 * 1e-6}));
   // A name in the legend is a switch.
   browser.evaluate("document.querySelector('#compared_plot .legend button').click()");
   EXPECT_EQ(browser.evaluate(chartOf("compared_plot") + ".isDatasetVisible(0)"), false);
@@ -312,6 +319,43 @@ TEST(PageInBrowser, ChoicesChangeWhatIsShown) {
   // A point without this kind shows another of its own.
   choose(browser, "point_b", "100 lights, culling none");
   EXPECT_EQ(pictures()[1], kTinyPictures[0]);
+  EXPECT_THAT(browser.complaints(), IsEmpty());
+}
+
+TEST(PageInBrowser, OtherMethodsStandBesideItsOwnVariants) {
+  LUCIOLE_NEEDS_PROGRAM("chromium", "chromium");
+  Browser& browser = browserWithEmptyPage();
+  browser.open(pageOf(madeUpMethods()));
+  const auto names = [&](const std::string& figure) {
+    std::vector<std::string> found;
+    const Json lines = linesOf(browser, figure);
+    for (const auto& [name, values] : lines.items()) found.push_back(name);
+    return found;
+  };
+  EXPECT_THAT(names("compared_plot"), ElementsAre("culling none", "culling tiles", "theirs"));
+  EXPECT_THAT(names("error_plot"), ElementsAre("culling none", "culling tiles", "theirs"));
+  choose(browser, "quantity", "relmse");
+  EXPECT_EQ(linesOf(browser, "compared_plot")["untimed"].size(), 2u);
+  // Of other methods there are no stages to look at.
+  EXPECT_EQ(browser.evaluate("[...document.getElementById('variant').options].map(option => option.text)"),
+            Json({"culling none", "culling tiles"}));
+  EXPECT_EQ(browser.evaluate("document.getElementById('summary').textContent"),
+            "With culling none, the fastest of 3 variants, 10,000 lights take 202 ms, 50.5 times "
+            "as long as 100 lights, with a mean error of 10⁻⁶; theirs, the slowest, takes 402 ms.");
+  // A multiple of the first variant, with its interval, beside the point.
+  EXPECT_EQ(browser.evaluate(chartOf("error_plot") +
+                             ".data.datasets.find(line => line.label === 'theirs').data[0].note"),
+            "10,000 lights, 402 ms, 2.5 (2.25 to 2.75) times culling none");
+  EXPECT_EQ(browser.evaluate("[...document.querySelectorAll('#points_table tbody tr')].map(row => "
+                             "row.innerText.split('\\t').slice(0, 3).join(' '))[3]"),
+            "100 - untimed");
+  EXPECT_THAT(browser.evaluate("document.querySelector('#points_table p').innerText").get<std::string>(),
+              HasSubstr("another method whose times are not known"));
+  EXPECT_EQ(browser.evaluate("/NaN|Infinity|undefined|null/.test(document.body.innerText)"), false);
+  EXPECT_THAT(browser.complaints(), IsEmpty());
+  choose(browser, "point_a", "10,000 lights, untimed");
+  EXPECT_EQ(browser.evaluate("document.getElementById('caption_a').innerText"),
+            "A: Picture · 10,000 lights · untimed · mean error 4 · 10⁻⁶");
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 

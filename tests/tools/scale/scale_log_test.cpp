@@ -58,7 +58,7 @@ TEST(ScaleLog, HoldsWhatWasAppendedWhenItIsOpenedAgain) {
   EXPECT_EQ(log.results().machines[0].memory_bytes, std::uint64_t(1) << 34);
   const PointRecord& record = log.record(point);
   ASSERT_TRUE(record.check);
-  EXPECT_EQ(record.check->mean_abs, 0.1 + 0.2);
+  EXPECT_EQ(record.check->error.mean_abs, 0.1 + 0.2);
   EXPECT_EQ(record.check->reach, HUGE_VAL);
   EXPECT_EQ(record.check->list_map, check.list_map);
   ASSERT_EQ(record.runs.size(), 1u);

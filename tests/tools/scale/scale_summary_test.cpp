@@ -55,6 +55,23 @@ TEST(ScaleSummary, FrontComparesPicturesByAsManyLights) {
   EXPECT_TRUE(summary.points[3].front);  // beaten by those of fewer lights only
 }
 
+TEST(ScaleSummary, EachErrorHasItsFront) {
+  ScaleResults results = madeUpResults();
+  // Slower, and wrong in fewer places by more: right in the mean of squares.
+  results.records.at("lights=100 culling=none").check->error.mse = 0.125;
+  results.records.at("lights=100 culling=tiles").check->error.mse = 0.25;
+  results.records.at("lights=100 culling=none").check->error.mean_signed = -0.5;
+  results.records.at("lights=100 culling=tiles").check->error.mean_signed = 0.25;
+  const ScaleSummary summary = summarizeScale(results);
+  const std::vector<std::string>&slow = summary.points[2].fronts, &fast = summary.points[3].fronts;
+  EXPECT_EQ(slow, std::vector<std::string>{"mse"});
+  for (const auto& [name, figure] : kImageMetrics)
+    EXPECT_EQ(std::count(fast.begin(), fast.end(), name), std::string("psnr") == name ? 0 : 1) << name;
+  const TemporaryFolder folder;
+  EXPECT_EQ(nlohmann::json::parse(pageData(summary, folder.path().string(), ""))["points"][2]["fronts"],
+            nlohmann::json{"mse"});
+}
+
 /// Ways to make shadows, each nearer to its truth and faster than the next.
 ScaleResults shadowResults() {
   ScaleResults results{madeUpExperiment(), {madeUpMachine("one")}, {}};
@@ -205,12 +222,17 @@ TEST(ScaleFiles, CsvHasALineForEachPointAndQuotesWhatNeedsIt) {
   std::string head, first;
   std::getline(lines, head);
   std::getline(lines, first);
+  EXPECT_NE(
+      head.find(",checked_pixels,max_abs,mean_abs,max_relative,mean_relative,mean_signed,mse,rmse,psnr,"
+                "relmse,mape,smape,p99_abs,p999_abs,times_first,times_first_low,times_first_high,front,"),
+      std::string::npos)
+      << head;
   EXPECT_EQ(head.rfind("lights,culling,runs,ms,ms_low,ms_high,cull_ms,cull_ms_low,cull_ms_high,shade_ms", 0),
             0u)
       << head;
   EXPECT_EQ(
-      first.rfind("1,\"a,\"\"b\"\"\",2,12,11.5,12.5,2,1.5,2.5,10,10,10,1.5,320,100,32,40,1000,2000,16,0.25,"
-                  "0.5,0.375,0,pictures/0.png,",
+      first.rfind("1,\"a,\"\"b\"\"\",2,12,11.5,12.5,2,1.5,2.5,10,10,10,1.5,320,100,32,40,1000,2000,16,0.5,"
+                  "0.25,0,0,0,0,0.375,0,0.75,0,1,0,0,,,,0,pictures/0.png,",
                   0),
       0u)
       << first;
@@ -220,7 +242,8 @@ TEST(ScaleFiles, CsvHasALineForEachPointAndQuotesWhatNeedsIt) {
 TEST(ScaleFiles, PageSaysWhyAFigureIsNull) {
   ScaleResults results = madeUpResults();
   PointRecord& record = results.records["lights=1 culling=none"];
-  record.check->reach = record.check->max_abs = HUGE_VAL;
+  record.check->reach = record.check->error.max_abs = HUGE_VAL;
+  results.records["lights=1 culling=tiles"].check->error = {.psnr = HUGE_VAL};
   const TemporaryFolder folder;
   const std::string page = pageData(summarizeScale(results), folder.path().string(), "luciole scale");
   EXPECT_EQ(page.find("nan"), std::string::npos);
@@ -229,7 +252,9 @@ TEST(ScaleFiles, PageSaysWhyAFigureIsNull) {
   EXPECT_EQ(json["points"][0]["reasons"]["reach"], "a light without a range reaches everywhere");
   EXPECT_TRUE(json["points"][0]["error"]["max_abs"].is_null());
   EXPECT_EQ(json["points"][0]["reasons"]["max_abs"], "a pixel is not finite");
-  EXPECT_FALSE(json["points"][1].contains("reasons"));
+  EXPECT_TRUE(json["points"][1]["error"]["psnr"].is_null());
+  EXPECT_EQ(json["points"][1]["reasons"], (nlohmann::json{{"psnr", "no checked pixel is wrong"}}));
+  EXPECT_FALSE(json["points"][2].contains("reasons"));
 }
 
 TEST(ScaleFiles, PageDoesNotEmbedWhatALinkOutOfTheFolderNames) {

@@ -47,9 +47,15 @@ std::vector<std::string> linesOf(const std::string& text) {
 TEST(ScaleTable, LeadsWithTimeErrorAndMemoryOfEachVariantAgainstLights) {
   const std::vector<std::string> lines = linesOf(scaleTable(summaryOf({1, 10, 100, 1000, 10000}, 2, 0.5)));
   ASSERT_GE(lines.size(), 12u);
-  EXPECT_EQ(lines[0], "| lights | culling |     ms | spread | mean error | largest | memory, MiB | front |");
-  EXPECT_EQ(lines[2], "| 1      |   way 0 |   10.5 |  ± 0 % |    2.5e-01 | 5.0e-01 |           0 |       |");
-  EXPECT_EQ(lines[11], "| 10000  |   way 1 |  510.0 |  ± 0 % |    2.5e-01 | 5.0e-01 |           0 |     * |");
+  EXPECT_EQ(lines[0],
+            "| lights | culling |     ms | spread | mean error | largest |  relMSE |   SMAPE | memory, MiB | "
+            "front |");
+  EXPECT_EQ(lines[2],
+            "| 1      |   way 0 |   10.5 |  ± 0 % |    2.5e-01 | 5.0e-01 | 7.5e-01 | 1.0e+00 |           0 | "
+            "      |");
+  EXPECT_EQ(lines[11],
+            "| 10000  |   way 1 |  510.0 |  ± 0 % |    2.5e-01 | 5.0e-01 | 7.5e-01 | 1.0e+00 |           0 | "
+            "    * |");
 }
 
 TEST(ScaleTable, NamesTheTruthWhereErrorsAreOfDifferentOnes) {
@@ -111,7 +117,7 @@ TEST(ScaleTable, OneWayOfManyHasNoColumnForIt) {
   for (PointSummary& point : summary.points) point.point.values.clear();
   for (StageGrowth& row : summary.growth) row.values.clear();
   EXPECT_EQ(linesOf(scaleTable(summary))[0],
-            "| lights |   ms | spread | mean error | largest | memory, MiB | front |");
+            "| lights |   ms | spread | mean error | largest |  relMSE |   SMAPE | memory, MiB | front |");
 }
 
 TEST(ScaleTable, NothingMeasuredIsNoTable) { EXPECT_EQ(scaleTable(ScaleSummary{}), ""); }

@@ -1,14 +1,16 @@
 'use strict';
 // Draws the page from the JSON in #data:
 //   title, scene, command, version: text; machine, settings: {name: text | number | list}, names ending in _bytes in bytes;
-//   axes: [{name, values}], what was varied beside the lights; incomplete: how many points lack some or all of their runs;
-//   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, stages: [{name, median, low, high}],
+//   axes: [{name, values}], what was varied beside the lights, of which method says who made the picture, if others than Luciole did;
+//   first: {axis: value}, the variant that times are told as multiples of; incomplete: how many points lack some or all of their runs;
+//   points: [{lights, values: {axis: value}, runs, reach (of the light that reaches farthest, in metres), milliseconds: {median, low, high}, times_first: {median, low, high},
+//     stages: [{name, median, low, high}],
 //     pairs_evaluated, pairs_in_range, pixels_lit, list_entries, device_bytes, peak_bytes,
-//     error: {mean_abs, max_abs, rmse, pixels}, truth, front, picture, error_map, tile_map, bound_map, reasons: {name: why it is null},
+//     error: {max_abs, mean_abs, max_relative, mean_relative, mean_signed, mse, rmse, psnr, relmse, mape, smape, p99_abs, p999_abs, pixels}, truth, front, picture, error_map, tile_map, bound_map, reasons: {name: why it is null},
 //     bounds: {max_bound, mean_bound, max_error, mean_error, max_used, mean_used, held, stated, bounded_values,
 //     violations}}]:
-//     low and high are quartiles, truth says what the errors are from, front that no point of as many lights and the same
-//     truth beats this one in both time and mean error, bounds how those of clusters and samples of lights are kept (used: error over bound; held: the
+//     low and high are quartiles, of times_first the ends of a 95 % interval; milliseconds are null where another method has none; truth says what the errors are from, front that no point of as many lights and the same
+//     truth beats this one in both time and mean error, fronts the same by other errors: [name], bounds how those of clusters and samples of lights are kept (used: error over bound; held: the
 //     share of pixels that are within, stated: the share that is promised, 1 where bounds are proven);
 //     all but lights and milliseconds may be absent or null, and picture, error_map, tile_map and bound_map are indices into
 //   pictures: [data URL];
@@ -71,9 +73,11 @@ const points = [...data.points].sort((a, b) => a.lights - b.lights);
 const axes = (data.axes || []).filter(axis => axis.values.length > 1);
 
 const valueOf = (values, axis) => String((values || {})[axis.name] ?? '');
-// '-' stands for an option that the variant leaves to another one.
-const variantName = values =>
-  axes.filter(axis => valueOf(values, axis) !== '-').map(axis => `${axis.name} ${valueOf(values, axis)}`).join(', ');
+// '-' stands for an option that the variant leaves to another one. Another method is called by its name alone.
+const variantName = values => axes.filter(axis => axis.name !== 'method' && valueOf(values, axis) !== '-')
+  .map(axis => `${axis.name} ${valueOf(values, axis)}`).join(', ') || (axes.some(axis => axis.name === 'method') ? values.method : '');
+
+const firstName = data.first ? variantName(data.first) : '';
 
 function listVariants() {
   const order = values => axes.map(axis => axis.values.map(String).indexOf(valueOf(values, axis)));
@@ -84,11 +88,12 @@ function listVariants() {
     .map(variant => ({...variant, points: points.filter(point => variantName(point.values) === variant.name)}));
 }
 const variants = listVariants();
-// The fastest with the most lights, which the page shows first.
+const isOwn = ({values}) => ((values || {}).method ?? 'luciole') === 'luciole';
+// The fastest of Luciole's own with the most lights, which the page shows first.
 const mainVariant = variants.reduce((best, variant) => {
   const last = measured => measured.points[measured.points.length - 1];
-  const isBetter = last(variant).lights > last(best).lights ||
-    (last(variant).lights === last(best).lights && last(variant).milliseconds.median < last(best).milliseconds.median);
+  const isBetter = isOwn(best) < isOwn(variant) || (isOwn(best) === isOwn(variant) && (last(variant).lights > last(best).lights ||
+    (last(variant).lights === last(best).lights && last(variant).milliseconds.median < last(best).milliseconds.median)));
   return isBetter ? variant : best;
 }, variants[0]);
 const lightCounts = [...new Set(points.map(point => point.lights))];
@@ -96,6 +101,7 @@ const lightCounts = [...new Set(points.map(point => point.lights))];
 const truthOf = point => point.truth || '';
 const truths = [...new Set(points.map(truthOf))];
 const isOneTruth = truths.length < 2;
+const isTimed = point => isNumber(point.milliseconds.median);
 const stageNames = [...new Set(points.flatMap(point => (point.stages || []).map(stage => stage.name)))];
 
 const shapes = ['circle', 'rect', 'triangle', 'rectRot'];
@@ -104,10 +110,10 @@ const dashes = [[], [7, 4], [2, 3], [10, 3, 2, 3]];
 // Hue, dash and marker of the nth of a kind; neighbours differ in hue and marker, so that neither is needed alone.
 const lookOf = n => ({hue: n % 8, dash: Math.floor(n / 8) % 4, shape: n % 4});
 
-// One axis has hues and markers; a second one has dashes and takes over the markers, and a third one those again.
+// One axis has hues and markers; a second one has dashes, and the last one takes over the markers.
 function lookOfVariant({order}) {
   if (order.length < 2) return lookOf(Math.max(order[0] ?? 0, 0));
-  return {hue: order[0] % 8, dash: order[1] % 4, shape: (order[2] ?? order[1]) % 4};
+  return {hue: order[0] % 8, dash: order[1] % 4, shape: order[order.length - 1] % 4};
 }
 
 // The colours that the style sheet has now, for what is drawn by script.
@@ -225,7 +231,7 @@ const pointLabels = {
     for (const {x, y, label} of shown.filter(point => point.label)) {
       const width = context.measureText(label).width;
       const places = [[x + 9, y], [x - 9 - width, y], [x - width / 2, y - 14], [x - width / 2, y + 14], [x + 7, y - 13],
-        [x + 7, y + 13], [x - 7 - width, y - 13], [x - 7 - width, y + 13]];
+        [x + 7, y + 13], [x - 7 - width, y - 13], [x - 7 - width, y + 13], [x + 16, y - 2], [x - 16 - width, y + 2]];
       const boxes = places.map(([left, middle]) => ({left, right: left + width, top: middle - 7, bottom: middle + 7}));
       const box = boxes.find(b => b.left >= area.left && b.right <= area.right && b.top >= area.top && b.bottom <= area.bottom &&
         taken.every(t => b.right < t.left || b.left > t.right || b.bottom < t.top || b.top > t.bottom) &&
@@ -429,9 +435,9 @@ function fillConditions(box, values) {
 
 // What the experiment says, in a sentence for each truth: variants of two don't make the same picture, one faster than the other.
 function summary() {
-  if (!points.length) return 'No point has been measured yet.';
+  if (!points.some(isTimed)) return 'No point has been measured yet.';
   const told = truths.slice(0, 4), more = truths.length - told.length;
-  const sentences = told.map(truth => sentenceOn(points.filter(point => truthOf(point) === truth), isOneTruth ? '' : `${readable(truth)}: `));
+  const sentences = told.map(truth => sentenceOn(points.filter(point => isTimed(point) && truthOf(point) === truth), isOneTruth ? '' : `${readable(truth)}: `));
   return [...sentences, ...(more ? [`${more} more ${more === 1 ? 'picture is' : 'pictures are'} below.`] : [])].join(' ');
 }
 
@@ -515,6 +521,8 @@ const quantities = [
   {name: 'Peak memory', unit: 'bytes', format: formatBytes, of: point => plainOf(point.peak_bytes)},
   {name: 'Mean error', format: formatError, of: point => plainOf(point.error && point.error.mean_abs)},
   {name: 'Largest error', format: formatError, of: point => plainOf(point.error && point.error.max_abs)},
+  {name: 'relMSE', format: formatError, of: point => plainOf(point.error && point.error.relmse)},
+  {name: 'SMAPE', format: formatError, of: point => plainOf(point.error && point.error.smape)},
   {name: 'Mean bound', format: formatError, of: point => plainOf(boundOf(point, 'mean_bound'))},
   {name: 'Largest bound', format: formatError, of: point => plainOf(boundOf(point, 'max_bound'))},
 ].filter(quantity => points.some(quantity.of));
@@ -591,11 +599,13 @@ const memoryParts = [
 ];
 
 function addStages() {
-  if (!points.length) return;
+  if (!variants.some(isOwn)) return;
   byId('stages').hidden = false;
-  fillSelect(byId('variant'), variants.map(({name}, i) => [i, name]));
+  // Of other methods no parts are known.
+  const own = variants.filter(isOwn);
+  fillSelect(byId('variant'), own.map(variant => [variants.indexOf(variant), variant.name]));
   byId('variant').value = variants.indexOf(mainVariant);
-  byId('variant').closest('p').hidden = variants.length < 2;
+  byId('variant').closest('p').hidden = own.length < 2;
   byId('variant').addEventListener('change', redraw);
   addPlot(byId('stage_plot'), () => describeOne('Time by stage', 'time', formatTime, 'ms', stageParts));
   const addIfMeasured = (id, parts, ...rest) => {
@@ -646,8 +656,11 @@ function addGrowth() {
 
 // ---------------------------------------------------------------------------------------------- error against time
 
-const errorNames = {mean_abs: 'mean absolute error', max_abs: 'largest absolute error', rmse: 'root mean square error'};
-const errorOf = (point, kind) => point.error ? point.error[kind] : null;
+// As `luciole compare --help` defines them. The axis is logarithmic, so it shows how large a bias is.
+const errorNames = {mean_abs: 'mean absolute error', max_abs: 'largest absolute error', p99_abs: 'error that 99 % of the pixels keep',
+  mean_signed: 'bias: |mean signed error|', mse: 'mean square error (MSE)', rmse: 'root mean square error (RMSE)', relmse: 'relative mean square error (relMSE)',
+  mape: 'mean absolute share (MAPE)', smape: 'symmetric mean absolute share (SMAPE)'};
+const errorOf = (point, kind) => !point.error || !isNumber(point.error[kind]) ? null : Math.abs(point.error[kind]);
 const hasError = point => Object.keys(errorNames).some(kind => isNumber(errorOf(point, kind)));
 
 function errorLabel(point, isOneCount) {
@@ -656,25 +669,32 @@ function errorLabel(point, isOneCount) {
   return isOneCount ? name : `${formatShort(point.lights)}, ${name}`;
 }
 
+const isOnFront = (point, kind) => kind === 'mean_abs' ? point.front : (point.fronts || []).includes(kind);
+
+// How many times as long as the first variant, with the interval.
+function ratioText(point) {
+  const ratio = point.times_first;
+  return ratio ? `${formatPlain(ratio.median)} (${formatPlain(ratio.low)} to ${formatPlain(ratio.high)}) times ${firstName}` : '';
+}
+
 // The front's line for each number of lights and each truth: different pictures don't compete.
-function frontLines(measured, place) {
+function frontLines(measured, place, kind) {
   const pictures = lightCounts.flatMap(count => truths.map(truth => ({count, truth})));
   return pictures.map(({count, truth}) => ({name: `front at ${lightsText(count)}${isOneTruth ? '' : `, ${truth}`}`, look: {dash: 0, shape: 0}, bare: true,
-    values: measured.filter(point => point.front && point.lights === count && truthOf(point) === truth).map(place).sort((a, b) => a.x - b.x)}))
+    values: measured.filter(point => isOnFront(point, kind) && point.lights === count && truthOf(point) === truth).map(place).sort((a, b) => a.x - b.x)}))
     .filter(({values}) => values.length > 1);
 }
 
 function describeError() {
   const kind = byId('error_kind').value || 'mean_abs', count = byId('error_lights').value, truth = byId('error_truth').value;
   const isChosen = point => (count === '' || point.lights === Number(count)) && (truth === '' || truthOf(point) === truths[truth]);
-  const measured = points.filter(point => isNumber(errorOf(point, kind)) && isShown(point.values) && isChosen(point));
+  const measured = points.filter(point => isTimed(point) && isNumber(errorOf(point, kind)) && isShown(point.values) && isChosen(point));
   const place = point => ({x: point.milliseconds.median, y: errorOf(point, kind)});
   const series = shownVariants().map(variant => ({name: variant.name || 'points', look: lookOfVariant(variant), line: false,
     values: variant.points.filter(point => measured.includes(point)).map(point => ({...place(point),
-      note: `${lightsText(point.lights)}, ${formatTime(point.milliseconds.median)}`, label: point.front ? errorLabel(point, count !== '') : null}))}))
+      note: [lightsText(point.lights), formatTime(point.milliseconds.median), ratioText(point)].filter(part => part).join(', '), label: isOnFront(point, kind) ? errorLabel(point, count !== '') : null}))}))
     .filter(({values}) => values.length);
-  // The front is one of time and mean error.
-  const lines = kind === 'mean_abs' ? frontLines(measured, place) : [];
+  const lines = frontLines(measured, place, kind);
   const truthColumn = isOneTruth ? [] : [{name: 'Held against', text: true}], truthCell = point => isOneTruth ? [] : [truthOf(point)];
   return {
     title: isOneTruth || truth === '' ? 'Error against time' : `Error against time: ${truths[truth]}`, titleX: 'time', titleY: errorNames[kind], formatX: formatTime, formatY: formatError,
@@ -683,13 +703,13 @@ function describeError() {
       columns: [lightsColumn, ...axisColumns, {name: 'Time', unit: 'ms', format: formatTime}, {name: readable(errorNames[kind]), format: formatError},
         ...truthColumn, {name: 'Front', text: true}],
       rows: measured.map(point => [point.lights, ...axisCells(point.values), point.milliseconds.median, errorOf(point, kind), ...truthCell(point),
-        point.front ? 'yes' : 'no']),
+        isOnFront(point, kind) ? 'yes' : 'no']),
     },
   };
 }
 
 function addError() {
-  const measured = points.filter(hasError);
+  const measured = points.filter(point => isTimed(point) && hasError(point));
   if (!measured.length) return;
   byId('error').hidden = false;
   byId('front_note').hidden = variants.length < 2;
@@ -774,7 +794,7 @@ const hasPicture = point => kindsOf(point).length > 0;
 const pointName = point => [lightsText(point.lights), variantName(point.values)].filter(part => part).join(', ');
 
 function captionOf(point, kind) {
-  const parts = [pictureKinds[kind], lightsText(point.lights), variantName(point.values), formatTime(point.milliseconds.median)];
+  const parts = [pictureKinds[kind], lightsText(point.lights), variantName(point.values), isTimed(point) ? formatTime(point.milliseconds.median) : ''];
   if (hasError(point) && isNumber(point.error.mean_abs)) parts.push(`mean error ${formatError(point.error.mean_abs)}`);
   if (isNumber(boundOf(point, 'max_bound'))) parts.push(`largest bound ${formatError(point.bounds.max_bound)}`);
   return parts.filter(part => part).join(' · ');
@@ -874,6 +894,9 @@ const pointColumns = [
   {name: 'Time', unit: 'ms', format: formatTime, of: point => point.milliseconds.median},
   {name: 'Lower quartile', unit: 'ms', format: formatTime, of: point => point.milliseconds.low},
   {name: 'Upper quartile', unit: 'ms', format: formatTime, of: point => point.milliseconds.high},
+  {name: 'Times the first', format: formatPlain, of: point => (point.times_first || {}).median},
+  {name: '95 %, from', format: formatPlain, of: point => (point.times_first || {}).low},
+  {name: '95 %, to', format: formatPlain, of: point => (point.times_first || {}).high},
   ...stageNames.map(name => ({name: readable(name), unit: 'ms', format: formatTime, of: point => (stageOf(point, name) || {}).y})),
   {name: 'Pairs evaluated', format: formatCount, of: point => point.pairs_evaluated},
   {name: 'Pairs in range', format: formatCount, of: point => point.pairs_in_range},
@@ -885,6 +908,10 @@ const pointColumns = [
   {name: 'Mean error', format: formatError, of: point => errorOf(point, 'mean_abs')},
   {name: 'Largest error', format: formatError, of: point => errorOf(point, 'max_abs')},
   {name: 'RMS error', format: formatError, of: point => errorOf(point, 'rmse')},
+  {name: 'relMSE', format: formatError, of: point => errorOf(point, 'relmse')},
+  {name: 'MAPE', format: formatError, of: point => errorOf(point, 'mape')},
+  {name: 'SMAPE', format: formatError, of: point => errorOf(point, 'smape')},
+  {name: 'PSNR', unit: 'dB', format: formatFixed, of: point => point.error ? point.error.psnr : null},
   ...boundColumns,
   {name: 'Held against', text: true, of: point => isOneTruth ? null : truthOf(point)},
   {name: 'Front', text: true, of: point => isNumber(errorOf(point, 'mean_abs')) ? (point.front ? 'yes' : 'no') : null},
@@ -905,6 +932,9 @@ function pointsTable() {
 // Why some of the table's cells are dashes.
 function reasons() {
   const found = new Set(points.flatMap(point => Object.values(point.reasons || {})));
+  if (points.some(point => !isTimed(point))) found.add('another method whose times are not known');
+  if (!points.every(isOwn)) found.add("another method's pictures have neither stages nor counts");
+  if (firstName && points.some(point => point.times_first)) found.add(`the first is ${firstName}, of which no multiple is told, nor of fewer than three rounds`);
   if (points.some(point => point.pairs_in_range === 0)) found.add('no light is in range of a pixel');
   return found.size ? `–: ${[...found].join('; ')}.` : '';
 }
