@@ -15,6 +15,7 @@
 #include "base/text_file.hpp"
 #include "base/trace.hpp"
 #include "luciole/error.hpp"
+#include "scene/check_triangles.hpp"
 #include "scene/models.hpp"
 #include "scene/place_limits.hpp"
 #include "scene/posing.hpp"
@@ -496,6 +497,11 @@ std::string cameraFault(const Camera& camera) {
     return wrong("fov_y", camera.fov_y, "radians above 0 and below half a turn");
   if (!(camera.near > 0)) return wrong("near", camera.near, "above 0");
   return camera.far > camera.near ? "" : wrong("far", camera.far, "above near");
+}
+
+void checkTriangles(const Scene& scene, std::size_t mesh) {
+  if (const std::string fault = trianglesFault(scene.meshes[mesh]); !fault.empty())
+    fail(scene, fmt::format("meshes[{}]", mesh), fault);
 }
 
 void validateScene(const Scene& scene) {

@@ -58,9 +58,15 @@ int main() {
     }
   const Image triangle = shade(device, scene, gbuffer, settings).image;
 
-  // The mesh: a square of 2 m, the middle quarter of the picture, turned from +y to face the eye.
-  scene.materials = {{.diffuse = glm::vec3(0.5f), .specular = glm::vec3(0.25f), .shininess = 8}};
+  // The mesh: a square of 2 m, the middle quarter of the picture, turned from +y to face the eye. Its texture
+  // is white, and its normals are made anew: neither changes a colour.
+  const std::uint16_t white[] = {65535, 65535, 65535, 65535};
+  scene.textures = {makeTexture(1, 1, white)};
+  scene.materials = {
+      {.diffuse = glm::vec3(0.5f), .specular = glm::vec3(0.25f), .shininess = 8, .diffuse_map{.texture = 0}}};
   scene.meshes = {makePrimitive({.kind = PrimitiveKind::kPlane}, 0)};
+  scene.meshes[0].normals.clear();
+  addNormals(scene);
   scene.objects = {{.object_to_world = {{2, 0, 0, 0}, {0, 0, 2, 0}, {0, -2, 0, 0}, {0, 0, -2, 1}}}};
   const Image mesh = render(device, scene, settings).image;
 

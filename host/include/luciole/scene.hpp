@@ -80,7 +80,7 @@ struct Material {
 struct Mesh {
   std::string name = {};
   std::vector<glm::vec3> positions = {};
-  std::vector<glm::vec3> normals = {};  ///< unit, never missing: loaders make them
+  std::vector<glm::vec3> normals = {};  ///< unit, never missing: loaders make them, or addNormals()
   std::vector<glm::vec2> uvs = {};  ///< optional; v grows downwards: (0,0) is the picture's top left corner
   std::vector<glm::vec2> emission_uvs = {};  ///< optional; emission maps use these instead of `uvs`
   /// Optional; the direction of a normal map's red, unit, and in w the side of green: ±1 × cross(normal,
@@ -222,6 +222,27 @@ Model addUserModel(const std::string& path, Scene& scene);
 /// Sets `specular` and `shininess` of materials with `facets` and no model of their own to what
 /// Model::kCookTorrance and Model::kWard take: f0, and 2/α² − 2. For scenes that are shown by one of them.
 void takeFacets(Scene& scene);
+
+/// Fills Mesh::normals of meshes that have none: smooth, the mean of the unit normals of the triangles that
+/// use a vertex, each weighted by its angle there (Thürmer & Wüthrich, "Computing Vertex Normals from
+/// Polygonal Facets", 1998). Triangles that share no vertex get flat normals. Throws InputError where a
+/// triangle refers to a vertex that there isn't. O(vertices + triangles).
+void addNormals(Scene& scene);
+
+/// Computes missing tangents at vertices of materials with a normal map, as M. Mikkelsen's MikkTSpace does
+/// for triangles, with v growing upwards ("Simulation of Wrinkled Surfaces Revisited", 2008, and his
+/// mikktspace.c, 2011, which glTF prescribes). Corners with the same position, normal and texture coordinates
+/// are welded. Around a welded corner, triangles that share an edge and have the same winding in texture
+/// space share a tangent: the mean of theirs, each projected into the plane of the normal and weighted by its
+/// angle there. Vertices with several tangents are duplicated. Triangles without area in texture space take
+/// the tangents of others around their corners; without any the tangent is zero, and the normal isn't bent.
+/// The scene must be valid. O(n log n).
+void addTangents(Scene& scene);
+
+/// The same for all materials, after those with a normal map, and for the meshes' divided forms: for shaders.
+/// What they get differs where texture coordinates jump along an edge but go on alike beyond it, as around a
+/// sphere: there the triangles of both sides share a tangent, so that highlights along it show no seam.
+void addAllTangents(Scene& scene);
 
 /// The indices of all objects of the scene.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {
