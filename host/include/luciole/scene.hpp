@@ -161,15 +161,30 @@ struct Fog {
   glm::vec3 color{0.0f};
 };
 
-/// A camera looks along its −z, x to the right, y up (OpenGL's eye space, which is also glTF's).
+/// Limits of Camera::shift and Camera::pixel_aspect.
+inline constexpr double kMostLensShift = 1e6, kMostPixelAspect = 1e6;
+
+/// A camera looks along its −z, x to the right, y up (OpenGL's eye space, which is also glTF's). Without skew
+/// a matrix of intrinsics, in pixels from the top left corner of a picture of w × h pixels, is
+///
+///     fx 0  cx      fov_y        = 2 atan(h / (2 fy))
+///     0  fy cy      shift        = (2 cx / w − 1, 1 − 2 cy / h)
+///     0  0  1       pixel_aspect = fy / fx
+///
+/// OpenCV counts from the middle of the top left pixel instead: there cx and cy are smaller by ½.
 struct Camera {
   std::string name = {};
   glm::dmat4 camera_to_world{1.0};  ///< a rigid motion: rotation and translation only
   bool orthographic = false;
   double fov_y = 0.7853981633974483;  ///< radians, perspective only
   double half_height = 1.0;           ///< metres, orthographic only
-  double near = 0.1;                  ///< metres, > 0
-  double far = 1000.0;                ///< metres, > near; of a perspective camera it may be infinite
+  /// Where the axis of the view meets the picture, from its middle: x to the right in halves of its width, y
+  /// upwards in halves of its height. Each from −kMostLensShift to kMostLensShift.
+  glm::dvec2 shift{0.0};
+  /// The width by the height of what a pixel shows, 1 / kMostPixelAspect to kMostPixelAspect.
+  double pixel_aspect = 1.0;
+  double near = 0.1;    ///< metres, > 0
+  double far = 1000.0;  ///< metres, > near; of a perspective camera it may be infinite
   /// The point that it looks at, world, metres; empty: not known. Cameras that orbit go around it.
   std::optional<glm::dvec3> target = {};
   glm::dvec3 up{0.0, 1.0, 0.0};  ///< upwards, world, of any length but 0; the axis of an orbit
