@@ -15,12 +15,14 @@
 #include "base/text_file.hpp"
 #include "luciole/error.hpp"
 #include "luciole/pose.hpp"
+#include "luciole/validate_scene.hpp"
 
 namespace luciole {
 namespace {
 
 constexpr char kPose[] = "luciole:cameraToWorld";
 constexpr char kProjection[] = "luciole:projection";
+constexpr char kLens[] = "luciole:lens";
 constexpr char kName[] = "luciole:cameraName";
 constexpr char kWorldToCamera[] = "worldToCamera", kWorldToNdc[] = "worldToNDC";
 
@@ -38,8 +40,8 @@ glm::dmat4 cameraToNdc(const Camera& camera, const glm::dvec2& half_extent) {
   m[0][0] = 0.5 / half_extent.x;
   m[1][1] = -0.5 / half_extent.y;
   const int homogeneous = camera.orthographic ? 3 : 2;  // w is 1, or z
-  m[homogeneous][0] = 0.5;
-  m[homogeneous][1] = 0.5;
+  m[homogeneous][0] = 0.5 + 0.5 * camera.shift.x;
+  m[homogeneous][1] = 0.5 - 0.5 * camera.shift.y;
   m[homogeneous][3] = 1.0;
   m[2][2] = camera.orthographic ? 1.0 / depth : std::isfinite(depth) ? camera.far / depth : 1.0;
   m[3][2] = -camera.near * m[2][2];
@@ -114,6 +116,13 @@ Camera parseOwn(const ExrAttributes& attributes, const std::string& path) {
     throw InputError(
         fmt::format("{}: attribute {}: expected an opening > 0 and 0 < near < far", path, kProjection));
   }
+  if (const auto text = findNamed(attributes.texts, kLens)) {
+    const std::vector<double> lens = parseNumbers(std::istringstream(*text), 3, path, kLens);
+    camera.shift = {lens[0], lens[1]};
+    camera.pixel_aspect = lens[2];
+    if (const std::string fault = cameraFault(camera); !fault.empty())
+      throw InputError(fmt::format("{}: attribute {}: {}", path, kLens, fault));
+  }
   return camera;
 }
 
@@ -127,15 +136,36 @@ bool isCentred(const glm::dmat4& to_ndc) {
   return std::abs(middle.x - 0.5) < 1e-3 && std::abs(middle.y - 0.5) < 1e-3;
 }
 
-/// Reads the opening of a centred projection into the camera. `to_ndc`: camera space with +z ahead to NDC.
-void readProjection(const glm::dmat4& to_ndc, CameraHeader& header) {
+/// Whether a projection takes x to x, y to y and neither to w, as far as floats tell.
+bool isUpright(const glm::dmat4& to_ndc) {
+  const double most = 1e-3 * std::max(std::abs(to_ndc[0][0]), std::abs(to_ndc[1][1]));
+  return std::abs(to_ndc[0][1]) <= most && std::abs(to_ndc[1][0]) <= most && std::abs(to_ndc[0][3]) <= most &&
+         std::abs(to_ndc[1][3]) <= most;
+}
+
+/// A number of a float matrix, or the whole one that it is by less than `noise`.
+double withoutNoise(double value, double whole, double noise) {
+  return std::abs(value - whole) < noise ? whole : value;
+}
+
+/// Reads opening, shift and aspect of a projection into the camera. `to_ndc`: camera space with +z ahead to
+/// NDC. aspect: of the picture, its width by its height.
+void readProjection(const glm::dmat4& to_ndc, double aspect, CameraHeader& header) {
   const bool parallel = isParallel(to_ndc);
-  const double w = to_ndc[parallel ? 3 : 2][3];
-  const glm::dvec2 half{0.5 * w / to_ndc[0][0], -0.5 * w / to_ndc[1][1]};
-  if (!isCentred(to_ndc) || !(half.x > 0) || !(half.y > 0) || !std::isfinite(half.x) ||
-      !std::isfinite(half.y))
+  const glm::dvec4 middle = to_ndc[parallel ? 3 : 2];
+  const glm::dvec2 half{0.5 * middle.w / to_ndc[0][0], -0.5 * middle.w / to_ndc[1][1]};
+  // A column of a rotation's product has a float's noise; where the axis of a parallel view goes through the
+  // picture depends on the camera's place, too.
+  const double noise = parallel ? 2e-3 : 2e-5;
+  const glm::dvec2 shift(withoutNoise(2 * middle.x / middle.w - 1, 0, noise),
+                         withoutNoise(1 - 2 * middle.y / middle.w, 0, noise));
+  if (!isUpright(to_ndc) || !(half.x > 0) || !(half.y > 0) || !std::isfinite(half.x) ||
+      !std::isfinite(half.y) || !glm::all(glm::lessThanEqual(glm::abs(shift), glm::dvec2(kMostLensShift))))
     return;
   header.half_extent = half;
+  header.camera.shift = shift;
+  header.camera.pixel_aspect =
+      std::clamp(withoutNoise(half.x / (half.y * aspect), 1, 1e-3), 1 / kMostPixelAspect, kMostPixelAspect);
   header.camera.orthographic = parallel;
   if (parallel) {
     header.camera.half_height = half.y;
@@ -183,7 +213,7 @@ bool isRigid(const glm::dmat4& m) {
 
 glm::dvec2 halfExtent(const Camera& camera, glm::ivec2 picture_size, double pixel_aspect) {
   const double height = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2);
-  return {height * pixel_aspect * picture_size.x / picture_size.y, height};
+  return {height * (camera.pixel_aspect * pixel_aspect) * picture_size.x / picture_size.y, height};
 }
 
 ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size, double pixel_aspect) {
@@ -200,6 +230,9 @@ ExrAttributes cameraAttributes(const Camera& camera, glm::ivec2 picture_size, do
       {kProjection,
        fmt::format("{} {:.17g} {:.17g} {:.17g}", camera.orthographic ? "parallel" : "perspective",
                    camera.orthographic ? camera.half_height : camera.fov_y, camera.near, camera.far)}};
+  if (camera.shift != glm::dvec2(0) || camera.pixel_aspect != 1)
+    attributes.texts.emplace_back(
+        kLens, fmt::format("{:.17g} {:.17g} {:.17g}", camera.shift.x, camera.shift.y, camera.pixel_aspect));
   if (!camera.name.empty()) attributes.texts.emplace_back(kName, camera.name);
   return attributes;
 }
@@ -229,7 +262,7 @@ std::optional<CameraHeader> readCamera(const ExrAttributes& attributes, glm::ive
     if (to_ndc) to_ndc = *to_ndc * mirrorZ();
   }
   header.camera.camera_to_world = glm::inverse(mirrorZ() * *world_to_camera);
-  if (to_ndc) readProjection(*to_ndc, header);
+  if (to_ndc) readProjection(*to_ndc, pixel_aspect * picture_size.x / picture_size.y, header);
   return header;
 }
 

@@ -20,6 +20,7 @@
 //   luciole:cameraToWorld  16 numbers, column after column; camera space as in Camera, −z ahead
 //   luciole:projection     "perspective FOV_Y NEAR FAR" or "parallel HALF_HEIGHT NEAR FAR"
 //                          (FOV_Y in radians, lengths in metres)
+//   luciole:lens           "SHIFT_X SHIFT_Y PIXEL_ASPECT", as in Camera; left out where it is "0 0 1"
 //   luciole:cameraName     Camera::name
 namespace luciole {
 
@@ -27,7 +28,7 @@ struct CameraHeader {
   Camera camera;
   bool is_exact = false;  ///< read from our own attributes, with all digits
   /// Half the whole picture's width and height at distance 1 (perspective) or in metres (parallel view);
-  /// empty where the header doesn't tell, or the projection isn't centred in the picture.
+  /// empty where the header doesn't tell.
   std::optional<glm::dvec2> half_extent;
 };
 

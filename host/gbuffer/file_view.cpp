@@ -21,11 +21,14 @@ glm::dmat4 scaled(const glm::dvec3& factors) {
   return matrix;
 }
 
-void setOpening(const glm::dvec2& half_extent, bool parallel, FileView& view) {
+/// Takes over the lens of a camera, with this opening.
+void setOpening(const glm::dvec2& half_extent, const Camera& lens, FileView& view) {
   view.knows_camera = true;
   view.half_extent = half_extent;
-  view.camera.orthographic = parallel;
-  if (parallel)
+  view.camera.shift = lens.shift;
+  view.camera.pixel_aspect = lens.pixel_aspect;
+  view.camera.orthographic = lens.orthographic;
+  if (lens.orthographic)
     view.camera.half_height = half_extent.y;
   else
     view.camera.fov_y = 2 * std::atan(half_extent.y);
@@ -41,7 +44,8 @@ std::optional<CameraHeader> headerCamera(const FileViewInput& input) {
 bool liesInWorldSpace(const FileViewInput& input, const std::optional<CameraHeader>& header) {
   if (!header || !header->half_extent) return false;
   return lieOnRays(transformed(input.points, glm::inverse(header->camera.camera_to_world)),
-                   input.picture_size, *header->half_extent, header->camera.orthographic);
+                   input.picture_size, *header->half_extent, header->camera.shift,
+                   header->camera.orthographic);
 }
 
 }  // namespace
@@ -78,7 +82,7 @@ FileView findView(const FileViewInput& input) {
         "header, or request.camera_to_world or request.camera");
 
   if (header) view.camera = header->camera;
-  if (header && header->half_extent) setOpening(*header->half_extent, header->camera.orthographic, view);
+  if (header && header->half_extent) setOpening(*header->half_extent, header->camera, view);
   view.camera_source = "the file's";
   if (input.camera_to_world) {
     view.camera.camera_to_world = *input.camera_to_world;
@@ -106,17 +110,15 @@ FileView findView(const FileViewInput& input) {
   const bool is_scenes = !header && !input.camera_to_world && input.camera;
   if (!view.knows_camera && !is_scenes && has_camera)
     if (const auto fit = fitRays(seen, size); fit && fit->signs == glm::dvec3(1.0))
-      setOpening(fit->half_extent, false, view);
+      setOpening(fit->half_extent, Camera{}, view);
   if (!view.knows_camera && input.camera)
-    setOpening(halfExtent(*input.camera, input.picture_size, input.pixel_aspect), input.camera->orthographic,
-               view);
+    setOpening(halfExtent(*input.camera, input.picture_size, input.pixel_aspect), *input.camera, view);
   if (!input.has_positions && !view.knows_camera)
-    throw InputError(
-        input.path +
-        ": attribute worldToNDC: depth without positions needs worldToCamera and worldToNDC of a "
-        "centred projection, or request.camera");
+    throw InputError(input.path +
+                     ": attribute worldToNDC: depth without positions needs worldToCamera and worldToNDC, or "
+                     "request.camera");
   if (view.knows_camera && !seen.empty() &&
-      !lieOnRays(seen, size, view.half_extent, view.camera.orthographic))
+      !lieOnRays(seen, size, view.half_extent, view.camera.shift, view.camera.orthographic))
     view.camera_source += ", by which positions lie elsewhere than their pixels";
   return view;
 }

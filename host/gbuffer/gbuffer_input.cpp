@@ -265,7 +265,7 @@ class Conversion {
 
   /// The view-space point behind the centre of a pixel.
   glm::vec3 unproject(std::size_t pixel) const {
-    const glm::dvec2 on_screen = screenOf(pixel) * view_.half_extent;
+    const glm::dvec2 on_screen = (screenOf(pixel) - view_.camera.shift) * view_.half_extent;
     double depth = std::abs(depth_.value(pixel));
     if (view_.camera.orthographic) return glm::vec3(glm::dvec3(on_screen, -depth));
     if (found_.layout->depth_is_distance) depth /= glm::length(glm::dvec3(on_screen, 1.0));

@@ -27,11 +27,11 @@ std::optional<double> middleRatio(std::span<const SeenPoint> points, int axis) {
 }  // namespace
 
 bool lieOnRays(std::span<const SeenPoint> points, glm::dvec2 picture_size, glm::dvec2 half_extent,
-               bool parallel) {
+               glm::dvec2 shift, bool parallel) {
   if (points.size() < kFewest) return false;
   const auto on_rays = std::count_if(points.begin(), points.end(), [&](const SeenPoint& seen) {
     if (!(seen.point.z < 0)) return false;
-    const glm::dvec2 screen = glm::dvec2(seen.point) / (parallel ? 1.0 : -seen.point.z) / half_extent;
+    const glm::dvec2 screen = glm::dvec2(seen.point) / (parallel ? 1.0 : -seen.point.z) / half_extent + shift;
     const glm::dvec2 off = glm::abs(screen - seen.screen) * 0.5 * picture_size;
     return off.x < kPixels && off.y < kPixels;
   });
@@ -53,7 +53,7 @@ std::optional<RayFit> fitRays(std::span<const SeenPoint> points, const glm::dvec
     nearest = std::min(nearest, std::abs(seen.point.z));
     farthest = std::max(farthest, std::abs(seen.point.z));
   }
-  if (!lieOnRays(turned, picture_size, fit.half_extent, false)) return {};
+  if (!lieOnRays(turned, picture_size, fit.half_extent, glm::dvec2(0), false)) return {};
   fit.is_deep = farthest > 1.05 * nearest;
   return fit;
 }

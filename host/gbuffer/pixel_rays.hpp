@@ -22,14 +22,14 @@ struct RayFit {
   bool is_deep = false;    ///< the points' depths differ by more than a twentieth, so the fit is significant
 };
 
-/// The camera that sees the points in their pixels, if there is one. Needs 16 points, nine in ten of which
-/// must be less than 1.5 pixels off; others may be averages over a pixel at an edge. `picture_size`: pixels
-/// of the whole picture.
+/// The camera without shift that sees the points in their pixels, if there is one. Needs 16 points, nine in
+/// ten of which must be less than 1.5 pixels off; others may be averages over a pixel at an edge.
+/// `picture_size`: pixels of the whole picture.
 std::optional<RayFit> fitRays(std::span<const SeenPoint> points, const glm::dvec2& picture_size);
 
 /// Whether points in view space (−z ahead) lie on their pixels' rays, to the same extent. half_extent: as in
-/// CameraHeader. False where there are fewer than 16.
+/// CameraHeader. shift: as in Camera. False where there are fewer than 16.
 bool lieOnRays(std::span<const SeenPoint> points, glm::dvec2 picture_size, glm::dvec2 half_extent,
-               bool parallel);
+               glm::dvec2 shift, bool parallel);
 
 }  // namespace luciole

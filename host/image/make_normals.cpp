@@ -17,19 +17,8 @@ float numberOf(std::uint16_t code, bool linear) {
   return linear ? linearOfSrgb16()[code] : float(code) * (1.0f / 65535.0f);
 }
 
-/// What lookups decode to the numbers 0, 1/65535 … 1.
-const std::vector<std::uint16_t>& codesOfNumbers() {
-  static const std::vector<std::uint16_t> codes = [] {
-    std::vector<std::uint16_t> made(65536);
-    for (int i = 0; i < 65536; ++i)
-      made[std::size_t(i)] = std::uint16_t(encodeSrgb(float(i / 65535.0)) * 65535.0f + 0.5f);
-    return made;
-  }();
-  return codes;
-}
-
 std::uint16_t codeOf(double number) {
-  return codesOfNumbers()[std::size_t(std::clamp(number, 0.0, 1.0) * 65535 + 0.5)];
+  return srgb16OfLinear16()[std::size_t(std::clamp(number, 0.0, 1.0) * 65535 + 0.5)];
 }
 
 bool looksLikeNormals(const MipLevel& level, bool linear) {
@@ -72,7 +61,7 @@ void fromHeights(bool linear, MipLevel& level) {
 }
 
 void recode(bool linear, MipLevel& level) {
-  const std::vector<std::uint16_t>& codes = codesOfNumbers();
+  const std::vector<std::uint16_t>& codes = srgb16OfLinear16();
   for (std::size_t i = 0; i < level.texels.size(); i += 4) {
     for (int c = 0; c < 3 && !linear; ++c) level.texels[i + c] = codes[level.texels[i + c]];
     level.texels[i + 3] = 65535;

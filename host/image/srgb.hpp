@@ -21,6 +21,9 @@ inline float encodeSrgb(float linear) {
 /// 16-bit code 257 c.
 const std::vector<float>& linearOfSrgb16();
 
+/// The 16-bit sRGB codes of the linear numbers 0, 1/65535 … 1 (128 KiB, made at the first call).
+const std::vector<std::uint16_t>& srgb16OfLinear16();
+
 /// The linear value of a 16-bit code for its square root: about as fine as sRGB, and decoded by one product.
 inline float linearOfRoot16(std::int32_t code) {
   const float root = float(code) * (1.0f / 65535.0f);

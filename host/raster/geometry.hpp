@@ -118,4 +118,10 @@ inline bool eyeInFront(const glm::dvec3& normal, const glm::dvec3& point, bool p
 /// Whether a view is perspective; otherwise it is parallel.
 inline bool isPerspective(const View& view) { return view.projection[2][3] != 0.0; }
 
+/// Where the view's axis meets the picture, in normalized device coordinates: Camera::shift.
+inline glm::dvec2 axisInPicture(const View& view) {
+  return isPerspective(view) ? glm::dvec2(0) - glm::dvec2(view.projection[2])
+                             : glm::dvec2(view.projection[3]);
+}
+
 }  // namespace luciole

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "luciole/error.hpp"
+#include "raster/geometry.hpp"
 
 namespace luciole {
 
@@ -43,13 +44,16 @@ glm::dmat4 worldToView(const Camera& camera) {
 View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop, double pixel_aspect) {
   View view;
   view.world_to_view = worldToView(camera);
-  const double aspect = pixel_aspect * size.x / size.y;
+  const double aspect = camera.pixel_aspect * pixel_aspect * size.x / size.y;
+  view.pixel_aspect = camera.pixel_aspect;
   if (camera.orthographic) {
     const double half_width = camera.half_height * aspect;
     view.projection = orthographicProjection(-half_width, half_width, -camera.half_height, camera.half_height,
                                              camera.near, camera.far);
+    view.projection[3] += glm::dvec4(camera.shift, 0, 0);
   } else {
     view.projection = perspectiveProjection(camera.fov_y, aspect, camera.near, camera.far);
+    view.projection[2] -= glm::dvec4(camera.shift, 0, 0);
   }
   view.size = size;
   view.crop_size = size;
@@ -88,6 +92,8 @@ Camera viewCamera(const View& view) {
   const double scale = projection[2][2];
   const double offset = projection[3][2];
   camera.orthographic = projection[2][3] == 0.0;
+  camera.shift = axisInPicture(view);
+  camera.pixel_aspect = view.pixel_aspect;
   camera.far = offset / scale;
   if (camera.orthographic) {
     camera.half_height = 1.0 / projection[1][1];

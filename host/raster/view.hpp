@@ -19,6 +19,7 @@ struct View {
   /// View space to clip space: x and y in [−w, w] inside the picture, y up; z in [0, w] with reversed depth,
   /// 1 at the near plane and 0 at the far plane, since floats are finest near 0.
   glm::dmat4 projection{1.0};
+  double pixel_aspect = 1;    ///< Camera::pixel_aspect, which `projection` contains
   glm::ivec2 size{0};         ///< of the whole picture, pixels
   glm::ivec2 crop_origin{0};  ///< top left pixel of the part to draw
   glm::ivec2 crop_size{0};
@@ -50,8 +51,8 @@ struct PixelRectangle {
 };
 
 /// The view of a camera on a picture of `size` pixels, or on a part of it, sampled at pixel centres.
-/// pixel_aspect: the width of a pixel by its height. Throws InputError for a crop that is not inside the
-/// picture.
+/// pixel_aspect: of the picture (see Display), beside the camera's own. Throws InputError for a crop that is
+/// not inside the picture.
 View cameraView(const Camera& camera, glm::ivec2 size, const std::optional<Crop>& crop = {},
                 double pixel_aspect = 1);
 
@@ -62,8 +63,7 @@ glm::dvec2 samplePoint(int index, int count);
 /// Sets the view to a sample of its pixels, at samplePoint().
 void takeSample(View& view, const SampleNumber& number);
 
-/// The camera of a view: the inverse of cameraView, without the name. A shift of the picture (an off-centre
-/// projection) is lost.
+/// The camera of a view: the inverse of cameraView, without the name.
 Camera viewCamera(const View& view);
 
 }  // namespace luciole

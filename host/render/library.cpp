@@ -1,6 +1,7 @@
 #include <mutex>
 
 #include "luciole/render.hpp"
+#include "render/bake.hpp"
 #include "render/render.hpp"
 
 // What luciole/render.hpp offers: the renderer's functions, each with the device to itself.
@@ -34,6 +35,17 @@ Picture shade(Device& device, const Scene& scene, const GBuffer& gbuffer, const 
   const std::lock_guard lock(on.use);
   Picture picture;
   picture.image = shadeGBuffer(on, scene, gbuffer, settings, picture.stats);
+  return picture;
+}
+
+Picture bakeLight(Device& device, Scene scene, std::uint32_t object, const BakeSettings& bake,
+                  const RenderSettings& settings) {
+  OpenedDevice& on = opened(device);
+  const std::lock_guard lock(on.use);
+  scene.fog = {};
+  scene.background = glm::vec3(0.0f);
+  Picture picture;
+  picture.image = bakeMap(on, scene, object, bake, settings, picture.stats);
   return picture;
 }
 

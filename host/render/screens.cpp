@@ -23,8 +23,9 @@ ScreenFrame frameOf(const GBuffer& gbuffer, const PixelRectangle& inner) {
   const Camera& camera = gbuffer.camera;
   const int row = (gbuffer.width + kScreenPad - 1) / kScreenPad * kScreenPad + 2 * kScreenPad;
   const glm::vec3 eye(camera.camera_to_world[3]), back(glm::normalize(camera.camera_to_world[2]));
-  const double pixel =
-      2 * (camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2)) / gbuffer.picture_size.y;
+  const double pixel = 2 * camera.pixel_aspect *
+                       (camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2)) /
+                       gbuffer.picture_size.y;
   const bool parallel = camera.orthographic;
   return {.eye = {eye.x, eye.y, eye.z, 0},
           .to_eye = parallel ? float4{back.x, back.y, back.z, 0} : float4{0, 0, 0, -1},

@@ -1,6 +1,10 @@
 #include "scene/normals.hpp"
 
 #include <cmath>
+#include <cstddef>
+
+#include "luciole/scene.hpp"
+#include "scene/check_triangles.hpp"
 
 namespace luciole {
 namespace {
@@ -42,6 +46,15 @@ std::vector<glm::vec3> angleWeightedNormals(const std::vector<glm::vec3>& positi
     normals[i] = glm::vec3(length > kVanished ? sums[i] / length : any[i]);
   }
   return normals;
+}
+
+void addNormals(Scene& scene) {
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    Mesh& mesh = scene.meshes[i];
+    if (!mesh.normals.empty()) continue;
+    checkTriangles(scene, i);
+    mesh.normals = angleWeightedNormals(mesh.positions, mesh.triangles);
+  }
 }
 
 }  // namespace luciole

@@ -57,8 +57,9 @@ void withFields(T& fog, Visit&& visit) {
 }
 template <Is<Camera> T, class Visit>
 void withFields(T& camera, Visit&& visit) {
-  auto& [name, camera_to_world, orthographic, fov_y, half_height, near, far, target, up] = camera;
-  visit(name, camera_to_world, orthographic, fov_y, half_height, near, far, target, up);
+  auto& [name, camera_to_world, orthographic, fov_y, half_height, shift, pixel_aspect, near, far, target,
+         up] = camera;
+  visit(name, camera_to_world, orthographic, fov_y, half_height, shift, pixel_aspect, near, far, target, up);
 }
 template <Is<MipLevel> T, class Visit>
 void withFields(T& level, Visit&& visit) {

@@ -15,6 +15,7 @@
 #include "base/text_file.hpp"
 #include "base/trace.hpp"
 #include "luciole/error.hpp"
+#include "scene/check_triangles.hpp"
 #include "scene/models.hpp"
 #include "scene/place_limits.hpp"
 #include "scene/posing.hpp"
@@ -494,8 +495,17 @@ std::string cameraFault(const Camera& camera) {
     return wrong("half_height", camera.half_height, "above 0");
   if (!camera.orthographic && !(camera.fov_y > 0 && camera.fov_y < glm::radians(180.0)))
     return wrong("fov_y", camera.fov_y, "radians above 0 and below half a turn");
+  if (!glm::all(glm::lessThanEqual(glm::abs(camera.shift), glm::dvec2(kMostLensShift))))
+    return wrong("shift", camera.shift, "numbers up to 1e6");
+  if (!(camera.pixel_aspect >= 1 / kMostPixelAspect && camera.pixel_aspect <= kMostPixelAspect))
+    return wrong("pixel_aspect", camera.pixel_aspect, "1e-6 to 1e6");
   if (!(camera.near > 0)) return wrong("near", camera.near, "above 0");
   return camera.far > camera.near ? "" : wrong("far", camera.far, "above near");
+}
+
+void checkTriangles(const Scene& scene, std::size_t mesh) {
+  if (const std::string fault = trianglesFault(scene.meshes[mesh]); !fault.empty())
+    fail(scene, fmt::format("meshes[{}]", mesh), fault);
 }
 
 void validateScene(const Scene& scene) {

@@ -80,7 +80,8 @@ double deviationsOf(double confidence) {
 
 float4 pixelsOf(const View& view) {
   const double x = view.projection[0][0] * view.size.x / 2, y = view.projection[1][1] * view.size.y / 2;
-  return {float(x), float(-y), float(view.size.x) / 2, float(view.size.y) / 2};
+  const glm::dvec2 axis = axisInPicture(view);
+  return {float(x), float(-y), float((1 + axis.x) * view.size.x / 2), float((1 - axis.y) * view.size.y / 2)};
 }
 
 SampledLightCounts sampledLight(OpenedDevice& device, const std::string& defines,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "raster/geometry.hpp"
 #include "scene/bounds.hpp"
 #include "scene/count_triangles.hpp"
 #include "shadow/maps/shadow_sizes.hpp"
@@ -15,9 +16,9 @@ namespace {
 /// The share of the picture covered by a sphere's bounding square; world space.
 double shareSeen(const View& view, const glm::dvec3& middle, double radius) {
   const glm::dvec3 at(view.world_to_view * glm::dvec4(middle, 1));
-  const bool perspective = view.projection[3][3] == 0;
+  const glm::dvec2 shift = axisInPicture(view);
   double distance = 1;
-  if (perspective) {
+  if (isPerspective(view)) {
     if (-at.z <= -radius) return 0;
     const double beyond = glm::dot(at, at) - radius * radius;
     if (beyond <= 0 || -at.z <= radius) return 1;
@@ -27,8 +28,8 @@ double shareSeen(const View& view, const glm::dvec3& middle, double radius) {
   double share = 1;
   for (int axis = 0; axis < 2; ++axis) {
     const double scale = view.projection[axis][axis] / distance;
-    const double low = std::max((at[axis] - radius) * scale, -1.0),
-                 high = std::min((at[axis] + radius) * scale, 1.0);
+    const double low = std::max((at[axis] - radius) * scale + shift[axis], -1.0),
+                 high = std::min((at[axis] + radius) * scale + shift[axis], 1.0);
     share *= std::max(high - low, 0.0) / 2;
   }
   return share;

@@ -78,7 +78,8 @@ GBuffer somePicture(int width, int height, const Camera& camera) {
       const std::size_t at = g.index(x, y);
       const double depth = 1.0 + 0.37 * (i % 11);
       const double half = camera.orthographic ? camera.half_height : std::tan(camera.fov_y / 2) * depth;
-      const glm::dvec2 screen{((x + 0.5) / width * 2 - 1) * width / height, 1 - (y + 0.5) / height * 2};
+      const glm::dvec2 off = glm::dvec2((x + 0.5) / width * 2 - 1, 1 - (y + 0.5) / height * 2) - camera.shift;
+      const glm::dvec2 screen{off.x * camera.pixel_aspect * width / height, off.y};
       setThree(g.position, at, stride, glm::vec3(screen.x * half, screen.y * half, -depth));
       setThree(g.normal, at, stride, glm::vec3(glm::normalize(glm::dvec3(0.1 * (i % 7), 0.3, 1.0))));
       g.geometric_normal[at] = packNormal(glm::dvec3(i % 5 - 2, i % 3 - 0.3, 0.1 * (i % 101)));
@@ -237,6 +238,8 @@ TEST(GBufferFile, CameraAndCropSurviveExactly) {
     GBuffer written = somePicture(7, 5, someCamera());
     written.camera.orthographic = orthographic;
     written.camera.half_height = 1.7;
+    written.camera.shift = {0.1, -0.7};
+    written.camera.pixel_aspect = 1.01;
     written.picture_size = {64, 48};
     written.crop_origin = {11, 13};
     writeGBuffer(written, folder / "g.exr", {{"Software", "Luciole"}});
@@ -249,6 +252,8 @@ TEST(GBufferFile, CameraAndCropSurviveExactly) {
     } else {
       EXPECT_EQ(read.camera.fov_y, 0.9);
     }
+    EXPECT_EQ(read.camera.shift, written.camera.shift);
+    EXPECT_EQ(read.camera.pixel_aspect, 1.01);
     EXPECT_EQ(read.camera.near, 0.15);
     EXPECT_EQ(read.camera.far, 250);
     EXPECT_EQ(read.picture_size, glm::ivec2(64, 48));
@@ -258,12 +263,14 @@ TEST(GBufferFile, CameraAndCropSurviveExactly) {
 
 TEST(GBufferFile, HeaderHasTheCameraAsOpenExrDefinesIt) {
   OIIO::ImageSpec spec(64, 48, 3, OIIO::TypeDesc::FLOAT);
-  const Camera camera = someCamera();
+  Camera camera = someCamera();
+  camera.shift = {0.25, -0.5};
+  camera.pixel_aspect = 1.5;
   writeCamera(camera, {64, 48}, spec);
   const OIIO::TypeDesc type(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::MATRIX44);
-  // A point 2 m ahead, on the ray through the middle of the picture's right edge, as a row vector times a
-  // matrix.
-  const double right = std::tan(camera.fov_y / 2) * 2 * 64 / 48;
+  // A point 2 m ahead, on the ray through the picture's right edge at the height of the axis, ¾ of half the
+  // picture's width from it, as a row vector times a matrix.
+  const double right = 0.75 * std::tan(camera.fov_y / 2) * 2 * 1.5 * 64 / 48;
   const glm::dvec4 world = camera.camera_to_world * glm::dvec4(right, 0, -2, 1);
   const auto times = [&](const char* name) {
     const auto* m = static_cast<const float*>(spec.find_attribute(name, type)->data());
@@ -279,7 +286,7 @@ TEST(GBufferFile, HeaderHasTheCameraAsOpenExrDefinesIt) {
   EXPECT_NEAR(in_camera.z, 2, kPositionTolerance);
   const glm::dvec4 ndc = times("worldToNDC");
   EXPECT_NEAR(ndc.x / ndc.w, 1.0, kPositionTolerance);
-  EXPECT_NEAR(ndc.y / ndc.w, 0.5, kPositionTolerance);
+  EXPECT_NEAR(ndc.y / ndc.w, 0.75, kPositionTolerance);
 }
 
 TEST(GBufferFile, ACameraThatSeesToInfinityComesBack) {
@@ -342,6 +349,10 @@ TEST(GBufferFile, PositionsAreFoundFromDepthAndCamera) {
       Camera camera = someCamera();
       camera.orthographic = orthographic;
       camera.half_height = 1.7;
+      if (sign < 0) {
+        camera.shift = {0.5, -0.3};
+        camera.pixel_aspect = 1.2;
+      }
       const GBuffer truth = somePicture(7, 5, camera);
       writeForeign(
           folder / "g.exr", 7, 5, {"N.X", "N.Y", "N.Z", "Z"},

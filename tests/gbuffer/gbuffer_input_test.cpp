@@ -127,6 +127,24 @@ TEST(CameraHeader, OfPixelsThatAreWiderThanHighSeesAsFarAsTheyDo) {
   EXPECT_NEAR(others->half_extent->y, height, 1e-6);
 }
 
+// The matrices are floats: of numbers up to 12, and of an inverse.
+TEST(CameraHeader, OfAnotherProgramTellsWhereTheAxisMeetsThePicture) {
+  for (const bool orthographic : {false, true})
+    for (const glm::dvec2 shift : {glm::dvec2(0), {0.02, 0}, {-0.75, 1.5}}) {
+      Camera camera = tiltedCamera();
+      camera.orthographic = orthographic;
+      camera.shift = shift;
+      camera.pixel_aspect = shift.x == 0 ? 1 : 1.25;
+      const ExrAttributes attributes = cameraAttributes(camera, {30, 20}, 2);
+      const auto read = readCamera({.texts = {}, .matrices = attributes.matrices}, {30, 20}, "a.exr", {}, 2);
+      ASSERT_TRUE(read && read->half_extent);
+      const double noise = shift.x == 0 ? 0 : 2e-5;  // one that isn't shifted is read as such
+      EXPECT_NEAR(read->camera.shift.x, shift.x, noise);
+      EXPECT_NEAR(read->camera.shift.y, shift.y, noise);
+      EXPECT_NEAR(read->camera.pixel_aspect, camera.pixel_aspect, noise);
+    }
+}
+
 TEST_F(GBufferInputTest, PartsMustBeOfOneSizeAndPlace) {
   ForeignPart positions = surfaces([](int, int) { return glm::vec3(0, 0, -3); }, {});
   positions.header = [](OIIO::ImageSpec& spec) { spec.attribute("oiio:subimagename", "positions"); };

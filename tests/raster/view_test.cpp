@@ -46,6 +46,41 @@ TEST(View, ThePicturesEdgesAreAtTheFieldOfView) {
   EXPECT_NEAR(parallel.y, -1.0, 8 * kEpsilon);
 }
 
+// OpenCV's camera space has y down and z ahead. Numbers up to 2e4 pixels, the slope of a pixel's place, go
+// through some 40 roundings on either way.
+TEST(View, PixelsAreThoseOfAMatrixOfIntrinsics) {
+  const double fx = 911.7, fy = 903.2, cx = 201.4, cy = 377.9;
+  const glm::dvec2 size(640, 480);
+  const glm::dmat4 world_to_camera =
+      glm::rotate(glm::translate(glm::dmat4(1.0), {0.3, -0.2, 5}), 0.7, glm::normalize(glm::dvec3(1, 2, 3)));
+  Camera camera;
+  camera.camera_to_world = glm::inverse(world_to_camera) * glm::scale(glm::dmat4(1.0), {1, -1, -1});
+  camera.fov_y = 2 * std::atan(size.y / (2 * fy));
+  camera.shift = {2 * cx / size.x - 1, 1 - 2 * cy / size.y};
+  camera.pixel_aspect = fy / fx;
+  const View view = cameraView(camera, glm::ivec2(size));
+  for (int i = 0; i < 64; ++i) {
+    const glm::dvec3 world(i % 4 - 1.5, i / 4 % 4 - 1.5, i / 16 - 1.5);
+    const glm::dvec3 seen(world_to_camera * glm::dvec4(world, 1));
+    const glm::dvec3 place = project(view, glm::dvec3(view.world_to_view * glm::dvec4(world, 1)));
+    EXPECT_NEAR((place.x + 1) / 2 * size.x, fx * seen.x / seen.z + cx, 2e4 * 40 * kEpsilon);
+    EXPECT_NEAR((1 - place.y) / 2 * size.y, fy * seen.y / seen.z + cy, 2e4 * 40 * kEpsilon);
+  }
+}
+
+TEST(View, TheAxisOfAParallelViewMeetsThePictureWhereItIsShiftedTo) {
+  Camera camera;
+  camera.orthographic = true;
+  camera.half_height = 4.0;
+  camera.shift = {0.5, -0.25};
+  camera.pixel_aspect = 2;
+  const View view = cameraView(camera, {300, 100});
+  EXPECT_EQ(glm::dvec2(project(view, {0, 0, -7})), camera.shift);
+  const glm::dvec3 corner = project(view, {0.5 * 24, 1.25 * 4, -7});
+  EXPECT_NEAR(corner.x, 1, 8 * kEpsilon);
+  EXPECT_NEAR(corner.y, 1, 8 * kEpsilon);
+}
+
 TEST(View, TheEyeIsTheOriginOfItsSpace) {
   Camera camera;
   camera.camera_to_world = glm::rotate(glm::translate(glm::dmat4(1.0), {1, 2, 3}), 1.0, {0.0, 0.6, 0.8});
@@ -64,9 +99,13 @@ TEST(View, ACameraComesBackFromItsView) {
     camera.half_height = 3.0;
     camera.near = 0.5;
     camera.far = 100.0;
+    camera.shift = {0.3, -1.7};
+    camera.pixel_aspect = 1.1;
     camera.camera_to_world = glm::rotate(glm::translate(glm::dmat4(1.0), {1, 2, 3}), 1.0, {0.0, 0.6, 0.8});
     const Camera back = viewCamera(cameraView(camera, {30, 20}));
     EXPECT_EQ(back.orthographic, orthographic);
+    EXPECT_EQ(back.shift, camera.shift);
+    EXPECT_EQ(back.pixel_aspect, camera.pixel_aspect);
     EXPECT_NEAR(orthographic ? back.half_height : back.fov_y, orthographic ? 3.0 : 0.9, 12 * kEpsilon);
     // In a parallel view the near plane is a difference of numbers near 1, in units of far − near = 100.
     EXPECT_NEAR(back.near, 0.5, 400 * kEpsilon);

@@ -66,7 +66,9 @@ TEST(GBufferCheck, KnowsWhatAPictureLeavesOut) {
     "objects": [{"primitive": "sphere", "translate": [0, 0, 2], "material": "air"},
                 {"primitive": "torus", "scale": [-1.5, 1, 1], "rotate": [70, 10, 0]},
                 {"primitive": "box", "scale": [-9, 9, 9]}]})";
-  for (const char* kind : {"\"fov_y\": 60", "\"orthographic\": 3"}) {
+  for (const char* kind : {"\"fov_y\": 60", "\"orthographic\": 3",
+                           "\"fov_y\": 60, \"shift\": [0.3, -0.2], \"pixel_aspect\": 1.1",
+                           "\"orthographic\": 3, \"shift\": [-0.2, 0.1], \"pixel_aspect\": 0.9"}) {
     const Seen seen =
         see(sceneFromJson(std::string(R"({"camera": {"eye": [1, 2, 4], "target": [0, 0, 0], )") + kind +
                           "}, " + objects),

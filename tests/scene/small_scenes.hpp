@@ -22,7 +22,8 @@ inline constexpr std::pair<const char*, const char*> kOwnScenes[]{
      R"({"$schema": "scene.schema.json", "size": [64, 36], "background": [0.1, 0.2, 0.3], "ambient": 0.5,
       "lighting": true, "frame_rate": 25,
       "cameras": {
-        "still": {"eye": [1, 2, 5], "target": [0, 1, 0], "up": [0.1, 1, 0], "fov_y": 40, "near": 0.5, "far": 60},
+        "still": {"eye": [1, 2, 5], "target": [0, 1, 0], "up": [0.1, 1, 0], "fov_y": 40, "near": 0.5, "far": 60,
+                  "shift": [0.25, -0.5], "pixel_aspect": 1.25},
         "flat": {"eye": [1, 2, 5], "target": [0, 1, 0], "orthographic": 3,
                  "keys": [{"frame": 1, "eye": [1, 2, 6]}, {"frame": 9.5, "target": [0, 0, 1]}]},
         "turning": {"orbit": [0, 15, 6], "target": [0, 1, 0], "up": [0, 1, 0.2], "interpolation": "smooth",

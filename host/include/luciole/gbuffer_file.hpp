@@ -25,9 +25,9 @@ namespace luciole {
 ///                                2 blinn-phong, 3 toon, 4 cook-torrance, 5 oren-nayar, 6 ward
 ///
 /// The camera is in the header, as OpenEXR's worldToCamera and worldToNDC, and with all digits in attributes
-/// luciole:cameraToWorld, luciole:projection and luciole:cameraName. A crop becomes the data window inside
-/// the display window. `format` and `compression` as in WriteOptions. Throws as writeImage does, and
-/// InputError for a format other than exr.
+/// luciole:cameraToWorld, luciole:projection, luciole:lens and luciole:cameraName. A crop becomes the data
+/// window inside the display window. `format` and `compression` as in WriteOptions. Throws as writeImage
+/// does, and InputError for a format other than exr.
 void writeGBuffer(const GBuffer& gbuffer, const std::string& path, const Metadata& metadata,
                   const std::string& format = "", const std::string& compression = "");
 

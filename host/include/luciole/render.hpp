@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "luciole/device.hpp"
@@ -77,5 +80,26 @@ GBuffer drawGBuffer(Device& device, const Scene& scene, const RenderSettings& se
 /// the camera is the G-buffer's. Throws as render() does, and InputError for a G-buffer whose planes have
 /// other sizes than it says or hold what they can't ("gbuffer.normal: ...").
 Picture shade(Device& device, const Scene& scene, const GBuffer& gbuffer, const RenderSettings& settings);
+
+/// What a map holds of the light on an object.
+struct BakeSettings {
+  /// A place in the world, metres: with the highlights that are seen from there. None: without highlights, as
+  /// they look from nowhere.
+  std::optional<glm::dvec3> eye = {};
+  /// The light that arrives, to be multiplied by the surface's own colours: diffuse and ambient count as 1,
+  /// emission as 0.
+  bool irradiance = false;
+};
+
+/// The light on an object (an index into Scene::objects) as a map in texture space: settings.size texels,
+/// laid out by its mesh's `lightmap_uvs`, or else `uvs`, the top left first. It has no fog and no background.
+/// Texels around charts get their neighbours' light, so that filters and mip levels don't mix in black,
+/// unless settings.alpha tells the covered texels. Uses of the settings `size`, `shade`, `surfaces`, `aovs`,
+/// `light_groups`, `exposure`, `alpha`, `count_lights` and `on_long_compile` only. With an eye
+/// ShadowMethod::kAuto is kExact. Throws as render() does, and InputError for an object that there isn't, one
+/// whose texture coordinates are missing or share texels (for less than a hundredth of them there is a
+/// warning in the statistics), layers that name objects or materials, and shadow maps with an eye.
+Picture bakeLight(Device& device, Scene scene, std::uint32_t object, const BakeSettings& bake,
+                  const RenderSettings& settings);
 
 }  // namespace luciole

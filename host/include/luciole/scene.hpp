@@ -80,7 +80,7 @@ struct Material {
 struct Mesh {
   std::string name = {};
   std::vector<glm::vec3> positions = {};
-  std::vector<glm::vec3> normals = {};  ///< unit, never missing: loaders make them
+  std::vector<glm::vec3> normals = {};  ///< unit, never missing: loaders make them, or addNormals()
   std::vector<glm::vec2> uvs = {};  ///< optional; v grows downwards: (0,0) is the picture's top left corner
   std::vector<glm::vec2> emission_uvs = {};  ///< optional; emission maps use these instead of `uvs`
   /// Optional; the direction of a normal map's red, unit, and in w the side of green: ±1 × cross(normal,
@@ -161,15 +161,30 @@ struct Fog {
   glm::vec3 color{0.0f};
 };
 
-/// A camera looks along its −z, x to the right, y up (OpenGL's eye space, which is also glTF's).
+/// Limits of Camera::shift and Camera::pixel_aspect.
+inline constexpr double kMostLensShift = 1e6, kMostPixelAspect = 1e6;
+
+/// A camera looks along its −z, x to the right, y up (OpenGL's eye space, which is also glTF's). Without skew
+/// a matrix of intrinsics, in pixels from the top left corner of a picture of w × h pixels, is
+///
+///     fx 0  cx      fov_y        = 2 atan(h / (2 fy))
+///     0  fy cy      shift        = (2 cx / w − 1, 1 − 2 cy / h)
+///     0  0  1       pixel_aspect = fy / fx
+///
+/// OpenCV counts from the middle of the top left pixel instead: there cx and cy are smaller by ½.
 struct Camera {
   std::string name = {};
   glm::dmat4 camera_to_world{1.0};  ///< a rigid motion: rotation and translation only
   bool orthographic = false;
   double fov_y = 0.7853981633974483;  ///< radians, perspective only
   double half_height = 1.0;           ///< metres, orthographic only
-  double near = 0.1;                  ///< metres, > 0
-  double far = 1000.0;                ///< metres, > near; of a perspective camera it may be infinite
+  /// Where the axis of the view meets the picture, from its middle: x to the right in halves of its width, y
+  /// upwards in halves of its height. Each from −kMostLensShift to kMostLensShift.
+  glm::dvec2 shift{0.0};
+  /// The width by the height of what a pixel shows, 1 / kMostPixelAspect to kMostPixelAspect.
+  double pixel_aspect = 1.0;
+  double near = 0.1;    ///< metres, > 0
+  double far = 1000.0;  ///< metres, > near; of a perspective camera it may be infinite
   /// The point that it looks at, world, metres; empty: not known. Cameras that orbit go around it.
   std::optional<glm::dvec3> target = {};
   glm::dvec3 up{0.0, 1.0, 0.0};  ///< upwards, world, of any length but 0; the axis of an orbit
@@ -222,6 +237,27 @@ Model addUserModel(const std::string& path, Scene& scene);
 /// Sets `specular` and `shininess` of materials with `facets` and no model of their own to what
 /// Model::kCookTorrance and Model::kWard take: f0, and 2/α² − 2. For scenes that are shown by one of them.
 void takeFacets(Scene& scene);
+
+/// Fills Mesh::normals of meshes that have none: smooth, the mean of the unit normals of the triangles that
+/// use a vertex, each weighted by its angle there (Thürmer & Wüthrich, "Computing Vertex Normals from
+/// Polygonal Facets", 1998). Triangles that share no vertex get flat normals. Throws InputError where a
+/// triangle refers to a vertex that there isn't. O(vertices + triangles).
+void addNormals(Scene& scene);
+
+/// Computes missing tangents at vertices of materials with a normal map, as M. Mikkelsen's MikkTSpace does
+/// for triangles, with v growing upwards ("Simulation of Wrinkled Surfaces Revisited", 2008, and his
+/// mikktspace.c, 2011, which glTF prescribes). Corners with the same position, normal and texture coordinates
+/// are welded. Around a welded corner, triangles that share an edge and have the same winding in texture
+/// space share a tangent: the mean of theirs, each projected into the plane of the normal and weighted by its
+/// angle there. Vertices with several tangents are duplicated. Triangles without area in texture space take
+/// the tangents of others around their corners; without any the tangent is zero, and the normal isn't bent.
+/// The scene must be valid. O(n log n).
+void addTangents(Scene& scene);
+
+/// The same for all materials, after those with a normal map, and for the meshes' divided forms: for shaders.
+/// What they get differs where texture coordinates jump along an edge but go on alike beyond it, as around a
+/// sphere: there the triangles of both sides share a tangent, so that highlights along it show no seam.
+void addAllTangents(Scene& scene);
 
 /// The indices of all objects of the scene.
 inline std::vector<std::uint32_t> allObjects(const Scene& scene) {

@@ -71,7 +71,7 @@ struct Stats {
   std::uint64_t triangles = 0;
   std::uint64_t lights = 0;
   std::vector<std::string> features = {};
-  std::vector<std::string> warnings = {};  ///< see Scene::warnings
+  std::vector<std::string> warnings = {};  ///< the scene's (Scene::warnings), then the picture's own
   int width = 0, height = 0, samples = 1;
   std::optional<double> measured_exposure = {};  ///< stops, if the picture's exposure was measured
   std::vector<std::pair<Stage, double>>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,13 @@ struct Texture {
   TextureKind kind = TextureKind::kColor;
   bool linear = false;  ///< the file's numbers are linear: levels[0] has their sRGB codes
 };
+
+/// A texture of a picture in memory, with its mip chain, as loaders make them of a file. `texels`: 4 × width
+/// × height, row-major, the top left first, RGBA, 16-bit unsigned normalized; an 8-bit code c is c × 257.
+/// Colours of kColor are sRGB codes, or with `linear` linear numbers; alpha is always linear. Normals and
+/// heights are always taken as the numbers that TextureKind says, and their alpha is ignored. Throws
+/// InputError for another number of texels and for sides that aren't 1 to 32768, and MachineError. O(texels).
+Texture makeTexture(int width, int height, std::span<const std::uint16_t> texels,
+                    TextureKind kind = TextureKind::kColor, bool linear = false, std::string name = {});
 
 }  // namespace luciole

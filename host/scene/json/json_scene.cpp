@@ -40,6 +40,15 @@ double readFovY(const JsonNode& node) {
   return degrees;
 }
 
+/// [x, y].
+glm::dvec2 readShift(const JsonNode& node) {
+  if (!node.json->is_array() || node.json->size() != 2) refuse(node, "expected an array of 2 numbers");
+  const auto at = [&](std::size_t i) {
+    return readNumber(element(node, i), -kMostLensShift, kMostLensShift);
+  };
+  return {at(0), at(1)};
+}
+
 /// [azimuth, elevation, distance].
 glm::dvec3 readOrbit(const JsonNode& node) {
   const glm::dvec3 orbit = readVector(node);
@@ -69,8 +78,8 @@ void readCameraMotion(const JsonNode& node, const CameraMotion& still, Camera& c
 
 /// Reads a camera and how it moves.
 void readCamera(const JsonNode& node, const std::string& name, Scene& scene) {
-  allowKeys(node, {"eye", "orbit", "target", "up", "fov_y", "orthographic", "near", "far", "keys",
-                   "interpolation"});
+  allowKeys(node, {"eye", "orbit", "target", "up", "fov_y", "orthographic", "shift", "pixel_aspect", "near",
+                   "far", "keys", "interpolation"});
   Camera camera;
   camera.name = name;
   CameraMotion still;
@@ -97,6 +106,9 @@ void readCamera(const JsonNode& node, const std::string& name, Scene& scene) {
     camera.orthographic = true;
     camera.half_height = readPositive(*n);
   }
+  if (const auto n = find(node, "shift")) camera.shift = readShift(*n);
+  if (const auto n = find(node, "pixel_aspect"))
+    camera.pixel_aspect = readNumber(*n, 1 / kMostPixelAspect, kMostPixelAspect);
   if (const auto n = find(node, "near")) camera.near = readPositive(*n);
   if (const auto n = find(node, "far")) camera.far = readPositive(*n);
   if (camera.far <= camera.near) {

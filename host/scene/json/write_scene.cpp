@@ -32,6 +32,14 @@ std::string vectorText(const glm::dvec3& v) { return fmt::format("[{}, {}, {}]",
 /// (place_limits.hpp).
 constexpr double kBeyondAll = 1e20;
 
+/// The degrees that are read as these radians, to the bit where they were typed as degrees.
+double degreesOf(double radians) {
+  double degrees = glm::degrees(radians);
+  for (const double near : {degrees, std::nextafter(degrees, 0.0), std::nextafter(degrees, 360.0)})
+    if (glm::radians(near) == radians) return near;
+  return degrees;
+}
+
 std::string cameraText(const Camera& camera) {
   const glm::dmat4& place = camera.camera_to_world;
   const glm::dvec3 eye = place[3];
@@ -39,8 +47,11 @@ std::string cameraText(const Camera& camera) {
   // view by about 2^-53.
   const double away = std::max({1.0, std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)});
   const glm::dvec3 target = eye - away * glm::dvec3(place[2]);
-  const std::string lens = camera.orthographic ? fmt::format("\"orthographic\": {}", camera.half_height)
-                                               : fmt::format("\"fov_y\": {}", glm::degrees(camera.fov_y));
+  std::string lens = camera.orthographic ? fmt::format("\"orthographic\": {}", camera.half_height)
+                                         : fmt::format("\"fov_y\": {}", degreesOf(camera.fov_y));
+  if (camera.shift != glm::dvec2(0))
+    lens += fmt::format(", \"shift\": [{}, {}]", camera.shift.x, camera.shift.y);
+  if (camera.pixel_aspect != 1) lens += fmt::format(", \"pixel_aspect\": {}", camera.pixel_aspect);
   return fmt::format("{{\"eye\": {}, \"target\": {}, \"up\": {}, {}, \"near\": {}, \"far\": {}}}",
                      vectorText(eye), vectorText(target), vectorText(place[1]), lens, camera.near,
                      std::min(camera.far, kBeyondAll));
@@ -48,14 +59,6 @@ std::string cameraText(const Camera& camera) {
 
 std::string cameraLine(const Camera& camera) {
   return fmt::format("  \"camera\": {},\n", cameraText(camera));
-}
-
-/// The degrees that are read as these radians, to the bit where they were typed as degrees.
-double degreesOf(double radians) {
-  double degrees = glm::degrees(radians);
-  for (const double near : {degrees, std::nextafter(degrees, 0.0), std::nextafter(degrees, 360.0)})
-    if (glm::radians(near) == radians) return near;
-  return degrees;
 }
 
 void appendSpot(const Light& light, std::string& text) {

@@ -36,7 +36,8 @@ Sphere sphereAround(const View& view, double near, double far) {
     return radius;
   };
   // The centre of the smallest sphere is the point of the view axis at equal distances from the near and the
-  // far corners. In a wide view that is beyond the far plane; then it is the middle of the far corners.
+  // far corners. In a wide view that is beyond the far plane; then it is the middle of the far corners. Where
+  // the axis isn't in the picture's middle, the sphere is a little larger than need be.
   const glm::dvec3 a = middleOf(0), b = middleOf(4);
   const double length2 = glm::dot(b - a, b - a);
   const double near2 = glm::dot(part[0] - a, part[0] - a), far2 = glm::dot(part[4] - b, part[4] - b);

@@ -21,8 +21,8 @@ double wantedSize(const Light& light, const PlanInput& input) {
   const glm::dvec3 place(input.camera.world_to_view * glm::dvec4(light.position, 1));
   for (const glm::dvec4& plane : cropPlanes(input.camera))
     if (glm::dot(plane, glm::dvec4(light.position, 1)) < -reach * glm::length(glm::dvec3(plane))) return 0;
-  // A pixel's height in metres, at one metre ahead if the view is a perspective one.
-  double pixel = 2 / (projection[1][1] * input.camera.size.y);
+  // A pixel's shorter side in metres, at one metre ahead if the view is a perspective one.
+  double pixel = std::min(input.camera.pixel_aspect, 1.0) * 2 / (projection[1][1] * input.camera.size.y);
   if (isPerspective(input.camera)) pixel *= std::max(glm::length(place), 0.5 * reach);
   const double tangent = usesCubeMap(light) ? 1.0 : std::tan(light.cutoff);
   return reach * tangent / pixel;

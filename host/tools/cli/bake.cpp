@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,10 @@
 #include "image/png_bytes.hpp"
 #include "image/srgb.hpp"
 #include "luciole/error.hpp"
-#include "raster/lift.hpp"
 #include "raster/surface_ids.hpp"
 #include "raster/texture_space.hpp"
-#include "render/change_surfaces.hpp"
-#include "render/render.hpp"
-#include "scene/bounds.hpp"
+#include "render/bake.hpp"
 #include "scene/gltf/write_gltf.hpp"
-#include "shade/features.hpp"
-#include "tools/bake/dilate.hpp"
 #include "tools/bake/write_baked.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/event_log.hpp"
@@ -41,11 +37,6 @@ struct BakeOptions : PictureOptions {
   bool irradiance = false;
 };
 
-/// Texels around charts that get their neighbours' light: a copy of a sixteenth of the size is clean, too.
-constexpr int kSeamTexels = 16;
-/// Texels may belong to two triangles where charts touch. Beyond this share of them charts lie on each other.
-constexpr double kMostOverlap = 0.01;
-
 /// Of a scene's objects, in the message about one that isn't there.
 constexpr std::size_t kNamesShown = 12;
 
@@ -63,51 +54,6 @@ std::uint32_t objectNamed(const Scene& scene, const std::string& name) {
   }
   if (count > 1) throw InputError(fmt::format("--object {}: {} objects have that name", name, count));
   return std::uint32_t(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-/// A camera that sees all of the object: from the eye, or parallel from outside of it.
-Camera bakeCamera(const Scene& scene, std::uint32_t object, const std::vector<double>& eye) {
-  const Bounds box = objectBounds(scene, scene.objects[object]);
-  Camera camera;
-  if (!eye.empty()) {
-    camera.camera_to_world[3] = glm::dvec4(eye[0], eye[1], eye[2], 1);
-    return camera;
-  }
-  const double radius = std::max(0.5 * glm::length(box.high - box.low), 1e-6);
-  const glm::dvec3 middle = 0.5 * (box.low + box.high);
-  camera.orthographic = true;
-  camera.half_height = radius;
-  camera.near = radius;
-  camera.far = 3 * radius;
-  camera.camera_to_world[3] = glm::dvec4(middle + glm::dvec3(0, 0, 2 * radius), 1);
-  return camera;
-}
-
-/// Takes from surfaces what depends on where they are seen from, or what colour they are.
-void keepLightOnly(const BakeOptions& options, GBuffer& gbuffer) {
-  if (options.eye.empty()) std::fill(gbuffer.specular.begin(), gbuffer.specular.end(), 0.0f);
-  if (!options.irradiance) return;
-  for (Plane* color : {&gbuffer.diffuse, &gbuffer.ambient}) std::fill(color->begin(), color->end(), 1.0f);
-  std::fill(gbuffer.emission.begin(), gbuffer.emission.end(), 0.0f);
-}
-
-std::vector<std::uint8_t> shownTexels(const GBuffer& gbuffer) {
-  std::vector<std::uint8_t> shows(std::size_t(gbuffer.width) * gbuffer.height);
-  for (int y = 0; y < gbuffer.height; ++y)
-    for (int x = 0; x < gbuffer.width; ++x)
-      shows[std::size_t(y) * gbuffer.width + x] =
-          std::isfinite(gbuffer.position[gbuffer.index(x, y) + 2 * gbuffer.pixels()]);
-  return shows;
-}
-
-/// Throws InputError where charts lie on each other; tells of texels where they touch.
-void checkOverlap(const BakeOptions& options, const TextureSpace& space) {
-  const std::string some = fmt::format("{} of {} texels of {} lie in more than one triangle",
-                                       space.overlapping, space.covered, options.object);
-  if (double(space.overlapping) > kMostOverlap * double(space.covered))
-    throw InputError(some +
-                     ": its charts overlap, expected texture coordinates of which no two places share one");
-  if (space.overlapping > 0 && !options.quiet) reportWarning(some);
 }
 
 /// The map as sRGB codes of its share of the brightest, which is returned.
@@ -142,7 +88,6 @@ void checkOptions(const BakeOptions& options) {
 
 void bake(CommandContext& context, BakeOptions& options) {
   const int frame = useFrame(options, "bake");
-  if (!options.eye.empty() && options.value("shadows") == "auto") options.settings["shadows"] = "exact";
   checkOptions(options);
   Stats stats;
   stats.command = context.command_line;
@@ -151,37 +96,17 @@ void bake(CommandContext& context, BakeOptions& options) {
   scene.fog = {};
   scene.background = glm::vec3(0.0f);
   RenderSettings settings = renderSettings(options, scene);
-  if (wantsSurfaceIds(settings))
-    throw InputError("--aov: a map shows one object; render makes object_id, material_id and cryptomatte");
   const std::uint32_t object = objectNamed(scene, options.object);
-  settings.camera = bakeCamera(scene, object, options.eye);
   logEvent("frame_begun", {{"frame", frame}});
-  const SurfaceTraits traits = materialTraits(scene);
-  const SurfaceProgram program = surfaceProgram(settings.surfaces);
-  settings.surfaces.clear();  // they come before what is kept of the light
-  TextureSpace space = timed(stats, Stage::kRasterize, [&] {
-    PlaneSet planes{.specular = true,
-                    .ambient = true,
-                    .emission = true,
-                    .geometric_normal = !traits.normal_maps,
-                    .unbent_normal = traits.normal_maps,
-                    .lift = hasBentCorners(scene),
-                    .model = traits.models.to_ulong() > 1};
-    addGroups(program, planes);
-    return rasterizeTextureSpace(scene, object, settings.size, settings.camera, planes);
-  });
-  checkOverlap(options, space);
-  prepareForSurfaces(program, space.gbuffer);
-  changeSurfaces(context.device, program, space.gbuffer, stats);
-  keepLightOnly(options, space.gbuffer);
   ProgressLine progress(options.quiet);
   settings.on_long_compile = compileReporter(progress);
-  Image map = shadeGBuffer(context.device, scene, space.gbuffer, settings, stats);
+  BakeSettings light{.irradiance = options.irradiance};
+  if (!options.eye.empty()) light.eye = {options.eye[0], options.eye[1], options.eye[2]};
+  const Image map = bakeMap(context.device, scene, object, light, settings, stats);
   progress.clear();
+  for (std::size_t i = scene.warnings.size(); i < stats.warnings.size() && !options.quiet; ++i)
+    reportWarning(stats.warnings[i]);
   logDevice(context.device.description);
-  timed(stats, Stage::kResolve, [&] {
-    if (!options.isOn("alpha")) dilate(map, shownTexels(space.gbuffer), kSeamTexels);
-  });
   const std::uint64_t limited = timed(stats, Stage::kWrite, [&] {
     if (!options.gltf.empty()) {
       std::vector<std::uint8_t> codes;
@@ -196,7 +121,7 @@ void bake(CommandContext& context, BakeOptions& options) {
       return std::uint64_t(0);
     }
     return writeImage(map, options.output, pictureMetadata(stats, &context.device),
-                      writeOptions(options, space.gbuffer));
+                      writeOptions(options, std::nullopt, settings.size, {0, 0}));
   });
   reportHalves(options, limited, stats);
   reportFaults(options, stats);

@@ -80,6 +80,8 @@ Json cameraJson(const Camera& camera) {
     json["half_height"] = camera.half_height;
   else
     json["fov_y_degrees"] = glm::degrees(camera.fov_y);
+  if (camera.shift != glm::dvec2(0)) json["shift"] = {camera.shift.x, camera.shift.y};
+  if (camera.pixel_aspect != 1) json["pixel_aspect"] = camera.pixel_aspect;
   return json;
 }
 
@@ -101,8 +103,13 @@ std::string planesText(const Camera& camera) {
 }
 
 std::string openingText(const Camera& camera) {
-  return camera.orthographic ? fmt::format("parallel, {:.6g} m high", 2 * camera.half_height)
-                             : fmt::format("{:.4g} degrees high", glm::degrees(camera.fov_y));
+  std::string text = camera.orthographic ? fmt::format("parallel, {:.6g} m high", 2 * camera.half_height)
+                                         : fmt::format("{:.4g} degrees high", glm::degrees(camera.fov_y));
+  if (camera.shift != glm::dvec2(0))
+    text += fmt::format(", shifted by {:.4g}, {:.4g}", camera.shift.x, camera.shift.y);
+  if (camera.pixel_aspect != 1)
+    text += fmt::format(", pixels {:.6g} times as wide as high", camera.pixel_aspect);
+  return text;
 }
 
 void addShape(const Scene& scene, const SceneInfo& info, Report& report) {

@@ -16,6 +16,7 @@ constexpr OptionName kOptionNames[] = {
     {"settings.crop: ", "--crop "},
     {"settings.size", "--size"},
     {"settings.shade.confidence: ", "--confidence "},
+    {"settings.aovs: ", "--aov: "},
     {"changes: ", "--set "},
     {"device: ", "--device ", " (see luciole devices)"},
     {"options.format", "--format"},

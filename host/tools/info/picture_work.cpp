@@ -57,7 +57,8 @@ std::vector<SeenPoint> seenPoints(const Scene& scene, const RenderSettings& sett
       const glm::dvec3 place = vectorAt(seen.position, i), normal = vectorAt(seen.normal, i);
       if (!std::isfinite(place.z)) continue;
       const double pixel =
-          2 * (camera.orthographic ? camera.half_height : -place.z * std::tan(camera.fov_y / 2)) /
+          2 * std::sqrt(camera.pixel_aspect) *
+          (camera.orthographic ? camera.half_height : -place.z * std::tan(camera.fov_y / 2)) /
           settings.size.y;
       // Half the diagonal of what a square of pixels shows, longer the more the surface slants.
       const glm::dvec3 back = camera.orthographic ? glm::dvec3(0, 0, 1) : -glm::normalize(place);

@@ -77,6 +77,8 @@ Json viewCameraJson(const Camera& camera, const glm::dvec3& target) {
     json["orthographic"] = camera.half_height;
   else
     json["fov_y"] = glm::degrees(camera.fov_y);
+  if (camera.shift != glm::dvec2(0)) json["shift"] = {camera.shift.x, camera.shift.y};
+  if (camera.pixel_aspect != 1) json["pixel_aspect"] = camera.pixel_aspect;
   return json;
 }
 
@@ -101,7 +103,8 @@ bool moveCamera(const Json& gesture, double length, Json& camera) {
   } else if (kind == "pan") {
     const auto drag = amounts(2);
     const double height = heightAt(camera, glm::length(target - eye));
-    const glm::dvec3 step = height * (drag[1] * glm::cross(right, ahead) - drag[0] * right);
+    const double width = height * camera.value("pixel_aspect", 1.0);
+    const glm::dvec3 step = height * drag[1] * glm::cross(right, ahead) - width * drag[0] * right;
     eye += step;
     target += step;
   } else if (kind == "dolly") {
@@ -139,7 +142,8 @@ std::string moveLight(const Json& gesture, const Scene& scene, const Camera& cam
   const glm::dvec3 eye(camera.camera_to_world[3]);
   const double ahead = std::max(glm::dot(light.position - eye, -axes[2]), camera.near);
   const double height = camera.orthographic ? 2 * camera.half_height : 2 * ahead * std::tan(camera.fov_y / 2);
-  const glm::dvec3 moved = light.position + height * (drag[1] * axes[0] - drag[2] * axes[1]);
+  const glm::dvec3 moved =
+      light.position + height * (camera.pixel_aspect * drag[1] * axes[0] - drag[2] * axes[1]);
   return fmt::format("lights[{}].position={}", index, listOf(moved).dump());
 }
 

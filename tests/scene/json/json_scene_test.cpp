@@ -65,7 +65,7 @@ TEST_F(JsonScene, EmptySceneHasTheDocumentedDefaults) {
 
 TEST_F(JsonScene, ReadsTheWholeOfAScene) {
   const Scene scene = load(R"({ // a comment
-    "camera": {"eye": [0,0,5], "target": [0,0,0], "fov_y": 90, "near": 0.5, "far": 50},
+    "camera": {"eye": [0,0,5], "target": [0,0,0], "fov_y": 90, "near": 0.5, "far": 50, "shift": [0.25, -1.5], "pixel_aspect": 1.1},
     "size": [640, 480], "background": [0.1,0.2,0.3], "ambient": 0.25, "lighting": false,
     "fog": {"mode": "exp2", "density": [0.1,0.2,0.3], "color": [1,1,1], "distance": "radial"},
     "materials": {"red": {"diffuse": [1,0,0], "specular": 0.5, "shininess": 32, "double_sided": true}},
@@ -79,6 +79,8 @@ TEST_F(JsonScene, ReadsTheWholeOfAScene) {
   EXPECT_EQ(scene.cameras[0].camera_to_world[3], glm::dvec4(0, 0, 5, 1));
   EXPECT_EQ(scene.cameras[0].camera_to_world[2], glm::dvec4(0, 0, 1, 0));
   EXPECT_EQ(scene.cameras[0].fov_y, glm::radians(90.0));
+  EXPECT_EQ(scene.cameras[0].shift, glm::dvec2(0.25, -1.5));
+  EXPECT_EQ(scene.cameras[0].pixel_aspect, 1.1);
   EXPECT_EQ(scene.size, glm::ivec2(640, 480));
   EXPECT_EQ(scene.ambient, glm::vec3(0.25f));
   EXPECT_FALSE(scene.lighting);
@@ -273,6 +275,10 @@ TEST_F(JsonScene, RefusesWhatCannotBeDrawn) {
       camera(R"("target": [0,0,0], "fov_y": 0)"),
       camera(R"("target": [0,0,0], "fov_y": 180)"),
       camera(R"("target": [0,0,0], "fov_y": 45, "orthographic": 1)"),
+      camera(R"("target": [0,0,0], "shift": 0.5)"),
+      camera(R"("target": [0,0,0], "shift": [0,0,0])"),
+      camera(R"("target": [0,0,0], "shift": [0,1.1e6])"),
+      camera(R"("target": [0,0,0], "pixel_aspect": 0)"),
       camera(R"("target": [0,0,0], "near": 0)"),
       camera(R"("target": [0,0,0], "near": 5, "far": 5)"),
       camera(R"("up": [0,1,0])"),
@@ -568,6 +574,8 @@ TEST_F(JsonScene, WrittenCamerasReadBackWithinTheirRounding) {
       camera.orthographic = orthographic;
       camera.fov_y = 0.7;
       camera.half_height = 3.3;
+      camera.shift = {1e-3 * away, -0.1};
+      camera.pixel_aspect = 1.1;
       camera.near = 0.123;
       camera.far = 4.56e7;
       const Camera read = load(meshWithLights("t.obj", camera, {})).cameras.front();
@@ -578,6 +586,8 @@ TEST_F(JsonScene, WrittenCamerasReadBackWithinTheirRounding) {
       EXPECT_EQ(read.orthographic, orthographic);
       EXPECT_NEAR(read.fov_y, orthographic ? Camera{}.fov_y : 0.7, 4 * 0x1p-53);
       EXPECT_EQ(read.half_height, orthographic ? 3.3 : Camera{}.half_height);
+      EXPECT_EQ(read.shift, camera.shift);
+      EXPECT_EQ(read.pixel_aspect, 1.1);
       EXPECT_EQ(read.near, 0.123);
       EXPECT_EQ(read.far, 4.56e7);
     }

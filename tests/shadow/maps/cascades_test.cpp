@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "raster/rasterize.hpp"
 #include "shadow/maps/shadow_scenes.hpp"
@@ -45,9 +46,11 @@ std::vector<glm::dvec3> seenPoints(const Scene& scene, const View& view) {
 }
 
 TEST(Cascades, CoverAllThatIsSeenTheFinestFirst) {
-  for (const bool orthographic : {false, true}) {
+  for (const auto& [orthographic, shift] :
+       {std::pair(false, glm::dvec2(0)), {true, glm::dvec2(0)}, {false, {-0.8, 0.4}}, {true, {-0.8, 0.4}}}) {
     Scene scene = terrainScene();
     scene.lights.resize(1);
+    scene.cameras.front().shift = shift;
     scene.cameras.front().orthographic = orthographic;
     scene.cameras.front().half_height = 2;
     const View view = cameraView(scene.cameras.front(), {200, 100});

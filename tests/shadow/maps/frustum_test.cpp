@@ -16,6 +16,7 @@ const Bounds kBox{{-1, -2, -3}, {4, 5, 6}};
 View viewOf(bool orthographic) {
   Camera camera;
   camera.orthographic = orthographic;
+  camera.shift = {0.4, -0.3};
   camera.camera_to_world = glm::rotate(glm::translate(glm::dmat4(1.0), {3, 2, 9}), 0.4, {0.0, 1.0, 0.0});
   camera.near = 0.5;
   camera.far = 20;

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "luciole/image.hpp"
+#include "luciole/load_scene.hpp"
+#include "luciole/render.hpp"
 #include "tools/cli/program_test.hpp"
 
 namespace luciole::test {
@@ -127,6 +129,17 @@ TEST_F(BakeCommand, EachTexelIsTheLightAtItsPlaceAndFogIsNone) {
             << x << " " << y;
       }
     }
+}
+
+TEST_F(BakeCommand, TheLibraryMakesTheSameBits) {
+  writeFloor();
+  succeed("luciole bake floor.json --object floor --size 33x20 --eye 0.5 1.5 1 --quiet -o seen.exr");
+  Device device = Device::open();
+  const Scene scene = loadScene(folder / "floor.json");
+  RenderSettings settings{.size{33, 20}};
+  settings.shade.shadows = ShadowMethod::kAuto;
+  const Picture map = bakeLight(device, scene, 0, {.eye = glm::dvec3(0.5, 1.5, 1)}, settings);
+  EXPECT_EQ(map.image.pixels, readImage(folder / "seen.exr").pixels);
 }
 
 /// A pixel's three numbers from a channel on.

@@ -7,6 +7,7 @@ namespace {
 
 TEST(OptionNames, TakeThePlaceOfFieldsOfTheLibrary) {
   EXPECT_EQ(withOptionNames("settings.crop: 0,0,9,9: not inside"), "--crop 0,0,9,9: not inside");
+  EXPECT_EQ(withOptionNames("settings.aovs: a map shows one object"), "--aov: a map shows one object");
   EXPECT_EQ(withOptionNames("a.png: .png has no 16-bit floats (options.half), expected .exr"),
             "a.png: .png has no 16-bit floats (--half), expected .exr");
   EXPECT_EQ(withOptionNames("device: 7: there are 2 devices"),

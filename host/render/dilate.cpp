@@ -1,4 +1,4 @@
-#include "tools/bake/dilate.hpp"
+#include "render/dilate.hpp"
 
 #include <tbb/parallel_for.h>
 
