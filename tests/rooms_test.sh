@@ -65,6 +65,11 @@ PublicHeadersIncludeEachOtherAlone() {
     (($(find host/include -name '*.hpp' | wc -l) <= 25))
 }
 
+# It is built against an installed library, too.
+PythonKnowsPublicHeadersAlone() {
+  ! grep -rE '^#include' host/python/src | grep -vE '#include (<[a-z_]+>|<(nanobind|glm|luciole)/[a-z_/.]+>|"[a-z_]+[.]hpp")$'
+}
+
 # An installed library has no other files.
 PublicHeadersNameNoFileOfARoom() {
   ! sed 's|^#include.*||; s|luciole/[a-z_]*[.]hpp||g' host/include/luciole/*.hpp |
@@ -79,7 +84,7 @@ RoomsIncludeOnlyFromWhatTheyStandOn() {
     other=${other#*\"}
     [[ $other == luciole/* ]] && other=$(roomOfPublic "$other")
     other=${other%/*}
-    [[ $room == include/luciole ]] && continue
+    [[ $room == include/luciole || $room == python/src ]] && continue
     case $other in . | kernels | kernels/* | "$room") continue ;; esac
     [[ $room == tools/cli ]] && continue
     [[ ${stands_on[$room]-} == *" $other "* ]] || {

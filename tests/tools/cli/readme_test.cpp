@@ -20,6 +20,7 @@ const std::string kSource = LUCIOLE_SOURCE_DIR;
 /// Every text for readers, but for the list of changes.
 constexpr const char* kReadmes[] = {"README.md",
                                     "host/README.md",
+                                    "host/python/README.md",
                                     "host/tools/bench/README.md",
                                     "host/tools/cli/README.md",
                                     "host/tools/scale/README.md",
@@ -50,6 +51,8 @@ constexpr NotRun kNotRun[] = {
     {"build/tests/", "is not there unless all is built, and takes minutes"},
     {"ninja ", "builds"},
     {"cmake ", "builds all anew"},
+    {"python3 -m venv ", "takes PyPI; tests/python/python_test.sh does so where it is reached"},
+    {"venv/bin/", "takes PyPI; tests/python/python_test.sh does so where it is reached"},
     {"tests/bare_root.sh", "takes root, a network and minutes"},
     {"tests/mutate_kernels.py", "takes hours"},
     {"tests/tidy.sh", "takes clang-tidy 14 and minutes"},

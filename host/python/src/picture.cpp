@@ -1,0 +1,266 @@
+// Pictures, and what is made of scenes: G-buffers, references, light maps.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <luciole/error.hpp>
+#include <luciole/reference.hpp>
+#include <luciole/render.hpp>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "picture_handle.hpp"
+#include "scene_handle.hpp"
+
+namespace luciole::python {
+namespace {
+
+/// What Python asks for: see luciole/settings.py.
+struct Request {
+  SettingValues values = {};  ///< of the settings that were given, and initial ones
+  bool shadows_given = false;
+  int camera_index = 0;
+  std::optional<Camera> camera = {};                     ///< instead of a camera of the scene's
+  std::vector<std::string> surfaces = {}, screens = {};  ///< files
+  nb::object progress = nb::none();
+};
+
+const std::string& valueOf(const Request& request, std::string_view name) {
+  static const std::string none;
+  const auto found = request.values.find(name);
+  return found == request.values.end() ? none : found->second;
+}
+
+/// The changes of a scene that a request means for its picture alone.
+class ChangeForPicture {
+ public:
+  ChangeForPicture(const Request& request, Scene& scene) : scene_(scene) {
+    const std::string& shadows = valueOf(request, "shadows");
+    for (const Light& light : scene.lights) marks_.push_back(light.shadow);
+    castShadows(valueOf(request, "cast_shadows"), request.shadows_given && shadows != "off", scene);
+    const std::string& model = valueOf(request, "model");
+    const bool is_file = std::string_view(model).ends_with(kShaderExtension);
+    const bool takes_facets = model == "cook-torrance" || model == "ward";
+    if (!is_file && !takes_facets) return;
+    models_ = scene.user_models;
+    materials_ = scene.materials;
+    has_materials_ = true;
+    if (takes_facets) takeFacets(scene);
+    if (is_file) model_ = addUserModel(model, scene);
+  }
+  ~ChangeForPicture() {
+    for (std::size_t i = 0; i < marks_.size(); ++i) scene_.lights[i].shadow = marks_[i];
+    if (!has_materials_) return;
+    scene_.user_models = std::move(models_);
+    scene_.materials = std::move(materials_);
+  }
+  ChangeForPicture(const ChangeForPicture&) = delete;
+  ChangeForPicture& operator=(const ChangeForPicture&) = delete;
+
+  /// Of a file that the request names.
+  const std::optional<Model>& model() const { return model_; }
+
+ private:
+  Scene& scene_;
+  std::vector<bool> marks_;
+  std::vector<Shader> models_;
+  std::vector<Material> materials_;
+  bool has_materials_ = false;
+  std::optional<Model> model_;
+};
+
+Model modelNamed(const std::string& name) {
+  for (std::size_t i = 0; i < kNumberOfModels; ++i)
+    if (name == modelName(Model(i))) return Model(i);
+  throw InputError("model: '" + name + "' is no model, and no file *.clh");
+}
+
+/// Ends a picture on Ctrl-C, and tells how far it is. It is called without Python's lock, in the thread that
+/// asked.
+std::function<void(int, int)> reporterOf(const Request& request) {
+  return [progress = request.progress.ptr()](int done, int all) {
+    const nb::gil_scoped_acquire locked;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (progress == Py_None) return;
+    in_callback = true;
+    try {
+      nb::borrow<nb::object>(progress)(done, all);
+    } catch (...) {
+      in_callback = false;
+      throw;
+    }
+    in_callback = false;
+  };
+}
+
+/// A picture that is long enough that Ctrl-C should end it in between is made in bands. Their height must be
+/// a multiple of 64 for clusters of lights to be the same.
+constexpr int kBandHeight = 128;
+constexpr double kLongPicture = 8e6;
+
+int bandHeight(const RenderSettings& settings, std::size_t lights) {
+  const double work =
+      double(settings.size.x) * settings.size.y * settings.samples * (1 + double(lights) / 1000);
+  return work < kLongPicture || settings.wants(Aov::kListLength) ? 0 : kBandHeight;
+}
+
+RenderSettings settingsOf(const Request& request, const Scene& scene, const std::optional<Model>& model) {
+  RenderSettings settings;
+  if (scene.size) settings.size = *scene.size;
+  applySettings(request.values, settings);
+  settings.shade.model = model ? *model : modelNamed(valueOf(request, "model"));
+  if (request.camera)
+    settings.camera = *request.camera;
+  else if (std::size_t(request.camera_index) < scene.cameras.size())
+    settings.camera = scene.cameras[std::size_t(request.camera_index)];
+  else
+    throw InputError("camera: the scene has none, expected camera=luciole.Camera(…) or scene.cameras = […]");
+  for (const std::string& path : request.surfaces)
+    settings.surfaces.push_back(readShader(path, ShaderKind::kSurface));
+  for (const std::string& path : request.screens)
+    settings.screens.push_back(readShader(path, ShaderKind::kScreen));
+  settings.count_lights = valueOf(request, "count_lights") == "on";
+  settings.on_pass = reporterOf(request);
+  return settings;
+}
+
+double millisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Calls make(scene, settings) in a turn, with what the request changes of the scene.
+template <class Make>
+auto makeOf(SceneHandle& handle, const Request& request, const Make& make) {
+  const nb::gil_scoped_release unlocked;
+  const auto turn = handle.turn();
+  const ChangeForPicture change(request, handle.scene());
+  return make(handle.scene(), settingsOf(request, handle.scene(), change.model()));
+}
+
+std::unique_ptr<PictureHandle> render(SceneHandle& handle, const std::shared_ptr<Device>& device,
+                                      const Request& request) {
+  const nb::gil_scoped_release unlocked;
+  const auto turn = handle.turn();
+  const auto start = std::chrono::steady_clock::now();
+  auto picture = std::make_unique<PictureHandle>();
+  handle.withRenderer(device, [&](Renderer& renderer) {
+    Scene& scene = renderer.scene();
+    const ChangeForPicture change(request, scene);
+    RenderSettings settings = settingsOf(request, scene, change.model());
+    settings.band_height = bandHeight(settings, scene.lights.size());
+    std::optional<double> stops;
+    Stats stats;
+    if (valueOf(request, "exposure") == "auto") {
+      stops = renderer.measureExposure(settings, stats);
+      settings.exposure = float(*stops);
+    }
+    picture->picture = renderer.render(settings);
+    picture->picture.stats.measured_exposure = stops;
+  });
+  picture->took(millisecondsSince(start));
+  return picture;
+}
+
+std::unique_ptr<PictureHandle> shadeGBuffer(SceneHandle& handle, const std::shared_ptr<Device>& device,
+                                            const GBuffer& gbuffer, Request request) {
+  if (!request.camera) request.camera = gbuffer.camera;
+  return makeOf(handle, request, [&](const Scene& scene, const RenderSettings& settings) {
+    const auto start = std::chrono::steady_clock::now();
+    auto picture = std::make_unique<PictureHandle>();
+    picture->picture = shade(*device, scene, gbuffer, settings);
+    picture->took(millisecondsSince(start));
+    return picture;
+  });
+}
+
+std::unique_ptr<PictureHandle> bake(SceneHandle& handle, const std::shared_ptr<Device>& device,
+                                    std::uint32_t object, const std::optional<std::array<double, 3>>& eye,
+                                    bool irradiance, Request request) {
+  request.camera = Camera{};  // it isn't asked for
+  return makeOf(handle, request, [&](const Scene& scene, const RenderSettings& settings) {
+    const auto start = std::chrono::steady_clock::now();
+    BakeSettings light{.irradiance = irradiance};
+    if (eye) light.eye = {(*eye)[0], (*eye)[1], (*eye)[2]};
+    auto picture = std::make_unique<PictureHandle>();
+    picture->picture = bakeLight(*device, scene, object, light, settings);
+    picture->took(millisecondsSince(start));
+    return picture;
+  });
+}
+
+nb::ndarray<nb::numpy, double> reference(SceneHandle& handle,
+                                         const In<std::int32_t, nb::shape<-1, 2>>& pixels,
+                                         const Request& request) {
+  std::vector<double> colors;
+  makeOf(handle, request, [&](const Scene& scene, const RenderSettings& settings) {
+    std::vector<glm::ivec2> places;
+    for (std::size_t i = 0; i < pixels.shape(0); ++i)
+      places.emplace_back(pixels.data()[2 * i], pixels.data()[2 * i + 1]);
+    for (const glm::dvec3& color : referencePicture(scene, settings, places))
+      colors.insert(colors.end(), {color.x, color.y, color.z});
+  });
+  const std::size_t count = colors.size() / 3;
+  return arrayOf(std::move(colors), {count, 3});
+}
+
+Request requestOf(const std::map<std::string, std::string>& values, bool shadows_given, int camera_index,
+                  const std::optional<Camera>& camera, const std::vector<std::string>& surfaces,
+                  const std::vector<std::string>& screens, const nb::object& progress) {
+  Request request{.shadows_given = shadows_given,
+                  .camera_index = camera_index,
+                  .camera = camera,
+                  .surfaces = surfaces,
+                  .screens = screens,
+                  .progress = progress};
+  request.values.insert(values.begin(), values.end());
+  return request;
+}
+
+}  // namespace
+
+void bindPictures(nb::module_& module) {
+  nb::class_<Request>(module, "Request");
+  module.def("request", requestOf, nb::arg("values"), nb::arg("shadows_given"), nb::arg("camera_index"),
+             nb::arg("camera").none(), nb::arg("surfaces"), nb::arg("screens"), nb::arg("progress").none());
+  nb::class_<Device>(module, "Device").def_prop_ro("name", [](const Device& device) {
+    return device.description().name;
+  });
+  module.def("open_device", [](const std::string& selector) {
+    const nb::gil_scoped_release unlocked;
+    return std::make_shared<Device>(Device::open(selector));
+  });
+  module.def("keep", [](SceneHandle& handle, const std::shared_ptr<Device>& device) {
+    const nb::gil_scoped_release unlocked;
+    const auto turn = handle.turn();
+    handle.keep(device);
+  });
+  module.def("render", render);
+  module.def("shade", shadeGBuffer);
+  module.def("bake", bake, nb::arg("scene"), nb::arg("device"), nb::arg("object"), nb::arg("eye").none(),
+             nb::arg("irradiance"), nb::arg("request"));
+  module.def("reference", reference);
+  module.def("window", [](SceneHandle& handle, const Request& request) {
+    return makeOf(handle, request, [](const Scene&, const RenderSettings& settings) {
+      return settings.crop ? std::array{settings.crop->width, settings.crop->height}
+                           : std::array{settings.size.x, settings.size.y};
+    });
+  });
+  module.def("draw_gbuffer",
+             [](SceneHandle& handle, const std::shared_ptr<Device>& device, const Request& request) {
+               return makeOf(handle, request, [&](const Scene& scene, const RenderSettings& settings) {
+                 return std::make_unique<GBuffer>(drawGBuffer(*device, scene, settings));
+               });
+             });
+}
+
+}  // namespace luciole::python

@@ -1,0 +1,40 @@
+"""Every cell of the notebooks and of the README runs."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+PLACE = Path(__file__).resolve().parents[2] / "host" / "python"
+NOTEBOOKS = sorted(PLACE.glob("notebooks/*.ipynb"))
+
+
+def run_cells(cells: list[str], name: str) -> None:
+    names: dict[str, object] = {"__name__": "__main__"}
+    for number, cell in enumerate(cells):
+        exec(compile(cell, f"{name}, cell {number}", "exec"), names)  # noqa: S102
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    notebook = json.loads(path.read_text())
+    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert len(cells) >= 5
+    assert not any(cell.get("outputs") for cell in notebook["cells"]), "what a run prints stays out of the checkout"
+    run_cells(cells, path.name)
+    assert not list(tmp_path.iterdir()), "it leaves nothing behind"
+
+
+def test_there_are_three_notebooks() -> None:
+    assert [path.stem for path in NOTEBOOKS] == ["data_set", "many_lights", "your_method"]
+
+
+def test_the_readmes_cells_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("tqdm")
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    cells = re.findall(r"^```python\n(.*?)^```", (PLACE / "README.md").read_text(), re.M | re.S)
+    assert len(cells) >= 8
+    run_cells(cells, "README.md")
