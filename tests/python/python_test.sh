@@ -52,7 +52,8 @@ runPytest() {
   folder=$(mktemp -d "${TMPDIR:-/tmp}/luciole-test-XXXXXX")
   trap 'rm -rf "$folder"' EXIT
   cd "$folder"
-  "$@" "$python" -m pytest -p no:cacheprovider --rootdir="$checkout/tests/python" --basetemp="$folder/pytest" -q "$checkout/$file"
+  # A process that a sanitizer ends prints why, past what pytest captures.
+  "$@" "$python" -m pytest -p no:cacheprovider --capture=sys --rootdir="$checkout/tests/python" --basetemp="$folder/pytest" -q "$checkout/$file"
 }
 
 # Built it would be the same objects again, which takes minutes. Ninja knows what each was made of.
