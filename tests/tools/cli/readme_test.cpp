@@ -53,6 +53,8 @@ constexpr NotRun kNotRun[] = {
     {"cmake ", "builds all anew"},
     {"python3 -m venv ", "takes PyPI; tests/python/python_test.sh does so where it is reached"},
     {"venv/bin/", "takes PyPI; tests/python/python_test.sh does so where it is reached"},
+    {"python -m build", "takes PyPI and minutes; tests/python/python_test.sh says it"},
+    {"auditwheel ", "takes PyPI and a wheel"},
     {"tests/bare_root.sh", "takes root, a network and minutes"},
     {"tests/mutate_kernels.py", "takes hours"},
     {"tests/tidy.sh", "takes clang-tidy 14 and minutes"},
