@@ -73,6 +73,13 @@ PlanePointers shadows(FirstSample& sample) {
   return {sample.computed.emplace_back(n, 1.0f).data()};
 }
 
+/// The G-buffer's indices; -1 for background, and everywhere where it has none, until they are filled in.
+PlanePointers ids(FirstSample& sample, const IndexPlane& indices) {
+  return compute<1>(sample, [&](std::size_t i) {
+    return std::array{indices.empty() || indices[i] == kNoIndex ? -1.0f : float(indices[i])};
+  });
+}
+
 }  // namespace
 
 const std::array<AovRow, kAovCount>& aovTable() {
@@ -102,8 +109,16 @@ const std::array<AovRow, kAovCount>& aovTable() {
       {.aov = Aov::kSpecularLight, .name = "specular_light"},
       {.aov = Aov::kEmission, .name = "emission"},
       {.aov = Aov::kFog, .name = "fog"},
-      {.aov = Aov::kObjectId, .name = "object_id", .channels = {"object_id"}, .initial = -1.0f},
-      {.aov = Aov::kMaterialId, .name = "material_id", .channels = {"material_id"}, .initial = -1.0f},
+      {.aov = Aov::kObjectId,
+       .name = "object_id",
+       .channels = {"object_id"},
+       .planes = [](FirstSample& sample) { return ids(sample, sample.gbuffer.object); },
+       .computed_floats = 1},
+      {.aov = Aov::kMaterialId,
+       .name = "material_id",
+       .channels = {"material_id"},
+       .planes = [](FirstSample& sample) { return ids(sample, sample.gbuffer.material); },
+       .computed_floats = 1},
       {.aov = Aov::kCryptoObject,
        .name = "cryptomatte_object",
        .channels = cryptomatteChannels(kCryptoObject)},

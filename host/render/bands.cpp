@@ -46,7 +46,7 @@ struct BandMaker {
     } else {
       image = lightAllSamples(picture, band, triangles, [&] { step(rows.height); });
     }
-    if (wantsSurfaceIds(picture.settings)) {
+    if (wantsSurfaceIds(picture.settings) && !picture.plan.ids_of_gbuffer) {
       const auto channel = [&](Aov aov) { return channelOf(image, picture.settings, aov); };
       const SurfaceIdChannels channels{channel(Aov::kObjectId), channel(Aov::kMaterialId),
                                        channel(Aov::kCryptoObject), channel(Aov::kCryptoMaterial)};

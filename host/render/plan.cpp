@@ -144,6 +144,11 @@ PicturePlan planPicture(const Scene& scene, const RenderSettings& settings) {
   const ScreenGroups groups = groupsOf(plan.screens);
   plan.planes.object |= groups.object;
   plan.planes.material |= groups.material;
+  // Objects that fog hides aren't in the G-buffer, and Cryptomattes need all samples.
+  plan.ids_of_gbuffer = settings.samples == 1 && scene.fog.mode == FogMode::kNone &&
+                        !settings.wants(Aov::kCryptoObject) && !settings.wants(Aov::kCryptoMaterial);
+  plan.planes.object |= plan.ids_of_gbuffer && settings.wants(Aov::kObjectId);
+  plan.planes.material |= plan.ids_of_gbuffer && settings.wants(Aov::kMaterialId);
   plan.surface = program;
   if (settings.shading != Shading::kGouraud) addGroups(program, plan.planes);
   addProgram(plan.pixels, plan.programs);

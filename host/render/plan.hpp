@@ -27,6 +27,7 @@ struct PicturePlan {
   std::vector<FeatureSet> programs;  ///< feature sets of all passes, each once
   double pairs = 0;                  ///< of a point and a light that lights it, about
   std::vector<ScreenProgram> screens;
+  bool ids_of_gbuffer = false;  ///< the layers object_id and material_id show planes of the G-buffer
   bool shares_samples = false;  ///< samples that see the same surface share a shading point
   std::size_t pixel_bytes = 0;  ///< see bytesPerPixel
   int band_height = 0;          ///< rows of a band, at most

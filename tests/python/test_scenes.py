@@ -178,6 +178,26 @@ def test_normals_are_smooth_where_none_are_given() -> None:
     assert np.quantile(cosine, 0.01) > np.cos(np.pi / 32)
 
 
+def test_edges_are_sharp_where_boxes_have_them() -> None:
+    """Eight corners that all faces share: each face's normal is its own. And a box that is below another is in its shadow."""
+    x = np.array([(i & 1, i >> 1 & 1, i >> 2) for i in range(8)], dtype=np.float32) * 2 - 1
+    faces = [(0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6)]
+    box = luciole.Mesh(x, faces)
+    below = luciole.Mesh(x * (4, 0.1, 4) - (0, 3, 0), faces)
+    lights = luciole.PointLights([(0.0, 5, 0)], 20.0, cast_shadows=True)
+    camera = luciole.Camera.look_at((6, 2, 9), (0, -1, 0), fov_y=60)
+    picture = luciole.render(luciole.Scene([box, below], lights, camera), size=(64, 64), aovs=["normal", "object_id", "position"])
+    seen = picture["object_id"] >= 0
+    # They went through view space: a rotation rounds by some 2^-23.
+    np.testing.assert_allclose(np.sort(np.abs(picture["normal"][seen]), axis=1), np.tile((0, 0, 1), (seen.sum(), 1)), atol=1e-6)
+    floor = (picture["object_id"] == 1) & (picture["normal"][:, :, 1] > 0.9)
+    # The light is 5 m up, the box 1 m, the floor 2.9 m below: the shadow is 2 · 7.9 / 4 m wide.
+    inside = floor & (np.abs(picture["position"][:, :, (0, 2)]).max(axis=2) < 1.9)
+    outside = floor & (np.abs(picture["position"][:, :, (0, 2)]).max(axis=2) > 2.05)
+    assert inside.any() and picture.rgb[inside].max() == 0
+    assert outside.any() and picture.rgb[outside].min() > 0
+
+
 def test_files_are_loaded_with_changes() -> None:
     scene = luciole.load(SCENES / "cornell.json", set={"ambient": [0.5, 0.5, 0.5]})
     assert scene.ambient == (0.5, 0.5, 0.5)

@@ -90,6 +90,28 @@ TEST(SurfaceIds, NumbersAreThoseOfTheNamesThatCoverAPixelOfOneSample) {
   for (const int pixels : seen) EXPECT_GT(pixels, 0);
 }
 
+// Without Cryptomattes they come from the G-buffer that is lit, not from another drawing of it.
+TEST(SurfaceIds, NumbersOfOneSampleAreTheSameWithoutMattes) {
+  Scene scene = sceneFromJson(kThings);
+  for (const FogMode mode : {FogMode::kNone, FogMode::kExp})
+    for (const Shading shading : {Shading::kPhong, Shading::kFlat}) {
+      scene.fog.mode = mode;
+      scene.materials[1].blended = true;
+      scene.materials[1].alpha = 0.5f;
+      RenderSettings settings = settingsFor(scene, {130, 90});
+      settings.shading = shading;
+      settings.aovs = kSurfaceIds;
+      const Image with = picture(scene, settings);
+      settings.aovs = {Aov::kObjectId, Aov::kMaterialId};
+      const Image alone = picture(scene, settings);
+      const std::size_t step = with.channels.size(), object = channelOf(with, "object_id");
+      for (std::size_t i = 0; i < with.pixels.size() / step; ++i) {
+        ASSERT_EQ(alone.pixels[5 * i + 3], with.pixels[i * step + object]);
+        ASSERT_EQ(alone.pixels[5 * i + 4], with.pixels[i * step + channelOf(with, "material_id")]);
+      }
+    }
+}
+
 TEST(SurfaceIds, AreTheSameInBandsAndCrops) {
   const Scene scene = sceneFromJson(kThings);
   RenderSettings settings = settingsFor(scene, {130, 150});

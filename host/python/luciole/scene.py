@@ -16,7 +16,10 @@ from luciole.lights import Lights, get_lights, set_lights
 #: A color: three numbers, or one for all three.
 Color: TypeAlias = Sequence[float] | float
 MODELS = ("phong", "blinn-phong", "toon", "cook-torrance", "oren-nayar", "ward")
-#: A texture's kind by the material's map.
+#: Degrees between triangles beyond which an edge is sharp, for meshes without normals.
+CREASE = 60.0
+_CREASE_COSINE = float(np.cos(np.radians(CREASE)))
+#: A material's textures.
 _MAPS = ("diffuse_map", "emission_map", "normal_map", "alpha_map")
 
 
@@ -53,7 +56,7 @@ class Mesh:
     """A triangle mesh, and where it stands.
 
     vertices: (V, 3), metres. triangles: (T, 3), indices of vertices; counter-clockwise ones face the viewer. normals: (V, 3);
-    None: smooth ones. uvs: (V, 2), (0, 0) is a texture's top left corner. colors: (V, 3) or (V, 4), linear, or uint8 in sRGB;
+    None: smooth ones, but for edges sharper than CREASE, 60 degrees. uvs: (V, 2), (0, 0) is a texture's top left corner. colors: (V, 3) or (V, 4), linear, or uint8 in sRGB;
     they multiply the material's. material: one, or a list of which triangle_materials (T,) has each triangle's.
     transforms: (4, 4) or (K, 4, 4), object to world, an instance each; None: one where it is.
     """
@@ -85,23 +88,22 @@ def _of_trimesh(mesh: Any, transforms: Any) -> Mesh:
     made = Mesh(mesh.vertices, mesh.faces, transforms=transforms)
     visual: Any = getattr(mesh, "visual", None)
     kind = getattr(visual, "kind", None)
+    if kind in ("vertex", "face"):
+        made.material = Material(diffuse=1.0, ambient=1.0)
     if kind == "vertex":
         made.colors = np.asarray(visual.vertex_colors, dtype=np.uint8)
     elif kind == "face":
-        # Triangles of a colour of their own: corners of their own.
-        corners = np.asarray(mesh.faces).reshape(-1)
-        made.vertices = np.asarray(mesh.vertices)[corners]
-        made.triangles = np.arange(len(corners)).reshape(-1, 3)
+        # Neighbours have other colours at a vertex that they share, but its normal.
+        vertices = array(mesh.vertices, "mesh.vertices", ("V", 3))
+        faces = array(mesh.faces, "mesh.triangles", ("T", 3), dtype=np.uint32)
+        _, split, normals = _luciole.split_at_creases(vertices, faces, _CREASE_COSINE)
+        made.vertices, made.normals = vertices[faces.ravel()], normals[split.ravel()]
+        made.triangles = np.arange(faces.size).reshape(-1, 3)
         made.colors = np.repeat(np.asarray(visual.face_colors, dtype=np.uint8), 3, axis=0)
-        made.normals = np.asarray(mesh.vertex_normals)[corners]
-        return made
-    made.normals = np.asarray(mesh.vertex_normals)
-    if kind == "texture":
+    elif kind == "texture":
         made.material = _trimesh_material(visual.material)
         if visual.uv is not None:
             made.uvs = np.asarray(visual.uv, dtype=np.float32) * (1, -1) + (0, 1)
-    elif kind in ("vertex", None):
-        made.material = Material(diffuse=1.0 if kind else 0.8, ambient=1.0 if kind else 0.2)
     return made
 
 
@@ -351,15 +353,28 @@ class _Builder:
             of_triangle = materials[chosen]
         index = self.scene.add_mesh(
             name=mesh.name,
-            positions=vertices,
-            normals=_normals(rows(mesh.normals, "normals", 3)),
-            uvs=rows(mesh.uvs, "uvs", 2),
-            colors=_colors(mesh.colors, sides),
-            triangles=triangles,
+            **_smoothed(
+                {
+                    "positions": vertices,
+                    "normals": _normals(rows(mesh.normals, "normals", 3)),
+                    "uvs": rows(mesh.uvs, "uvs", 2),
+                    "colors": _colors(mesh.colors, sides),
+                },
+                triangles,
+            ),
             triangle_materials=of_triangle,
         )
         transforms = np.eye(4) if mesh.transforms is None else mesh.transforms
         self.scene.add_objects(index, _transforms(transforms, "mesh.transforms"), -1, mesh.name)
+
+
+def _smoothed(rows: dict[str, Array | None], triangles: Array) -> dict[str, Array | None]:
+    """A mesh's rows a vertex, with normals where it has none: vertices on sharp edges are split."""
+    if rows["normals"] is not None:
+        return {**rows, "triangles": triangles}
+    sources, split, normals = _luciole.split_at_creases(rows["positions"], triangles, _CREASE_COSINE)
+    made = {name: None if given is None else given[sources] for name, given in rows.items()}
+    return {**made, "normals": normals, "triangles": split}
 
 
 def _transforms(value: object, name: str) -> Doubles:
