@@ -352,9 +352,13 @@ void applyRows(const SettingValues& values, void (*NamedSetting::*set)(const std
   for (const NamedSetting& setting : namedSettings()) {
     const auto found = values.find(setting.name);
     if (!(setting.*set) || found == values.end() || found->second.empty()) continue;
-    if (const std::string fault = settingFault(setting, found->second); !fault.empty())
-      throw InputError(fmt::format("{}: {}", setting.name, fault));
-    (setting.*set)(found->second, target);
+    std::string fault = settingFault(setting, found->second);
+    try {
+      if (fault.empty()) (setting.*set)(found->second, target);
+    } catch (const InputError& error) {
+      fault = error.what();
+    }
+    if (!fault.empty()) throw InputError(fmt::format("{}: {}", setting.name, fault));
   }
 }
 

@@ -105,3 +105,16 @@ def test_package_is_imported_in_half_a_second():
     package, numpy = (min(seconds(what) for _ in range(5)) for what in ("import luciole", "import numpy"))
     print(f"import luciole: {package:.3f} s, of which numpy alone takes {numpy:.3f} s")
     assert package < numpy + 0.5
+
+
+def test_where_there_is_no_device_the_error_says_what_helps():
+    code = """
+import luciole
+try:
+    luciole.render(luciole.Scene(luciole.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])))
+except luciole.MachineError as error:
+    print(isinstance(error, RuntimeError), error)
+"""
+    done = run(sys.executable, "-c", code, OCL_ICD_VENDORS="/nonexistent", OCL_ICD_FILENAMES="", PYTHONPATH=os.environ.get("PYTHONPATH", ""))
+    assert done.stdout.startswith("True "), done.stdout + done.stderr
+    assert "apt install pocl-opencl-icd" in done.stdout and "pip install luciole[intel]" in done.stdout

@@ -236,6 +236,13 @@ def test_arrays_of_surfaces_are_lit() -> None:
     surfaces = luciole.GBuffer(position, normal, scene.cameras[0], diffuse=np.ones_like(position))
     picture = luciole.shade(surfaces, luciole.PointLights([(0.0, 0.0, 1.0)]))
     wanted = ((position[:, :, :2] ** 2).sum(-1) + 1) ** -1.5
+    of_dict = {"position": position, "normal": normal, "diffuse": np.ones_like(position)}
+    same = luciole.shade(of_dict, luciole.PointLights([(0.0, 0.0, 1.0)]), camera=scene.cameras[0])
+    np.testing.assert_array_equal(same.rgb, picture.rgb)
+    with pytest.raises(luciole.InputError, match="camera"):
+        luciole.shade(of_dict, [])
+    with pytest.raises(luciole.InputError, match="expected position, normal"):
+        luciole.shade({"positions": position}, [], camera=scene.cameras[0])
     assert (picture.rgb[0, 0] == 0).all(), "nothing is seen there"
     wanted[0, 0] = 0
     np.testing.assert_allclose(picture.rgb, np.broadcast_to(wanted[:, :, None], (32, 32, 3)), rtol=1e-5)

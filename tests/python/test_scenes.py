@@ -244,7 +244,12 @@ def test_meshes_of_open3d_are_taken() -> None:
     assert lit[:, 1].max() > 0.1 and lit[:, 0].max() == 0
 
 
-def test_a_scene_that_moves_is_posed() -> None:
-    scene = luciole.load(SCENES / "lesson" / "shadows.json") if not list(SCENES.glob("moves*.json")) else luciole.load(next(SCENES.glob("moves*.json")))
-    scene.pose(2.5)
-    assert luciole.render(scene, size=(16, 16)).rgb.shape == (16, 16, 3)
+def test_a_scene_that_moves_is_posed_and_loses_what_moved_what_is_replaced() -> None:
+    scene = luciole.load(SCENES / "fireflies.json")
+    first = luciole.render(scene, size=(32, 18)).rgb
+    scene.pose(40.5)
+    assert (luciole.render(scene, size=(32, 18)).rgb != first).any()
+    scene.lights = luciole.PointLights([(0.0, 3.0, 0.0)])
+    scene.cameras = luciole.Camera.look_at((0, 2, 8), (0, 1, 0))
+    scene.pose(50)
+    assert len(scene.lights[0]) == 1 and luciole.render(scene, size=(32, 18)).rgb.shape == (18, 32, 3)

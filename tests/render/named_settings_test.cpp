@@ -78,6 +78,8 @@ TEST(NamedSettings, WrongValuesAreRefusedByName) {
   EXPECT_EQ(faultOf({{"light_error", "1/0"}}),
             "light_error: expected a number or a fraction from 0 to 1, such as 1/256, got 1/0");
   EXPECT_EQ(faultOf({{"crop", "1,2,3"}}), "crop: expected X,Y,W,H, such as 0,0,64,64, got 1,2,3");
+  RenderSettings narrow{.size{1, 32768}};
+  EXPECT_THROW(applySettings({{"size", "4"}}, narrow), InputError) << "4x131072, by the shape that it has";
   EXPECT_THROW(namedSetting("sample"), InputError);
 }
 

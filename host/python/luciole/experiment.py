@@ -65,7 +65,9 @@ def _option(name: str) -> str:
 
 
 def _text(value: Any) -> str:
-    return "on" if value is True else "off" if value is False else repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
 
 
 def _list(values: Any) -> str:

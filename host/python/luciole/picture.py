@@ -38,10 +38,7 @@ def _device(selector: str) -> "_luciole.Device":
         except MachineError as error:
             if _luciole.devices():
                 raise
-            raise MachineError(
-                f"{error}; Debian and Ubuntu have one in a package: apt install pocl-opencl-icd; or from PyPI: "
-                "pip install luciole[intel]"
-            ) from None
+            raise MachineError(f"{error}, or Intel's from PyPI (pip install luciole[intel])") from None
     return _devices[selector]
 
 
@@ -311,15 +308,28 @@ def gbuffer(scene: Scene, **keywords: Unpack[PictureKeywords]) -> GBuffer:
     return GBuffer._of(_luciole.draw_gbuffer(made._handle, _device(keywords.get("device", "")), request))
 
 
-def shade(surfaces: GBuffer, lights: Any, **keywords: Unpack[PictureKeywords]) -> Picture:
+def _of_arrays(arrays: Mapping[str, Any], camera: object) -> GBuffer:
+    names = ("position", "normal", "diffuse", "specular", "shininess", "ambient", "emission")
+    if not {"position", "normal"} <= set(arrays) <= set(names):
+        there = ", ".join(map(str, arrays))
+        raise InputError(f"shade: expected position, normal, and of {', '.join(names[2:])} what there is, got {there}")
+    if not isinstance(camera, Camera):
+        raise InputError("camera: expected luciole.Camera, by which the surfaces were seen")
+    return GBuffer(camera=camera, **arrays)
+
+
+def shade(surfaces: GBuffer | Mapping[str, Any], lights: Any, **keywords: Unpack[PictureKeywords]) -> Picture:
     """Lights a G-buffer.
 
-    surfaces: of gbuffer(), GBuffer.read() or of arrays, ``GBuffer(position, normal, camera)``. lights: a scene, whose lights,
+    surfaces: of gbuffer(), GBuffer.read() or of arrays: ``GBuffer(position, normal, camera)``, or a dict of them,
+    ``{"position": …, "normal": …}``, with the keyword camera. lights: a scene, whose lights,
     ambient light and fog count and whose objects cast shadows; or lights alone. Keywords: as render() has them, of those that
     concern light.
     """
+    if isinstance(surfaces, Mapping):
+        surfaces = _of_arrays(surfaces, keywords.get("camera"))
     if not isinstance(surfaces, GBuffer):
-        raise InputError(f"shade: expected luciole.GBuffer, got {type(surfaces).__name__}")
+        raise InputError(f"shade: expected luciole.GBuffer or arrays, got {type(surfaces).__name__}")
     if isinstance(lights, Scene):
         scene = lights
     else:

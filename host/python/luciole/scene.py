@@ -56,8 +56,9 @@ class Mesh:
     """A triangle mesh, and where it stands.
 
     vertices: (V, 3), metres. triangles: (T, 3), indices of vertices; counter-clockwise ones face the viewer. normals: (V, 3);
-    None: smooth ones, but for edges sharper than CREASE, 60 degrees. uvs: (V, 2), (0, 0) is a texture's top left corner. colors: (V, 3) or (V, 4), linear, or uint8 in sRGB;
-    they multiply the material's. material: one, or a list of which triangle_materials (T,) has each triangle's.
+    None: smooth ones, but for edges sharper than CREASE, 60 degrees. uvs: (V, 2), (0, 0) is a texture's top left corner.
+    colors: (V, 3) or (V, 4), linear, or uint8 in sRGB; they multiply the material's. material: one, or a list of which
+    triangle_materials (T,) has each triangle's.
     transforms: (4, 4) or (K, 4, 4), object to world, an instance each; None: one where it is.
     """
 
@@ -351,40 +352,32 @@ class _Builder:
             if chosen.size > 0 and not (0 <= chosen.min() and chosen.max() < len(materials)):
                 raise InputError(f"mesh.triangle_materials: expected 0 to {len(materials) - 1}")
             of_triangle = materials[chosen]
+        normals, uvs, colors = rows(mesh.normals, "normals", 3), rows(mesh.uvs, "uvs", 2), _colors(mesh.colors, sides)
+        if normals is None:
+            sources, triangles, normals = _luciole.split_at_creases(vertices, triangles, _CREASE_COSINE)
+            vertices = vertices[sources]
+            uvs, colors = (None if given is None else given[sources] for given in (uvs, colors))
+        else:
+            normals = _unit(normals)
         index = self.scene.add_mesh(
             name=mesh.name,
-            **_smoothed(
-                {
-                    "positions": vertices,
-                    "normals": _normals(rows(mesh.normals, "normals", 3)),
-                    "uvs": rows(mesh.uvs, "uvs", 2),
-                    "colors": _colors(mesh.colors, sides),
-                },
-                triangles,
-            ),
+            positions=vertices,
+            normals=normals,
+            uvs=uvs,
+            colors=colors,
+            triangles=triangles,
             triangle_materials=of_triangle,
         )
         transforms = np.eye(4) if mesh.transforms is None else mesh.transforms
         self.scene.add_objects(index, _transforms(transforms, "mesh.transforms"), -1, mesh.name)
 
 
-def _smoothed(rows: dict[str, Array | None], triangles: Array) -> dict[str, Array | None]:
-    """A mesh's rows a vertex, with normals where it has none: vertices on sharp edges are split."""
-    if rows["normals"] is not None:
-        return {**rows, "triangles": triangles}
-    sources, split, normals = _luciole.split_at_creases(rows["positions"], triangles, _CREASE_COSINE)
-    made = {name: None if given is None else given[sources] for name, given in rows.items()}
-    return {**made, "normals": normals, "triangles": split}
-
-
 def _transforms(value: object, name: str) -> Doubles:
     return array(value, name, ("K", 4, 4), (4, 4), dtype=np.float64).reshape(-1, 4, 4)
 
 
-def _normals(given: Array | None) -> Array | None:
-    """Of length 1."""
-    if given is None:
-        return None
+def _unit(given: Array) -> Array:
+    """Normals of length 1."""
     lengths = np.linalg.norm(given, axis=1, keepdims=True)
     if given.size > 0 and not lengths.min() > 0:
         raise InputError(f"mesh.normals[{int(lengths.argmin())}]: expected a direction of any length but 0")

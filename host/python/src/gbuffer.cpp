@@ -88,13 +88,7 @@ void bindGBuffers(nb::module_& module) {
            [](const GBuffer& gbuffer) {
              const nb::gil_scoped_release unlocked;
              auto all = std::make_unique<PictureHandle>();
-             Image& image = all->picture.image;
-             passRows(gbuffer, [&](const Image& rows) {
-               image.width = rows.width;
-               image.height += rows.height;
-               image.channels = rows.channels;
-               image.pixels.insert(image.pixels.end(), rows.pixels.begin(), rows.pixels.end());
-             });
+             passRows(gbuffer, [&](const Image& rows) { all->append(rows, gbuffer.height); });
              return all;
            })
       .def("write", [](const GBuffer& gbuffer, const std::string& path) {

@@ -55,17 +55,17 @@ nb::dict differenceOf(const Pixels& a, const std::vector<std::string>& channels_
 
 void bindImages(nb::module_& module) {
   nb::class_<PictureHandle>(module, "Picture")
-      .def_prop_ro("channels", [](const PictureHandle& picture) { return picture.picture.image.channels; })
+      .def_ro("channels", &PictureHandle::channels)
       .def_prop_ro("pixels",
                    [](nb::handle_t<PictureHandle> self) {
-                     Image& image = nb::cast<PictureHandle&>(self).picture.image;
+                     auto& picture = nb::cast<PictureHandle&>(self);
                      return nb::ndarray<nb::numpy, float>(
-                         image.pixels.data(),
-                         {std::size_t(image.height), std::size_t(image.width), image.channels.size()}, self);
+                         picture.pixels.data(),
+                         {std::size_t(picture.height), std::size_t(picture.width), picture.channels.size()},
+                         self);
                    })
-      .def_prop_ro("stats", [](const PictureHandle& picture) {
-        return statsJson(picture.picture.stats, picture.ended);
-      });
+      .def_prop_ro("stats",
+                   [](const PictureHandle& picture) { return statsJson(picture.stats, picture.ended); });
   module.def("write_image",
              [](const Pixels& pixels, const std::vector<std::string>& channels, const std::string& path,
                 const std::vector<std::pair<std::string, std::string>>& metadata,
@@ -85,25 +85,13 @@ void bindImages(nb::module_& module) {
     return nb::bytes(bytes.data(), bytes.size());
   });
   module.def("picture_of", [](const Pixels& pixels, const std::vector<std::string>& channels) {
-    auto picture = std::make_unique<PictureHandle>();
-    picture->picture.image = imageOf(pixels, channels);
-    return picture;
+    return std::make_unique<PictureHandle>(imageOf(pixels, channels));
   });
   module.def("read_image", [](const std::string& path) {
-    auto picture = std::make_unique<PictureHandle>();
     const nb::gil_scoped_release unlocked;
-    picture->picture.image = readImage(path);
-    return picture;
+    return std::make_unique<PictureHandle>(readImage(path));
   });
   module.def("difference", differenceOf);
-  module.def(
-      "difference_picture", [](const Pixels& a, const std::vector<std::string>& channels_a, const Pixels& b,
-                               const std::vector<std::string>& channels_b, float gain) {
-        const nb::gil_scoped_release unlocked;
-        auto picture = std::make_unique<PictureHandle>();
-        picture->picture.image = differencePicture(imageOf(a, channels_a), imageOf(b, channels_b), gain);
-        return picture;
-      });
 }
 
 }  // namespace luciole::python

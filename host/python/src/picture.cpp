@@ -134,10 +134,6 @@ RenderSettings settingsOf(const Request& request, const Scene& scene, const std:
   return settings;
 }
 
-double millisecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Calls make(scene, settings) in a turn, with what the request changes of the scene.
 template <class Make>
 auto makeOf(SceneHandle& handle, const Request& request, const Make& make) {
@@ -158,16 +154,16 @@ std::unique_ptr<PictureHandle> render(SceneHandle& handle, const std::shared_ptr
     const ChangeForPicture change(request, scene);
     RenderSettings settings = settingsOf(request, scene, change.model());
     settings.band_height = bandHeight(settings, scene.lights.size());
-    std::optional<double> stops;
-    Stats stats;
+    Stats& stats = picture->stats;
     if (valueOf(request, "exposure") == "auto") {
-      stops = renderer.measureExposure(settings, stats);
-      settings.exposure = float(*stops);
+      stats.measured_exposure = renderer.measureExposure(settings, stats);
+      settings.exposure = float(*stats.measured_exposure);
     }
-    picture->picture = renderer.render(settings);
-    picture->picture.stats.measured_exposure = stops;
+    const int rows = settings.crop ? settings.crop->height : settings.size.y;
+    renderer.render(
+        settings, [&](const Image& next) { picture->append(next, rows); }, stats);
   });
-  picture->took(millisecondsSince(start));
+  picture->tookSince(start);
   return picture;
 }
 
@@ -176,9 +172,8 @@ std::unique_ptr<PictureHandle> shadeGBuffer(SceneHandle& handle, const std::shar
   if (!request.camera) request.camera = gbuffer.camera;
   return makeOf(handle, request, [&](const Scene& scene, const RenderSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
-    auto picture = std::make_unique<PictureHandle>();
-    picture->picture = shade(*device, scene, gbuffer, settings);
-    picture->took(millisecondsSince(start));
+    auto picture = std::make_unique<PictureHandle>(shade(*device, scene, gbuffer, settings));
+    picture->tookSince(start);
     return picture;
   });
 }
@@ -191,9 +186,8 @@ std::unique_ptr<PictureHandle> bake(SceneHandle& handle, const std::shared_ptr<D
     const auto start = std::chrono::steady_clock::now();
     BakeSettings light{.irradiance = irradiance};
     if (eye) light.eye = {(*eye)[0], (*eye)[1], (*eye)[2]};
-    auto picture = std::make_unique<PictureHandle>();
-    picture->picture = bakeLight(*device, scene, object, light, settings);
-    picture->took(millisecondsSince(start));
+    auto picture = std::make_unique<PictureHandle>(bakeLight(*device, scene, object, light, settings));
+    picture->tookSince(start);
     return picture;
   });
 }

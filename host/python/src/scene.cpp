@@ -120,6 +120,9 @@ void setLights(SceneHandle& handle, const std::vector<const LightColumns*>& all)
     }
     scene.lights.resize(count);
     scene.light_groups.resize(1);
+    // What moved the lights that were there.
+    scene.animation.lights.clear();
+    scene.animation.attached_lights.clear();
     std::size_t first = 0;
     for (const LightColumns* columns : all) {
       fillLights(*columns, groupNamed(columns->group, scene), first, scene.lights);
@@ -168,7 +171,7 @@ LightColumns columnsOf(int kind, std::size_t count, const std::optional<InRows>&
   return columns;
 }
 
-/// The lights of a kind and family as arrays, by the names that addLights() has for them.
+/// The lights of a kind and family as arrays, by the names that columnsOf() has for them.
 nb::dict lightArrays(SceneHandle& handle, int kind, int window, int falloff, const std::string& group) {
   const LightFamily family{window, falloff, group};
   std::vector<double> position, direction, cutoff, inner_cone, radius, half_angle;
@@ -433,7 +436,13 @@ void bindSurroundings(nb::class_<SceneHandle>& scene) {
            })
       .def("set_cameras",
            [](SceneHandle& handle, const std::vector<Camera>& cameras) {
-             inTurn(handle, [&] { handle.sceneToChange().cameras = cameras; });
+             inTurn(handle, [&] {
+               Scene& scene = handle.sceneToChange();
+               scene.cameras = cameras;
+               // What moved the cameras that were there.
+               scene.animation.cameras.clear();
+               scene.animation.attached_cameras.clear();
+             });
            })
       .def("cameras",
            [](SceneHandle& handle) { return inTurn(handle, [&] { return handle.scene().cameras; }); })
