@@ -6,6 +6,7 @@
 
 #include "cl/launch.hpp"
 #include "kernels/sampled/sampled_light.h"
+#include "raster/geometry.hpp"
 #include "shadow/exact/beam_frame.hpp"
 
 namespace luciole {
