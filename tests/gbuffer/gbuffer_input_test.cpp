@@ -130,7 +130,7 @@ TEST(CameraHeader, OfPixelsThatAreWiderThanHighSeesAsFarAsTheyDo) {
 // The matrices are floats: of numbers up to 12, and of an inverse.
 TEST(CameraHeader, OfAnotherProgramTellsWhereTheAxisMeetsThePicture) {
   for (const bool orthographic : {false, true})
-    for (const glm::dvec2 shift : {glm::dvec2(0), {0.02, 0}, {-0.75, 1.5}}) {
+    for (const glm::dvec2& shift : {glm::dvec2(0), {0.02, 0}, {-0.75, 1.5}}) {
       Camera camera = tiltedCamera();
       camera.orthographic = orthographic;
       camera.shift = shift;

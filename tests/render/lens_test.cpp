@@ -94,7 +94,7 @@ TEST(Lens, PicturesAreTheReferences) {
 // what exact shadows say: of 2048 texels a side and this scene's size that is a small share of the picture.
 TEST(Lens, ShadowMapsAreRightWhereverThePictureIsShifted) {
   const Scene scene = sceneFromJson(kLensScene);
-  for (const glm::dvec2 shift : {glm::dvec2(0), {1.5, 0.5}, {-1.5, -0.5}}) {
+  for (const glm::dvec2& shift : {glm::dvec2(0), {1.5, 0.5}, {-1.5, -0.5}}) {
     RenderSettings settings = settingsFor(scene, {160, 90});
     settings.shade.shadow_limits.size = 2048;
     settings.camera.shift = shift;
