@@ -164,7 +164,7 @@ void refuseSurfaceIds(const PictureOptions& options) {
 
 /// Lights surfaces and writes the picture. picture: that to which light is added, or empty.
 void lightAndWrite(CommandContext& context, const PictureOptions& options, const Scene& scene,
-                   const std::string& scene_path, const GBuffer& gbuffer, Image picture, int frame,
+                   const std::string& scene_path, const GBuffer& gbuffer, const Image& picture, int frame,
                    Stats& stats) {
   OpenedDevice& device = context.device;
   RenderSettings settings = renderSettings(options, scene);
@@ -247,7 +247,7 @@ void relight(CommandContext& context, RelightOptions& options) {
   reportNotes(input.notes, options.quiet);
   if (options.add) leaveLightAlone(scene, input.gbuffer);
   if (options.add && options.isOn("light_groups")) input.color = withGroups(input.color, options.input);
-  lightAndWrite(context, options, scene, options.scene, input.gbuffer, std::move(input.color), frame, stats);
+  lightAndWrite(context, options, scene, options.scene, input.gbuffer, input.color, frame, stats);
 }
 
 }  // namespace
