@@ -5,7 +5,6 @@ import re
 import subprocess
 import sys
 import sysconfig
-import time
 from importlib.metadata import version
 from pathlib import Path
 
@@ -95,14 +94,15 @@ def test_intels_driver_is_named_only_where_there_is_no_other(tmp_path, monkeypat
     assert environment == {}
 
 
-def test_package_is_imported_in_half_a_second():
+def test_package_is_imported_in_half_a_second_of_work():
     def seconds(what):
-        start = time.perf_counter()
+        # Of the processor, so that what else the machine does counts little.
+        before = os.times()
         subprocess.run([sys.executable, "-c", what], check=True, cwd="/")
-        return time.perf_counter() - start
+        after = os.times()
+        return after.children_user + after.children_system - before.children_user - before.children_system
 
-    # The best of some, so that what else the machine does counts little.
-    package, numpy = (min(seconds(what) for _ in range(5)) for what in ("import luciole", "import numpy"))
+    package, numpy = (min(seconds(what) for _ in range(3)) for what in ("import luciole", "import numpy"))
     print(f"import luciole: {package:.3f} s, of which numpy alone takes {numpy:.3f} s")
     assert package < numpy + 0.5
 
