@@ -60,7 +60,7 @@ TEST(View, PixelsAreThoseOfAMatrixOfIntrinsics) {
   camera.pixel_aspect = fy / fx;
   const View view = cameraView(camera, glm::ivec2(size));
   for (int i = 0; i < 64; ++i) {
-    const glm::dvec3 world(i % 4 - 1.5, i / 4 % 4 - 1.5, i / 16 - 1.5);
+    const glm::dvec3 world = glm::dvec3(glm::ivec3(i, i / 4, i / 16) % 4) - 1.5;
     const glm::dvec3 seen(world_to_camera * glm::dvec4(world, 1));
     const glm::dvec3 place = project(view, glm::dvec3(view.world_to_view * glm::dvec4(world, 1)));
     EXPECT_NEAR((place.x + 1) / 2 * size.x, fx * seen.x / seen.z + cx, 2e4 * 40 * kEpsilon);
